@@ -1,0 +1,111 @@
+//! Why a plan was refused.
+
+use core::fmt;
+
+/// The input a [`PlanError`] speaks of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Field {
+    /// Sample time (s).
+    Cycle,
+    /// Target position (u).
+    Target,
+    /// Start position (u).
+    Position,
+    /// Start velocity (u/s).
+    Velocity,
+    /// Start acceleration (u/s^2).
+    Acceleration,
+    /// Start jerk (u/s^3).
+    Jerk,
+    /// Velocity at the end (u/s).
+    EndVelocity,
+    /// Velocity bound (u/s).
+    LimitVelocity,
+    /// Acceleration bound (u/s^2).
+    LimitAcceleration,
+    /// Deceleration bound (u/s^2).
+    LimitDeceleration,
+    /// Jerk bound (u/s^3).
+    LimitJerk,
+    /// Snap bound (u/s^4).
+    LimitSnap,
+}
+
+impl Field {
+    /// The name the field has on a `standstill plan` line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Cycle => "Ts",
+            Self::Target => "target",
+            Self::Position => "position",
+            Self::Velocity => "velocity",
+            Self::Acceleration => "acceleration",
+            Self::Jerk => "jerk",
+            Self::EndVelocity => "end_velocity",
+            Self::LimitVelocity => "limits.velocity",
+            Self::LimitAcceleration => "limits.acceleration",
+            Self::LimitDeceleration => "limits.deceleration",
+            Self::LimitJerk => "limits.jerk",
+            Self::LimitSnap => "limits.snap",
+        }
+    }
+}
+
+/// Why a plan was refused. Nothing moves on a refusal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// An input is NaN, infinite where a number is needed, zero or negative where it must be positive.
+    InvalidInput {
+        /// The input.
+        field: Field,
+        /// Its value.
+        value: f64,
+    },
+    /// The move needs more scans than a plan can count.
+    TooLong {
+        /// The bound that makes it so long, or the target.
+        field: Field,
+        /// Its value.
+        value: f64,
+    },
+    /// The start state does not fit the method (for example: not at rest).
+    NotAtRest {
+        /// The first derivative that is not zero.
+        field: Field,
+        /// Its value.
+        value: f64,
+    },
+    /// No bound is given, so the move would take no time.
+    Unbounded,
+}
+
+impl fmt::Display for PlanError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::InvalidInput { field, value } => {
+                write!(
+                    f,
+                    "{} is {value:?}: it must be finite, and positive where it is a limit or a time",
+                    field.name()
+                )
+            }
+            Self::TooLong { field, value } => write!(
+                f,
+                "the move is too long for {} = {value:?}: a plan counts at most 2147483647 scans; raise the limit, shorten the move or lengthen the cycle",
+                field.name()
+            ),
+            Self::NotAtRest { field, value } => {
+                write!(
+                    f,
+                    "{} is {value:?}: this method starts at rest, so it must be 0",
+                    field.name()
+                )
+            }
+            Self::Unbounded => write!(f, "no limit is given: give at least one"),
+        }
+    }
+}
+
+impl core::error::Error for PlanError {}

@@ -1,0 +1,29 @@
+//! Motion planning on a sample grid.
+//!
+//! What stands here: limits + start + goal -> a plan, and a plan's set-point at any scan. It is the only
+//! home of motion maths. What does not: no axis states, no function blocks, no PLCopen; no clock, no heap,
+//! no panic, no libm transcendental. Only `+ - * /`, square root and integers, so that every processor
+//! gives the same bits.
+//!
+//! Lengths are in the user's unit `u`, times in seconds. The derivations with numbered equations are in
+//! `docs/planner.md`; the code cites their numbers.
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(any(test, feature = "std"))]
+extern crate std;
+
+mod error;
+pub mod grid;
+mod limits;
+pub mod math;
+mod planner;
+pub mod ramp;
+mod setpoint;
+
+pub use error::{Field, PlanError};
+pub use grid::{GridPlan, Method};
+pub use limits::{Limits, Order};
+pub use planner::{Plan, Planner, Standard, StandardPlan};
+pub use ramp::{Excess, RampPlan};
+pub use setpoint::Setpoint;

@@ -1,0 +1,145 @@
+//! The seam between an axis and the maths: what an axis may ask of any planner.
+
+use crate::{Excess, GridPlan, Limits, PlanError, RampPlan, Setpoint};
+
+/// Plans moves for an axis.
+///
+/// An axis knows only this trait, so tests can put a countdown in the planner's place and a host can bring
+/// its own. Every method is bounded work without heap and never panics.
+pub trait Planner {
+    /// A plan: a plain value.
+    type Plan: Plan;
+
+    /// A move from `start` that ends at rest exactly on `target` (u) within `limits`.
+    ///
+    /// `before` are the limits that held for the motion `start` belongs to: until the state is inside
+    /// `limits` the larger of the two hold.
+    ///
+    /// # Errors
+    /// [`PlanError`] if an input is not usable or the move too long.
+    fn move_to(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<Self::Plan, PlanError>;
+
+    /// A change from `start` to the constant `velocity` (u/s) within `limits`; `before` as in
+    /// [`Planner::move_to`].
+    ///
+    /// # Errors
+    /// [`PlanError`] if an input is not usable or the ramp too long.
+    fn ramp_to(
+        &self,
+        start: &Setpoint,
+        velocity: f64,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<Self::Plan, PlanError>;
+}
+
+/// A planned motion, evaluated by scan count from its start.
+pub trait Plan: Copy + core::fmt::Debug {
+    /// Number of scans N until the goal; 0 for a move of no length.
+    fn scans(&self) -> u32;
+
+    /// The set-point `scan` scans after the start, in O(1).
+    ///
+    /// `scan` 0 is the start. From [`Plan::scans`] on it is the goal: exactly the target, or the goal
+    /// velocity kept for ever.
+    fn at(&self, scan: u64) -> Setpoint;
+
+    /// By how much the start state forced the plan out of its limits, if it did.
+    fn excess(&self) -> Option<Excess>;
+}
+
+/// The planner of the product: the shortest grid plan of the overlapped family from rest, a ramp for
+/// velocities, and from motion a brake to rest followed by a grid plan.
+#[derive(Clone, Copy, Debug)]
+pub struct Standard {
+    cycle: f64,
+}
+
+/// A plan of [`Standard`].
+#[derive(Clone, Copy, Debug)]
+pub enum StandardPlan {
+    /// From rest to rest, every switch on the grid.
+    Grid(GridPlan),
+    /// To a velocity.
+    Ramp(RampPlan),
+    /// A brake to rest, then from rest to rest.
+    BrakeThenGrid(RampPlan, GridPlan),
+}
+
+impl Standard {
+    /// A planner for the sample time `cycle` (s).
+    pub const fn new(cycle: f64) -> Self {
+        Self { cycle }
+    }
+}
+
+impl Planner for Standard {
+    type Plan = StandardPlan;
+
+    fn move_to(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<StandardPlan, PlanError> {
+        use crate::Method::Overlapped;
+        if start.is_at_rest() {
+            return GridPlan::new(Overlapped, start.position, target, limits, self.cycle)
+                .map(StandardPlan::Grid);
+        }
+        let brake = RampPlan::new(start, 0.0, limits, before, self.cycle)?;
+        let rest = brake.at(u64::from(brake.scans())).position;
+        let grid = GridPlan::new(Overlapped, rest, target, limits, self.cycle)?;
+        Ok(StandardPlan::BrakeThenGrid(brake, grid))
+    }
+
+    fn ramp_to(
+        &self,
+        start: &Setpoint,
+        velocity: f64,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<StandardPlan, PlanError> {
+        RampPlan::new(start, velocity, limits, before, self.cycle).map(StandardPlan::Ramp)
+    }
+}
+
+impl Plan for StandardPlan {
+    fn scans(&self) -> u32 {
+        match self {
+            Self::Grid(grid) => grid.scans(),
+            Self::Ramp(ramp) => ramp.scans(),
+            // Both counts are below 2^31, so the sum fits.
+            Self::BrakeThenGrid(brake, grid) => brake.scans() + grid.scans(),
+        }
+    }
+
+    fn at(&self, scan: u64) -> Setpoint {
+        match self {
+            Self::Grid(grid) => grid.at(scan),
+            Self::Ramp(ramp) => ramp.at(scan),
+            Self::BrakeThenGrid(brake, grid) => {
+                let braking = u64::from(brake.scans());
+                if scan <= braking {
+                    brake.at(scan)
+                } else {
+                    grid.at(scan - braking)
+                }
+            }
+        }
+    }
+
+    fn excess(&self) -> Option<Excess> {
+        match self {
+            Self::Grid(_) => None,
+            Self::Ramp(ramp) | Self::BrakeThenGrid(ramp, _) => ramp.excess(),
+        }
+    }
+}
