@@ -1,2 +1,19 @@
-//! x
+//! The function blocks: one file each, and the registry that lists them.
+//!
+//! A block says which pins it has and which command it gives; edges and results belong to `standstill-fb`,
+//! motion to `standstill-axis`. What does not stand here: names of scripts, text, heap.
+//!
+//! A new block is one file in the folder of its group and one line in [`registry`].
 #![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+pub mod administrative;
+pub mod homing;
+pub mod registry;
+pub mod single_axis;
+pub mod standard;
+
+pub use registry::{BlockInstance, REGISTRY};

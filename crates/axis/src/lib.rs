@@ -1,2 +1,38 @@
-//! x
+//! One PLCopen axis: its states, the commands it obeys and remembers, its errors, and the drive under it.
+//!
+//! What stands here: the axis state machine with its arrows as data, one active command and a bounded
+//! buffer, the reaction to power and faults, the motion step that turns a plan into a set-point. What does
+//! not: an axis knows no function block (they meet through a [`CommandId`]), no script, no clock; nothing
+//! allocates, every loop has a constant bound.
 #![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+mod axis;
+mod command;
+mod config;
+mod drive;
+mod error_id;
+mod fate;
+mod ideal_drive;
+mod log;
+mod scaling;
+mod state;
+
+pub use axis::{Axis, Source};
+pub use command::{
+    AxisId, BufferMode, Command, CommandId, Direction, Dynamics, IecEnum, InstanceId, QUEUE_MAX, Raw, Request,
+};
+pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, PowerOff, StartState};
+pub use drive::{Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, Fault};
+pub use error_id::{ErrorClass, ErrorId};
+pub use fate::{FATES_KEPT, Fate};
+pub use ideal_drive::{DELAY_MAX, IdealDrive};
+pub use log::{Event, Goal, LOG_KEPT, Log, Record};
+pub use scaling::Scaling;
+pub use standstill_planner::{
+    Excess, Limits, Order, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
+};
+pub use state::{ARROWS, Arrow, AxisEvent, AxisState, Refused, next};

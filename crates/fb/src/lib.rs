@@ -1,2 +1,17 @@
-//! x
+//! What all function blocks share: pins as data, and the cores that own edges and results.
+//!
+//! What does not stand here: no block, and no motion. A block says only which command it gives; the cores
+//! own rising edges, results that stay until Execute falls, and visibility for at least one call.
 #![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+mod block;
+mod execute;
+mod pins;
+
+pub use block::{AnyInstance, Block, BlockInfo, Context, Described, Group, Instance};
+pub use execute::{ExecuteCore, Phase};
+pub use pins::{Direction, EnumInfo, Int, Pin, PinError, PinType, PinValue, Pins, Time, Value};

@@ -1,0 +1,64 @@
+//! `MC_ReadAxisError`: axis, drive and communication errors.
+//!
+//! Source: PLCopen Motion Control Part 1, section of that name; rules R52 to R59.
+
+use standstill_axis::{AxisId, ErrorId, Planner};
+use standstill_fb::{Block, Context, Group, pins};
+
+pins! {
+    in_outs {
+        /// The axis to read.
+        Axis => axis: AxisId;
+    }
+    inputs {
+        /// Read in every call while TRUE.
+        Enable => enable: bool = false, "";
+    }
+    vendor_inputs {}
+    outputs {
+        /// The other outputs can be relied on.
+        Valid => valid: bool, "";
+        /// Enabled.
+        Busy => busy: bool, "";
+        /// The block cannot read.
+        Error => error: bool, "";
+        /// Why; 0 without an error.
+        ErrorID => error_id: ErrorId, "";
+        /// The axis error; 0 if there is none.
+        AxisErrorID => axis_error_id: ErrorId, "";
+    }
+    vendor_outputs {}
+}
+
+/// Keeps nothing: reads in every call.
+#[doc(alias = "MC_ReadAxisError")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct McReadAxisError;
+
+impl Block for McReadAxisError {
+    const NAME: &'static str = "MC_ReadAxisError";
+    const GROUP: Group = Group::Administrative;
+    const DOC: &'static str = "Reads the error of an axis; errors of block instances are not shown (R76).";
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+
+    fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
+        if !inputs.enable {
+            return Outputs::default();
+        }
+        match context.axes.get(inputs.axis.index()) {
+            Some(axis) => Outputs {
+                valid: true,
+                busy: true,
+                axis_error_id: axis.error_id(),
+                ..Outputs::default()
+            },
+            // Not recoverable: the pin is wired to nothing (R57).
+            None => Outputs {
+                error: true,
+                error_id: ErrorId::AxisUnknown,
+                ..Outputs::default()
+            },
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Blocks that switch, reset and read; they move nothing.
+
+pub mod mc_power;
+pub mod mc_read_actual_position;
+pub mod mc_read_axis_error;
+pub mod mc_read_status;
+pub mod mc_reset;

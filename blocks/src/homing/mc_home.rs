@@ -1,0 +1,77 @@
+//! `MC_Home`: the present position gets a name.
+//!
+//! Source: PLCopen Motion Control Part 1, section of that name.
+//!
+//! This version homes at standstill without a search: the axis takes `Position` where it stands.
+
+use standstill_axis::{AxisId, BufferMode, Command, ErrorId, Planner, Raw, Request};
+use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
+
+pins! {
+    in_outs {
+        /// The axis to move.
+        Axis => axis: AxisId;
+    }
+    inputs {
+        /// A rising edge starts the homing with the values of that call.
+        Execute => execute: bool = false, "";
+        /// New name of the present position; finite.
+        Position => position: f64 = 0.0, "u";
+        /// How the command follows the one before it.
+        BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
+    }
+    vendor_inputs {}
+    outputs {
+        /// The position is set.
+        Done => done: bool, "";
+        /// Not finished.
+        Busy => busy: bool, "";
+        /// The block controls the axis.
+        Active => active: bool, "";
+        /// Interrupted by another command.
+        CommandAborted => command_aborted: bool, "";
+        /// Refused, or ended by an error.
+        Error => error: bool, "";
+        /// Why; 0 without an error.
+        ErrorID => error_id: ErrorId, "";
+    }
+    vendor_outputs {}
+}
+
+/// State kept between calls.
+#[doc(alias = "MC_Home")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct McHome {
+    core: ExecuteCore,
+}
+
+impl Block for McHome {
+    const NAME: &'static str = "MC_Home";
+    const GROUP: Group = Group::Homing;
+    const DOC: &'static str = "Sets the position of an axis at standstill.";
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+
+    fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
+        let phase = self.core.scan(inputs.execute, context, |context, replaces| {
+            let (axis, log, source) = context.axis(inputs.axis)?;
+            let request = Request {
+                command: Command::Home {
+                    position: inputs.position,
+                },
+                buffer_mode: inputs.buffer_mode,
+                continuous_update: false,
+                replaces,
+            };
+            axis.command(&request, source, log).map(|id| (inputs.axis, id))
+        });
+        Outputs {
+            done: phase.is_done(),
+            busy: phase.is_busy(),
+            active: phase.is_active(),
+            command_aborted: phase.is_aborted(),
+            error: phase.is_error(),
+            error_id: phase.error_id(),
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Blocks that find or set the reference.
+
+pub mod mc_home;

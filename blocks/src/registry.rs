@@ -1,0 +1,139 @@
+//! Every block the runtime knows, by its IEC name.
+
+use crate::administrative::{
+    mc_power::McPower, mc_read_actual_position::McReadActualPosition, mc_read_axis_error::McReadAxisError,
+    mc_read_status::McReadStatus, mc_reset::McReset,
+};
+use crate::homing::mc_home::McHome;
+use crate::single_axis::{
+    mc_halt::McHalt, mc_move_absolute::McMoveAbsolute, mc_move_relative::McMoveRelative,
+    mc_move_velocity::McMoveVelocity, mc_stop::McStop,
+};
+use crate::standard::r_trig::RTrig;
+use standstill_axis::Planner;
+use standstill_fb::{AnyInstance, BlockInfo, Context, Described, Instance, PinError, Value};
+
+macro_rules! registry {
+    ($($block:ident)*) => {
+        /// An instance of any block of the registry.
+        // The variants differ in size, and a box would need a heap.
+        #[allow(clippy::large_enum_variant)]
+        #[derive(Clone, Copy, Debug)]
+        pub enum BlockInstance {
+            $(#[doc = concat!("An instance of [`", stringify!($block), "`].")] $block(Instance<$block>),)*
+        }
+
+        /// Every block as data, in the order of the catalogue.
+        pub const REGISTRY: &[BlockInfo] = &[$(<$block as Described>::INFO),*];
+
+        impl BlockInstance {
+            /// A new instance of the block called `name`, without regard to case.
+            pub fn new(name: &str) -> Option<Self> {
+                $(
+                    if <$block as Described>::INFO.name.eq_ignore_ascii_case(name) {
+                        return Some(Self::$block(Instance::default()));
+                    }
+                )*
+                None
+            }
+
+            /// Calls the block with its inputs as they stand.
+            pub fn call<P: Planner>(&mut self, context: &mut Context<'_, P>) {
+                match self { $(Self::$block(instance) => instance.call(context),)* }
+            }
+
+            fn any(&self) -> &dyn AnyInstance {
+                match self { $(Self::$block(instance) => instance,)* }
+            }
+
+            fn any_mut(&mut self) -> &mut dyn AnyInstance {
+                match self { $(Self::$block(instance) => instance,)* }
+            }
+        }
+    };
+}
+
+registry! {
+    McPower McReset McReadStatus McReadActualPosition McReadAxisError
+    McHome
+    McStop McHalt McMoveAbsolute McMoveRelative McMoveVelocity
+    RTrig
+}
+
+impl AnyInstance for BlockInstance {
+    fn info(&self) -> &'static BlockInfo {
+        self.any().info()
+    }
+
+    fn get(&self, index: usize) -> Option<Value> {
+        self.any().get(index)
+    }
+
+    fn set(&mut self, index: usize, value: Value) -> Result<(), PinError> {
+        self.any_mut().set(index, value)
+    }
+}
+
+/// The block called `name`, without regard to case.
+pub fn find(name: &str) -> Option<&'static BlockInfo> {
+    REGISTRY.iter().find(|info| info.name.eq_ignore_ascii_case(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+    use std::string::ToString;
+    use std::vec::Vec;
+
+    #[test]
+    fn names_are_unique_and_make_their_own_instances() {
+        let names: BTreeSet<_> = REGISTRY
+            .iter()
+            .map(|info| info.name.to_ascii_uppercase())
+            .collect();
+        assert_eq!(names.len(), REGISTRY.len());
+        for info in REGISTRY {
+            let instance = BlockInstance::new(&info.name.to_lowercase()).unwrap();
+            assert_eq!(instance.info().name, info.name);
+        }
+        assert!(BlockInstance::new("MC_Nothing").is_none());
+    }
+
+    #[test]
+    fn every_pin_reads_back_what_was_written() {
+        for info in REGISTRY {
+            let mut instance = BlockInstance::new(info.name).unwrap();
+            let pins: Vec<_> = info.pins().collect();
+            let names: BTreeSet<_> = pins.iter().map(|pin| pin.name.to_string()).collect();
+            assert_eq!(names.len(), pins.len(), "{}", info.name);
+            for (index, pin) in pins.iter().enumerate() {
+                let value = instance.get(index).unwrap();
+                assert!(!pin.doc.is_empty(), "{}.{}", info.name, pin.name);
+                if index < info.input_count() {
+                    assert_eq!(info.default_of(index), Some(value), "{}.{}", info.name, pin.name);
+                    assert_eq!(instance.set(index, value), Ok(()));
+                } else {
+                    assert_eq!(instance.set(index, value), Err(PinError::NotWritable));
+                }
+            }
+            assert_eq!(instance.get(pins.len()), None);
+        }
+    }
+
+    #[test]
+    fn vendor_pins_come_after_the_standard_pins_of_their_kind() {
+        for info in REGISTRY {
+            for pair in info.pins().collect::<Vec<_>>().windows(2) {
+                if pair[0].direction == pair[1].direction {
+                    assert!(
+                        pair[0].extension <= pair[1].extension,
+                        "{}.{}",
+                        info.name,
+                        pair[1].name
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Blocks that move one axis.
+
+pub mod mc_halt;
+pub mod mc_move_absolute;
+pub mod mc_move_relative;
+pub mod mc_move_velocity;
+pub mod mc_stop;

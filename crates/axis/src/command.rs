@@ -1,0 +1,235 @@
+//! The words blocks and axes share: who, what, and in which order.
+
+/// Handle of an axis: its place in the slice of axes. It holds no live state, so it means the same when
+/// copied in and out around a call as when passed by reference (IEC 61131-3 VAR_IN_OUT).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct AxisId(u16);
+
+impl AxisId {
+    /// The handle of no axis: what an unwired `Axis` pin holds.
+    pub const NONE: Self = Self(u16::MAX);
+
+    /// The axis at `index`.
+    pub const fn new(index: u16) -> Self {
+        Self(index)
+    }
+
+    /// Its place in the slice of axes.
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl Default for AxisId {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+/// Which block instance gave a command; only for records, the axis does not look at it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct InstanceId(pub u16);
+
+/// Number of a command, rising per axis and never reused (R94).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct CommandId(pub(crate) u64);
+
+/// An enumeration of the standard with its IEC names and our numbers.
+pub trait IecEnum: Copy + 'static {
+    /// The type's name in IEC text.
+    const TYPE: &'static str;
+    /// Names and numbers in declaration order.
+    const ELEMENTS: &'static [(&'static str, i32)];
+
+    /// The element with this number.
+    fn from_number(number: i32) -> Option<Self>;
+}
+
+/// The number at an enum pin, which a program may set to something undefined.
+#[derive(Debug)]
+pub struct Raw<E> {
+    number: i32,
+    of: core::marker::PhantomData<E>,
+}
+
+impl<E> Clone for Raw<E> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<E> Copy for Raw<E> {}
+
+impl<E> PartialEq for Raw<E> {
+    fn eq(&self, other: &Self) -> bool {
+        self.number == other.number
+    }
+}
+
+impl<E: IecEnum> Raw<E> {
+    /// A pin holding `number`, defined or not.
+    pub const fn new(number: i32) -> Self {
+        Self {
+            number,
+            of: core::marker::PhantomData,
+        }
+    }
+
+    /// The number.
+    pub const fn number(self) -> i32 {
+        self.number
+    }
+
+    /// The element, or `None` if the number is undefined.
+    pub fn get(self) -> Option<E> {
+        E::from_number(self.number)
+    }
+}
+
+macro_rules! iec_enum {
+    ($(#[$meta:meta])* $name:ident = $iec:literal { $($(#[$doc:meta])* $element:ident = $text:literal, $number:literal;)* }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $name { $($(#[$doc])* $element = $number,)* }
+
+        impl IecEnum for $name {
+            const TYPE: &'static str = $iec;
+            const ELEMENTS: &'static [(&'static str, i32)] = &[$(($text, $number)),*];
+
+            fn from_number(number: i32) -> Option<Self> {
+                match number {
+                    $($number => Some(Self::$element),)*
+                    _ => None,
+                }
+            }
+        }
+
+        impl From<$name> for Raw<$name> {
+            fn from(element: $name) -> Self {
+                Self::new(element as i32)
+            }
+        }
+    };
+}
+
+iec_enum! {
+    /// How a command follows the one before it (MC_BUFFER_MODE, numbers in table order: V8a).
+    BufferMode = "MC_BUFFER_MODE" {
+        /// At once; interrupts the motion in progress and clears the buffer.
+        Aborting = "mcAborting", 0;
+        /// When the previous motion has finished.
+        Buffered = "mcBuffered", 1;
+        /// At the previous end position, with the lower of the two velocities.
+        BlendingLow = "mcBlendingLow", 2;
+        /// At the previous end position, with the previous velocity.
+        BlendingPrevious = "mcBlendingPrevious", 3;
+        /// At the previous end position, with the next velocity.
+        BlendingNext = "mcBlendingNext", 4;
+        /// At the previous end position, with the higher of the two velocities.
+        BlendingHigh = "mcBlendingHigh", 5;
+    }
+}
+
+iec_enum! {
+    /// Direction of a motion (MC_DIRECTION, numbers: V8). 0 stands for "not set": the shortest way for
+    /// positioning, positive for velocity.
+    Direction = "MC_DIRECTION" {
+        /// Not set.
+        Unset = "mcDirectionUnset", 0;
+        /// Towards larger positions.
+        Positive = "mcPositiveDirection", 1;
+        /// The shorter of the two ways round a modulo axis.
+        ShortestWay = "mcShortestWay", 2;
+        /// Towards smaller positions.
+        Negative = "mcNegativeDirection", 3;
+        /// The direction of the present motion.
+        Current = "mcCurrentDirection", 4;
+    }
+}
+
+/// Most commands that can wait behind the active one; the configured queue is at most this.
+pub const QUEUE_MAX: usize = 16;
+
+/// The dynamic values at a block's pins, unchecked. For `acceleration`, `deceleration`, `jerk` and `snap`
+/// 0 takes the axis default.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Dynamics {
+    /// Velocity (u/s).
+    pub velocity: f64,
+    /// Acceleration (u/s^2).
+    pub acceleration: f64,
+    /// Deceleration (u/s^2).
+    pub deceleration: f64,
+    /// Jerk (u/s^3).
+    pub jerk: f64,
+    /// Snap (u/s^4), a vendor pin.
+    pub snap: f64,
+}
+
+/// What an axis can be told to do: values as they stand at the pins, unchecked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// To an absolute position; the velocity must be positive.
+    MoveAbsolute {
+        /// Target (u).
+        position: f64,
+        /// Dynamic values.
+        dynamics: Dynamics,
+        /// Way round on a modulo axis; ignored on a linear one.
+        direction: Raw<Direction>,
+    },
+    /// By a distance from the set position at the start; the velocity must be positive.
+    MoveRelative {
+        /// Distance (u), signed.
+        distance: f64,
+        /// Dynamic values.
+        dynamics: Dynamics,
+    },
+    /// To an endless motion.
+    MoveVelocity {
+        /// Dynamic values; the velocity is signed, 0 allowed.
+        dynamics: Dynamics,
+        /// Its sign multiplies that of the velocity (V3).
+        direction: Raw<Direction>,
+    },
+    /// To velocity zero; other commands may interrupt. The velocity of `dynamics` is not read.
+    Halt {
+        /// Dynamic values.
+        dynamics: Dynamics,
+    },
+    /// To velocity zero; locks the axis until released. The velocity of `dynamics` is not read.
+    Stop {
+        /// Dynamic values.
+        dynamics: Dynamics,
+    },
+    /// The present position is from now on called `position`.
+    Home {
+        /// New name of the present position (u).
+        position: f64,
+    },
+}
+
+/// A command and how it enters the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Request {
+    /// What to do.
+    pub command: Command,
+    /// How it follows the motion in progress.
+    pub buffer_mode: Raw<BufferMode>,
+    /// The ContinuousUpdate pin.
+    pub continuous_update: bool,
+    /// The command the same instance holds, which this one replaces (R32).
+    pub replaces: Option<CommandId>,
+}
+
+impl Request {
+    /// `command`, aborting.
+    pub fn aborting(command: Command) -> Self {
+        Self {
+            command,
+            buffer_mode: BufferMode::Aborting.into(),
+            continuous_update: false,
+            replaces: None,
+        }
+    }
+}

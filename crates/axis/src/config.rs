@@ -1,0 +1,277 @@
+//! How an axis is set up, checked once before the first scan.
+
+use crate::{QUEUE_MAX, Scaling};
+use core::fmt;
+use standstill_planner::Limits;
+
+/// What happens to a value above the axis limit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AboveLimit {
+    /// It is lowered to the limit and recorded (V2).
+    #[default]
+    Clamp,
+    /// The command is refused.
+    Error,
+}
+
+/// How an axis stops when it is switched off while moving (V9a).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PowerOff {
+    /// It ramps down, then power goes off.
+    #[default]
+    Ramp,
+    /// Power goes off at once.
+    Coast,
+    /// The drive stops by itself.
+    Drive,
+}
+
+/// The state an axis starts in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StartState {
+    /// Power off.
+    #[default]
+    Disabled,
+    /// Powered, as if MC_Power had been called.
+    Standstill,
+}
+
+/// What 0 at a pin stands for; `None` takes the limit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Defaults {
+    /// Acceleration (u/s^2).
+    pub acceleration: Option<f64>,
+    /// Deceleration (u/s^2).
+    pub deceleration: Option<f64>,
+    /// Jerk (u/s^3).
+    pub jerk: Option<f64>,
+    /// Snap (u/s^4).
+    pub snap: Option<f64>,
+}
+
+/// Everything about an axis that does not change while it runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisConfig {
+    /// What no set-point exceeds.
+    pub limits: Limits,
+    /// What 0 at a pin stands for.
+    pub defaults: Defaults,
+    /// Position at the start (u).
+    pub position: f64,
+    /// State at the start.
+    pub start: StartState,
+    /// Drive increments, or `None` if the drive speaks user units.
+    pub scaling: Option<Scaling>,
+    /// Lowest and highest position (u) a move may end at.
+    pub software_limits: Option<(f64, f64)>,
+    /// What happens to values above the limits.
+    pub above_limit: AboveLimit,
+    /// Commands that can wait, the active one not counted; at most [`QUEUE_MAX`].
+    pub queue: usize,
+    /// Deceleration of ramps nobody commanded (u/s^2); `None` takes the limit.
+    pub stop_deceleration: Option<f64>,
+    /// Jerk of ramps nobody commanded (u/s^3); `None` takes the limit.
+    pub stop_jerk: Option<f64>,
+    /// How the axis stops when switched off while moving.
+    pub on_power_off: PowerOff,
+    /// Absolute moves need MC_Home first (V11a).
+    pub needs_homed: bool,
+}
+
+impl AxisConfig {
+    /// An axis at 0 within `limits`, everything else at its default.
+    pub const fn new(limits: Limits) -> Self {
+        Self {
+            limits,
+            defaults: Defaults {
+                acceleration: None,
+                deceleration: None,
+                jerk: None,
+                snap: None,
+            },
+            position: 0.0,
+            start: StartState::Disabled,
+            scaling: None,
+            software_limits: None,
+            above_limit: AboveLimit::Clamp,
+            queue: 8,
+            stop_deceleration: None,
+            stop_jerk: None,
+            on_power_off: PowerOff::Ramp,
+            needs_homed: false,
+        }
+    }
+
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the first key that is not usable, with its value.
+    pub fn check(&self) -> Result<(), ConfigError> {
+        let positive = [
+            ("limits.velocity", Some(self.limits.velocity), true),
+            ("limits.acceleration", Some(self.limits.acceleration), true),
+            ("limits.deceleration", Some(self.limits.deceleration), true),
+            ("limits.jerk", Some(self.limits.jerk), false),
+            ("limits.snap", Some(self.limits.snap), false),
+            ("defaults.acceleration", self.defaults.acceleration, true),
+            ("defaults.deceleration", self.defaults.deceleration, true),
+            ("defaults.jerk", self.defaults.jerk, true),
+            ("defaults.snap", self.defaults.snap, true),
+            ("stop_deceleration", self.stop_deceleration, true),
+            ("stop_jerk", self.stop_jerk, true),
+        ];
+        for (key, value, finite) in positive {
+            if let Some(value) = value
+                && (!(value > 0.0) || (finite && !value.is_finite()))
+            {
+                return Err(ConfigError::NotPositive { key, value });
+            }
+        }
+        let above = [
+            (
+                "defaults.acceleration",
+                self.defaults.acceleration,
+                self.limits.acceleration,
+            ),
+            (
+                "defaults.deceleration",
+                self.defaults.deceleration,
+                self.limits.deceleration,
+            ),
+            ("defaults.jerk", self.defaults.jerk, self.limits.jerk),
+            ("defaults.snap", self.defaults.snap, self.limits.snap),
+            (
+                "stop_deceleration",
+                self.stop_deceleration,
+                self.limits.deceleration,
+            ),
+            ("stop_jerk", self.stop_jerk, self.limits.jerk),
+        ];
+        for (key, value, limit) in above {
+            if let Some(value) = value
+                && value > limit
+            {
+                return Err(ConfigError::AboveLimit { key, value, limit });
+            }
+        }
+        if !self.position.is_finite() {
+            return Err(ConfigError::NotFinite {
+                key: "position",
+                value: self.position,
+            });
+        }
+        if let Some((min, max)) = self.software_limits {
+            for (key, value) in [("software_limits.min", min), ("software_limits.max", max)] {
+                if value.is_nan() {
+                    return Err(ConfigError::NotFinite { key, value });
+                }
+            }
+            if !(min < max) {
+                return Err(ConfigError::SoftwareLimits { min, max });
+            }
+        }
+        if self.queue > QUEUE_MAX {
+            return Err(ConfigError::Queue { value: self.queue });
+        }
+        Ok(())
+    }
+}
+
+/// Why an axis was not set up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// A value that must be positive is not, or is infinite where a number is needed.
+    NotPositive {
+        /// The configuration key.
+        key: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A value that must be finite is not.
+    NotFinite {
+        /// The configuration key.
+        key: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A default or stop value is above the limit of the axis.
+    AboveLimit {
+        /// The configuration key.
+        key: &'static str,
+        /// Its value.
+        value: f64,
+        /// The limit.
+        limit: f64,
+    },
+    /// The lower software limit is not below the upper one.
+    SoftwareLimits {
+        /// Lower limit (u).
+        min: f64,
+        /// Upper limit (u).
+        max: f64,
+    },
+    /// The queue is longer than [`QUEUE_MAX`].
+    Queue {
+        /// Places asked for.
+        value: usize,
+    },
+    /// A ratio of zero, or an offset that is not finite.
+    Scaling {
+        /// Drive increments.
+        increments: u32,
+        /// User units.
+        units: u32,
+        /// Position at increment 0 (u).
+        offset: f64,
+    },
+}
+
+impl ConfigError {
+    /// The configuration key it speaks of.
+    pub const fn key(&self) -> &'static str {
+        match self {
+            Self::NotPositive { key, .. } | Self::NotFinite { key, .. } | Self::AboveLimit { key, .. } => key,
+            Self::SoftwareLimits { .. } => "software_limits",
+            Self::Queue { .. } => "queue",
+            Self::Scaling { .. } => "scaling",
+        }
+    }
+}
+
+impl fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NotPositive { key, value } => {
+                write!(
+                    f,
+                    "{key} is {value:?}: it must be a finite number above 0; leave an optional one out for no limit"
+                )
+            }
+            Self::NotFinite { key, value } => write!(f, "{key} is {value:?}: it must be a finite number"),
+            Self::AboveLimit { key, value, limit } => {
+                write!(
+                    f,
+                    "{key} is {value:?}, above the axis limit {limit:?}: lower it or raise the limit"
+                )
+            }
+            Self::SoftwareLimits { min, max } => {
+                write!(
+                    f,
+                    "software_limits.min is {min:?} and max {max:?}: min must be below max"
+                )
+            }
+            Self::Queue { value } => write!(f, "queue is {value}: at most {QUEUE_MAX} commands can wait"),
+            Self::Scaling {
+                increments,
+                units,
+                offset,
+            } => write!(
+                f,
+                "scaling is {increments} increments to {units} units with offset {offset:?}: both integers must be at least 1 and the offset finite"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ConfigError {}

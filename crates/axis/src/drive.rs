@@ -1,0 +1,83 @@
+//! The border between an axis and whatever moves: two plain values and one trait.
+//!
+//! Nothing here knows buses. Scaling to user units happens above, in the axis.
+
+/// A position at the drive border.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DrivePosition {
+    /// User units (u), for drives of axes without scaling.
+    Units(f64),
+    /// Increments, already extended past the drive's own counter range.
+    Increments(i64),
+}
+
+/// State of the communication with the drive.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Comms {
+    /// This scan's feedback is fresh.
+    #[default]
+    Ok,
+    /// No valid feedback; what is given is old.
+    Lost,
+}
+
+/// A fault a drive reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// The drive's own error code.
+    pub code: u16,
+    /// The drive knows that the cause is still there, so that a reset would fail.
+    pub cause_present: bool,
+}
+
+/// What a drive tells, latched once a scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveFeedback {
+    /// Operation is enabled: the power stage is on and follows the command (MC_Power.Status).
+    pub enabled: bool,
+    /// Power for the stage is available.
+    pub voltage: bool,
+    /// A pending fault; the drive keeps it until it is reset.
+    pub fault: Option<Fault>,
+    /// Actual position.
+    pub position: DrivePosition,
+    /// State of the communication.
+    pub comms: Comms,
+}
+
+/// What the axis asks of the power stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DriveRequest {
+    /// Power stage off; the axis coasts.
+    #[default]
+    Off,
+    /// Operation enabled.
+    Enable,
+    /// The drive stops by itself, then switches off.
+    QuickStop,
+    /// Clear a pending fault.
+    FaultReset,
+}
+
+/// What a drive is told, once a scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveCommand {
+    /// Power stage.
+    pub request: DriveRequest,
+    /// Position set-point for the end of this scan.
+    pub position: DrivePosition,
+    /// Velocity feed-forward (u/s).
+    pub velocity: f64,
+    /// From now on the drive's present commanded position is called this (MC_Home); actual and commanded
+    /// position shift by the same amount.
+    pub rename: Option<DrivePosition>,
+}
+
+/// A drive. `read` then `write`, each exactly once a scan.
+pub trait Drive {
+    /// This scan's feedback.
+    fn read(&mut self, now_ns: i64) -> DriveFeedback;
+
+    /// This scan's command.
+    fn write(&mut self, now_ns: i64, command: &DriveCommand);
+}

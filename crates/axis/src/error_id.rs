@@ -1,0 +1,196 @@
+//! Every `ErrorID` a block can show, in one table.
+//!
+//! Numbers are interface: they are never reused and never change their meaning. A new error takes the next
+//! free number of its class.
+
+/// What an error is about; the hundreds of its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorClass {
+    /// 0: no error.
+    None,
+    /// 100-199: a pin's value.
+    Parameter,
+    /// 200-299: the axis state does not allow the command.
+    State,
+    /// 300-399: the command buffer.
+    Buffer,
+    /// 400-499: the axis.
+    Axis,
+    /// 500-599: the drive.
+    Drive,
+    /// 600-699: the communication with the drive.
+    Communication,
+    /// 700-799: defined by the standard, not supported by this version.
+    Unsupported,
+    /// 900-999: a defect of the runtime.
+    Internal,
+}
+
+macro_rules! error_ids {
+    ($($name:ident = $number:literal, $cause:literal, $remedy:literal;)*) => {
+        /// The number at an `ErrorID` pin; `None` (0) whenever `Error` is FALSE.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        #[non_exhaustive]
+        #[repr(u16)]
+        pub enum ErrorId {
+            $(#[doc = $cause] $name = $number,)*
+        }
+
+        impl ErrorId {
+            /// All errors in rising order of their numbers.
+            pub const ALL: &'static [Self] = &[$(Self::$name),*];
+
+            /// The error's name as it stands in docs and traces.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$name => stringify!($name)),* }
+            }
+
+            /// What happened.
+            pub const fn cause(self) -> &'static str {
+                match self { $(Self::$name => $cause),* }
+            }
+
+            /// What to do about it.
+            pub const fn remedy(self) -> &'static str {
+                match self { $(Self::$name => $remedy),* }
+            }
+        }
+    };
+}
+
+error_ids! {
+    None = 0, "No error.", "Nothing to do.";
+
+    AxisUnknown = 100, "The Axis pin names no axis of this runtime.",
+        "Wire Axis to a configured axis.";
+    PositionInvalid = 101, "Position or Distance is NaN or infinite, or the target is not representable.",
+        "Give a finite number.";
+    VelocityInvalid = 102, "Velocity is NaN or infinite, or zero or negative where a positive value is needed.",
+        "Positioning moves need a Velocity above 0; give the direction by the target.";
+    AccelerationInvalid = 103, "Acceleration is NaN, infinite or negative.",
+        "Give a positive number, or 0 for the axis default.";
+    DecelerationInvalid = 104, "Deceleration is NaN, infinite or negative.",
+        "Give a positive number, or 0 for the axis default.";
+    JerkInvalid = 105, "Jerk is NaN, infinite or negative.",
+        "Give a positive number, or 0 for the axis default.";
+    SnapInvalid = 106, "Snap is NaN, infinite or negative.",
+        "Give a positive number, or 0 for the axis default.";
+    AccelerationMissing = 107, "Acceleration is 0 and the axis has neither a default nor a limit for it.",
+        "Give Acceleration at the block or a default in the axis configuration.";
+    DecelerationMissing = 108, "Deceleration is 0 and the axis has neither a default nor a limit for it.",
+        "Give Deceleration at the block or a default in the axis configuration.";
+    DirectionInvalid = 109, "Direction is not a number of MC_DIRECTION, or not applicable to this block.",
+        "Use mcPositiveDirection, mcNegativeDirection or mcCurrentDirection; mcShortestWay only for positioning.";
+    BufferModeInvalid = 110, "BufferMode is not a number of MC_BUFFER_MODE.",
+        "Use a value from mcAborting (0) to mcBlendingHigh (5).";
+    VelocityAboveLimit = 111, "Velocity is above the axis limit and the axis is set to refuse that.",
+        "Lower Velocity, raise the limit, or set above_limit to clamp.";
+    AccelerationAboveLimit = 112, "Acceleration is above the axis limit and the axis is set to refuse that.",
+        "Lower Acceleration, raise the limit, or set above_limit to clamp.";
+    DecelerationAboveLimit = 113, "Deceleration is above the axis limit and the axis is set to refuse that.",
+        "Lower Deceleration, raise the limit, or set above_limit to clamp.";
+    JerkAboveLimit = 114, "Jerk is above the axis limit and the axis is set to refuse that.",
+        "Lower Jerk, raise the limit, or set above_limit to clamp.";
+    SnapAboveLimit = 115, "Snap is above the axis limit and the axis is set to refuse that.",
+        "Lower Snap, raise the limit, or set above_limit to clamp.";
+    MoveTooLong = 116, "The move would take more than 2147483647 scans.",
+        "Raise the limits, shorten the move or lengthen the cycle.";
+    TargetOutsideSoftwareLimits = 117, "The move would end outside the software limits.",
+        "Choose a target inside them or change the axis configuration.";
+
+    NotPowered = 201, "The axis is Disabled.",
+        "Switch it on with MC_Power and wait for Status.";
+    InErrorStop = 202, "The axis is in ErrorStop.",
+        "Remove the cause, then call MC_Reset.";
+    InStopping = 203, "MC_Stop holds the axis.",
+        "Wait for MC_Stop.Done and set its Execute to FALSE.";
+    InHoming = 204, "The axis is homing.",
+        "Wait for MC_Home.Done, or interrupt it with MC_Stop.";
+    InMotion = 205, "The command needs an axis at standstill.",
+        "Wait until the axis is in Standstill, or command it buffered behind a move that ends.";
+    PoweringOff = 206, "The axis is on its way to Disabled.",
+        "Wait for Disabled, then switch it on again with MC_Power.";
+    NotHomed = 207, "The axis is set to need homing before absolute moves.",
+        "Call MC_Home first.";
+
+    BufferFull = 301, "All places of the command buffer are taken.",
+        "Wait for a buffered command to become active, or enlarge the queue of the axis.";
+
+    AxisFault = 401, "The axis reported a fault.",
+        "Remove its cause, then call MC_Reset.";
+    SoftwareLimitReached = 402, "An endless motion would have left the software limits; the axis stopped inside.",
+        "Call MC_Reset, then move away from the limit.";
+    CauseStillPresent = 403, "MC_Reset found the cause of the axis error still present.",
+        "Remove the cause, then give MC_Reset a new rising edge.";
+
+    DriveFault = 501, "The drive reported a fault.",
+        "Read the drive's error code, remove the cause, then call MC_Reset.";
+    PowerLost = 502, "The power stage went off without being asked to.",
+        "Restore the power, then call MC_Reset.";
+
+    CommunicationLost = 601, "The communication with the drive was lost.",
+        "Restore it, then call MC_Reset.";
+
+    BlendingUnsupported = 701, "Blending buffer modes are not supported yet.",
+        "Use mcAborting or mcBuffered.";
+    ContinuousUpdateUnsupported = 702, "ContinuousUpdate is not supported yet.",
+        "Leave ContinuousUpdate FALSE and give a new command instead.";
+    DirectionEnableUnsupported = 703, "EnablePositive and EnableNegative are not supported yet.",
+        "Leave both TRUE.";
+
+    SetpointBroken = 901, "A plan gave a set-point that is not finite.",
+        "This is a defect of standstill: please report the trace.";
+    FateLost = 902, "The instance was not called while 64 later commands of the axis ended, so its result is gone.",
+        "Call the instance while it is Busy.";
+    PlanRefused = 903, "The planner refused inputs that the axis had accepted.",
+        "This is a defect of standstill: please report the trace.";
+}
+
+impl Default for ErrorId {
+    fn default() -> Self {
+        Self::None
+    }
+}
+
+impl ErrorId {
+    /// The number at the pin.
+    pub const fn number(self) -> u16 {
+        self as u16
+    }
+
+    /// The error with this number, if there is one.
+    pub fn from_number(number: u16) -> Option<Self> {
+        Self::ALL.iter().copied().find(|id| id.number() == number)
+    }
+
+    /// What the error is about.
+    pub const fn class(self) -> ErrorClass {
+        match self.number() / 100 {
+            0 => ErrorClass::None,
+            1 => ErrorClass::Parameter,
+            2 => ErrorClass::State,
+            3 => ErrorClass::Buffer,
+            4 => ErrorClass::Axis,
+            5 => ErrorClass::Drive,
+            6 => ErrorClass::Communication,
+            7 => ErrorClass::Unsupported,
+            _ => ErrorClass::Internal,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_rise_and_every_error_says_what_to_do() {
+        for pair in ErrorId::ALL.windows(2) {
+            assert!(pair[0].number() < pair[1].number(), "{pair:?} out of order");
+        }
+        for id in ErrorId::ALL {
+            assert!(id.cause().ends_with('.') && id.remedy().ends_with('.'), "{id:?}");
+            assert_eq!(ErrorId::from_number(id.number()), Some(*id));
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! What became of commands (R94, R95): kept long enough for their instances to ask.
+
+use crate::{CommandId, ErrorId};
+
+/// Ended commands an axis remembers. An instance that is not called while this many later commands end
+/// finds its result gone and reports [`ErrorId::FateLost`].
+pub const FATES_KEPT: usize = 64;
+
+/// What became of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// In the buffer.
+    Waiting,
+    /// Owns the axis; `reached` once an endless motion runs at its goal, or a held stop stands.
+    Active {
+        /// The goal is reached.
+        reached: bool,
+    },
+    /// Completed.
+    Done,
+    /// Interrupted or removed from the buffer by another command or by switching power off.
+    Aborted,
+    /// Ended by an error.
+    Failed(ErrorId),
+}
+
+/// The last [`FATES_KEPT`] ended commands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fates {
+    ended: [Option<(CommandId, Fate)>; FATES_KEPT],
+    next: usize,
+}
+
+impl Default for Fates {
+    fn default() -> Self {
+        Self {
+            ended: [None; FATES_KEPT],
+            next: 0,
+        }
+    }
+}
+
+impl Fates {
+    pub(crate) fn record(&mut self, id: CommandId, fate: Fate) {
+        if let Some(slot) = self.ended.get_mut(self.next) {
+            *slot = Some((id, fate));
+        }
+        self.next = (self.next + 1) % FATES_KEPT;
+    }
+
+    /// Looks an ended command up; bounded by [`FATES_KEPT`] comparisons.
+    pub(crate) fn find(&self, id: CommandId) -> Option<Fate> {
+        self.ended
+            .iter()
+            .flatten()
+            .find(|(ended, _)| *ended == id)
+            .map(|(_, fate)| *fate)
+    }
+}

@@ -1,0 +1,116 @@
+//! What an axis did with the commands it was given: a ring of fixed size a host can read.
+
+use crate::{AxisId, ErrorId, InstanceId};
+use standstill_planner::Excess;
+
+/// Records the ring holds; older ones are overwritten.
+pub const LOG_KEPT: usize = 64;
+
+/// What a plan leads to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// Rest at a position (u).
+    Position(f64),
+    /// A constant velocity (u/s).
+    Velocity(f64),
+}
+
+/// What is worth recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// A command was refused because of this pin (empty: because of the axis state).
+    Refused {
+        /// IEC name of the pin.
+        pin: &'static str,
+        /// The value at it.
+        value: f64,
+        /// The limit it broke; NaN if there is none to name.
+        limit: f64,
+        /// The error the block shows.
+        error: ErrorId,
+    },
+    /// A value above the axis limit was lowered to it.
+    Clamped {
+        /// IEC name of the pin.
+        pin: &'static str,
+        /// The value at it.
+        value: f64,
+        /// The limit used instead.
+        limit: f64,
+    },
+    /// Acceleration and Deceleration differ; the move uses the lower one for both.
+    LowerUsed {
+        /// The larger one (u/s^2).
+        value: f64,
+        /// The one used (u/s^2).
+        limit: f64,
+    },
+    /// The start state forces the plan out of its limits by this much.
+    Unavoidable(Excess),
+    /// A plan was accepted.
+    Planned {
+        /// Where it leads.
+        goal: Goal,
+        /// Its scans.
+        scans: u32,
+    },
+    /// The axis entered ErrorStop.
+    Fault {
+        /// Why.
+        error: ErrorId,
+        /// The drive's own code, 0 if none.
+        code: u16,
+    },
+}
+
+/// One entry of the ring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// The scan it happened in.
+    pub scan: u64,
+    /// The axis.
+    pub axis: AxisId,
+    /// The block instance whose command it was.
+    pub instance: InstanceId,
+    /// What happened.
+    pub event: Event,
+}
+
+/// The ring of records, shared by all axes of a runtime.
+#[derive(Clone, Debug)]
+pub struct Log {
+    records: [Option<Record>; LOG_KEPT],
+    total: u64,
+}
+
+impl Default for Log {
+    fn default() -> Self {
+        Self {
+            records: [None; LOG_KEPT],
+            total: 0,
+        }
+    }
+}
+
+impl Log {
+    /// Adds a record, overwriting the oldest when full.
+    pub fn push(&mut self, record: Record) {
+        let place = (self.total % LOG_KEPT as u64) as usize;
+        if let Some(slot) = self.records.get_mut(place) {
+            *slot = Some(record);
+        }
+        self.total = self.total.wrapping_add(1);
+    }
+
+    /// Records ever pushed.
+    pub fn total(&self) -> u64 {
+        self.total
+    }
+
+    /// The records from number `from` (counted from 0 since start) on that are still held, oldest first.
+    pub fn since(&self, from: u64) -> impl Iterator<Item = &Record> {
+        let oldest = self.total.saturating_sub(LOG_KEPT as u64);
+        (from.max(oldest)..self.total)
+            .filter_map(|number| self.records.get((number % LOG_KEPT as u64) as usize)?.as_ref())
+    }
+}

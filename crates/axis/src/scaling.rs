@@ -1,0 +1,106 @@
+//! User units to drive increments and back, by an integer ratio.
+
+use crate::ConfigError;
+
+/// `increments` drive increments are `units` user units.
+///
+/// A set-point is rounded once, from the exact position, half away from zero; nothing is accumulated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scaling {
+    increments: u32,
+    units: u32,
+    invert: bool,
+    offset: f64,
+}
+
+impl Scaling {
+    /// `increments` (>= 1) increments are `units` (>= 1) user units; with `invert` the drive counts the
+    /// other way; `offset` (u) is the user position at increment 0.
+    ///
+    /// # Errors
+    /// [`ConfigError::Scaling`] if one of the integers is 0 or `offset` is not finite.
+    pub const fn new(increments: u32, units: u32, invert: bool, offset: f64) -> Result<Self, ConfigError> {
+        if increments == 0 || units == 0 || !offset.is_finite() {
+            return Err(ConfigError::Scaling {
+                increments,
+                units,
+                offset,
+            });
+        }
+        Ok(Self {
+            increments,
+            units,
+            invert,
+            offset,
+        })
+    }
+
+    /// The increments nearest to `position` (u); saturates at the range of `i64`.
+    ///
+    /// The product is split into whole units and a fraction so that positions up to 2^53 u keep every bit
+    /// of their whole part.
+    pub fn to_increments(&self, position: f64) -> i64 {
+        let position = if self.invert {
+            self.offset - position
+        } else {
+            position - self.offset
+        };
+        // A saturating conversion: NaN gives 0, which the axis never lets come here.
+        let whole = position as i64;
+        let fraction = position - whole as f64;
+        let scaled = i128::from(whole) * i128::from(self.increments);
+        let (units, increments) = (i128::from(self.units), f64::from(self.increments));
+        let quotient = scaled.div_euclid(units);
+        let rest = scaled.rem_euclid(units) as f64;
+        let small = (rest + fraction * increments) / f64::from(self.units);
+        let nearest = (if small < 0.0 { small - 0.5 } else { small + 0.5 }) as i64;
+        (quotient + i128::from(nearest)).clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
+    }
+
+    /// The position (u) of `increments`.
+    pub fn to_units(&self, increments: i64) -> f64 {
+        let scaled = i128::from(increments) * i128::from(self.units);
+        let ratio = i128::from(self.increments);
+        let whole = scaled.div_euclid(ratio);
+        let rest = scaled.rem_euclid(ratio) as f64 / f64::from(self.increments);
+        let distance = whole as f64 + rest;
+        if self.invert {
+            self.offset - distance
+        } else {
+            distance + self.offset
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_turns_far_out_keep_every_increment() {
+        let scaling = Scaling::new(8_388_608, 360, false, 0.0).unwrap();
+        for turns in [0_i64, 1, 1_000, 1_000_000, 1_000_000_000] {
+            assert_eq!(scaling.to_increments((turns * 360) as f64), turns * 8_388_608);
+            assert_eq!(scaling.to_units(turns * 8_388_608), (turns * 360) as f64);
+        }
+    }
+
+    #[test]
+    fn to_the_nearest_increment_and_mirrored_by_invert() {
+        let plain = Scaling::new(1000, 3, false, 0.5).unwrap();
+        let mirrored = Scaling::new(1000, 3, true, 0.5).unwrap();
+        for (position, increments) in [(0.5, 0), (0.503, 1), (0.4955, -2), (3.5, 1000), (-2.5, -1000)] {
+            assert_eq!(plain.to_increments(position), increments, "{position}");
+            assert_eq!(mirrored.to_increments(position), -increments, "{position}");
+        }
+        assert_eq!(plain.to_units(1000), 3.5);
+        assert_eq!(mirrored.to_units(-1000), 3.5);
+    }
+
+    #[test]
+    fn zero_and_non_finite_ratios_are_refused() {
+        assert!(Scaling::new(0, 1, false, 0.0).is_err());
+        assert!(Scaling::new(1, 0, false, 0.0).is_err());
+        assert!(Scaling::new(1, 1, false, f64::NAN).is_err());
+    }
+}

@@ -1,0 +1,189 @@
+//! A block as a type, an instance of it, and what a call may touch.
+
+use crate::{Direction, Pin, PinError, Pins, Value};
+use standstill_axis::{Axis, AxisId, ErrorId, InstanceId, Log, Planner, Source, Standard};
+
+/// The groups of the standard's catalogue, and ours for the IEC 61131-3 blocks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Group {
+    /// Switches, reads or writes; moves nothing.
+    Administrative,
+    /// Moves one axis.
+    SingleAxis,
+    /// Couples axes.
+    MultiAxis,
+    /// Finds or sets the reference.
+    Homing,
+    /// IEC 61131-3 standard function blocks.
+    Standard,
+}
+
+impl Group {
+    /// The group's name in `standstill blocks --json`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Administrative => "administrative",
+            Self::SingleAxis => "single_axis",
+            Self::MultiAxis => "multi_axis",
+            Self::Homing => "homing",
+            Self::Standard => "standard",
+        }
+    }
+}
+
+/// What a block may touch during one call.
+#[derive(Debug)]
+pub struct Context<'a, P: Planner = Standard> {
+    /// Time of this task execution (ns); constant during it.
+    pub now_ns: i64,
+    /// Number of this scan.
+    pub scan: u64,
+    /// The instance being called; goes into records.
+    pub instance: InstanceId,
+    /// The axes.
+    pub axes: &'a mut [Axis<P>],
+    /// The ring of records.
+    pub log: &'a mut Log,
+}
+
+impl<P: Planner> Context<'_, P> {
+    /// The axis at a pin, with the ring and who speaks.
+    ///
+    /// # Errors
+    /// [`ErrorId::AxisUnknown`] if there is no such axis.
+    pub fn axis(&mut self, id: AxisId) -> Result<(&mut Axis<P>, &mut Log, Source), ErrorId> {
+        let source = Source {
+            scan: self.scan,
+            instance: self.instance,
+        };
+        let axis = self.axes.get_mut(id.index()).ok_or(ErrorId::AxisUnknown)?;
+        Ok((axis, self.log, source))
+    }
+}
+
+/// A function block: its pins and what one call does.
+pub trait Block: Copy + Default {
+    /// IEC name.
+    const NAME: &'static str;
+    /// Where it stands in the catalogue.
+    const GROUP: Group;
+    /// One sentence.
+    const DOC: &'static str;
+    /// In_outs and inputs.
+    type Inputs: Pins;
+    /// Outputs.
+    type Outputs: Pins;
+
+    /// One call. Bounded work, no allocation; errors are outputs.
+    fn call<P: Planner>(&mut self, inputs: &Self::Inputs, context: &mut Context<'_, P>) -> Self::Outputs;
+}
+
+/// A block with the memory IEC 61131-3 gives an instance: inputs and outputs keep their values between calls.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Instance<B: Block> {
+    /// In_outs and inputs, as last written.
+    pub inputs: B::Inputs,
+    /// Outputs of the last call.
+    pub outputs: B::Outputs,
+    /// What the block itself remembers.
+    pub block: B,
+}
+
+impl<B: Block> Instance<B> {
+    /// Calls the block with the inputs as they stand.
+    pub fn call<P: Planner>(&mut self, context: &mut Context<'_, P>) {
+        self.outputs = self.block.call(&self.inputs, context);
+    }
+}
+
+/// An instance of some block, reached by pin index: in_outs, inputs, outputs in table order.
+pub trait AnyInstance {
+    /// The block's table.
+    fn info(&self) -> &'static BlockInfo;
+
+    /// The value at pin `index`.
+    fn get(&self, index: usize) -> Option<Value>;
+
+    /// Writes in_out or input `index`.
+    ///
+    /// # Errors
+    /// [`PinError`] if it is an output, does not exist, or has another type.
+    fn set(&mut self, index: usize, value: Value) -> Result<(), PinError>;
+}
+
+impl<B: Block + Described> AnyInstance for Instance<B> {
+    fn info(&self) -> &'static BlockInfo {
+        &B::INFO
+    }
+
+    fn get(&self, index: usize) -> Option<Value> {
+        let inputs = B::Inputs::PINS.len();
+        if index < inputs {
+            self.inputs.get(index)
+        } else {
+            self.outputs.get(index - inputs)
+        }
+    }
+
+    fn set(&mut self, index: usize, value: Value) -> Result<(), PinError> {
+        self.inputs.set(index, value)
+    }
+}
+
+/// A block as data: what a registry lists.
+#[derive(Clone, Copy, Debug)]
+pub struct BlockInfo {
+    /// IEC name.
+    pub name: &'static str,
+    /// Group of the catalogue.
+    pub group: Group,
+    /// One sentence.
+    pub doc: &'static str,
+    inputs: &'static [Pin],
+    outputs: &'static [Pin],
+    default: fn(usize) -> Option<Value>,
+}
+
+/// Gives every block its table.
+pub trait Described: Block {
+    /// The table.
+    const INFO: BlockInfo = BlockInfo {
+        name: Self::NAME,
+        group: Self::GROUP,
+        doc: Self::DOC,
+        inputs: <Self::Inputs as Pins>::PINS,
+        outputs: <Self::Outputs as Pins>::PINS,
+        default: |index| Self::Inputs::default().get(index),
+    };
+}
+
+impl<B: Block> Described for B {}
+
+impl BlockInfo {
+    /// All pins: in_outs, inputs, outputs. The position is the pin's index.
+    pub fn pins(&self) -> impl Iterator<Item = &'static Pin> + Clone {
+        self.inputs.iter().chain(self.outputs)
+    }
+
+    /// Pins of one kind.
+    pub fn pins_of(&self, direction: Direction) -> impl Iterator<Item = &'static Pin> {
+        self.pins().filter(move |pin| pin.direction == direction)
+    }
+
+    /// Number of in_outs and inputs; pins from here on are outputs.
+    pub fn input_count(&self) -> usize {
+        self.inputs.len()
+    }
+
+    /// Index and table entry of the pin called `name`, without regard to case.
+    pub fn pin(&self, name: &str) -> Option<(usize, &'static Pin)> {
+        self.pins()
+            .enumerate()
+            .find(|(_, pin)| pin.name.eq_ignore_ascii_case(name))
+    }
+
+    /// What input `index` holds before anything is wired or written; `None` for outputs.
+    pub fn default_of(&self, index: usize) -> Option<Value> {
+        (self.default)(index)
+    }
+}

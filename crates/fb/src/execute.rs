@@ -1,0 +1,135 @@
+//! The core of blocks with an `Execute` pin: edge, one command, and a result that stays until it was seen.
+//!
+//! Source: PLCopen Motion Control Part 1, section on Execute/Done; rules R19 to R38.
+
+use crate::Context;
+use standstill_axis::{AxisId, CommandId, ErrorId, Fate, Planner};
+
+/// What an Execute-type block shows. Outputs are derived from it, so two terminal outputs at once cannot be
+/// written (R21).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Phase {
+    /// Nothing commanded, or the result was seen.
+    #[default]
+    Idle,
+    /// Commanded, not finished.
+    Busy {
+        /// The command owns the axis.
+        active: bool,
+        /// An endless motion runs at its goal.
+        reached: bool,
+    },
+    /// Completed.
+    Done,
+    /// Interrupted by another command.
+    Aborted,
+    /// Refused, or ended by an error.
+    Failed(ErrorId),
+}
+
+impl Phase {
+    /// `Done`.
+    pub fn is_done(self) -> bool {
+        self == Self::Done
+    }
+
+    /// `Busy`.
+    pub fn is_busy(self) -> bool {
+        matches!(self, Self::Busy { .. })
+    }
+
+    /// `Active`.
+    pub fn is_active(self) -> bool {
+        matches!(self, Self::Busy { active: true, .. })
+    }
+
+    /// `InVelocity` and its like.
+    pub fn is_reached(self) -> bool {
+        matches!(self, Self::Busy { reached: true, .. })
+    }
+
+    /// `CommandAborted`.
+    pub fn is_aborted(self) -> bool {
+        self == Self::Aborted
+    }
+
+    /// `Error`.
+    pub fn is_error(self) -> bool {
+        matches!(self, Self::Failed(_))
+    }
+
+    /// `ErrorID`.
+    pub fn error_id(self) -> ErrorId {
+        if let Self::Failed(id) = self {
+            id
+        } else {
+            ErrorId::None
+        }
+    }
+}
+
+impl From<Fate> for Phase {
+    fn from(fate: Fate) -> Self {
+        match fate {
+            Fate::Waiting => Self::Busy {
+                active: false,
+                reached: false,
+            },
+            Fate::Active { reached } => Self::Busy {
+                active: true,
+                reached,
+            },
+            Fate::Done => Self::Done,
+            Fate::Aborted => Self::Aborted,
+            Fate::Failed(id) => Self::Failed(id),
+        }
+    }
+}
+
+/// State kept between calls.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ExecuteCore {
+    executed: bool,
+    phase: Phase,
+    command: Option<(AxisId, CommandId)>,
+}
+
+impl ExecuteCore {
+    /// One call. `issue` gives the command at a rising edge (R8) and is told which command the instance
+    /// held before (a retrigger replaces it silently, R32); it returns where to ask for its fate.
+    pub fn scan<P: Planner>(
+        &mut self,
+        execute: bool,
+        context: &mut Context<'_, P>,
+        issue: impl FnOnce(&mut Context<'_, P>, Option<CommandId>) -> Result<(AxisId, CommandId), ErrorId>,
+    ) -> Phase {
+        let rising = execute && !self.executed;
+        self.executed = execute;
+        if rising {
+            let held = self.command.map(|(_, id)| id);
+            match issue(context, held) {
+                Ok(command) => self.command = Some(command),
+                Err(id) => {
+                    self.command = None;
+                    self.phase = Phase::Failed(id);
+                    return self.phase;
+                }
+            }
+        }
+        match self.command {
+            Some((axis, id)) => {
+                self.phase = match context.axes.get(axis.index()) {
+                    Some(axis) => axis.fate(id).into(),
+                    None => Phase::Failed(ErrorId::AxisUnknown),
+                };
+                if !self.phase.is_busy() {
+                    self.command = None;
+                }
+            }
+            // A result was already shown in an earlier call; with Execute FALSE it goes (R28, R30).
+            None if !execute => self.phase = Phase::Idle,
+            None => {}
+        }
+        self.phase
+    }
+}

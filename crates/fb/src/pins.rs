@@ -1,0 +1,334 @@
+//! Pins as data: one table per block, from which structs, docs, script names and traces come.
+
+use core::fmt;
+use standstill_axis::{AxisId, ErrorId, IecEnum, Raw};
+
+/// The three kinds of pins, in the order in which they stand in every table and trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// VAR_IN_OUT.
+    InOut,
+    /// VAR_INPUT.
+    Input,
+    /// VAR_OUTPUT.
+    Output,
+}
+
+/// An enumeration as data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EnumInfo {
+    /// IEC name of the type.
+    pub name: &'static str,
+    /// IEC names and numbers of the elements.
+    pub elements: &'static [(&'static str, i32)],
+}
+
+impl EnumInfo {
+    /// The name of `number`, if it is defined.
+    pub fn name_of(&self, number: i32) -> Option<&'static str> {
+        self.elements
+            .iter()
+            .find(|(_, n)| *n == number)
+            .map(|(name, _)| *name)
+    }
+
+    /// The number of `name`, without regard to case.
+    pub fn number_of(&self, name: &str) -> Option<i32> {
+        self.elements
+            .iter()
+            .find(|(n, _)| n.eq_ignore_ascii_case(name))
+            .map(|(_, number)| *number)
+    }
+}
+
+/// The type of a pin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PinType {
+    /// BOOL.
+    Bool,
+    /// INT, 16 bits.
+    Int,
+    /// LREAL.
+    Lreal,
+    /// WORD, shown as a decimal number; ErrorID pins.
+    Word,
+    /// TIME, in nanoseconds.
+    Time,
+    /// AXIS_REF.
+    Axis,
+    /// An enumeration.
+    Enum(EnumInfo),
+}
+
+impl PinType {
+    /// The type's name in IEC text.
+    pub const fn iec_name(self) -> &'static str {
+        match self {
+            Self::Bool => "BOOL",
+            Self::Int => "INT",
+            Self::Lreal => "LREAL",
+            Self::Word => "WORD",
+            Self::Time => "TIME",
+            Self::Axis => "AXIS_REF",
+            Self::Enum(info) => info.name,
+        }
+    }
+}
+
+/// The value at a pin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// BOOL.
+    Bool(bool),
+    /// INT.
+    Int(i16),
+    /// LREAL.
+    Lreal(f64),
+    /// WORD.
+    Word(u16),
+    /// TIME in nanoseconds.
+    Time(i64),
+    /// AXIS_REF.
+    Axis(AxisId),
+    /// An enumeration's number, defined or not.
+    Enum(i32),
+}
+
+/// INT as a pin's Rust type.
+pub type Int = i16;
+
+/// TIME as a pin's Rust type: nanoseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Time(pub i64);
+
+/// A Rust type that can stand at a pin.
+pub trait PinValue: Copy {
+    /// Its IEC type.
+    const TYPE: PinType;
+    /// To data.
+    fn into_value(self) -> Value;
+    /// From data, if the type fits.
+    fn from_value(value: Value) -> Option<Self>;
+}
+
+macro_rules! pin_value {
+    ($rust:ty, $ty:ident, $variant:ident) => {
+        impl PinValue for $rust {
+            const TYPE: PinType = PinType::$ty;
+
+            fn into_value(self) -> Value {
+                Value::$variant(self)
+            }
+
+            fn from_value(value: Value) -> Option<Self> {
+                if let Value::$variant(inner) = value {
+                    Some(inner)
+                } else {
+                    None
+                }
+            }
+        }
+    };
+}
+
+pin_value!(bool, Bool, Bool);
+pin_value!(i16, Int, Int);
+pin_value!(f64, Lreal, Lreal);
+pin_value!(AxisId, Axis, Axis);
+
+impl PinValue for Time {
+    const TYPE: PinType = PinType::Time;
+
+    fn into_value(self) -> Value {
+        Value::Time(self.0)
+    }
+
+    fn from_value(value: Value) -> Option<Self> {
+        if let Value::Time(ns) = value {
+            Some(Self(ns))
+        } else {
+            None
+        }
+    }
+}
+
+impl PinValue for ErrorId {
+    const TYPE: PinType = PinType::Word;
+
+    fn into_value(self) -> Value {
+        Value::Word(self.number())
+    }
+
+    fn from_value(value: Value) -> Option<Self> {
+        if let Value::Word(number) = value {
+            Self::from_number(number)
+        } else {
+            None
+        }
+    }
+}
+
+impl<E: IecEnum> PinValue for Raw<E> {
+    const TYPE: PinType = PinType::Enum(EnumInfo {
+        name: E::TYPE,
+        elements: E::ELEMENTS,
+    });
+
+    fn into_value(self) -> Value {
+        Value::Enum(self.number())
+    }
+
+    fn from_value(value: Value) -> Option<Self> {
+        if let Value::Enum(number) = value {
+            Some(Self::new(number))
+        } else {
+            None
+        }
+    }
+}
+
+/// One pin of a block.
+#[derive(Clone, Copy, Debug)]
+pub struct Pin {
+    /// IEC name.
+    pub name: &'static str,
+    /// Type.
+    pub ty: PinType,
+    /// Unit, empty if none; `u` is the axis's unit.
+    pub unit: &'static str,
+    /// Not in the standard.
+    pub extension: bool,
+    /// One sentence.
+    pub doc: &'static str,
+    /// In_out, input or output.
+    pub direction: Direction,
+}
+
+/// Why a pin was not written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PinError {
+    /// The block has no pin of that index, or it is an output.
+    NotWritable,
+    /// The value has another type than the pin.
+    WrongType,
+}
+
+impl fmt::Display for PinError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotWritable => "no such input pin",
+            Self::WrongType => "the value does not have the pin's type",
+        })
+    }
+}
+
+impl core::error::Error for PinError {}
+
+/// A struct of pins whose fields can be reached by index.
+pub trait Pins: Copy + Default {
+    /// The table, in declaration order.
+    const PINS: &'static [Pin];
+
+    /// The value at pin `index`, if there is one.
+    fn get(&self, index: usize) -> Option<Value>;
+
+    /// Writes pin `index`.
+    ///
+    /// # Errors
+    /// [`PinError`] if there is no such pin or the type differs.
+    fn set(&mut self, index: usize, value: Value) -> Result<(), PinError>;
+}
+
+/// Declares the `Inputs` and `Outputs` structs of a block and their tables.
+///
+/// Sections stand in the order of the trace. `vendor_inputs` and `vendor_outputs` are pins the standard
+/// does not have; they come after all standard pins of their kind.
+///
+/// ```text
+/// pins! {
+///     in_outs { /// The axis to move.
+///               Axis => axis: AxisId; }
+///     inputs { /// A rising edge starts the move.
+///              Execute => execute: bool = false, ""; }
+///     vendor_inputs { .. }
+///     outputs { /// Target reached.
+///               Done => done: bool, ""; }
+///     vendor_outputs { .. }
+/// }
+/// ```
+#[macro_export]
+macro_rules! pins {
+    (
+        in_outs { $($(#[doc = $io_doc:literal])+ $io_pin:ident => $io:ident: $io_ty:ty;)* }
+        inputs { $($(#[doc = $in_doc:literal])+ $in_pin:ident => $in:ident: $in_ty:ty = $in_default:expr, $in_unit:literal;)* }
+        vendor_inputs { $($(#[doc = $vi_doc:literal])+ $vi_pin:ident => $vi:ident: $vi_ty:ty = $vi_default:expr, $vi_unit:literal;)* }
+        outputs { $($(#[doc = $out_doc:literal])+ $out_pin:ident => $out:ident: $out_ty:ty, $out_unit:literal;)* }
+        vendor_outputs { $($(#[doc = $vo_doc:literal])+ $vo_pin:ident => $vo:ident: $vo_ty:ty, $vo_unit:literal;)* }
+    ) => {
+        /// What the caller sets: VAR_IN_OUT and VAR_INPUT.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Inputs {
+            $($(#[doc = $io_doc])+ pub $io: $io_ty,)*
+            $($(#[doc = $in_doc])+ pub $in: $in_ty,)*
+            $($(#[doc = $vi_doc])+ pub $vi: $vi_ty,)*
+        }
+
+        impl Default for Inputs {
+            fn default() -> Self {
+                Self {
+                    $($io: Default::default(),)*
+                    $($in: $in_default,)*
+                    $($vi: $vi_default,)*
+                }
+            }
+        }
+
+        /// What the block shows: VAR_OUTPUT.
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct Outputs {
+            $($(#[doc = $out_doc])+ pub $out: $out_ty,)*
+            $($(#[doc = $vo_doc])+ pub $vo: $vo_ty,)*
+        }
+
+        $crate::pins!(@table Inputs {
+            $(InOut $io_pin $io $io_ty, "", false, [$($io_doc)+];)*
+            $(Input $in_pin $in $in_ty, $in_unit, false, [$($in_doc)+];)*
+            $(Input $vi_pin $vi $vi_ty, $vi_unit, true, [$($vi_doc)+];)*
+        });
+        $crate::pins!(@table Outputs {
+            $(Output $out_pin $out $out_ty, $out_unit, false, [$($out_doc)+];)*
+            $(Output $vo_pin $vo $vo_ty, $vo_unit, true, [$($vo_doc)+];)*
+        });
+    };
+    (@table $name:ident { $($direction:ident $pin:ident $field:ident $ty:ty, $unit:literal, $extension:literal, [$($doc:literal)+];)* }) => {
+        impl $crate::Pins for $name {
+            const PINS: &'static [$crate::Pin] = &[$($crate::Pin {
+                name: stringify!($pin),
+                ty: <$ty as $crate::PinValue>::TYPE,
+                unit: $unit,
+                extension: $extension,
+                doc: concat!($($doc),+),
+                direction: $crate::Direction::$direction,
+            }),*];
+
+            fn get(&self, index: usize) -> Option<$crate::Value> {
+                let values = [$(<$ty as $crate::PinValue>::into_value(self.$field)),*];
+                values.get(index).copied()
+            }
+
+            fn set(&mut self, index: usize, value: $crate::Value) -> Result<(), $crate::PinError> {
+                let mut place = 0_usize;
+                $(
+                    if place == index {
+                        self.$field = <$ty as $crate::PinValue>::from_value(value)
+                            .ok_or($crate::PinError::WrongType)?;
+                        return Ok(());
+                    }
+                    place += 1;
+                )*
+                let _ = (place, value);
+                Err($crate::PinError::NotWritable)
+            }
+        }
+    };
+}
