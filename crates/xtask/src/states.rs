@@ -47,14 +47,14 @@ const HEIGHT: f64 = 44.0;
 /// Centre of a state's box.
 fn place(state: AxisState) -> (f64, f64) {
     match state {
-        AxisState::Homing => (120.0, 300.0),
-        AxisState::Standstill => (430.0, 300.0),
-        AxisState::Disabled => (740.0, 300.0),
-        AxisState::ErrorStop => (740.0, 420.0),
-        AxisState::Stopping => (120.0, 420.0),
-        AxisState::DiscreteMotion => (120.0, 60.0),
-        AxisState::ContinuousMotion => (740.0, 60.0),
-        AxisState::SynchronizedMotion => (430.0, 160.0),
+        AxisState::DiscreteMotion => (120.0, 50.0),
+        AxisState::ContinuousMotion => (740.0, 50.0),
+        AxisState::SynchronizedMotion => (430.0, 220.0),
+        AxisState::Stopping => (120.0, 240.0),
+        AxisState::ErrorStop => (740.0, 240.0),
+        AxisState::Homing => (120.0, 430.0),
+        AxisState::Standstill => (430.0, 350.0),
+        AxisState::Disabled => (740.0, 430.0),
     }
 }
 
