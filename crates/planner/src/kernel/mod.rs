@@ -17,7 +17,7 @@ mod second;
 mod spans;
 mod third;
 
-pub use root::MAX_STEPS;
+pub use root::{MAX_STEPS, falling_root};
 pub use scale::Scale;
 pub use second::second;
 pub use spans::{Span, Spans};

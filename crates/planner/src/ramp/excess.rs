@@ -76,7 +76,12 @@ pub(super) fn excess(path: &Path, goal: f64, heading: f64, limits: &Limits) -> O
             .jerk
             .max(beyond(state.jerk.abs() - limits.jerk, limits.jerk));
     });
-    excess.velocity = beyond(excess.velocity, limits.velocity.min(largest));
+    let scale = if limits.velocity.is_finite() {
+        limits.velocity
+    } else {
+        largest
+    };
+    excess.velocity = beyond(excess.velocity, scale);
     (excess != Excess::default()).then_some(excess)
 }
 

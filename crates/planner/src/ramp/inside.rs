@@ -4,7 +4,7 @@
 //! Everything is in the kernel's units and mirrored so that the velocity is not negative.
 
 use super::path::zeros;
-use crate::kernel::{ON_LIMIT, Sides, Spans, second};
+use crate::kernel::{ON_LIMIT, Sides, Spans, falling_root, second};
 use crate::math::sqrt;
 
 /// A state in the kernel's units.
@@ -45,6 +45,8 @@ impl State {
 pub(super) struct Box4 {
     /// Acceleration.
     pub(super) a: Sides,
+    /// Magnitude of a falling velocity's acceleration until the state is inside; at least `a.minus`.
+    pub(super) brake_before: f64,
     /// Jerk.
     pub(super) jerk: f64,
     /// Jerk until the state is inside; at least `jerk`.
@@ -61,6 +63,11 @@ impl Box4 {
         }
     }
 
+    /// Whether the old limits allow a falling velocity more than the new ones.
+    pub(super) fn is_lowered(&self) -> bool {
+        self.brake_before > self.a.minus || self.jerk_before > self.jerk || self.snap_before > 1.0
+    }
+
     /// The largest jerk with which the acceleration may come in from above: it must still be possible to
     /// keep it above its lower bound (R14).
     fn entry_jerk(&self) -> f64 {
@@ -68,8 +75,11 @@ impl Box4 {
     }
 }
 
-/// Most spans of [`enter`].
-pub(super) const ENTER_SPANS: usize = 6;
+/// Most spans of [`enter`]: a rule that follows another begins with the input that one ended with.
+pub(super) const ENTER_SPANS: usize = 4;
+
+/// Most spans of [`hasten`]: a push of two and a hold, then [`enter`].
+pub(super) const HASTEN_SPANS: usize = 3 + ENTER_SPANS;
 
 /// Each round settles acceleration, jerk or the acceleration to come; no later one undoes an earlier.
 const ENTER_ROUNDS: usize = 3;
@@ -148,6 +158,42 @@ fn descend(state: State, bounds: &Box4) -> Spans<3> {
         spans.push((peak - entry) / snap, snap);
     }
     spans
+}
+
+/// The spans under the old limits while the velocity is above `limit`: push down, and come back inside the
+/// new acceleration and jerk just when the velocity is inside too, or when a gentle stop ends on `goal` (R19).
+///
+/// Also the root steps taken.
+pub(super) fn hasten(state: State, limit: f64, goal: f64, bounds: &Box4) -> (Spans<HASTEN_SPANS>, u32) {
+    let snap = bounds.snap_before;
+    let push = second(
+        state.a / snap,
+        state.j / snap,
+        -bounds.brake_before / snap,
+        Sides::both(bounds.jerk_before / snap),
+    )
+    .amplified(snap);
+    let lead = |time: f64| {
+        let mut spans = push.until::<HASTEN_SPANS>(time);
+        spans.extend(&enter(state.after_all(&spans), bounds));
+        spans
+    };
+    let above = |time: f64| {
+        let state = state.after_all(&lead(time));
+        let rest = arrested(state, bounds.jerk);
+        (state.v.max(rest) - limit).min(rest - goal)
+    };
+    let pushed = state.after_all(&push);
+    let longest = push.duration() + (pushed.v - goal).max(0.0) / bounds.brake_before;
+    let (time, steps) = falling_root(0.0, longest, above);
+    (lead(time), steps)
+}
+
+/// The velocity once acceleration and jerk are zero as soon as can be.
+pub(super) fn arrested(state: State, jerk: f64) -> f64 {
+    state
+        .after_all(&second(state.a, state.j, 0.0, Sides::both(jerk)))
+        .v
 }
 
 /// The spans that bring a falling or rising acceleration to zero soonest, if stopping it gently would take

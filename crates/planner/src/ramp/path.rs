@@ -6,6 +6,9 @@ use crate::{Order, Setpoint};
 /// Most pieces of a ramp: getting inside the limits, two relief spans and a third-order profile.
 pub(super) const MAX_PIECES: usize = 16;
 
+/// What a jerk of zero may be off by, relative to the largest one before.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// A stretch of constant snap (order 4), jerk (3) or acceleration (2).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Piece {
@@ -45,12 +48,22 @@ impl Path {
         let mut path = Self::new(order);
         let mut state = *start;
         let mut time = 0.0;
+        let mut largest_jerk: f64 = 0.0;
         for (duration, input) in spans {
             state = with_input(&state, order, input);
-            time += duration;
-            if let Some(piece) = path.pieces.get_mut(path.len) {
-                *piece = Piece { end: time, state };
+            // What rounding left of a jerk that is held at zero would be integrated over a long hold.
+            largest_jerk = largest_jerk.max(state.jerk.abs());
+            if input == 0.0 && state.jerk.abs() <= ROUNDING * largest_jerk {
+                state.jerk = 0.0;
+            }
+            let end = time + duration;
+            // A span too short to move the clock moves nothing else either.
+            if end > time
+                && let Some(piece) = path.pieces.get_mut(path.len)
+            {
+                *piece = Piece { end, state };
                 path.len += 1;
+                time = end;
             }
             state = moved(&state, duration);
         }
