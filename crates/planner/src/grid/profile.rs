@@ -32,20 +32,6 @@ pub struct Peaks {
     pub snap: Option<f64>,
 }
 
-impl Peaks {
-    /// Whether all of them are finite.
-    pub(super) fn are_finite(&self) -> bool {
-        [
-            self.velocity,
-            self.acceleration,
-            self.jerk.unwrap_or(0.0),
-            self.snap.unwrap_or(0.0),
-        ]
-        .iter()
-        .all(|peak| peak.is_finite())
-    }
-}
-
 /// A stretch of constant snap (order 4), jerk (order 3) or acceleration (order 2): the state at its start,
 /// just after any jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,12 +84,16 @@ impl Iterator for Segments {
 
 /// The factors of the derivatives, and whether the position sums need more than 64 bits
 /// (docs/planner.md, eq. 25).
-pub(super) fn scale(order: Order, product: i128, distance: f64, cycle: f64) -> ([f64; 5], bool) {
-    let p = product as f64;
+pub(super) fn scale(order: Order, product: u128, distance: f64, cycle: f64) -> ([f64; 5], bool) {
+    // A conversion of 128 bits is slow and seldom needed.
+    let p = match u64::try_from(product) {
+        Ok(product) => product as f64,
+        Err(_) => product as f64,
+    };
     let (t2, p_t) = (cycle * cycle, p * cycle);
     let (p_t2, p_t3, p_t4) = (p * t2, p_t * t2, p * (t2 * t2));
     // The largest position sum asked for is half of m! P.
-    let (scale, largest) = match order {
+    let (scale, half_factorial) = match order {
         Order::Four => (
             [
                 distance / (24.0 * p),
@@ -112,7 +102,7 @@ pub(super) fn scale(order: Order, product: i128, distance: f64, cycle: f64) -> (
                 distance / p_t3,
                 distance / p_t4,
             ],
-            12 * product,
+            12,
         ),
         Order::Three => (
             [
@@ -122,14 +112,14 @@ pub(super) fn scale(order: Order, product: i128, distance: f64, cycle: f64) -> (
                 distance / p_t3,
                 0.0,
             ],
-            3 * product,
+            3,
         ),
         Order::Two => (
             [distance / (2.0 * p), distance / p_t, distance / p_t2, 0.0, 0.0],
-            product,
+            1,
         ),
     };
-    (scale, largest > i128::from(i64::MAX))
+    (scale, product > i64::MAX as u128 / half_factorial)
 }
 
 impl GridPlan {
