@@ -5,7 +5,7 @@
 
 mod grid_support;
 
-use grid_support::{Move, Random, limits};
+use grid_support::{Move, Random, limits, power};
 use standstill_planner::{GridPlan, Method};
 
 const ABSENT: f64 = f64::INFINITY;
@@ -21,7 +21,7 @@ fn thresholds(request: &Move) -> [u128; 4] {
         x / (l.jerk * t * t * t),
         x / (l.snap * t * t * t * t),
     ]
-    .map(|ratio| (ratio * (1.0 - 2.0_f64.powi(-40))).ceil().max(1.0) as u128)
+    .map(|ratio| (ratio * (1.0 - 1.0 / power(2.0, 40))).ceil().max(1.0) as u128)
 }
 
 /// All four boxes, those an order does without as 0.
@@ -115,12 +115,12 @@ fn check(
 /// A move of about `scans` scans whose bounds are active in all mixtures.
 fn mixed(random: &mut Random, scans: f64) -> Move {
     let n = scans * random.log(0.05, 1.0);
-    let bound = |random: &mut Random, degree: i32| {
+    let bound = |random: &mut Random, degree: u64| {
         if random.below(5) == 0 {
             ABSENT
         } else {
             // A distance of 1 over n samples asks for about 1 / n^degree.
-            random.log(1.0, 40.0 * 8.0_f64.powi(degree - 1)) / n.powi(degree)
+            random.log(1.0, 40.0 * power(8.0, degree - 1)) / power(n, degree)
         }
     };
     Move {
@@ -210,7 +210,7 @@ fn moves_beyond_53_bits_are_shortest_among_the_pairs_around() {
     let mut wide = 0;
     for _ in 0..200 {
         let mut request = mixed(&mut random, 2e5);
-        request.limits.snap = random.log(1.0, 1e4) / 2e5_f64.powi(4);
+        request.limits.snap = random.log(1.0, 1e4) / power(2e5, 4);
         let k = thresholds(&request);
         wide += u32::from(k[3] > 1 << 53);
         for method in METHODS {
