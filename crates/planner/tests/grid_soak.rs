@@ -112,3 +112,25 @@ fn a_thousand_moves_there_and_back_end_at_zero() {
         assert_eq!(position.to_bits(), 0.0_f64.to_bits());
     }
 }
+
+/// Beyond the caps a plan is still valid, no longer than the sequential one, and says so.
+#[test]
+fn a_capped_search_is_never_worse_than_the_published_steps() {
+    let none = f64::INFINITY;
+    let mut capped = 0;
+    for scans in [1e7, 3e7, 1e8, 3e8] {
+        let limits = limits(none, none, none, 503.0 / (scans * scans * scans * scans));
+        for method in [Method::Grid, Method::Overlapped] {
+            let (plan, work) = GridPlan::new_counted(method, 0.0, 1.0, &limits, 1.0).expect("valid");
+            let sequential = GridPlan::new(Method::Sequential, 0.0, 1.0, &limits, 1.0).expect("valid");
+            assert!(plan.scans() <= sequential.scans());
+            assert!(plan.peaks().snap <= Some(limits.snap * (1.0 + 1e-11)));
+            assert_eq!(plan.at(u64::from(plan.scans())).position, 1.0);
+            println!("{scans:e} scans, {method:?}: {work:?}");
+            capped += u32::from(work.capped);
+            assert!(work.rows <= standstill_planner::grid::MAX_ROWS);
+            assert!(work.candidates <= standstill_planner::grid::MAX_CANDIDATES);
+        }
+    }
+    assert!(capped > 0, "no search was long enough to be capped");
+}

@@ -315,3 +315,57 @@ where
         _ => [s2, s1, s0, 0.0, 0.0],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{GridPlan, Limits, Method};
+
+    /// The same bits come out of sums in 64 and in 128 bits.
+    #[test]
+    fn wide_and_narrow_sums_agree() {
+        let bounds = Limits {
+            velocity: 1.2,
+            acceleration: 15.0,
+            deceleration: 15.0,
+            jerk: 400.0,
+            snap: 21000.0,
+        };
+        let third = Limits {
+            snap: f64::INFINITY,
+            ..bounds
+        };
+        for limits in [bounds, third] {
+            for distance in [1e-6, 0.003, 0.35, -0.35, 40.0] {
+                let narrow =
+                    GridPlan::new(Method::Overlapped, 1.0, 1.0 + distance, &limits, 1e-3).expect("valid");
+                assert!(!narrow.wide);
+                let mut wide = narrow;
+                wide.wide = true;
+                for scan in 0..=u64::from(narrow.scans()) {
+                    assert_eq!(narrow.at(scan), wide.at(scan));
+                }
+            }
+        }
+    }
+
+    /// Just below and just above the border of 64 bits the profile is as exact as elsewhere.
+    #[test]
+    fn the_border_of_64_bits_is_where_half_the_position_sum_stops_fitting() {
+        let of = |snap: f64| {
+            let limits = Limits { snap, ..Limits::NONE };
+            GridPlan::new(Method::Sequential, 0.0, 1.0, &limits, 1.0).expect("valid")
+        };
+        // K1 is 1 / snap, and P just above it.
+        let border = 12.0 / 9_223_372_036_854_775_808.0;
+        assert!(!of(border * 1.01).wide);
+        assert!(of(border * 0.99).wide);
+        for plan in [of(border * 1.01), of(border * 0.99)] {
+            let half = u64::from(plan.scans()) / 2;
+            assert_eq!(plan.scans() % 2, 0);
+            assert_eq!(plan.at(half).position, 0.5);
+            let (before, after) = (plan.at(half - 1), plan.at(half + 1));
+            assert!((before.position + after.position - 1.0).abs() <= f64::EPSILON);
+            assert_eq!(before.velocity, after.velocity);
+        }
+    }
+}

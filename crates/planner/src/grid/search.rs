@@ -9,7 +9,7 @@ use crate::math::{self, max, min, sqrt};
 pub const MAX_ROWS: u32 = 1024;
 
 /// Most pairs (n1, n2) a search may try before it settles for the best found.
-pub const MAX_CANDIDATES: u32 = 4096;
+pub const MAX_CANDIDATES: u32 = 2048;
 
 /// Share by which the budget of the real bound is raised, so that rounding can only add candidates, never lose one.
 const MARGIN: f64 = 1e-12;
