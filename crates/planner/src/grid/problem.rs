@@ -182,3 +182,46 @@ impl Ratio {
         self.ceil_times(1)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Problem, Ratio};
+    use crate::Limits;
+
+    /// Products beyond 53 bits that only rounding lifts to the threshold do not reach it.
+    #[test]
+    fn products_beyond_53_bits_are_compared_exactly() {
+        let limits = Limits {
+            snap: 1.0,
+            ..Limits::NONE
+        };
+        let mut told_apart = 0;
+        for n in 40_000..40_100 {
+            let boxes = [n, n + 3, 2 * n + 1, 5 * n].map(f64::from);
+            let product = boxes.iter().map(|n| *n as u128).product::<u128>();
+            let rounded = product as f64;
+            let slack = 1.0 + 1.0 / (1_u64 << 40) as f64;
+            let problem = Problem::new(rounded * slack, &limits, 1.0).expect("valid");
+            let reached = product >= problem.k1 as u128;
+            assert_eq!(problem.reached_by(boxes), reached);
+            told_apart += u32::from(!reached && problem.k1 == rounded);
+        }
+        assert!(told_apart > 0, "no product here is rounded up to its threshold");
+    }
+
+    /// A ratio times a whole number is rounded up exactly, less the slack.
+    #[test]
+    fn ratios_multiply_exactly() {
+        assert_eq!(Ratio::new(3.0).ceil(), 3);
+        assert_eq!(Ratio::new(3.0 + 1e-13).ceil(), 3);
+        assert_eq!(Ratio::new(3.0 + 1e-11).ceil(), 4);
+        assert_eq!(Ratio::new(0.25).ceil_times(12), 3);
+        assert_eq!(Ratio::new(0.25).ceil_times(13), 4);
+        assert_eq!(Ratio::new(0.0).ceil_times(1 << 62), 0);
+        assert_eq!(Ratio::new(1e-300).ceil_times(1), 1);
+        // 2^100, less the slack of 2^60.
+        let huge = (1_u128 << 100) as f64;
+        assert_eq!(Ratio::new(huge).ceil(), (1 << 100) - (1 << 60));
+        assert_eq!(Ratio::new(1e300).ceil_times(2), u128::MAX);
+    }
+}
