@@ -1,4 +1,5 @@
 //! Ramps of every order, from every kind of start state, judged from outside.
 
 mod chains;
+mod changes;
 mod support;
