@@ -6,7 +6,8 @@ mod common;
 
 use common::{MS, Rig, task};
 use standstill_axis::{
-    Axis, AxisState, Command, Direction, DriveRequest, Dynamics, InstanceId, Planner, Raw, Request,
+    Axis, AxisId, AxisState, Command, Direction, DriveRequest, Dynamics, ErrorId, InstanceId, Planner, Raw,
+    Request,
 };
 use standstill_fb::Context;
 use standstill_scan::{Mode, NotOff, ProgramConfig, ProgramFault, ScanReport, Start};
@@ -21,7 +22,7 @@ const DYNAMICS: Dynamics = Dynamics {
 
 fn command<P: Planner>(context: &mut Context<'_, P>, command: Command) {
     context.instance = InstanceId(3);
-    let (axis, log, source) = context.axis(standstill_axis::AxisId::new(0)).unwrap();
+    let (axis, log, source) = context.axis(AxisId::new(0)).unwrap();
     axis.command(&Request::aborting(command), source, log).unwrap();
 }
 
@@ -188,6 +189,40 @@ fn a_start_waits_for_axes_that_are_off() {
         assert_eq!(axis.setpoint().position, axis.actual_position());
         assert_eq!(axis.setpoint().velocity, 0.0);
     }
+}
+
+/// ST-4: ErrorStop is a state to start from only once the axis has come to rest.
+#[test]
+fn a_start_waits_for_the_ramp_of_an_axis_fault() {
+    let mut moving = Moving::new();
+    moving.rig.host.act = |_, context| {
+        let (axis, log, source) = context.axis(AxisId::new(0)).unwrap();
+        axis.raise(ErrorId::AxisFault, 0, source, log);
+        Ok(())
+    };
+    moving.scan();
+    moving.rig.host.act = |_, _| Ok(());
+    let mut refused = 0;
+    while let Err(error) = moving.start() {
+        assert_eq!(error.state, AxisState::ErrorStop);
+        assert!(!moving.axis().setpoint().is_at_rest());
+        moving.scan();
+        refused += 1;
+        assert!(refused < 2000);
+    }
+    assert!(refused > 10);
+    assert_eq!(moving.axis().state(), AxisState::ErrorStop);
+}
+
+/// Before the first scan axes may be powered by configuration; a start leaves them so.
+#[test]
+fn the_first_start_keeps_configured_states() {
+    let mut rig = Rig::new(&[task("main", 1, 0)], &[ProgramConfig::with("p", "main")], &["X"]);
+    rig.executor
+        .start(Start::Cold, &mut rig.host, &rig.machine)
+        .unwrap();
+    rig.scan_at(0);
+    assert_eq!(rig.machine.axes()[0].state(), AxisState::Standstill);
 }
 
 /// Stopping twice, or after a fault, changes nothing: the fault stays readable.
