@@ -5,4 +5,9 @@
 //! not: arguments and printing (the command line), motion, block behaviour.
 #![forbid(unsafe_code)]
 
+mod error;
 pub mod model;
+mod read;
+
+pub use error::{Code, DIAGNOSTICS_SHOWN, Diagnostic, ScriptError};
+pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read};
