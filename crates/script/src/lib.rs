@@ -5,4 +5,13 @@
 //! not: arguments and printing (the command line), motion, block behaviour.
 #![forbid(unsafe_code)]
 
+mod error;
+mod format;
 pub mod model;
+mod read;
+mod schema;
+
+pub use error::{Code, DIAGNOSTICS_SHOWN, Diagnostic, ScriptError};
+pub use format::format;
+pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read};
+pub use schema::schema;
