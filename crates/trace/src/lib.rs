@@ -1,1 +1,33 @@
-//! placeholder
+//! Scan traces: what every signal was in every scan, as data, as text and as pictures.
+//!
+//! A host describes a run in a [`Header`], makes a [`Trace`] of it and pushes one row a scan. From then on
+//! the trace is read only: it can be written as CSV or JSON Lines and read back bit by bit, condensed
+//! into a golden text for people to review, compared with another one, and drawn in a terminal.
+//!
+//! What is not here: the crate knows no script, no executor and no block, reads no clock, and everything
+//! but [`golden::judge`] and [`golden::accept`] leaves files to the caller. The same trace gives the
+//! same bytes on every processor: numbers are written in shortest round-trip form, digests are taken in
+//! a fixed byte order, and nothing is iterated in a random one.
+//!
+//! The work of every function here is proportional to rows times columns, unless it says otherwise.
+
+#![forbid(unsafe_code)]
+
+pub mod csv;
+pub mod digest;
+mod events;
+mod extremes;
+pub mod golden;
+mod header;
+pub mod jsonl;
+mod number;
+mod read;
+mod trace;
+
+pub use events::{Event, events, events_text};
+pub use extremes::{Extreme, extremes, extremes_text};
+pub use header::{
+    AXIS_SIGNALS, Axis, Claim, ClaimVerdict, Direction, Header, Input, Instance, Limits, Pin, Scaling,
+};
+pub use read::{Loaded, ReadError};
+pub use trace::{Cell, Column, Kind, Note, Role, RowError, Trace};

@@ -1,0 +1,208 @@
+//! The golden text of a trace: short enough to review, exact enough that nothing slips by.
+
+use std::fmt::Write;
+
+use crate::digest;
+use crate::events::{self, Event};
+use crate::extremes::{axis_title, extremes_text};
+use crate::header::{Axis, Header, Limits};
+use crate::number::{cell_text, fixed, shortest, time_literal};
+use crate::trace::{Cell, Role, Trace};
+
+/// A set-point table holds about so many rows at equal distances, besides those of events.
+const TABLE_ROWS: usize = 16;
+
+/// Block digests on one line.
+const DIGESTS_PER_LINE: usize = 8;
+
+/// The golden text: header, events, a thin table of set-points per axis, extremes against limits, a digest
+/// per [`digest::BLOCK_SCANS`] scans, and at the end one of every bit. No version, date or path, so it
+/// changes only when behaviour does.
+#[must_use]
+pub fn text(trace: &Trace) -> String {
+    let events = events::events(trace);
+    let mut text = header(trace);
+    section(&mut text, "events", &events::lines(&events));
+    for axis in &trace.header().axes {
+        text.push('\n');
+        text.push_str(&set_points(trace, axis, &events));
+    }
+    text.push('\n');
+    text.push_str(&extremes_text(trace));
+    section(
+        &mut text,
+        &format!("digest per {} scans", digest::BLOCK_SCANS),
+        &block_digests(trace),
+    );
+    // Writing to a String cannot fail, here and below.
+    let _ = writeln!(
+        text,
+        "\nend  {} scans  {:016x}",
+        trace.scans(),
+        digest::whole(trace)
+    );
+    text
+}
+
+fn section(text: &mut String, title: &str, lines: &str) {
+    let _ = write!(text, "\n{title}\n{lines}");
+}
+
+fn header(trace: &Trace) -> String {
+    let Header {
+        title,
+        covers,
+        cycle_ns,
+        axes,
+        instances,
+        ..
+    } = trace.header();
+    let mut text = format!("title   {}\n", if title.is_empty() { "(none)" } else { title });
+    if !covers.is_empty() {
+        let _ = writeln!(text, "covers  {}", covers.join(" "));
+    }
+    let _ = writeln!(text, "cycle   {}", time_literal(*cycle_ns));
+    for axis in axes {
+        let _ = writeln!(text, "axis    {}", axis_line(axis));
+    }
+    for instance in instances {
+        let axes = in_outs(trace, &instance.name).join(", ");
+        let bound = if axes.is_empty() {
+            axes
+        } else {
+            format!("({axes})")
+        };
+        let _ = writeln!(text, "block   {}  {}{bound}", instance.name, instance.block);
+    }
+    text
+}
+
+fn axis_line(axis: &Axis) -> String {
+    let mut words = vec![axis.name.clone()];
+    if !axis.unit.is_empty() {
+        words.push(axis.unit.clone());
+    }
+    words.push(format!("order {}", axis.order));
+    let Limits {
+        position_min,
+        position_max,
+        velocity,
+        acceleration,
+        deceleration,
+        jerk,
+        snap,
+    } = axis.limits;
+    let named = [
+        ("min", position_min),
+        ("max", position_max),
+        ("v", velocity),
+        ("a", acceleration),
+        ("d", deceleration),
+        ("j", jerk),
+        ("s", snap),
+    ];
+    words.extend(
+        named
+            .iter()
+            .filter_map(|(name, limit)| Some(format!("{name}={}", shortest((*limit)?)))),
+    );
+    if let Some(scaling) = axis.scaling {
+        let sign = if scaling.invert { "-" } else { "" };
+        words.push(format!(
+            "scaling={sign}{}/{}+{}",
+            scaling.increments,
+            scaling.units,
+            shortest(scaling.offset)
+        ));
+    }
+    words.join("  ")
+}
+
+/// What the in-out pins of an instance were bound to in scan 0: its axes.
+fn in_outs(trace: &Trace, instance: &str) -> Vec<String> {
+    let columns = trace.columns().iter().zip(trace.row(0));
+    columns
+        .filter(|(column, _)| column.role == Role::InOut && column.subject() == instance)
+        .map(|(_, cell)| cell_text(cell))
+        .collect()
+}
+
+/// Set-points at equal distances and at scans in which the axis had an event. Rows at rest that repeat the
+/// row above are left out.
+fn set_points(trace: &Trace, axis: &Axis, events: &[Event]) -> String {
+    let quantities = ["Position", "Velocity", "Acceleration", "Jerk"];
+    let columns = quantities.map(|quantity| trace.column(&format!("{}.{quantity}", axis.name)));
+    let mut text = format!("set-points of {}\n{:>7}", axis_title(axis), "scan");
+    for quantity in quantities {
+        let _ = write!(text, " {quantity:>16}");
+    }
+    text.push('\n');
+    let mut above = None;
+    for scan in table_scans(trace, axis, events) {
+        let values = columns.map(
+            |column| match column.and_then(|column| trace.cell(scan, column)) {
+                Some(Cell::Real(value)) => Some(value),
+                _ => None,
+            },
+        );
+        let shown = values.map(|value| value.map_or_else(String::new, fixed));
+        let at_rest = values
+            .iter()
+            .skip(1)
+            .all(|value| value.is_none_or(|value| value == 0.0));
+        if at_rest && above.as_ref() == Some(&shown) {
+            continue;
+        }
+        let _ = write!(text, "{scan:>7}");
+        for cell in &shown {
+            let _ = write!(text, " {cell:>16}");
+        }
+        text.push('\n');
+        above = Some(shown);
+    }
+    text
+}
+
+fn table_scans(trace: &Trace, axis: &Axis, events: &[Event]) -> Vec<usize> {
+    let scans = trace.scans();
+    let step = round_step(scans.div_ceil(TABLE_ROWS));
+    let own = events
+        .iter()
+        .filter(|event| event.subject == axis.name)
+        .map(|event| event.scan);
+    let mut chosen: Vec<usize> = (0..scans)
+        .step_by(step)
+        .chain(own)
+        .chain(scans.checked_sub(1))
+        .collect();
+    chosen.retain(|&scan| scan < scans);
+    chosen.sort_unstable();
+    chosen.dedup();
+    chosen
+}
+
+/// The least of 1, 2, 5, 10, 20, 50 .. that is not below `least`.
+fn round_step(least: usize) -> usize {
+    let mut power = 1;
+    loop {
+        for step in [power, 2 * power, 5 * power] {
+            if step >= least {
+                return step;
+            }
+        }
+        power *= 10;
+    }
+}
+
+/// The block digests folded to 32 bits, the first scan of each line before them.
+fn block_digests(trace: &Trace) -> String {
+    let mut text = String::new();
+    for (line, digests) in digest::by_block(trace).chunks(DIGESTS_PER_LINE).enumerate() {
+        let _ = write!(text, "{:>7}", line * DIGESTS_PER_LINE * digest::BLOCK_SCANS);
+        for digest in digests {
+            let _ = write!(text, " {:08x}", (digest >> 32) ^ (digest & 0xffff_ffff));
+        }
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,263 @@
+//! What a run was made of: the header that goes before the rows, and the columns that follow from it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::read::ReadError;
+use crate::trace::{Column, Kind, Role};
+
+/// The columns of every axis after its name, in the order of the file. `State` is a name, the others are
+/// numbers: the set-point at the end of the scan, and the position the drive reported at its start.
+/// Later versions append, they do not reorder.
+pub const AXIS_SIGNALS: [&str; 7] = [
+    "State",
+    "Position",
+    "Velocity",
+    "Acceleration",
+    "Jerk",
+    "Snap",
+    "ActualPosition",
+];
+
+/// A run in a few words: everything but its rows.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// Version of the runtime that made the trace.
+    #[serde(default)]
+    pub runtime: String,
+    /// Title of the script; may be empty.
+    #[serde(default)]
+    pub title: String,
+    /// Ids of the requirements that the script covers.
+    #[serde(default)]
+    pub covers: Vec<String>,
+    /// A hash of the script's text, in the caller's form; empty if there was none.
+    #[serde(default)]
+    pub script_hash: String,
+    /// Length of a scan (ns).
+    pub cycle_ns: u64,
+    /// The axes in script order.
+    pub axes: Vec<Axis>,
+    /// The script's input variables.
+    pub inputs: Vec<Input>,
+    /// The block instances in call order.
+    pub instances: Vec<Instance>,
+    /// The claims with their verdicts; empty until they are judged.
+    #[serde(default)]
+    pub claims: Vec<Claim>,
+}
+
+/// One axis as the run had it. Units are `u`, the label in `unit`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Axis {
+    /// Its name in the script.
+    pub name: String,
+    /// Label of the user's unit, for example `mm`; empty if none was given.
+    #[serde(default)]
+    pub unit: String,
+    /// Order of its profiles: 4 with a snap limit, 3 without, 2 without a jerk limit; 0 if not known.
+    #[serde(default)]
+    pub order: u8,
+    /// What it must stay within.
+    #[serde(default)]
+    pub limits: Limits,
+    /// How units become drive increments; absent if the drive speaks units.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scaling: Option<Scaling>,
+}
+
+/// Limits of an axis; absent means none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Limits {
+    /// Least position (u).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_min: Option<f64>,
+    /// Greatest position (u).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position_max: Option<f64>,
+    /// Largest speed (u/s).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<f64>,
+    /// Largest acceleration while speeding up (u/s^2).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceleration: Option<f64>,
+    /// Largest acceleration while slowing down (u/s^2).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deceleration: Option<f64>,
+    /// Largest jerk (u/s^3).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub jerk: Option<f64>,
+    /// Largest snap (u/s^4).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub snap: Option<f64>,
+}
+
+/// The integer ratio between units and drive increments.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scaling {
+    /// So many increments ..
+    pub increments: i64,
+    /// .. are so many units.
+    pub units: i64,
+    /// The drive counts the other way.
+    #[serde(default)]
+    pub invert: bool,
+    /// Position at increment 0 (u).
+    #[serde(default)]
+    pub offset: f64,
+}
+
+/// An input variable of the script.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Input {
+    /// Its name.
+    pub name: String,
+    /// Its IEC type, for example `BOOL`.
+    #[serde(rename = "type")]
+    pub iec_type: String,
+}
+
+/// A block instance.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Instance {
+    /// Its name.
+    pub name: String,
+    /// Its block, for example `MC_MoveAbsolute`.
+    #[serde(rename = "type")]
+    pub block: String,
+    /// Its pins as in the block's table: in-outs, inputs, outputs.
+    pub pins: Vec<Pin>,
+}
+
+/// A pin of a block instance.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pin {
+    /// Its name.
+    pub name: String,
+    /// Its IEC type, for example `LREAL`.
+    #[serde(rename = "type")]
+    pub iec_type: String,
+    /// Which way it points.
+    pub direction: Direction,
+}
+
+/// Which way a pin points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Direction {
+    /// `VAR_IN_OUT`
+    InOut,
+    /// `VAR_INPUT`
+    Input,
+    /// `VAR_OUTPUT`
+    Output,
+}
+
+/// A claim of the script, judged.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Claim {
+    /// Where it stands in the script, for example `expect[2]`.
+    pub path: String,
+    /// What it says.
+    pub text: String,
+    /// Whether it held.
+    pub verdict: ClaimVerdict,
+}
+
+/// Whether a claim held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ClaimVerdict {
+    /// It held.
+    Passed,
+    /// It did not.
+    Failed,
+}
+
+impl Header {
+    /// The columns of the trace in file order, after `scan` and `time_ns`: the axes, the input
+    /// variables, the pins of the instances. This is the one place that knows the order.
+    #[must_use]
+    pub fn columns(&self) -> Vec<Column> {
+        let axes = self
+            .axes
+            .iter()
+            .flat_map(|axis| AXIS_SIGNALS.iter().map(|signal| axis_column(&axis.name, signal)));
+        let inputs = self.inputs.iter().map(|input| Column {
+            name: input.name.clone(),
+            kind: Kind::of_iec_type(&input.iec_type),
+            role: Role::Variable,
+            is_time: is_time(&input.iec_type),
+        });
+        let pins = self.instances.iter().flat_map(|instance| {
+            instance.pins.iter().map(|pin| Column {
+                name: format!("{}.{}", instance.name, pin.name),
+                kind: Kind::of_iec_type(&pin.iec_type),
+                role: Role::of_direction(pin.direction),
+                is_time: is_time(&pin.iec_type),
+            })
+        });
+        axes.chain(inputs).chain(pins).collect()
+    }
+
+    /// The header as one line of JSON, beginning with the version of the format: the first line of a JSON
+    /// Lines trace, and the whole of the `.meta.json` file beside a CSV trace.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        // Strings, integers and finite numbers only: a limit that is not finite is no limit, and serde_json
+        // writes it as null, which reads back as none.
+        let fields = serde_json::to_string(self).unwrap_or_default();
+        format!("{{\"{VERSION_KEY}\":{VERSION},{}", fields.trim_start_matches('{'))
+    }
+
+    /// Reads what [`Header::to_json`] wrote, of this version or with keys that a later one added.
+    ///
+    /// # Errors
+    /// Text that is no JSON, no trace header, or of another version of the format.
+    pub fn from_json(text: &str) -> Result<Self, ReadError> {
+        let text = text.trim_start_matches('\u{feff}');
+        let probe: Probe = serde_json::from_str(text).map_err(|error| ReadError::json(&error, 1))?;
+        match probe.standstill_trace {
+            Some(VERSION) => serde_json::from_str(text).map_err(|error| ReadError::json(&error, 1)),
+            Some(other) => Err(ReadError::at(
+                1,
+                None,
+                format!("trace format {other}; this version reads {VERSION}"),
+            )),
+            None => Err(ReadError::at(
+                1,
+                None,
+                format!("no trace header: `{VERSION_KEY}` is missing"),
+            )),
+        }
+    }
+}
+
+/// The key that marks a header.
+pub(crate) const VERSION_KEY: &str = "standstill_trace";
+
+/// The version of the trace format.
+const VERSION: u64 = 1;
+
+#[derive(Deserialize)]
+struct Probe {
+    standstill_trace: Option<u64>,
+}
+
+/// The column of an axis signal.
+pub(crate) fn axis_column(axis: &str, signal: &str) -> Column {
+    let is_state = signal == "State";
+    Column {
+        name: format!("{axis}.{signal}"),
+        kind: if is_state { Kind::Name } else { Kind::Real },
+        role: if is_state {
+            Role::AxisState
+        } else {
+            Role::AxisValue
+        },
+        is_time: false,
+    }
+}
+
+fn is_time(iec_type: &str) -> bool {
+    matches!(iec_type, "TIME" | "LTIME")
+}

@@ -1,0 +1,470 @@
+//! The rows of a run, held as bits.
+
+use std::collections::BTreeMap;
+
+use crate::header::{Claim, Direction, Header};
+
+/// What the cells of a column are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// TRUE or FALSE.
+    Bool,
+    /// A 64-bit float.
+    Real,
+    /// A whole number: counters, `ErrorID`, TIME in nanoseconds. ULINT values above `i64::MAX` do not fit.
+    Integer,
+    /// A word: axis states, axes, enum elements, and whatever else has only a text.
+    Name,
+}
+
+impl Kind {
+    /// The kind of an IEC type. Types that are neither elementary numbers nor BOOL (enums, `AXIS_REF`,
+    /// structures) are told by name.
+    #[must_use]
+    pub fn of_iec_type(iec_type: &str) -> Self {
+        match iec_type {
+            "BOOL" => Self::Bool,
+            "REAL" | "LREAL" => Self::Real,
+            "SINT" | "INT" | "DINT" | "LINT" | "USINT" | "UINT" | "UDINT" | "ULINT" | "BYTE" | "WORD"
+            | "DWORD" | "LWORD" | "TIME" | "LTIME" => Self::Integer,
+            _ => Self::Name,
+        }
+    }
+}
+
+/// What a column tells of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The state of an axis.
+    AxisState,
+    /// A set-point or feedback of an axis.
+    AxisValue,
+    /// An input variable of the script.
+    Variable,
+    /// An in-out pin.
+    InOut,
+    /// An input pin.
+    Input,
+    /// An output pin; also any pin of a trace that was read without its header.
+    Output,
+}
+
+impl Role {
+    /// The role of a pin that points this way.
+    #[must_use]
+    pub const fn of_direction(direction: Direction) -> Self {
+        match direction {
+            Direction::InOut => Self::InOut,
+            Direction::Input => Self::Input,
+            Direction::Output => Self::Output,
+        }
+    }
+}
+
+/// One column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// `axis.Signal`, `instance.Pin`, or the name of an input variable.
+    pub name: String,
+    /// What its cells are.
+    pub kind: Kind,
+    /// What it tells of.
+    pub role: Role,
+    /// It is a TIME (ns), which may tick in every scan.
+    pub is_time: bool,
+}
+
+impl Column {
+    /// The axis or instance; empty for an input variable.
+    #[must_use]
+    pub fn subject(&self) -> &str {
+        self.name.split_once('.').map_or("", |(subject, _)| subject)
+    }
+
+    /// The pin, the axis signal or the input variable.
+    #[must_use]
+    pub fn signal(&self) -> &str {
+        self.name
+            .split_once('.')
+            .map_or(self.name.as_str(), |(_, signal)| signal)
+    }
+}
+
+/// The value of a column in a scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cell<'a> {
+    /// TRUE or FALSE.
+    Bool(bool),
+    /// A number. A trace holds no -0.0 and only one NaN, see [`Trace::push_row`].
+    Real(f64),
+    /// A whole number; TIME is in nanoseconds.
+    Integer(i64),
+    /// A word.
+    Name(&'a str),
+}
+
+impl Cell<'_> {
+    /// What it is.
+    #[must_use]
+    pub const fn kind(&self) -> Kind {
+        match self {
+            Self::Bool(_) => Kind::Bool,
+            Self::Real(_) => Kind::Real,
+            Self::Integer(_) => Kind::Integer,
+            Self::Name(_) => Kind::Name,
+        }
+    }
+}
+
+/// Something worth telling that is no column: an accepted plan, a refused or clamped command.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// The scan it happened in.
+    pub scan: usize,
+    /// The axis or instance it is about.
+    pub subject: String,
+    /// One line of text.
+    pub text: String,
+}
+
+/// Why a row was not taken.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RowError {
+    /// The row has another length than the columns.
+    #[error("a row of {found} cells where the trace has {expected} columns")]
+    Length {
+        /// Columns of the trace.
+        expected: usize,
+        /// Cells of the row.
+        found: usize,
+    },
+    /// A cell is of another kind than its column.
+    #[error("column `{column}` holds {expected:?} cells, found {found:?}")]
+    Kind {
+        /// Name of the column.
+        column: String,
+        /// Its kind.
+        expected: Kind,
+        /// Kind of the cell.
+        found: Kind,
+    },
+    /// A name holds a line break or another control character, which no text form can carry.
+    #[error("column `{column}`: a name with a control character")]
+    ControlCharacter {
+        /// Name of the column.
+        column: String,
+    },
+}
+
+/// A run: its header, one row a scan from scan 0 on, and its notes.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    header: Header,
+    columns: Vec<Column>,
+    by_name: BTreeMap<String, usize>,
+    /// Row after row, one word a cell; the column's kind says what the word means.
+    bits: Vec<u64>,
+    names: Names,
+    notes: Vec<Note>,
+}
+
+impl Trace {
+    /// An empty trace with the columns of the header.
+    #[must_use]
+    pub fn new(header: Header) -> Self {
+        let columns = header.columns();
+        Self::with_columns(header, columns)
+    }
+
+    /// An empty trace with columns of its own: for traces that were read without their header, or with
+    /// columns that this version does not know.
+    pub(crate) fn with_columns(header: Header, columns: Vec<Column>) -> Self {
+        let by_name = columns
+            .iter()
+            .enumerate()
+            .map(|(at, column)| (column.name.clone(), at))
+            .collect();
+        Self {
+            header,
+            columns,
+            by_name,
+            bits: Vec::new(),
+            names: Names::default(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// What the run was made of.
+    #[must_use]
+    pub const fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// Enters the judged claims into the header.
+    pub fn set_claims(&mut self, claims: Vec<Claim>) {
+        self.header.claims = claims;
+    }
+
+    /// The columns in file order, without `scan` and `time_ns`.
+    #[must_use]
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Where the column of this name is, in the exact spelling; cost: logarithmic in the columns.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<usize> {
+        self.by_name.get(name).copied()
+    }
+
+    /// Number of rows: scans 0 to `scans() - 1`.
+    #[must_use]
+    pub fn scans(&self) -> usize {
+        self.bits.len().checked_div(self.columns.len()).unwrap_or(0)
+    }
+
+    /// Time of a scan (ns): its number times the cycle, which is the `now` its blocks saw.
+    #[must_use]
+    pub const fn time_ns(&self, scan: usize) -> u64 {
+        self.header.cycle_ns.wrapping_mul(scan as u64)
+    }
+
+    /// Makes room for so many more rows.
+    pub fn reserve(&mut self, scans: usize) {
+        self.bits.reserve(scans.saturating_mul(self.columns.len()));
+    }
+
+    /// Appends the row of the next scan. -0.0 becomes 0.0 and every NaN the same NaN: the text forms tell
+    /// neither apart, and which NaN an operation gives differs between processors.
+    ///
+    /// # Errors
+    /// A row of wrong length, a cell of a wrong kind, or a name with a control character; the trace is
+    /// then as it was before.
+    pub fn push_row(&mut self, cells: &[Cell<'_>]) -> Result<(), RowError> {
+        self.check_row(cells)?;
+        for cell in cells {
+            let word = match *cell {
+                Cell::Bool(value) => u64::from(value),
+                Cell::Real(value) => canonical_bits(value),
+                Cell::Integer(value) => value.cast_unsigned(),
+                Cell::Name(value) => self.names.index(value),
+            };
+            self.bits.push(word);
+        }
+        Ok(())
+    }
+
+    fn check_row(&self, cells: &[Cell<'_>]) -> Result<(), RowError> {
+        if cells.len() != self.columns.len() {
+            return Err(RowError::Length {
+                expected: self.columns.len(),
+                found: cells.len(),
+            });
+        }
+        for (cell, column) in cells.iter().zip(&self.columns) {
+            if cell.kind() != column.kind {
+                return Err(RowError::Kind {
+                    column: column.name.clone(),
+                    expected: column.kind,
+                    found: cell.kind(),
+                });
+            }
+            if matches!(cell, Cell::Name(text) if text.chars().any(char::is_control)) {
+                return Err(RowError::ControlCharacter {
+                    column: column.name.clone(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The value of a column in a scan; `None` outside the trace.
+    #[must_use]
+    pub fn cell(&self, scan: usize, column: usize) -> Option<Cell<'_>> {
+        let kind = self.columns.get(column)?.kind;
+        let word = *self
+            .bits
+            .get(scan.checked_mul(self.columns.len())?.checked_add(column)?)?;
+        Some(self.decode(kind, word))
+    }
+
+    /// The cells of a scan in column order; none outside the trace.
+    pub fn row(&self, scan: usize) -> impl Iterator<Item = Cell<'_>> {
+        let width = self.columns.len();
+        let words = self.bits.get(scan * width..(scan + 1) * width).unwrap_or(&[]);
+        self.columns
+            .iter()
+            .zip(words)
+            .map(|(column, &word)| self.decode(column.kind, word))
+    }
+
+    /// The cells of a column from scan 0 on; none if there is no such column.
+    pub fn cells(&self, column: usize) -> impl Iterator<Item = Cell<'_>> {
+        let kind = self.columns.get(column).map(|column| column.kind);
+        let words = self.bits.iter().skip(column).step_by(self.columns.len().max(1));
+        kind.into_iter()
+            .flat_map(move |kind| words.clone().map(move |&word| self.decode(kind, word)))
+    }
+
+    /// The numbers of a column of reals from scan 0 on; none if it is no such column.
+    pub fn reals(&self, column: usize) -> impl Iterator<Item = f64> {
+        self.cells(column).filter_map(|cell| match cell {
+            Cell::Real(value) => Some(value),
+            Cell::Bool(_) | Cell::Integer(_) | Cell::Name(_) => None,
+        })
+    }
+
+    /// Notes in the order they were made.
+    #[must_use]
+    pub fn notes(&self) -> &[Note] {
+        &self.notes
+    }
+
+    /// Adds a note. Notes are shown among the events; files of rows do not carry them.
+    pub fn push_note(&mut self, note: Note) {
+        self.notes.push(note);
+    }
+
+    fn decode(&self, kind: Kind, word: u64) -> Cell<'_> {
+        match kind {
+            Kind::Bool => Cell::Bool(word != 0),
+            Kind::Real => Cell::Real(f64::from_bits(word)),
+            Kind::Integer => Cell::Integer(word.cast_signed()),
+            Kind::Name => Cell::Name(self.names.text(word)),
+        }
+    }
+}
+
+/// The bits under which a trace holds a number: without the sign of zero and the payload of NaN.
+pub(crate) const fn canonical_bits(value: f64) -> u64 {
+    if value.is_nan() {
+        0x7ff8_0000_0000_0000
+    } else if value == 0.0 {
+        0
+    } else {
+        value.to_bits()
+    }
+}
+
+/// The words that occur, each once.
+#[derive(Clone, Debug, Default)]
+struct Names {
+    texts: Vec<String>,
+    by_text: BTreeMap<String, u64>,
+}
+
+impl Names {
+    fn index(&mut self, text: &str) -> u64 {
+        if let Some(&index) = self.by_text.get(text) {
+            return index;
+        }
+        let index = self.texts.len() as u64;
+        self.texts.push(text.to_owned());
+        self.by_text.insert(text.to_owned(), index);
+        index
+    }
+
+    fn text(&self, index: u64) -> &str {
+        usize::try_from(index)
+            .ok()
+            .and_then(|at| self.texts.get(at))
+            .map_or("", String::as_str)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::header::{Axis, Input};
+
+    fn small() -> Trace {
+        Trace::new(Header {
+            cycle_ns: 1_000_000,
+            inputs: vec![
+                Input {
+                    name: "GO".into(),
+                    iec_type: "BOOL".into(),
+                },
+                Input {
+                    name: "v".into(),
+                    iec_type: "LREAL".into(),
+                },
+                Input {
+                    name: "mode".into(),
+                    iec_type: "MC_BUFFER_MODE".into(),
+                },
+            ],
+            ..Header::default()
+        })
+    }
+
+    #[test]
+    fn columns_follow_the_order_of_the_format() {
+        let header = Header {
+            axes: vec![Axis {
+                name: "X".into(),
+                ..Axis::default()
+            }],
+            inputs: vec![Input {
+                name: "GO".into(),
+                iec_type: "BOOL".into(),
+            }],
+            ..Header::default()
+        };
+        let names: Vec<_> = header.columns().into_iter().map(|column| column.name).collect();
+        let expected = [
+            "X.State",
+            "X.Position",
+            "X.Velocity",
+            "X.Acceleration",
+            "X.Jerk",
+            "X.Snap",
+            "X.ActualPosition",
+            "GO",
+        ];
+        assert_eq!(names, expected);
+    }
+
+    #[test]
+    fn a_row_comes_back_as_it_was_pushed() {
+        let mut trace = small();
+        let row = [Cell::Bool(true), Cell::Real(1.5), Cell::Name("mcBuffered")];
+        trace.push_row(&row).expect("the row fits");
+        assert_eq!(trace.scans(), 1);
+        assert_eq!(trace.row(0).collect::<Vec<_>>(), row);
+        assert_eq!(trace.cell(0, 2), Some(Cell::Name("mcBuffered")));
+        assert_eq!(trace.cell(1, 0), None);
+        assert_eq!(trace.cell(0, 3), None);
+        assert_eq!(trace.row(1).count(), 0);
+    }
+
+    #[test]
+    fn zero_has_no_sign_and_nan_no_payload() {
+        let mut trace = small();
+        for value in [-0.0, f64::from_bits(0xfff8_0000_0000_0001), f64::NEG_INFINITY] {
+            trace
+                .push_row(&[Cell::Bool(false), Cell::Real(value), Cell::Name("")])
+                .expect("the row fits");
+        }
+        let bits: Vec<_> = trace.reals(1).map(f64::to_bits).collect();
+        assert_eq!(bits, [0, 0x7ff8_0000_0000_0000, 0xfff0_0000_0000_0000]);
+    }
+
+    #[test]
+    fn a_wrong_row_is_refused_and_leaves_the_trace_alone() {
+        let mut trace = small();
+        let short = trace.push_row(&[Cell::Bool(true)]);
+        assert_eq!(
+            short,
+            Err(RowError::Length {
+                expected: 3,
+                found: 1
+            })
+        );
+        let kind = trace.push_row(&[Cell::Bool(true), Cell::Integer(1), Cell::Name("")]);
+        assert!(matches!(kind, Err(RowError::Kind { column, .. }) if column == "v"));
+        let control = trace.push_row(&[Cell::Bool(true), Cell::Real(1.0), Cell::Name("a\nb")]);
+        assert!(matches!(control, Err(RowError::ControlCharacter { .. })));
+        assert_eq!(trace.scans(), 0);
+    }
+}
