@@ -146,6 +146,8 @@ error_ids! {
         "This is a defect of standstill: please report the trace.";
 }
 
+// Deriving it needs an attribute on a variant that the table above writes.
+#[allow(clippy::derivable_impls)]
 impl Default for ErrorId {
     fn default() -> Self {
         Self::None

@@ -15,6 +15,7 @@ extern crate std;
 
 mod error;
 pub mod grid;
+pub mod kernel;
 mod limits;
 pub mod math;
 mod planner;
@@ -25,5 +26,5 @@ pub use error::{Field, PlanError};
 pub use grid::{GridPlan, Method};
 pub use limits::{Limits, Order};
 pub use planner::{Plan, Planner, Standard, StandardPlan};
-pub use ramp::{Excess, RampPlan};
+pub use ramp::{Excess, Peaks, RampPlan, Segment};
 pub use setpoint::Setpoint;

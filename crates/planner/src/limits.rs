@@ -28,6 +28,17 @@ pub enum Order {
     Four,
 }
 
+impl Order {
+    /// The order as a number: 2, 3 or 4.
+    pub const fn degree(self) -> usize {
+        match self {
+            Self::Two => 2,
+            Self::Three => 3,
+            Self::Four => 4,
+        }
+    }
+}
+
 impl Limits {
     /// No bound at all.
     pub const NONE: Self = Self {
@@ -56,6 +67,14 @@ impl Limits {
         } else {
             self.deceleration
         }
+    }
+
+    /// Whether no bound is given at all.
+    pub const fn is_unbounded(&self) -> bool {
+        self.velocity.is_infinite()
+            && self.lower_acceleration().is_infinite()
+            && self.jerk.is_infinite()
+            && self.snap.is_infinite()
     }
 
     /// Checks that every bound is positive and none is NaN.

@@ -1,31 +1,74 @@
 //! From any moving state to a constant velocity.
+//!
+//! What stands here: the start state with its sign and its limits, the plan, its set-point at any scan. The
+//! maths of one transfer is in [`kernel`](crate::kernel). What does not: positions to reach. Equations (R1)
+//! and on, and the definition of a viable state, are in `docs/planner-ramps.md`.
 
-use crate::{Limits, PlanError, Setpoint};
+mod excess;
+mod inside;
+mod path;
+mod solve;
 
-/// By how much a start state forced a plan out of its limits, as magnitudes above the limit.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Excess {
-    /// Velocity above its limit, or against the sign a stop should keep (u/s).
-    pub velocity: f64,
-    /// Acceleration above its limit (u/s^2).
-    pub acceleration: f64,
-    /// Jerk above its limit (u/s^3).
-    pub jerk: f64,
-}
+pub use excess::{Excess, Peaks};
 
-/// A plan from any state to a constant velocity: at most a fixed number of constant-snap segments.
+use crate::kernel::ON_LIMIT;
+use crate::{Field, Limits, Order, PlanError, Setpoint};
+use path::Path;
+use solve::{Problem, Solution};
+
+/// Largest number of scans of a plan.
+const MAX_SCANS: f64 = 2_147_483_647.0;
+
+/// How far `duration / cycle` may lie above a whole number, relative to itself, and still be that number.
+const GRID_SLACK: f64 = 1e-9;
+
+/// A plan from any state to a constant velocity: at most 16 pieces of constant snap (order 4), jerk (3) or
+/// acceleration (2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RampPlan {
-    goal: f64,
     start: Setpoint,
+    goal: f64,
+    cycle: f64,
+    scans: u32,
+    steps: u32,
+    path: Path,
+    excess: Option<Excess>,
+}
+
+/// A stretch of a plan with a constant highest derivative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// How long (s); always above 0.
+    pub duration: f64,
+    /// Velocity at its start (u/s).
+    pub velocity: f64,
+    /// Acceleration at its start, after any jump (u/s^2).
+    pub acceleration: f64,
+    /// Jerk at its start, after any jump (u/s^3).
+    pub jerk: f64,
+    /// Snap held (u/s^4).
+    pub snap: f64,
 }
 
 impl RampPlan {
-    /// Plans from `start` to `velocity` (u/s) with sample time `cycle` (s); see
-    /// [`Planner::ramp_to`](crate::Planner::ramp_to) for `before`.
+    /// Plans from `start` to `velocity` (u/s) in least time with sample time `cycle` (s).
+    ///
+    /// The order is that of `limits` ([`Limits::order`]). At order 3 the start's jerk plays no part, at
+    /// order 2 nor does its acceleration: they may jump. Acceleration is bounded by `limits.acceleration`
+    /// while the speed grows and by `limits.deceleration` while it falls; in a ramp whose velocity changes
+    /// sign the lower of the two holds (R11).
+    ///
+    /// A start outside `limits` is brought inside first, in least time, under the larger ones of `limits`
+    /// and `before`; an infinite bound in `before` counts as that of `limits`. What is exceeded on the way
+    /// is the least possible and told by [`RampPlan::excess`].
+    ///
+    /// Bounded work: closed forms and at most one root of
+    /// [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
     ///
     /// # Errors
-    /// [`PlanError`] as its variants say.
+    /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, a start or velocity that
+    /// is not finite, a bound that is not positive, an infinite acceleration or deceleration, and a
+    /// `velocity` beyond `limits.velocity`; [`PlanError::TooLong`] for more than 2^31 - 1 scans.
     pub fn new(
         start: &Setpoint,
         velocity: f64,
@@ -33,26 +76,190 @@ impl RampPlan {
         before: &Limits,
         cycle: f64,
     ) -> Result<Self, PlanError> {
-        let _ = (limits, before, cycle);
+        check(start, velocity, limits, before, cycle)?;
+        let order = limits.order();
+        let heading = heading(start, velocity, limits);
+        let solution = Problem {
+            start: mirrored(start, heading),
+            goal: heading * velocity,
+            limits,
+            wider: &wider(limits, before),
+        };
+        let Solution { spans, steps } = match order {
+            Order::Two => solution.second_order(),
+            Order::Three => solution.third_order(),
+            Order::Four => solution.fourth_order(),
+        };
+        let inputs = spans.iter().map(|span| (span.duration, heading * span.input));
+        let path = Path::lay(order, start, inputs, velocity);
         Ok(Self {
-            goal: velocity,
             start: *start,
+            goal: velocity,
+            cycle,
+            scans: scans(path.duration(), cycle).ok_or(PlanError::TooLong {
+                field: Field::EndVelocity,
+                value: velocity,
+            })?,
+            steps,
+            excess: excess::excess(&path, velocity, heading, limits),
+            path,
         })
     }
 
-    /// Number of scans until the goal velocity.
-    pub fn scans(&self) -> u32 {
-        1
+    /// Number of scans until the goal velocity; 0 if the start has it.
+    pub const fn scans(&self) -> u32 {
+        self.scans
     }
 
-    /// The set-point `scan` cycles after the start.
+    /// The set-point `scan` cycles after the start, evaluated in closed form from the piece it lies in.
+    ///
+    /// `scan` 0 is the start; from [`RampPlan::scans`] on the velocity is exactly the goal, the derivatives
+    /// above it are 0, and a position at goal velocity 0 keeps its bits. Between them the highest
+    /// derivative is the one in force just before the instant. At most 16 comparisons.
     pub fn at(&self, scan: u64) -> Setpoint {
-        let _ = (scan, self.goal);
-        self.start
+        let time = scan as f64 * self.cycle;
+        let running = if scan >= u64::from(self.scans) {
+            None
+        } else if scan == 0 {
+            Some(self.start)
+        } else {
+            self.path.at(time)
+        };
+        running.unwrap_or_else(|| Setpoint {
+            position: self.end_position() + self.goal * (time - self.duration()),
+            velocity: self.goal,
+            ..Setpoint::default()
+        })
     }
 
-    /// By how much the start state forced the plan out of its limits, if it did.
-    pub fn excess(&self) -> Option<Excess> {
-        None
+    /// By how much the start state forced the plan out of its limits, if it did by more than 1e-9 of them.
+    pub const fn excess(&self) -> Option<Excess> {
+        self.excess
     }
+
+    /// Time until the goal velocity (s), not rounded to scans.
+    pub fn duration(&self) -> f64 {
+        self.path.duration()
+    }
+
+    /// The goal velocity (u/s).
+    pub const fn end_velocity(&self) -> f64 {
+        self.goal
+    }
+
+    /// Position at the end of [`RampPlan::duration`] (u).
+    pub fn end_position(&self) -> f64 {
+        self.path.end_position().unwrap_or(self.start.position)
+    }
+
+    /// The stretches of constant highest derivative, in order of time.
+    pub fn segments(&self) -> impl Iterator<Item = Segment> {
+        self.path.stretches().map(|(stretch, first)| Segment {
+            duration: stretch.end - stretch.begin,
+            velocity: first.velocity,
+            acceleration: first.acceleration,
+            jerk: first.jerk,
+            snap: first.snap,
+        })
+    }
+
+    /// The largest magnitudes of the continuous plan, in closed form.
+    pub fn peaks(&self) -> Peaks {
+        excess::peaks(&self.path, self.goal)
+    }
+
+    /// Steps of root finding the plan took, at most [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS).
+    pub const fn steps(&self) -> u32 {
+        self.steps
+    }
+}
+
+fn check(
+    start: &Setpoint,
+    velocity: f64,
+    limits: &Limits,
+    before: &Limits,
+    cycle: f64,
+) -> Result<(), PlanError> {
+    let invalid = |field, value| Err(PlanError::InvalidInput { field, value });
+    if !(cycle > 0.0 && cycle.is_finite()) {
+        return invalid(Field::Cycle, cycle);
+    }
+    let finite = [
+        (Field::Position, start.position),
+        (Field::Velocity, start.velocity),
+        (Field::Acceleration, start.acceleration),
+        (Field::Jerk, start.jerk),
+        (Field::EndVelocity, velocity),
+        (Field::LimitAcceleration, limits.acceleration),
+        (Field::LimitDeceleration, limits.deceleration),
+    ];
+    if let Some(&(field, value)) = finite.iter().find(|(_, value)| !value.is_finite()) {
+        return invalid(field, value);
+    }
+    limits.check()?;
+    before.check()?;
+    if velocity.abs() > limits.velocity {
+        return invalid(Field::EndVelocity, velocity);
+    }
+    Ok(())
+}
+
+/// The direction the motion has, 1 or -1: the sign of the velocity, or if that is nothing but rounding, of
+/// the first derivative that moves it.
+fn heading(start: &Setpoint, goal: f64, limits: &Limits) -> f64 {
+    let order = limits.order();
+    let small = if limits.velocity.is_finite() {
+        ON_LIMIT * limits.velocity
+    } else {
+        0.0
+    };
+    let decisive = [
+        (start.velocity, small),
+        (
+            start.acceleration,
+            if order >= Order::Three { 0.0 } else { f64::INFINITY },
+        ),
+        (start.jerk, if order >= Order::Four { 0.0 } else { f64::INFINITY }),
+        (goal, 0.0),
+    ];
+    decisive
+        .iter()
+        .find(|(value, threshold)| value.abs() > *threshold)
+        .map_or(1.0, |(value, _)| if *value < 0.0 { -1.0 } else { 1.0 })
+}
+
+fn mirrored(start: &Setpoint, heading: f64) -> Setpoint {
+    Setpoint {
+        position: 0.0,
+        velocity: heading * start.velocity,
+        acceleration: heading * start.acceleration,
+        jerk: heading * start.jerk,
+        snap: 0.0,
+    }
+}
+
+/// The larger one of each finite pair; an infinite old bound says nothing, the new one stays.
+fn wider(limits: &Limits, before: &Limits) -> Limits {
+    let larger = |new: f64, old: f64| {
+        if old.is_finite() && old > new { old } else { new }
+    };
+    Limits {
+        velocity: larger(limits.velocity, before.velocity),
+        acceleration: larger(limits.acceleration, before.acceleration),
+        deceleration: larger(limits.deceleration, before.deceleration),
+        jerk: larger(limits.jerk, before.jerk),
+        snap: larger(limits.snap, before.snap),
+    }
+}
+
+/// The least whole number of cycles that covers `duration`, but for [`GRID_SLACK`]; none if it is too large.
+fn scans(duration: f64, cycle: f64) -> Option<u32> {
+    let exact = duration / cycle;
+    let needed = exact * (1.0 - GRID_SLACK);
+    if !(needed <= MAX_SCANS) {
+        return None;
+    }
+    let whole = needed as u32;
+    Some(whole + u32::from(f64::from(whole) < needed))
 }

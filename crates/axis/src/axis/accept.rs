@@ -1,0 +1,367 @@
+//! What an axis does with a command: refuse it, start it, or let it wait.
+//!
+//! Source: PLCopen Motion Control Part 1, state diagram and sections on aborting and buffered commands; the
+//! table "state x command" with the choices V6, V6a, V7a, V11.
+
+use super::queue::{Entry, Work};
+use super::{Axis, Motion, Source};
+use crate::{
+    AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Event, Fate, Goal,
+    Log, Raw, Request,
+};
+use standstill_planner::{Field, Limits, Plan, PlanError, Planner};
+
+/// When an admitted command starts.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    Now,
+    Wait,
+}
+
+impl<P: Planner> Axis<P> {
+    /// Takes a command, or refuses it without any effect on the axis or the queue (R38).
+    ///
+    /// Cost: at most one plan.
+    ///
+    /// # Errors
+    /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit.
+    pub fn command(
+        &mut self,
+        request: &Request,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<CommandId, ErrorId> {
+        let way = self.admit(request).map_err(|(pin, error)| {
+            let value = if pin == "BufferMode" {
+                f64::from(request.buffer_mode.number())
+            } else {
+                f64::NAN
+            };
+            self.refuse(pin, value, f64::NAN, error, source, log)
+        })?;
+        let (work, limits) = self.check(&request.command, source, log)?;
+        let entry = Entry {
+            id: self.new_id(),
+            instance: source.instance,
+            work,
+            limits,
+            held: work == Work::Stop,
+        };
+        match way {
+            Way::Wait => self.queue.push(entry),
+            Way::Now => {
+                let motion = self
+                    .plan_for(&entry)
+                    .map_err(|error| self.refuse_plan(&entry, error, source, log))?;
+                self.end_all(Fate::Aborted, Fate::Aborted);
+                self.begin(entry, motion, source.scan, log);
+            }
+        }
+        Ok(entry.id)
+    }
+
+    /// MC_Stop's Execute fell: the lock ends as soon as the axis stands (note 6).
+    pub fn release_stop(&mut self, id: CommandId) {
+        if let Some(owner) = &mut self.owner
+            && owner.id == id
+        {
+            owner.held = false;
+            if self.stop_held {
+                self.end_owner(Fate::Done);
+                self.enter(AxisEvent::StopReleased);
+            }
+        }
+    }
+
+    /// The rules of the axis state.
+    fn admit(&self, request: &Request) -> Result<Way, (&'static str, ErrorId)> {
+        let buffered = match request.buffer_mode.get() {
+            Some(BufferMode::Aborting) => false,
+            Some(BufferMode::Buffered) => true,
+            Some(
+                BufferMode::BlendingLow
+                | BufferMode::BlendingPrevious
+                | BufferMode::BlendingNext
+                | BufferMode::BlendingHigh,
+            ) => return Err(("BufferMode", ErrorId::BlendingUnsupported)),
+            None => return Err(("BufferMode", ErrorId::BufferModeInvalid)),
+        };
+        if request.continuous_update {
+            return Err(("ContinuousUpdate", ErrorId::ContinuousUpdateUnsupported));
+        }
+        if self.power.going_off {
+            return Err(("", ErrorId::PoweringOff));
+        }
+        let stop = matches!(request.command, Command::Stop { .. });
+        let home = matches!(request.command, Command::Home { .. });
+        let refuse = |error| Err(("", error));
+        match self.state {
+            AxisState::Disabled => refuse(ErrorId::NotPowered),
+            AxisState::ErrorStop => refuse(ErrorId::InErrorStop),
+            // An idle axis starts at once whatever the mode (B9); something waits only in the scan in which
+            // MC_Stop released the axis.
+            AxisState::Standstill if buffered && !self.queue.is_empty() => self.wait(),
+            AxisState::Standstill => Ok(Way::Now),
+            AxisState::Homing if stop || (home && !buffered) => Ok(Way::Now),
+            AxisState::Homing if buffered => self.wait(),
+            AxisState::Homing => refuse(ErrorId::InHoming),
+            // The same instance may stop again with other values (V7a).
+            AxisState::Stopping
+                if stop && request.replaces.is_some() && request.replaces == self.active_command() =>
+            {
+                Ok(Way::Now)
+            }
+            AxisState::Stopping if buffered && !stop => self.wait(),
+            AxisState::Stopping => refuse(ErrorId::InStopping),
+            AxisState::DiscreteMotion | AxisState::ContinuousMotion | AxisState::SynchronizedMotion => {
+                if home && (!buffered || self.predecessor_is_endless()) {
+                    refuse(ErrorId::InMotion)
+                } else if buffered {
+                    self.wait()
+                } else {
+                    Ok(Way::Now)
+                }
+            }
+        }
+    }
+
+    fn wait(&self) -> Result<Way, (&'static str, ErrorId)> {
+        if self.queue.len() < self.config.queue {
+            Ok(Way::Wait)
+        } else {
+            Err(("BufferMode", ErrorId::BufferFull))
+        }
+    }
+
+    /// Whether a command that waits now would follow a motion without an end, so not start at rest.
+    fn predecessor_is_endless(&self) -> bool {
+        let last = self.queue.last().or(self.owner.as_ref());
+        last.is_some_and(|entry| matches!(entry.work, Work::Velocity { .. }))
+    }
+
+    /// The values at the pins.
+    fn check(&self, command: &Command, source: Source, log: &mut Log) -> Result<(Work, Limits), ErrorId> {
+        match *command {
+            Command::MoveAbsolute {
+                position,
+                ref dynamics,
+                direction,
+            } => {
+                if direction.get().is_none() {
+                    let number = f64::from(direction.number());
+                    return Err(self.refuse(
+                        "Direction",
+                        number,
+                        4.0,
+                        ErrorId::DirectionInvalid,
+                        source,
+                        log,
+                    ));
+                }
+                let position = self.finite("Position", position, source, log)?;
+                if self.config.needs_homed && !self.homed {
+                    return Err(self.refuse("Position", position, f64::NAN, ErrorId::NotHomed, source, log));
+                }
+                Ok((Work::Position(position), self.positioning(dynamics, source, log)?))
+            }
+            Command::MoveRelative {
+                distance,
+                ref dynamics,
+            } => {
+                let distance = self.finite("Distance", distance, source, log)?;
+                Ok((Work::Distance(distance), self.positioning(dynamics, source, log)?))
+            }
+            Command::MoveVelocity {
+                ref dynamics,
+                direction,
+            } => {
+                let velocity = self.endless_velocity(dynamics.velocity, source, log)?;
+                let work = self.directed(velocity, direction).ok_or_else(|| {
+                    let number = f64::from(direction.number());
+                    self.refuse(
+                        "Direction",
+                        number,
+                        f64::NAN,
+                        ErrorId::DirectionInvalid,
+                        source,
+                        log,
+                    )
+                })?;
+                Ok((work, self.resolve(dynamics, source, log)?))
+            }
+            Command::Halt { ref dynamics } => Ok((Work::Halt, self.resolve(dynamics, source, log)?)),
+            Command::Stop { ref dynamics } => Ok((Work::Stop, self.resolve(dynamics, source, log)?)),
+            Command::Home { position } => Ok((
+                Work::Home(self.finite("Position", position, source, log)?),
+                self.config.limits,
+            )),
+        }
+    }
+
+    fn finite(&self, pin: &'static str, value: f64, source: Source, log: &mut Log) -> Result<f64, ErrorId> {
+        if value.is_finite() {
+            return Ok(value);
+        }
+        Err(self.refuse(pin, value, f64::NAN, ErrorId::PositionInvalid, source, log))
+    }
+
+    fn positioning(&self, dynamics: &Dynamics, source: Source, log: &mut Log) -> Result<Limits, ErrorId> {
+        let velocity = self.positioning_velocity(dynamics.velocity, source, log)?;
+        Ok(Limits {
+            velocity,
+            ..self.resolve(dynamics, source, log)?
+        })
+    }
+
+    /// Sign of Velocity times sign of Direction (V3).
+    fn directed(&self, velocity: f64, direction: Raw<Direction>) -> Option<Work> {
+        match direction.get()? {
+            Direction::Unset | Direction::Positive => Some(Work::Velocity {
+                velocity,
+                along: false,
+            }),
+            Direction::Negative => Some(Work::Velocity {
+                velocity: -velocity,
+                along: false,
+            }),
+            Direction::Current => Some(Work::Velocity {
+                velocity,
+                along: true,
+            }),
+            Direction::ShortestWay => None,
+        }
+    }
+
+    /// Plans a command from the present set-point. Nothing changes.
+    pub(super) fn plan_for(&self, entry: &Entry) -> Result<Motion<P::Plan>, ErrorId> {
+        let start = &self.setpoint;
+        let before = if matches!(self.motion, Motion::Run { .. }) {
+            &self.in_force
+        } else {
+            &entry.limits
+        };
+        let planned = match entry.work {
+            Work::Position(target) => {
+                self.planner
+                    .move_to(start, self.allowed(target)?, &entry.limits, before)
+            }
+            Work::Distance(distance) => {
+                let target = start.position + distance;
+                if !target.is_finite() {
+                    return Err(ErrorId::PositionInvalid);
+                }
+                self.planner
+                    .move_to(start, self.allowed(target)?, &entry.limits, before)
+            }
+            Work::Velocity { velocity, along } => {
+                let velocity = if along {
+                    velocity * self.last_direction
+                } else {
+                    velocity
+                };
+                self.planner.ramp_to(start, velocity, &entry.limits, before)
+            }
+            Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
+            Work::Home(_) => return Ok(Motion::Hold),
+        };
+        match planned {
+            Ok(plan) => Ok(Motion::Run { plan, elapsed: 0 }),
+            Err(PlanError::TooLong { .. }) => Err(ErrorId::MoveTooLong),
+            Err(PlanError::InvalidInput {
+                field: Field::Target, ..
+            }) => Err(ErrorId::PositionInvalid),
+            Err(_) => Err(ErrorId::PlanRefused),
+        }
+    }
+
+    fn allowed(&self, target: f64) -> Result<f64, ErrorId> {
+        match self.config.software_limits {
+            Some((min, max)) if target < min || target > max => Err(ErrorId::TargetOutsideSoftwareLimits),
+            _ => Ok(target),
+        }
+    }
+
+    /// Records why a plan was refused, with the pin that asked for it.
+    pub(super) fn refuse_plan(
+        &self,
+        entry: &Entry,
+        error: ErrorId,
+        source: Source,
+        log: &mut Log,
+    ) -> ErrorId {
+        let (pin, value) = match entry.work {
+            Work::Position(target) => ("Position", target),
+            Work::Distance(distance) => ("Distance", distance),
+            Work::Velocity { velocity, .. } => ("Velocity", velocity),
+            Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),
+            Work::Home(position) => ("Position", position),
+        };
+        let limit = match self.config.software_limits {
+            Some((_, max)) if error == ErrorId::TargetOutsideSoftwareLimits && self.target(entry) > max => {
+                max
+            }
+            Some((min, _)) if error == ErrorId::TargetOutsideSoftwareLimits => min,
+            _ => f64::NAN,
+        };
+        self.refuse(pin, value, limit, error, source, log)
+    }
+
+    /// Where a positioning command ends (u).
+    fn target(&self, entry: &Entry) -> f64 {
+        match entry.work {
+            Work::Position(target) => target,
+            Work::Distance(distance) => self.setpoint.position + distance,
+            Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) => self.setpoint.position,
+        }
+    }
+
+    /// Makes `entry` the owner.
+    pub(super) fn begin(&mut self, entry: Entry, motion: Motion<P::Plan>, scan: u64, log: &mut Log) {
+        let source = Source {
+            scan,
+            instance: entry.instance,
+        };
+        let positioning = matches!(entry.work, Work::Position(_) | Work::Distance(_));
+        let Limits {
+            acceleration,
+            deceleration,
+            ..
+        } = entry.limits;
+        if positioning && acceleration != deceleration {
+            let (value, limit) = if acceleration > deceleration {
+                (acceleration, deceleration)
+            } else {
+                (deceleration, acceleration)
+            };
+            self.record(Event::LowerUsed { value, limit }, source, log);
+        }
+        if let Motion::Run { plan, .. } = &motion {
+            let end = plan.at(u64::from(plan.scans()));
+            let goal = if positioning {
+                Goal::Position(end.position)
+            } else {
+                Goal::Velocity(end.velocity)
+            };
+            self.record(
+                Event::Planned {
+                    goal,
+                    scans: plan.scans(),
+                },
+                source,
+                log,
+            );
+            if let Some(excess) = plan.excess() {
+                self.record(Event::Unavoidable(excess), source, log);
+            }
+        }
+        self.enter(match entry.work {
+            Work::Position(_) | Work::Distance(_) | Work::Halt => AxisEvent::StartDiscrete,
+            Work::Velocity { .. } => AxisEvent::StartContinuous,
+            Work::Stop => AxisEvent::Stop,
+            Work::Home(_) => AxisEvent::StartHoming,
+        });
+        self.in_force = entry.limits;
+        self.motion = motion;
+        self.owner = Some(entry);
+    }
+}

@@ -1,0 +1,185 @@
+//! From the values at a block's pins to the limits of a motion.
+//!
+//! One rule for Acceleration, Deceleration, Jerk and Snap: 0 takes the axis default, which is the limit
+//! unless configured; with neither, jerk and snap are not limited and acceleration is an error. Values above
+//! the limit are clamped and recorded, or refused (V2).
+
+use super::{Axis, Source};
+use crate::{AboveLimit, Dynamics, ErrorId, Event, Log};
+use standstill_planner::{Limits, Planner};
+
+/// A pin that carries a magnitude.
+struct Magnitude {
+    pin: &'static str,
+    value: f64,
+    default: Option<f64>,
+    limit: f64,
+    invalid: ErrorId,
+    /// Error if 0 has nothing to stand for; `None` means unlimited.
+    missing: Option<ErrorId>,
+    above: ErrorId,
+}
+
+impl<P: Planner> Axis<P> {
+    /// Limits of a motion; the velocity is that of the axis, positioning moves lower it.
+    pub(super) fn resolve(
+        &self,
+        dynamics: &Dynamics,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<Limits, ErrorId> {
+        let (limits, defaults) = (&self.config.limits, &self.config.defaults);
+        let acceleration = Magnitude {
+            pin: "Acceleration",
+            value: dynamics.acceleration,
+            default: defaults.acceleration,
+            limit: limits.acceleration,
+            invalid: ErrorId::AccelerationInvalid,
+            missing: Some(ErrorId::AccelerationMissing),
+            above: ErrorId::AccelerationAboveLimit,
+        };
+        let deceleration = Magnitude {
+            pin: "Deceleration",
+            value: dynamics.deceleration,
+            default: defaults.deceleration,
+            limit: limits.deceleration,
+            invalid: ErrorId::DecelerationInvalid,
+            missing: Some(ErrorId::DecelerationMissing),
+            above: ErrorId::DecelerationAboveLimit,
+        };
+        let jerk = Magnitude {
+            pin: "Jerk",
+            value: dynamics.jerk,
+            default: defaults.jerk,
+            limit: limits.jerk,
+            invalid: ErrorId::JerkInvalid,
+            missing: None,
+            above: ErrorId::JerkAboveLimit,
+        };
+        let snap = Magnitude {
+            pin: "Snap",
+            value: dynamics.snap,
+            default: defaults.snap,
+            limit: limits.snap,
+            invalid: ErrorId::SnapInvalid,
+            missing: None,
+            above: ErrorId::SnapAboveLimit,
+        };
+        Ok(Limits {
+            velocity: limits.velocity,
+            acceleration: self.magnitude(&acceleration, source, log)?,
+            deceleration: self.magnitude(&deceleration, source, log)?,
+            jerk: self.magnitude(&jerk, source, log)?,
+            snap: self.magnitude(&snap, source, log)?,
+        })
+    }
+
+    /// The velocity of a positioning move: above 0, at most the axis limit.
+    pub(super) fn positioning_velocity(
+        &self,
+        value: f64,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<f64, ErrorId> {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(self.refuse("Velocity", value, 0.0, ErrorId::VelocityInvalid, source, log));
+        }
+        self.within(
+            "Velocity",
+            value,
+            self.config.limits.velocity,
+            ErrorId::VelocityAboveLimit,
+            source,
+            log,
+        )
+    }
+
+    /// The velocity of an endless motion: signed, at most the axis limit in magnitude.
+    pub(super) fn endless_velocity(&self, value: f64, source: Source, log: &mut Log) -> Result<f64, ErrorId> {
+        if !value.is_finite() {
+            return Err(self.refuse("Velocity", value, f64::NAN, ErrorId::VelocityInvalid, source, log));
+        }
+        let limit = self.config.limits.velocity;
+        let size = self.within(
+            "Velocity",
+            value.abs(),
+            limit,
+            ErrorId::VelocityAboveLimit,
+            source,
+            log,
+        )?;
+        Ok(if value < 0.0 { -size } else { size })
+    }
+
+    /// Limits of a ramp nobody commanded: power-off, ErrorStop.
+    pub(super) fn stop_limits(&self) -> Limits {
+        let limits = self.config.limits;
+        let deceleration = self.config.stop_deceleration.unwrap_or(limits.deceleration);
+        let jerk = self.config.stop_jerk.unwrap_or(limits.jerk);
+        Limits {
+            deceleration,
+            jerk,
+            ..limits
+        }
+    }
+
+    fn magnitude(&self, pin: &Magnitude, source: Source, log: &mut Log) -> Result<f64, ErrorId> {
+        if !(pin.value >= 0.0 && pin.value.is_finite()) {
+            return Err(self.refuse(pin.pin, pin.value, 0.0, pin.invalid, source, log));
+        }
+        if pin.value > 0.0 {
+            return self.within(pin.pin, pin.value, pin.limit, pin.above, source, log);
+        }
+        match (pin.default, pin.missing) {
+            (Some(default), _) => Ok(default),
+            (None, Some(error)) if !pin.limit.is_finite() => {
+                Err(self.refuse(pin.pin, pin.value, f64::NAN, error, source, log))
+            }
+            (None, _) => Ok(pin.limit),
+        }
+    }
+
+    fn within(
+        &self,
+        pin: &'static str,
+        value: f64,
+        limit: f64,
+        above: ErrorId,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<f64, ErrorId> {
+        if value <= limit {
+            return Ok(value);
+        }
+        match self.config.above_limit {
+            AboveLimit::Clamp => {
+                self.record(Event::Clamped { pin, value, limit }, source, log);
+                Ok(limit)
+            }
+            AboveLimit::Error => Err(self.refuse(pin, value, limit, above, source, log)),
+        }
+    }
+
+    /// Records a refusal and passes its error on.
+    pub(super) fn refuse(
+        &self,
+        pin: &'static str,
+        value: f64,
+        limit: f64,
+        error: ErrorId,
+        source: Source,
+        log: &mut Log,
+    ) -> ErrorId {
+        self.record(
+            Event::Refused {
+                pin,
+                value,
+                limit,
+                error,
+            },
+            source,
+            log,
+        );
+        error
+    }
+}

@@ -1,0 +1,285 @@
+//! One axis: what it knows and what others may ask.
+//!
+//! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
+//! on commands, [`step`] moves and hands over, [`power`] reacts to feedback, power, faults and resets.
+
+mod accept;
+mod dynamics;
+mod power;
+mod queue;
+mod step;
+
+use crate::fate::Fates;
+use crate::{
+    AxisConfig, AxisEvent, AxisId, AxisState, CommandId, ConfigError, DriveCommand, DriveFeedback,
+    DrivePosition, ErrorId, Event, Fate, InstanceId, Log, Record, StartState, state,
+};
+use queue::{Entry, Queue, Work};
+use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
+
+/// Who gives a command and when; goes into the records.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Source {
+    /// The scan.
+    pub scan: u64,
+    /// The block instance.
+    pub instance: InstanceId,
+}
+
+/// Where the set-point comes from.
+#[derive(Clone, Copy, Debug)]
+enum Motion<Plan> {
+    /// The actual position: the axis is not in operation.
+    Follow,
+    /// It stays where it is.
+    Hold,
+    /// A plan, so many scans after its start.
+    Run { plan: Plan, elapsed: u64 },
+}
+
+/// What is known of the power stage.
+#[derive(Clone, Copy, Debug)]
+struct Power {
+    /// MC_Power.Enable.
+    wanted: bool,
+    /// Operation is enabled.
+    on: bool,
+    /// Switched off on request; the axis ramps down or waits for the power stage.
+    going_off: bool,
+    /// Power was lost: it does not come back before a reset or a new rising Enable.
+    tripped: bool,
+}
+
+/// One axis.
+#[derive(Clone, Debug)]
+pub struct Axis<P: Planner = Standard> {
+    id: AxisId,
+    config: AxisConfig,
+    planner: P,
+    state: AxisState,
+    setpoint: Setpoint,
+    actual: f64,
+    feedback: DriveFeedback,
+    motion: Motion<P::Plan>,
+    /// Limits of the present motion, for whoever takes over from it.
+    in_force: Limits,
+    /// Sign of the last velocity that was not zero (mcCurrentDirection).
+    last_direction: f64,
+    owner: Option<Entry>,
+    /// The owner is MC_Stop, stands, and is held by its Execute.
+    stop_held: bool,
+    queue: Queue,
+    fates: Fates,
+    last_id: u64,
+    power: Power,
+    error: ErrorId,
+    error_code: u16,
+    /// The cause of an axis fault persists.
+    cause_present: bool,
+    reset: Option<power::Reset>,
+    homed: bool,
+    rename: Option<f64>,
+}
+
+impl<P: Planner> Axis<P> {
+    /// The axis `id`, set up as `config` says, moved by `planner`.
+    ///
+    /// # Errors
+    /// [`ConfigError`] names the key that is not usable.
+    pub fn new(id: AxisId, config: AxisConfig, planner: P) -> Result<Self, ConfigError> {
+        config.check()?;
+        let powered = config.start == StartState::Standstill;
+        let feedback = DriveFeedback {
+            enabled: powered,
+            voltage: true,
+            fault: None,
+            position: position_at_drive(&config, config.position),
+            comms: crate::Comms::Ok,
+        };
+        Ok(Self {
+            id,
+            config,
+            planner,
+            state: if powered {
+                AxisState::Standstill
+            } else {
+                AxisState::Disabled
+            },
+            setpoint: Setpoint::at_rest(config.position),
+            actual: config.position,
+            feedback,
+            motion: if powered { Motion::Hold } else { Motion::Follow },
+            in_force: config.limits,
+            last_direction: 1.0,
+            owner: None,
+            stop_held: false,
+            queue: Queue::default(),
+            fates: Fates::default(),
+            last_id: 0,
+            power: Power {
+                wanted: powered,
+                on: powered,
+                going_off: false,
+                tripped: false,
+            },
+            error: ErrorId::None,
+            error_code: 0,
+            cause_present: false,
+            reset: None,
+            homed: false,
+            rename: None,
+        })
+    }
+
+    /// Its handle.
+    pub fn id(&self) -> AxisId {
+        self.id
+    }
+
+    /// How it was set up.
+    pub fn config(&self) -> &AxisConfig {
+        &self.config
+    }
+
+    /// Its state.
+    pub fn state(&self) -> AxisState {
+        self.state
+    }
+
+    /// The set-point last published.
+    pub fn setpoint(&self) -> Setpoint {
+        self.setpoint
+    }
+
+    /// Actual position (u), as last latched.
+    pub fn actual_position(&self) -> f64 {
+        self.actual
+    }
+
+    /// Operation is enabled (MC_Power.Status).
+    pub fn is_powered(&self) -> bool {
+        self.power.on
+    }
+
+    /// MC_Home has been done.
+    pub fn is_homed(&self) -> bool {
+        self.homed
+    }
+
+    /// The axis error; `None` outside ErrorStop.
+    pub fn error_id(&self) -> ErrorId {
+        self.error
+    }
+
+    /// The drive's or fault's own code belonging to [`Axis::error_id`], 0 if none.
+    pub fn error_code(&self) -> u16 {
+        self.error_code
+    }
+
+    /// The plan in progress and the scans since its start.
+    pub fn plan(&self) -> Option<(&P::Plan, u64)> {
+        match &self.motion {
+            Motion::Run { plan, elapsed } => Some((plan, *elapsed)),
+            Motion::Follow | Motion::Hold => None,
+        }
+    }
+
+    /// The command that owns the axis.
+    pub fn active_command(&self) -> Option<CommandId> {
+        self.owner.as_ref().map(|owner| owner.id)
+    }
+
+    /// Commands that wait.
+    pub fn waiting(&self) -> usize {
+        self.queue.len()
+    }
+
+    /// What became of command `id`. Bounded by the queue and the fates kept.
+    pub fn fate(&self, id: CommandId) -> Fate {
+        if let Some(owner) = &self.owner
+            && owner.id == id
+        {
+            let reached = self.goal_reached();
+            return match owner.work {
+                Work::Stop if self.stop_held => Fate::Done,
+                Work::Velocity { .. } => Fate::Active { reached },
+                Work::Position(_) | Work::Distance(_) | Work::Halt | Work::Stop | Work::Home(_) => {
+                    Fate::Active { reached: false }
+                }
+            };
+        }
+        if self.queue.contains(id) || self.reset.as_ref().is_some_and(|reset| reset.id == id) {
+            return Fate::Waiting;
+        }
+        self.fates.find(id).unwrap_or(Fate::Failed(ErrorId::FateLost))
+    }
+
+    /// The drive's command for this scan.
+    pub fn drive_command(&mut self) -> DriveCommand {
+        DriveCommand {
+            request: self.drive_request(),
+            position: position_at_drive(&self.config, self.setpoint.position),
+            velocity: self.setpoint.velocity,
+            rename: self
+                .rename
+                .take()
+                .map(|position| position_at_drive(&self.config, position)),
+        }
+    }
+
+    /// The running plan has reached its goal; a motion without a plan has.
+    fn goal_reached(&self) -> bool {
+        match &self.motion {
+            Motion::Run { plan, elapsed } => *elapsed >= u64::from(plan.scans()),
+            Motion::Hold => true,
+            Motion::Follow => false,
+        }
+    }
+
+    /// The one place where the state changes.
+    fn enter(&mut self, event: AxisEvent) {
+        match state::next(self.state, event) {
+            Ok(next) => self.state = next,
+            Err(_) => debug_assert!(false, "{:?} in {:?}", event, self.state),
+        }
+    }
+
+    fn new_id(&mut self) -> CommandId {
+        self.last_id = self.last_id.wrapping_add(1);
+        CommandId(self.last_id)
+    }
+
+    /// Ends the owner and everything that waits.
+    fn end_all(&mut self, owner: Fate, waiting: Fate) {
+        self.end_owner(owner);
+        // Bounded by QUEUE_MAX: each round takes one out.
+        while let Some(entry) = self.queue.pop() {
+            self.fates.record(entry.id, waiting);
+        }
+    }
+
+    fn end_owner(&mut self, fate: Fate) {
+        if let Some(owner) = self.owner.take() {
+            // A stop that stands has completed, whatever ends its hold.
+            let fate = if self.stop_held { Fate::Done } else { fate };
+            self.fates.record(owner.id, fate);
+        }
+        self.stop_held = false;
+    }
+
+    fn record(&self, event: Event, source: Source, log: &mut Log) {
+        log.push(Record {
+            scan: source.scan,
+            axis: self.id,
+            instance: source.instance,
+            event,
+        });
+    }
+}
+
+fn position_at_drive(config: &AxisConfig, position: f64) -> DrivePosition {
+    match config.scaling {
+        Some(scaling) => DrivePosition::Increments(scaling.to_increments(position)),
+        None => DrivePosition::Units(position),
+    }
+}

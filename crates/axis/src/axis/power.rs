@@ -1,0 +1,227 @@
+//! Feedback, power, faults and resets.
+//!
+//! Source: PLCopen Motion Control Part 1, notes 1 to 5 of the state diagram, MC_Power, MC_Reset; V9a, V10a,
+//! S10 to S14; iec61131-executor CI-5, CI-8.
+
+use super::{Axis, Motion, Source};
+use crate::{
+    AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
+    Log, PowerOff,
+};
+use standstill_planner::Planner;
+
+/// Scans a drive may take to answer a fault reset before MC_Reset gives up.
+const RESET_PATIENCE: u32 = 1000;
+
+/// How an axis comes to rest after an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reaction {
+    /// Along a ramp with the stop dynamics.
+    Ramp,
+    /// The drive is off already: the set-point follows the feedback.
+    Follow,
+}
+
+/// A reset under way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reset {
+    pub id: CommandId,
+    waited: u32,
+}
+
+impl<P: Planner> Axis<P> {
+    /// Latches the drive's feedback of this scan and lets the state follow it. Called before any block.
+    pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
+        self.feedback = *feedback;
+        if feedback.comms == Comms::Lost {
+            self.trip(ErrorId::CommunicationLost, 0, Reaction::Ramp, scan, log);
+        } else {
+            self.actual = match (feedback.position, self.config.scaling) {
+                (DrivePosition::Increments(increments), Some(scaling)) => scaling.to_units(increments),
+                (DrivePosition::Units(units), _) => units,
+                // A drive that counts increments needs a scaling; take one increment as one unit.
+                (DrivePosition::Increments(increments), None) => increments as f64,
+            };
+            self.follow_power(feedback, scan, log);
+        }
+        self.finish_reset();
+    }
+
+    fn follow_power(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
+        let was_on = self.power.on;
+        self.power.on = feedback.enabled;
+        if let Some(fault) = feedback.fault {
+            self.power.tripped = true;
+            self.trip(ErrorId::DriveFault, fault.code, Reaction::Follow, scan, log);
+        } else if was_on && !feedback.enabled && self.power.wanted && !self.power.going_off {
+            self.power.tripped = true;
+            if self.state != AxisState::Disabled {
+                self.trip(ErrorId::PowerLost, 0, Reaction::Follow, scan, log);
+            }
+        }
+        match self.state {
+            AxisState::Disabled if feedback.enabled && self.power.wanted && !self.power.tripped => {
+                self.hold_at_actual();
+                self.enter(AxisEvent::PowerOn);
+            }
+            AxisState::ErrorStop if !feedback.enabled => self.motion = Motion::Follow,
+            AxisState::ErrorStop if matches!(self.motion, Motion::Follow) => self.hold_at_actual(),
+            AxisState::Disabled | AxisState::ErrorStop => {}
+            _ if self.power.going_off && !feedback.enabled => {
+                self.power.going_off = false;
+                self.motion = Motion::Follow;
+                self.enter(AxisEvent::PowerOff);
+            }
+            _ => {}
+        }
+    }
+
+    /// The set-point takes over where the feedback is: enabling never makes it step.
+    fn hold_at_actual(&mut self) {
+        self.setpoint = standstill_planner::Setpoint::at_rest(self.actual);
+        self.motion = Motion::Hold;
+    }
+
+    /// MC_Power: power is wanted or not. With `false` all commands are aborted in this call and the axis
+    /// goes to Disabled the configured way (V9a).
+    pub fn set_power(&mut self, wanted: bool, source: Source, log: &mut Log) {
+        self.power.wanted = wanted;
+        if wanted {
+            return;
+        }
+        self.power.tripped = false;
+        let idle = matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
+        if idle || self.power.going_off {
+            return;
+        }
+        self.end_all(Fate::Aborted, Fate::Aborted);
+        self.power.going_off = true;
+        match self.config.on_power_off {
+            PowerOff::Ramp => self.ramp_down(source, log),
+            PowerOff::Coast | PowerOff::Drive => self.motion = Motion::Follow,
+        }
+        if self.state != AxisState::Standstill {
+            self.enter(AxisEvent::Stop);
+        }
+    }
+
+    /// Plans a ramp to rest with the stop dynamics.
+    fn ramp_down(&mut self, source: Source, log: &mut Log) {
+        if !matches!(self.motion, Motion::Run { .. }) || self.setpoint.is_at_rest() {
+            self.motion = Motion::Hold;
+            return;
+        }
+        let limits = self.stop_limits();
+        self.motion = match self.planner.ramp_to(&self.setpoint, 0.0, &limits, &self.in_force) {
+            Ok(plan) => {
+                if let Some(excess) = standstill_planner::Plan::excess(&plan) {
+                    self.record(Event::Unavoidable(excess), source, log);
+                }
+                Motion::Run { plan, elapsed: 0 }
+            }
+            Err(_) => Motion::Hold,
+        };
+        self.in_force = limits;
+    }
+
+    /// The axis fails for a reason of its own, which persists until [`Axis::clear_cause`].
+    pub fn raise(&mut self, error: ErrorId, code: u16, source: Source, log: &mut Log) {
+        self.cause_present = true;
+        self.trip(error, code, Reaction::Ramp, source.scan, log);
+    }
+
+    /// The cause given to [`Axis::raise`] is gone; MC_Reset is still needed.
+    pub fn clear_cause(&mut self) {
+        self.cause_present = false;
+    }
+
+    /// Enters ErrorStop: the owner fails with `error`, what waits fails because of the state (R77). The first
+    /// error stays the one shown.
+    pub(super) fn trip(&mut self, error: ErrorId, code: u16, reaction: Reaction, scan: u64, log: &mut Log) {
+        if self.state == AxisState::ErrorStop {
+            return;
+        }
+        let source = self.owner_source(scan);
+        self.record(Event::Fault { error, code }, source, log);
+        self.end_all(Fate::Failed(error), Fate::Failed(ErrorId::InErrorStop));
+        self.error = error;
+        self.error_code = code;
+        self.power.going_off = false;
+        match reaction {
+            Reaction::Ramp if self.power.on => self.ramp_down(source, log),
+            Reaction::Ramp | Reaction::Follow => self.motion = Motion::Follow,
+        }
+        self.enter(AxisEvent::Fault);
+    }
+
+    /// MC_Reset: leave ErrorStop once the axis stands (V10a). Outside ErrorStop it completes in the next scan
+    /// without effect (V10). A reset during another one shares its result.
+    ///
+    /// # Errors
+    /// [`ErrorId::CauseStillPresent`] if it is known to be.
+    pub fn reset(&mut self, source: Source, log: &mut Log) -> Result<CommandId, ErrorId> {
+        if self.state == AxisState::ErrorStop && self.cause_known() {
+            return Err(self.refuse("", f64::NAN, f64::NAN, ErrorId::CauseStillPresent, source, log));
+        }
+        if let Some(reset) = &self.reset {
+            return Ok(reset.id);
+        }
+        let id = self.new_id();
+        self.reset = Some(Reset { id, waited: 0 });
+        Ok(id)
+    }
+
+    fn cause_known(&self) -> bool {
+        self.cause_present
+            || self.feedback.comms == Comms::Lost
+            || !self.feedback.voltage
+            || self.feedback.fault.is_some_and(|fault| fault.cause_present)
+    }
+
+    /// Completes a reset when all it waits for has happened (notes 3 and 4, S12).
+    pub(super) fn finish_reset(&mut self) {
+        let Some(reset) = &mut self.reset else { return };
+        let id = reset.id;
+        if self.state == AxisState::ErrorStop {
+            reset.waited = reset.waited.saturating_add(1);
+            let given_up = reset.waited > RESET_PATIENCE && self.feedback.fault.is_some();
+            if given_up || self.cause_known() {
+                self.reset = None;
+                self.fates.record(id, Fate::Failed(ErrorId::CauseStillPresent));
+                return;
+            }
+            let moving = matches!(self.motion, Motion::Run { .. });
+            let unwanted = self.power.on && !self.power.wanted;
+            if moving || unwanted || self.feedback.fault.is_some() {
+                return;
+            }
+            self.power.tripped = false;
+            self.error = ErrorId::None;
+            self.error_code = 0;
+            self.enter(if self.power.on {
+                AxisEvent::ResetPowered
+            } else {
+                AxisEvent::ResetUnpowered
+            });
+        }
+        self.reset = None;
+        self.fates.record(id, Fate::Done);
+    }
+
+    /// What is asked of the power stage in this scan.
+    pub(super) fn drive_request(&self) -> DriveRequest {
+        let ramping = matches!(self.motion, Motion::Run { .. });
+        let resetting = self.reset.is_some() && self.state == AxisState::ErrorStop;
+        if resetting && self.feedback.fault.is_some() {
+            DriveRequest::FaultReset
+        } else if ramping && self.power.on {
+            DriveRequest::Enable
+        } else if self.power.going_off && self.config.on_power_off == PowerOff::Drive {
+            DriveRequest::QuickStop
+        } else if self.power.going_off || self.power.tripped || !self.power.wanted {
+            DriveRequest::Off
+        } else {
+            DriveRequest::Enable
+        }
+    }
+}

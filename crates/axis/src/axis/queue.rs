@@ -1,0 +1,75 @@
+//! Commands that were accepted: the owner and those that wait.
+
+use crate::{CommandId, InstanceId, QUEUE_MAX};
+use standstill_planner::Limits;
+
+/// A checked command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Work {
+    /// To a position (u).
+    Position(f64),
+    /// By a distance (u) from where it becomes active (B10).
+    Distance(f64),
+    /// To a velocity (u/s); with `along` its sign is taken relative to the motion when it becomes active.
+    Velocity { velocity: f64, along: bool },
+    /// To velocity zero.
+    Halt,
+    /// To velocity zero, locked.
+    Stop,
+    /// The present position gets a name (u).
+    Home(f64),
+}
+
+/// A command with its number, its sender and its limits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    pub id: CommandId,
+    pub instance: InstanceId,
+    pub work: Work,
+    pub limits: Limits,
+    /// MC_Stop: Execute is still TRUE.
+    pub held: bool,
+}
+
+/// First in, first out; at most [`QUEUE_MAX`] entries.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Queue {
+    entries: [Option<Entry>; QUEUE_MAX],
+    len: usize,
+}
+
+impl Queue {
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Appends; the caller has checked the configured capacity.
+    pub fn push(&mut self, entry: Entry) {
+        if let Some(slot) = self.entries.get_mut(self.len) {
+            *slot = Some(entry);
+            self.len += 1;
+        }
+    }
+
+    pub fn pop(&mut self) -> Option<Entry> {
+        let first = self.entries.first().copied().flatten()?;
+        self.entries.rotate_left(1);
+        self.len -= 1;
+        if let Some(slot) = self.entries.get_mut(self.len) {
+            *slot = None;
+        }
+        Some(first)
+    }
+
+    pub fn last(&self) -> Option<&Entry> {
+        self.entries.get(self.len.checked_sub(1)?)?.as_ref()
+    }
+
+    pub fn contains(&self, id: CommandId) -> bool {
+        self.entries.iter().flatten().any(|entry| entry.id == id)
+    }
+}

@@ -1,0 +1,147 @@
+//! The motion step: one set-point, then completion and hand-over.
+//!
+//! It comes after all block calls of a scan, so what it decides shows in the next one (R70).
+
+use super::queue::Work;
+use super::{Axis, Motion, Source, power::Reaction};
+use crate::{AxisEvent, AxisState, ErrorId, Fate, InstanceId, Log, QUEUE_MAX};
+use standstill_planner::{Plan, Planner, Setpoint};
+
+impl<P: Planner> Axis<P> {
+    /// Computes the set-point for the end of scan `scan`, then decides completion and hand-over.
+    ///
+    /// Cost: one evaluation of the plan; at a hand-over at most one plan per waiting command; with software
+    /// limits one ramp plan per scan of an endless motion.
+    pub fn advance(&mut self, scan: u64, log: &mut Log) {
+        self.setpoint = match self.motion {
+            Motion::Follow => Setpoint::at_rest(self.actual),
+            Motion::Hold => Setpoint::at_rest(self.setpoint.position),
+            Motion::Run { plan, elapsed } => self.run(plan, elapsed.saturating_add(1), scan, log),
+        };
+        if self.setpoint.velocity != 0.0 {
+            self.last_direction = if self.setpoint.velocity < 0.0 { -1.0 } else { 1.0 };
+        }
+        self.settle(scan, log);
+        self.finish_reset();
+    }
+
+    /// The set-point `elapsed` scans into `plan`, unless it must not be published.
+    fn run(&mut self, plan: P::Plan, elapsed: u64, scan: u64, log: &mut Log) -> Setpoint {
+        let next = plan.at(elapsed);
+        let error = if !next.is_finite() {
+            ErrorId::SetpointBroken
+        } else if self.would_leave(&next) {
+            ErrorId::SoftwareLimitReached
+        } else {
+            self.motion = Motion::Run { plan, elapsed };
+            return next;
+        };
+        self.trip(error, 0, Reaction::Ramp, scan, log);
+        // The ramp starts at the last set-point published, so this scan is its first.
+        match &mut self.motion {
+            Motion::Run { plan, elapsed } => {
+                *elapsed = 1;
+                plan.at(1)
+            }
+            Motion::Follow | Motion::Hold => Setpoint::at_rest(self.setpoint.position),
+        }
+    }
+
+    /// Whether an endless motion, stopped from `next` on, would come to rest outside the software limits.
+    fn would_leave(&self, next: &Setpoint) -> bool {
+        let (Some((min, max)), Some(owner)) = (self.config.software_limits, &self.owner) else {
+            return false;
+        };
+        if !matches!(owner.work, Work::Velocity { .. }) {
+            return false;
+        }
+        let rest = match self
+            .planner
+            .ramp_to(next, 0.0, &self.stop_limits(), &self.in_force)
+        {
+            Ok(ramp) => ramp.at(u64::from(ramp.scans())).position,
+            Err(_) => next.position,
+        };
+        (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min)
+    }
+
+    /// Completion and hand-over.
+    fn settle(&mut self, scan: u64, log: &mut Log) {
+        let reached = self.goal_reached();
+        let Some(owner) = &self.owner else {
+            if reached && matches!(self.motion, Motion::Run { .. }) {
+                // A ramp nobody commanded has ended.
+                self.motion = Motion::Hold;
+            }
+            if self.state == AxisState::Standstill && !self.queue.is_empty() {
+                // MC_Stop released the axis in this scan (note 6).
+                self.hand_over(scan, log);
+            }
+            return;
+        };
+        match owner.work {
+            Work::Position(_) | Work::Distance(_) | Work::Halt if reached => self.complete(scan, log),
+            Work::Home(position) => {
+                self.setpoint = Setpoint::at_rest(position);
+                self.rename = Some(position);
+                self.homed = true;
+                self.complete(scan, log);
+            }
+            Work::Stop if reached && owner.held => {
+                self.motion = Motion::Hold;
+                self.stop_held = true;
+            }
+            Work::Stop if reached => {
+                self.motion = Motion::Hold;
+                self.end_owner(Fate::Done);
+                self.enter(AxisEvent::StopReleased);
+                self.hand_over(scan, log);
+            }
+            // An endless motion gives way when it has reached its velocity.
+            Work::Velocity { .. } if reached => self.hand_over(scan, log),
+            Work::Position(_) | Work::Distance(_) | Work::Halt | Work::Stop | Work::Velocity { .. } => {}
+        }
+    }
+
+    /// The owner has completed at rest.
+    fn complete(&mut self, scan: u64, log: &mut Log) {
+        self.motion = Motion::Hold;
+        self.end_owner(Fate::Done);
+        self.enter(AxisEvent::MotionDone);
+        self.hand_over(scan, log);
+    }
+
+    /// The next waiting command that can be planned becomes the owner; those that cannot fail (R79). An
+    /// endless owner stays if there is none.
+    fn hand_over(&mut self, scan: u64, log: &mut Log) {
+        for _ in 0..QUEUE_MAX {
+            let Some(next) = self.queue.pop() else { return };
+            match self.plan_for(&next) {
+                Ok(motion) => {
+                    self.end_owner(Fate::Aborted);
+                    self.begin(next, motion, scan, log);
+                    return;
+                }
+                Err(error) => {
+                    let source = Source {
+                        scan,
+                        instance: next.instance,
+                    };
+                    self.refuse_plan(&next, error, source, log);
+                    self.fates.record(next.id, Fate::Failed(error));
+                }
+            }
+        }
+    }
+
+    /// Who the present motion belongs to, for records; instance 0 if nobody.
+    pub(super) fn owner_source(&self, scan: u64) -> Source {
+        Source {
+            scan,
+            instance: self
+                .owner
+                .as_ref()
+                .map_or(InstanceId::default(), |owner| owner.instance),
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! The plan value and how it is made.
+
+use super::problem::{LONGEST, Problem};
+use super::search::{self, Family, Work};
+use super::{Method, profile, sequential};
+use crate::{Field, Limits, Order, PlanError};
+
+/// A rest-to-rest plan: a plain value of at most four box lengths and five scale factors.
+///
+/// Every output is computed from the scan count alone, so nothing accumulates: the last set-point is the
+/// target to the bit, and asking for scans in any order gives the same bits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridPlan {
+    pub(super) start: f64,
+    pub(super) target: f64,
+    pub(super) cycle: f64,
+    /// What the whole-number derivatives 0 to m of the profile are multiplied by (docs/planner.md, eq. 25).
+    pub(super) scale: [f64; 5],
+    /// The m box lengths of order m, shortest first, then zeros.
+    pub(super) boxes: [u32; 4],
+    pub(super) scans: u32,
+    pub(super) order: Order,
+    method: Method,
+    /// Whether the position sums need more than 64 bits.
+    pub(super) wide: bool,
+}
+
+/// Durations of the segments in scans, as the published planner counts them (docs/planner.md, eq. 2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Constant snap (scans); none at orders 3 and 2.
+    pub nd: Option<u32>,
+    /// Constant jerk (scans); none at order 2.
+    pub nj: Option<u32>,
+    /// Constant acceleration (scans).
+    pub na: u32,
+    /// Constant velocity (scans).
+    pub nv: u32,
+}
+
+impl GridPlan {
+    /// Plans from rest at `start` to rest at `target` (u) with sample time `cycle` (s).
+    ///
+    /// Which bounds are absent (infinite) sets the order; see [`Limits::order`]. Where acceleration and
+    /// deceleration differ the lower one holds for both. Cost: see [`GridPlan::new_counted`].
+    ///
+    /// # Errors
+    /// - [`PlanError::InvalidInput`]: `cycle` or a bound is not positive, `start` or `target` is not finite,
+    ///   or their distance or a resulting derivative is beyond the range of `f64`.
+    /// - [`PlanError::Unbounded`]: no bound at all.
+    /// - [`PlanError::TooLong`]: more than 2^31 - 1 scans; names the bound that makes it so.
+    pub fn new(
+        method: Method,
+        start: f64,
+        target: f64,
+        limits: &Limits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
+        Self::new_counted(method, start, target, limits, cycle).map(|(plan, _)| plan)
+    }
+
+    /// As [`GridPlan::new`], with the work the search took.
+    ///
+    /// Bounded: `Sequential` takes at most seven bisections of 32 steps, `Grid` and `Overlapped` at most
+    /// [`MAX_ROWS`](super::MAX_ROWS) rows and [`MAX_CANDIDATES`](super::MAX_CANDIDATES) candidates (measured
+    /// counts in docs/planner.md, section 9). A search cut short by these caps returns the shorter one of
+    /// its best and the `Sequential` plan.
+    ///
+    /// # Errors
+    /// As [`GridPlan::new`].
+    pub fn new_counted(
+        method: Method,
+        start: f64,
+        target: f64,
+        limits: &Limits,
+        cycle: f64,
+    ) -> Result<(Self, Work), PlanError> {
+        let distance = checked_distance(start, target, limits, cycle)?;
+        let mut plan = Self {
+            start,
+            target,
+            cycle,
+            scale: [0.0; 5],
+            boxes: [0; 4],
+            scans: 0,
+            order: limits.order(),
+            method,
+            wide: false,
+        };
+        if distance == 0.0 {
+            return Ok((plan, Work::default()));
+        }
+        let length = distance.abs();
+        let problem = Problem::new(length, limits, cycle)?;
+        let step_by_step = || sequential::plan(&problem, length, limits, cycle);
+        let (boxes, work) = match method {
+            Method::Sequential => (step_by_step(), Work::default()),
+            Method::Grid => search::fewest(&problem, Family::Separate),
+            Method::Overlapped => search::fewest(&problem, Family::Overlapped),
+        };
+        let scans = |boxes: &[u64; 4]| boxes.iter().fold(0, |sum: u64, n| sum.saturating_add(*n));
+        let boxes = if work.capped {
+            let other = step_by_step();
+            if scans(&other) < scans(&boxes) {
+                other
+            } else {
+                boxes
+            }
+        } else {
+            boxes
+        };
+        let count = scans(&boxes);
+        if count == 0 || count > LONGEST {
+            return Err(problem.slowest(limits));
+        }
+        plan.scans = count as u32;
+        let [n1, n2, n3, n4] = boxes.map(|n| n as u32);
+        plan.boxes = match plan.order {
+            Order::Four => [n1, n2, n3, n4],
+            Order::Three => [n2, n3, n4, 0],
+            Order::Two => [n3, n4, 0, 0],
+        };
+        (plan.scale, plan.wide) = profile::scale(plan.order, plan.product(), distance, cycle);
+        if plan.scale.iter().all(|factor| factor.is_finite()) && plan.peaks().are_finite() {
+            Ok((plan, work))
+        } else {
+            Err(PlanError::InvalidInput {
+                field: Field::Cycle,
+                value: cycle,
+            })
+        }
+    }
+
+    /// Where the move starts (u).
+    pub const fn start(&self) -> f64 {
+        self.start
+    }
+
+    /// Where the move ends (u).
+    pub const fn target(&self) -> f64 {
+        self.target
+    }
+
+    /// Sample time (s).
+    pub const fn cycle(&self) -> f64 {
+        self.cycle
+    }
+
+    /// How smooth the plan is.
+    pub const fn order(&self) -> Order {
+        self.order
+    }
+
+    /// How the box lengths were chosen.
+    pub const fn method(&self) -> Method {
+        self.method
+    }
+
+    /// Number of scans N, the sum of the boxes; 0 when the target is the start.
+    pub const fn scans(&self) -> u32 {
+        self.scans
+    }
+
+    /// Duration (s), `scans * cycle`.
+    pub fn duration(&self) -> f64 {
+        f64::from(self.scans) * self.cycle
+    }
+
+    /// The box lengths in scans, shortest first: as many as the order; none when there is nothing to move.
+    pub fn boxes(&self) -> &[u32] {
+        let count = if self.scans == 0 { 0 } else { self.order.degree() };
+        self.boxes.get(..count).unwrap_or(&[])
+    }
+
+    /// Product of the box lengths: the whole number the distance is divided by (docs/planner.md, eq. 4).
+    pub fn product(&self) -> i128 {
+        self.boxes().iter().map(|n| i128::from(*n)).product()
+    }
+
+    /// The published planner's segment durations; none for [`Method::Overlapped`], whose cruise may be
+    /// shorter than nothing, and none when there is nothing to move.
+    pub fn counts(&self) -> Option<Counts> {
+        if self.method == Method::Overlapped || self.scans == 0 {
+            return None;
+        }
+        let [n1, n2, n3, n4] = match (self.order, self.boxes) {
+            (Order::Four, boxes) => boxes,
+            (Order::Three, [n2, n3, n4, _]) => [0, n2, n3, n4],
+            (Order::Two, [n3, n4, _, _]) => [0, 0, n3, n4],
+        };
+        Some(Counts {
+            nd: (self.order == Order::Four).then_some(n1),
+            nj: (self.order != Order::Two).then_some(n2 - n1),
+            na: n3 - n1 - n2,
+            nv: n4 - n1 - n2 - n3,
+        })
+    }
+
+    /// The signed snap (order 4, u/s^4), jerk (order 3, u/s^3) or acceleration (order 2, u/s^2) the plan
+    /// switches on and off (docs/planner.md, eq. 5).
+    pub fn amplitude(&self) -> f64 {
+        let [_, _, acceleration, jerk, snap] = self.scale;
+        match self.order {
+            Order::Four => snap,
+            Order::Three => jerk,
+            Order::Two => acceleration,
+        }
+    }
+}
+
+/// The signed distance (u) of a move whose inputs are all usable.
+fn checked_distance(start: f64, target: f64, limits: &Limits, cycle: f64) -> Result<f64, PlanError> {
+    let invalid = |field, value| Err(PlanError::InvalidInput { field, value });
+    if !(cycle > 0.0 && cycle.is_finite()) {
+        return invalid(Field::Cycle, cycle);
+    }
+    if !start.is_finite() {
+        return invalid(Field::Position, start);
+    }
+    let distance = target - start;
+    // A finite target too far from the start is refused here too.
+    if !distance.is_finite() {
+        return invalid(Field::Target, target);
+    }
+    limits.check()?;
+    if limits.is_unbounded() {
+        return Err(PlanError::Unbounded);
+    }
+    Ok(distance)
+}

@@ -1,0 +1,327 @@
+//! The continuous profile: exact whole numbers at scan ends, scaled once (docs/planner.md, section 6).
+
+use core::num::Wrapping;
+use core::ops::{Add, Mul};
+
+use super::GridPlan;
+use crate::{Order, Setpoint};
+
+/// Signs of the switching instants in the first half: + for a sum of an even number of boxes
+/// (docs/planner.md, eq. 3). Orders 3 and 2 use the first four and two.
+const SIGNS: [i64; 8] = [1, -1, -1, 1, -1, 1, 1, -1];
+
+/// Which of two values holds at an instant where a derivative jumps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    /// The one in force just before the instant.
+    Before,
+    /// The one in force just after it.
+    After,
+}
+
+/// Largest magnitudes of the continuous plan; none where the order leaves a derivative unbounded.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Peaks {
+    /// Velocity (u/s).
+    pub velocity: f64,
+    /// Acceleration (u/s^2).
+    pub acceleration: f64,
+    /// Jerk (u/s^3); none at order 2.
+    pub jerk: Option<f64>,
+    /// Snap (u/s^4); none at orders 3 and 2.
+    pub snap: Option<f64>,
+}
+
+impl Peaks {
+    /// Whether all of them are finite.
+    pub(super) fn are_finite(&self) -> bool {
+        [
+            self.velocity,
+            self.acceleration,
+            self.jerk.unwrap_or(0.0),
+            self.snap.unwrap_or(0.0),
+        ]
+        .iter()
+        .all(|peak| peak.is_finite())
+    }
+}
+
+/// A stretch of constant snap (order 4), jerk (order 3) or acceleration (order 2): the state at its start,
+/// just after any jump.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// Length (scans), at least 1.
+    pub scans: u32,
+    /// Length (s).
+    pub duration: f64,
+    /// Velocity (u/s).
+    pub velocity: f64,
+    /// Acceleration (u/s^2).
+    pub acceleration: f64,
+    /// Jerk (u/s^3).
+    pub jerk: f64,
+    /// Snap held (u/s^4).
+    pub snap: f64,
+}
+
+/// The segments of a plan in order, at most 15; made by [`GridPlan::segments`].
+#[derive(Clone, Debug)]
+pub struct Segments {
+    plan: GridPlan,
+    index: usize,
+}
+
+impl Iterator for Segments {
+    type Item = Segment;
+
+    fn next(&mut self) -> Option<Segment> {
+        let last = self.plan.instant_count().checked_sub(1)?;
+        while self.index < last {
+            let from = self.plan.instant(self.index);
+            let to = self.plan.instant(self.index + 1);
+            self.index += 1;
+            if to > from {
+                let state = self.plan.state(from, Side::After);
+                return Some(Segment {
+                    scans: (to - from) as u32,
+                    duration: (to - from) as f64 * self.plan.cycle,
+                    velocity: state.velocity,
+                    acceleration: state.acceleration,
+                    jerk: state.jerk,
+                    snap: state.snap,
+                });
+            }
+        }
+        None
+    }
+}
+
+/// The factors of the derivatives, and whether the position sums need more than 64 bits
+/// (docs/planner.md, eq. 25).
+pub(super) fn scale(order: Order, product: i128, distance: f64, cycle: f64) -> ([f64; 5], bool) {
+    let p = product as f64;
+    let (t2, p_t) = (cycle * cycle, p * cycle);
+    let (p_t2, p_t3, p_t4) = (p * t2, p_t * t2, p * (t2 * t2));
+    // The largest position sum asked for is half of m! P.
+    let (scale, largest) = match order {
+        Order::Four => (
+            [
+                distance / (24.0 * p),
+                distance / (6.0 * p_t),
+                distance / (2.0 * p_t2),
+                distance / p_t3,
+                distance / p_t4,
+            ],
+            12 * product,
+        ),
+        Order::Three => (
+            [
+                distance / (6.0 * p),
+                distance / (2.0 * p_t),
+                distance / p_t2,
+                distance / p_t3,
+                0.0,
+            ],
+            3 * product,
+        ),
+        Order::Two => (
+            [distance / (2.0 * p), distance / p_t, distance / p_t2, 0.0, 0.0],
+            product,
+        ),
+    };
+    (scale, largest > i128::from(i64::MAX))
+}
+
+impl GridPlan {
+    /// The continuous profile at `scan` cycles after the start, in O(1): at most eight terms.
+    ///
+    /// From [`GridPlan::scans`] on it is rest on the target, to the bit; only at order 4 the snap of the
+    /// last segment shows at the last scan itself. The position never leaves the way from start to target
+    /// and never steps back.
+    #[inline]
+    pub fn at(&self, scan: u64) -> Setpoint {
+        let scans = u64::from(self.scans);
+        if scan < scans {
+            return self.state(scan as i64, Side::Before);
+        }
+        let mut end = Setpoint::at_rest(self.target);
+        if scan == scans {
+            end.snap = 0.0 - self.scale[4];
+        }
+        end
+    }
+
+    /// The segments from start to end; none of zero length.
+    pub fn segments(&self) -> Segments {
+        Segments {
+            plan: *self,
+            index: 0,
+        }
+    }
+
+    /// Largest magnitudes of the continuous plan (docs/planner.md, eq. 6 and 22).
+    pub fn peaks(&self) -> Peaks {
+        let [a, b, c, d] = self.boxes.map(i128::from);
+        let [_, f1, f2, f3, f4] = self.scale.map(f64::abs);
+        match self.order {
+            Order::Four => {
+                // What the overlap cuts off the velocity pulse at both of its ends.
+                let overlap = (a + b + c - d).max(0);
+                let velocity = 24 * a * b * c - overlap * overlap * overlap;
+                Peaks {
+                    velocity: 0.25 * f1 * velocity as f64,
+                    acceleration: f2 * (2 * a * b) as f64,
+                    jerk: Some(f3 * a as f64),
+                    snap: Some(f4),
+                }
+            }
+            Order::Three => Peaks {
+                velocity: f1 * (2 * a * b) as f64,
+                acceleration: f2 * a as f64,
+                jerk: Some(f3),
+                snap: None,
+            },
+            Order::Two => Peaks {
+                velocity: f1 * a as f64,
+                acceleration: f2,
+                jerk: None,
+                snap: None,
+            },
+        }
+    }
+
+    /// How many switching instants there are, in order: two to the power of the order.
+    fn instant_count(&self) -> usize {
+        if self.scans == 0 {
+            0
+        } else {
+            1 << self.order.degree()
+        }
+    }
+
+    /// The switching instant `index` in ascending order, in scans from the start (docs/planner.md, eq. 3).
+    fn instant(&self, index: usize) -> i64 {
+        let count = self.instant_count();
+        let instants = self.early_instants();
+        if index < count / 2 {
+            instants.get(index).copied().unwrap_or(0)
+        } else {
+            let mirrored = count.saturating_sub(index + 1);
+            i64::from(self.scans) - instants.get(mirrored).copied().unwrap_or(0)
+        }
+    }
+
+    /// The switching instants of the first half in ascending order; the first four are those of order 3, the
+    /// first two those of order 2 (docs/planner.md, eq. 20).
+    #[inline]
+    fn early_instants(&self) -> [i64; 8] {
+        let [a, b, c, d] = self.boxes.map(i64::from);
+        [0, a, b, a + b, c, a + c, b + c, (a + b + c).min(d)]
+    }
+
+    /// The state at `scan` <= N, with the values of one side where a derivative jumps.
+    #[inline]
+    fn state(&self, scan: i64, side: Side) -> Setpoint {
+        // Each half is computed from its own end: half the terms, and exact at both ends.
+        let twice_left = 2 * scan - i64::from(self.scans);
+        let mirrored = match side {
+            Side::Before => twice_left > 0,
+            Side::After => twice_left >= 0,
+        };
+        let near = if mirrored {
+            i64::from(self.scans) - scan
+        } else {
+            scan
+        };
+        // Time runs backwards from the far end, so the sides swap there.
+        let through = near + i64::from((side == Side::After) != mirrored);
+        let instants = self.early_instants();
+        let derivatives = match (self.order, self.wide) {
+            (Order::Four, false) => derivatives::<i64, 8>(&instants, near, through),
+            (Order::Four, true) => derivatives::<i128, 8>(&instants, near, through),
+            (Order::Three, false) => derivatives::<i64, 4>(&instants, near, through),
+            (Order::Three, true) => derivatives::<i128, 4>(&instants, near, through),
+            // Two boxes of less than 2^31 scans in all: the sums fit 64 bits always.
+            (Order::Two, _) => derivatives::<i64, 2>(&instants, near, through),
+        };
+        let [f0, f1, f2, f3, f4] = self.scale;
+        let [d0, d1, d2, d3, d4] = derivatives;
+        // Adding 0 turns -0 into 0.
+        if mirrored {
+            Setpoint {
+                position: self.target - d0 * f0,
+                velocity: d1 * f1 + 0.0,
+                acceleration: 0.0 - d2 * f2,
+                jerk: d3 * f3 + 0.0,
+                snap: 0.0 - d4 * f4,
+            }
+        } else {
+            Setpoint {
+                position: self.start + d0 * f0,
+                velocity: d1 * f1 + 0.0,
+                acceleration: d2 * f2 + 0.0,
+                jerk: d3 * f3 + 0.0,
+                snap: d4 * f4 + 0.0,
+            }
+        }
+    }
+}
+
+/// The whole numbers the sums are taken in, as wrapping arithmetic: partial sums may overflow, the result
+/// is right whenever it fits.
+trait Whole: Copy {
+    /// The number as a wrapping one.
+    fn of(value: i64) -> Self;
+    /// The nearest `f64`.
+    fn to_f64(self) -> f64;
+}
+
+impl Whole for Wrapping<i64> {
+    #[inline]
+    fn of(value: i64) -> Self {
+        Self(value)
+    }
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self.0 as f64
+    }
+}
+
+impl Whole for Wrapping<i128> {
+    #[inline]
+    fn of(value: i64) -> Self {
+        Self(i128::from(value))
+    }
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self.0 as f64
+    }
+}
+
+/// The derivatives 0 to 4 of the profile of order log2(2 M) at `near` scans from an end, before scaling:
+/// sums of signed powers over the instants passed (docs/planner.md, eq. 21).
+///
+/// The highest derivative counts the instants before `through`.
+#[inline]
+fn derivatives<T, const M: usize>(instants: &[i64; 8], near: i64, through: i64) -> [f64; 5]
+where
+    Wrapping<T>: Whole + Add<Output = Wrapping<T>> + Mul<Output = Wrapping<T>>,
+{
+    let mut sums = [Wrapping::<T>::of(0); 5];
+    for (instant, sign) in instants.iter().zip(SIGNS).take(M) {
+        let [s0, s1, s2, s3, s4] = sums;
+        let since = Wrapping::<T>::of((near - instant).max(0));
+        let p0 = Wrapping::<T>::of(if *instant < through { sign } else { 0 });
+        let p1 = Wrapping::<T>::of(sign) * since;
+        let p2 = p1 * since;
+        let p3 = p2 * since;
+        let p4 = p3 * since;
+        sums = [s0 + p0, s1 + p1, s2 + p2, s3 + p3, s4 + p4];
+    }
+    let [s0, s1, s2, s3, s4] = sums.map(Whole::to_f64);
+    match M {
+        8 => [s4, s3, s2, s1, s0],
+        4 => [s3, s2, s1, s0, 0.0],
+        _ => [s2, s1, s0, 0.0, 0.0],
+    }
+}

@@ -1,0 +1,66 @@
+//! Time-optimal transfers of a chain of integrators: push, then stop.
+//!
+//! What stands here: the least-time way from any state of a second- or third-order chain to rest at a
+//! value, under bounds on everything between. A value is whatever the caller integrates to: [`third`] takes
+//! `(velocity, acceleration, jerk)` to a velocity under a snap bound, and `(position, velocity,
+//! acceleration)` to a position under a jerk bound. What does not: units, limits with names, sampling.
+//!
+//! Everything here is dimensionless: the bound on the highest derivative, the *input*, is 1 (see [`Scale`]).
+//! Equations (R1) and on are in `docs/planner-ramps.md`.
+//!
+//! Continuity is the point: a state within [`ON_LIMIT`] of a bound is on it, so that one rounding error
+//! outwards never turns into a braking manoeuvre.
+
+mod root;
+mod scale;
+mod second;
+mod spans;
+mod third;
+
+pub use root::MAX_STEPS;
+pub use scale::Scale;
+pub use second::second;
+pub use spans::{Span, Spans};
+pub use third::{Bounds, Profile, THIRD_SPANS, third};
+
+/// How far outside a bound a state still counts as on it, relative to the bound.
+pub const ON_LIMIT: f64 = 1e-9;
+
+/// Distances smaller than this, relative to what was added up to get them, are rounding.
+const NOISE: f64 = 16.0 * f64::EPSILON;
+
+/// A pair of bounds as magnitudes: the value stays in `-minus ..= plus`. Infinite means no bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sides {
+    /// Largest magnitude below zero.
+    pub minus: f64,
+    /// Largest magnitude above zero.
+    pub plus: f64,
+}
+
+impl Sides {
+    /// The same magnitude on both sides.
+    pub const fn both(bound: f64) -> Self {
+        Self {
+            minus: bound,
+            plus: bound,
+        }
+    }
+
+    /// The bounds of the mirrored problem.
+    pub const fn mirrored(self) -> Self {
+        Self {
+            minus: self.plus,
+            plus: self.minus,
+        }
+    }
+
+    /// These bounds with the upper one raised to `value` if `value` is outside by no more than [`ON_LIMIT`].
+    fn raised_to(self, value: f64) -> Self {
+        let on = value > self.plus && value <= self.plus * (1.0 + ON_LIMIT);
+        Self {
+            plus: if on { value } else { self.plus },
+            ..self
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! The one root of the third-order problem: where a rising push has to turn into the stop.
+
+use super::third::depth_term;
+use crate::math::sqrt;
+
+/// Largest number of steps a root may take; the tests show how far from it the worst case found stays.
+pub const MAX_STEPS: u32 = 80;
+
+/// The switch from push to stop.
+pub(super) struct Intercept {
+    /// `a` at the switch.
+    pub(super) a: f64,
+    /// `v + a^2/2` at the switch: the squared depth of the stop without a bound.
+    pub(super) drop: f64,
+    /// Root steps taken.
+    pub(super) steps: u32,
+}
+
+/// A push with input 1 that has to end where the downward stop ends on the target (R7).
+pub(super) struct Rising {
+    /// `v - a^2/2`, the same all along the push.
+    offset: f64,
+    /// Right-hand side of (R7).
+    budget: f64,
+    /// `a` at the start of the push.
+    start: f64,
+    /// Bound on `a` in the stop.
+    brake: f64,
+}
+
+impl Rising {
+    /// From `(v, a)` with the target `left` further.
+    pub(super) fn new(left: f64, v: f64, a: f64, brake: f64) -> Self {
+        let offset = v - 0.5 * a * a;
+        Self {
+            offset,
+            budget: left + a * (offset + a * a / 6.0),
+            start: a,
+            brake,
+        }
+    }
+
+    /// The switch, which lies between the start and `highest`.
+    ///
+    /// The left side of (R7) does not fall between them, and is smooth but at the two points where the
+    /// stop just touches its bound; which of the three stretches has the root is seen there.
+    pub(super) fn solve(&self, highest: f64) -> Intercept {
+        let Self { offset, brake, .. } = *self;
+        // Below these the stop follows the push, and nothing changes (R6).
+        let lowest = self.start.max(-brake);
+        let lowest = if offset < 0.0 {
+            lowest.max(sqrt(-offset)).min(highest)
+        } else {
+            lowest
+        };
+        let square = brake * brake - offset;
+        if square <= 0.0 {
+            return self.clipped(lowest, highest);
+        }
+        let touch = sqrt(square);
+        if lowest < -touch && self.surplus(-touch) >= 0.0 {
+            self.clipped(lowest, -touch)
+        } else if highest <= touch || self.surplus(touch) >= 0.0 {
+            self.pointed(lowest.max(-touch), highest.min(touch))
+        } else {
+            self.clipped(lowest.max(touch), highest)
+        }
+    }
+
+    /// Left minus right side of (R7).
+    fn surplus(&self, a: f64) -> f64 {
+        let drop = (a * a + self.offset).max(0.0);
+        a * (a * a + 2.0 * self.offset) + depth_term(drop, self.brake) - self.budget
+    }
+
+    /// The root where the stop does not reach its bound: a quartic in the sum of `a` and the depth (R9).
+    fn pointed(&self, lowest: f64, highest: f64) -> Intercept {
+        let Self { offset, budget, .. } = *self;
+        let sum = |a: f64| {
+            let depth = sqrt((a * a + offset).max(0.0));
+            if a >= 0.0 { a + depth } else { offset / (depth - a) }
+        };
+        let (low, high) = (sum(lowest), sum(highest));
+        let guess = guess_sum(offset, budget).max(low).min(high);
+        let (sum, steps) = bracketed(low, high, guess, |s| {
+            let ratio = offset / s;
+            (
+                s * (s * s + 4.0 * offset) - offset * ratio - 4.0 * budget,
+                (3.0 * s + ratio) * (s + ratio),
+            )
+        });
+        let ratio = if sum > 0.0 { offset / sum } else { 0.0 };
+        let depth = 0.5 * (sum + ratio);
+        Intercept {
+            a: (0.5 * (sum - ratio)).max(self.start),
+            drop: depth * depth,
+            steps,
+        }
+    }
+
+    /// The root where the stop holds its bound for a while: a quartic in `a + brake/2` (R10).
+    fn clipped(&self, lowest: f64, highest: f64) -> Intercept {
+        let Self {
+            offset,
+            budget,
+            brake,
+            ..
+        } = *self;
+        let half = 0.5 * brake;
+        let shift = offset - half * half;
+        let (low, high) = (lowest + half, highest + half);
+        // With `offset` 0 the equation is a square, and the guess the root.
+        let near = if offset > 0.0 { low } else { high };
+        let square = 2.0 * brake * (budget - offset * near);
+        let guess = sqrt((sqrt(square.max(0.0)) - shift).max(0.0)).max(low).min(high);
+        let (x, steps) = bracketed(low, high, guess, |x| {
+            let y = x * x + shift;
+            (
+                y * y + 2.0 * brake * (offset * x - budget),
+                4.0 * x * y + 2.0 * brake * offset,
+            )
+        });
+        let a = (x - half).max(self.start);
+        Intercept {
+            a,
+            drop: a * a + offset,
+            steps,
+        }
+    }
+}
+
+/// A first guess for the sum in (R9), at most about a quarter too large: the larger of the terms decides.
+fn guess_sum(offset: f64, budget: f64) -> f64 {
+    if offset > 0.0 {
+        let cube = offset * offset * offset;
+        let root = sqrt(budget * budget + cube);
+        if budget > 0.0 {
+            let linear = (budget + root) / (2.0 * offset);
+            linear.min(rough_cube_root(4.0 * budget))
+        } else {
+            offset * offset / (2.0 * (root - budget))
+        }
+    } else if offset < 0.0 {
+        let least = sqrt(-offset);
+        let excess = (budget - offset * least).max(0.0);
+        let near = least + sqrt(2.0 * excess / least);
+        let far = rough_cube_root(8.0 * excess).max(3.0 * least);
+        near.min(far)
+    } else {
+        rough_cube_root(4.0 * budget)
+    }
+}
+
+/// Cube root to within a few per cent, for first guesses only: thirds the exponent and the mantissa.
+fn rough_cube_root(x: f64) -> f64 {
+    if x.is_normal() && x > 0.0 {
+        f64::from_bits(x.to_bits() / 3 + 0x2a9f_7893_0000_0000)
+    } else {
+        0.0
+    }
+}
+
+/// The root of a function that does not fall between `low` and `high`: Newton's steps, kept in the bracket
+/// and halving it where they do not at least halve themselves.
+///
+/// `function` gives value and slope. At most [`MAX_STEPS`] evaluations.
+fn bracketed(mut low: f64, mut high: f64, guess: f64, function: impl Fn(f64) -> (f64, f64)) -> (f64, u32) {
+    let mut x = guess;
+    let mut last = high - low;
+    for step in 1..=MAX_STEPS {
+        let (value, slope) = function(x);
+        if value > 0.0 {
+            high = x;
+        } else {
+            low = x;
+        }
+        let newton = x - value / slope;
+        let good = newton >= low && newton <= high && (newton - x).abs() <= 0.5 * last;
+        let next = if good { newton } else { 0.5 * (low + high) };
+        last = (next - x).abs();
+        if value == 0.0 || last <= f64::EPSILON * next.abs() {
+            return (next, step);
+        }
+        x = next;
+    }
+    (x, MAX_STEPS)
+}

@@ -1,0 +1,46 @@
+//! Second order: `(v, a)` to `(target, 0)` in least time.
+
+use super::{NOISE, Sides, Spans};
+use crate::math::sqrt;
+
+/// The least-time spans from `(v, a)` to `(target, 0)` with the bounds `rate` on `a` and 1 on its
+/// derivative (R2, R3).
+///
+/// An `a` outside its bounds is brought inside first, at full input. Closed form; one square root.
+pub fn second(v: f64, a: f64, target: f64, rate: Sides) -> Spans<3> {
+    let change = target - v;
+    // Where `v` goes while `a` is brought to zero as fast as the input allows.
+    let arrest = 0.5 * a * a.abs();
+    let gap = change - arrest;
+    if gap.abs() <= NOISE * (change.abs() + arrest.abs()) {
+        let mut spans = Spans::new();
+        spans.push(a.abs(), if a > 0.0 { -1.0 } else { 1.0 });
+        spans
+    } else if gap > 0.0 {
+        rise(change, a, rate)
+    } else {
+        rise(-change, -a, rate.mirrored()).mirrored()
+    }
+}
+
+/// The case `change >= a|a|/2`: up to a peak of `a`, perhaps hold it, down to zero.
+fn rise(change: f64, a: f64, rate: Sides) -> Spans<3> {
+    let mut spans = Spans::new();
+    let top = rate.raised_to(a).plus;
+    let peak_squared = change + 0.5 * a * a;
+    if a > top {
+        spans.push(a - top, -1.0);
+        spans.push((change - 0.5 * a * a) / top, 0.0);
+        spans.push(top, -1.0);
+    } else if peak_squared > top * top {
+        spans.push(top - a, 1.0);
+        spans.push((peak_squared - top * top) / top, 0.0);
+        spans.push(top, -1.0);
+    } else {
+        // Rounding may leave the peak an ulp below the start.
+        let peak = sqrt(peak_squared.max(0.0)).max(a);
+        spans.push(peak - a, 1.0);
+        spans.push(peak, -1.0);
+    }
+    spans
+}

@@ -1,0 +1,94 @@
+//! Lists of constant-input spans.
+
+/// A stretch of time in which the highest derivative is constant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Span {
+    /// How long; never negative.
+    pub duration: f64,
+    /// The highest derivative held.
+    pub input: f64,
+}
+
+/// Up to `N` spans in order of time, without heap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spans<const N: usize> {
+    list: [Span; N],
+    len: usize,
+}
+
+impl<const N: usize> Spans<N> {
+    /// No spans.
+    pub const fn new() -> Self {
+        const EMPTY: Span = Span {
+            duration: 0.0,
+            input: 0.0,
+        };
+        Self {
+            list: [EMPTY; N],
+            len: 0,
+        }
+    }
+
+    /// Appends a span. One of no length vanishes; one with the input of the last span lengthens that.
+    ///
+    /// Callers choose `N` as the sum of what they append, so the list is never full; were it full, the
+    /// span would be dropped.
+    pub fn push(&mut self, duration: f64, input: f64) {
+        if !(duration > 0.0) {
+            return;
+        }
+        let last = self.len.checked_sub(1).and_then(|i| self.list.get_mut(i));
+        if let Some(last) = last
+            && last.input == input
+        {
+            last.duration += duration;
+        } else if let Some(slot) = self.list.get_mut(self.len) {
+            *slot = Span { duration, input };
+            self.len += 1;
+        } else {
+            debug_assert!(false, "a list of {N} spans is full");
+        }
+    }
+
+    /// Appends all of `other`.
+    pub fn extend<const M: usize>(&mut self, other: &Spans<M>) {
+        for span in other.iter() {
+            self.push(span.duration, span.input);
+        }
+    }
+
+    /// The spans in order of time.
+    pub fn iter(&self) -> impl Iterator<Item = &Span> {
+        self.list.iter().take(self.len)
+    }
+
+    /// Number of spans.
+    pub const fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there is no span.
+    pub const fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Sum of all durations.
+    pub fn duration(&self) -> f64 {
+        self.iter().map(|span| span.duration).sum()
+    }
+
+    /// The spans of the mirrored problem.
+    #[must_use]
+    pub fn mirrored(mut self) -> Self {
+        for span in &mut self.list {
+            span.input = -span.input;
+        }
+        self
+    }
+}
+
+impl<const N: usize> Default for Spans<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,183 @@
+//! Third order: `(x, v, a)` to `(target, 0, 0)` in least time.
+
+use super::root::{Intercept, Rising};
+use super::{NOISE, Sides, Spans, second};
+use crate::math::sqrt;
+
+/// Most spans of a [`third`] profile: three of the push, a cruise, three of the stop.
+pub const THIRD_SPANS: usize = 7;
+
+/// Bounds of a third-order problem; the input bound is 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Bounds on `v`, the derivative of the value.
+    pub v: Sides,
+    /// Bounds on `a`, the derivative of `v`.
+    pub a: Sides,
+}
+
+impl Bounds {
+    const fn mirrored(self) -> Self {
+        Self {
+            v: self.v.mirrored(),
+            a: self.a.mirrored(),
+        }
+    }
+}
+
+/// What [`third`] found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Profile {
+    /// The spans in order of time.
+    pub spans: Spans<THIRD_SPANS>,
+    /// Steps of root finding taken, at most [`MAX_STEPS`](super::MAX_STEPS); 0 if a closed form did.
+    pub steps: u32,
+}
+
+/// `x`, `v` and `a` at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct State {
+    x: f64,
+    v: f64,
+    a: f64,
+}
+
+impl State {
+    /// The state `t` later under the constant input `u`.
+    fn after(self, t: f64, u: f64) -> Self {
+        Self {
+            x: self.x + t * (self.v + t * (0.5 * self.a + t * (u / 6.0))),
+            v: self.v + t * (self.a + t * (0.5 * u)),
+            a: self.a + t * u,
+        }
+    }
+
+    fn after_all<const N: usize>(self, spans: &Spans<N>) -> Self {
+        spans
+            .iter()
+            .fold(self, |state, span| state.after(span.duration, span.input))
+    }
+}
+
+/// The least-time spans that move the value by `distance` and end with `v = a = 0`.
+///
+/// The start `(v, a)` may be anything, also outside `bounds`; it is then brought inside first. Bounded work:
+/// closed forms, or one root of at most [`MAX_STEPS`](super::MAX_STEPS) steps (R4 to R10).
+pub fn third(distance: f64, v: f64, a: f64, bounds: &Bounds) -> Profile {
+    let start = State { x: 0.0, v, a };
+    let stop = second(v, a, 0.0, bounds.a);
+    let gap = distance - start.after_all(&stop).x;
+    let t = stop.duration();
+    let added_up = distance.abs() + t * (v.abs() + t * (a.abs() + t));
+    if gap.abs() <= NOISE * added_up {
+        let mut spans = Spans::new();
+        spans.extend(&stop);
+        Profile { spans, steps: 0 }
+    } else if gap > 0.0 {
+        push_up(distance, start, bounds)
+    } else {
+        let mirrored = State { x: 0.0, v: -v, a: -a };
+        let profile = push_up(-distance, mirrored, &bounds.mirrored());
+        Profile {
+            spans: profile.spans.mirrored(),
+            ..profile
+        }
+    }
+}
+
+/// The case that the fastest stop ends short of `distance`: push towards the upper bound of `v`, then stop.
+///
+/// The place where the stop ends grows only while the push raises `a` or holds it above zero (R6); so the
+/// root is looked for in those spans alone, and the first one whose end stops beyond the target has it.
+fn push_up(distance: f64, start: State, bounds: &Bounds) -> Profile {
+    let brake = bounds.a.minus;
+    let arrest = start.v + 0.5 * start.a * start.a.abs();
+    let top = bounds.v.raised_to(arrest).plus;
+    let push = second(start.v, start.a, top, bounds.a);
+    let mut spans = Spans::new();
+    let mut state = start;
+    for span in push.iter() {
+        let end = state.after(span.duration, span.input);
+        let grows = span.input > 0.0 || (span.input == 0.0 && state.a > 0.0);
+        // A stop that starts upwards follows the push for a while: nothing grows yet (R6).
+        let stops_downwards = end.v + 0.5 * end.a * end.a.abs() > 0.0;
+        if grows && stops_downwards && end.x + stopping_distance(end, brake) >= distance {
+            return intercept(distance, state, span.input, span.duration, brake, spans);
+        }
+        spans.push(span.duration, span.input);
+        state = end;
+    }
+    let cruise = distance - state.x - stopping_distance(state, brake);
+    spans.push(cruise / top, 0.0);
+    push_stop(&mut spans, 0.0, top, brake);
+    Profile { spans, steps: 0 }
+}
+
+/// Ends the push inside a span that starts at `state`, where the stop ends on `distance`.
+fn intercept(
+    distance: f64,
+    state: State,
+    input: f64,
+    longest: f64,
+    brake: f64,
+    mut spans: Spans<THIRD_SPANS>,
+) -> Profile {
+    let left = distance - state.x;
+    if input > 0.0 {
+        let Intercept { a, drop, steps } =
+            Rising::new(left, state.v, state.a, brake).solve(state.a + longest);
+        spans.push(a - state.a, 1.0);
+        push_stop(&mut spans, a, drop, brake);
+        Profile { spans, steps }
+    } else {
+        let a = state.a;
+        let highest = state.v + a * longest + 0.5 * a * a;
+        let lowest = state.v + 0.5 * a * a;
+        let drop = holding(left, state.v, a, brake).min(highest).max(lowest);
+        spans.push((drop - lowest) / a, 0.0);
+        push_stop(&mut spans, a, drop, brake);
+        Profile { spans, steps: 0 }
+    }
+}
+
+/// Appends the downward stop from `a` whose squared depth without a bound is `drop` (R5).
+fn push_stop(spans: &mut Spans<THIRD_SPANS>, a: f64, drop: f64, brake: f64) {
+    if drop > brake * brake {
+        spans.push(a + brake, -1.0);
+        spans.push((drop - brake * brake) / brake, 0.0);
+        spans.push(brake, 1.0);
+    } else {
+        let depth = sqrt(drop.max(0.0));
+        spans.push(a + depth, -1.0);
+        spans.push(depth, 1.0);
+    }
+}
+
+/// How far the downward stop from `state` moves the value (R5).
+fn stopping_distance(state: State, brake: f64) -> f64 {
+    let State { v, a, .. } = state;
+    let drop = v + 0.5 * a * a;
+    a * (drop - a * a / 6.0) + depth_term(drop.max(0.0), brake)
+}
+
+/// The part of the stopping distance that depends on `drop` alone (R5).
+pub(super) fn depth_term(drop: f64, brake: f64) -> f64 {
+    if drop > brake * brake {
+        drop * (drop + brake * brake) / (2.0 * brake)
+    } else {
+        drop * sqrt(drop)
+    }
+}
+
+/// `drop` at the end of a hold of `a > 0` that started at `v`, if the stop then ends `left` further (R8).
+fn holding(left: f64, v: f64, a: f64, brake: f64) -> f64 {
+    let budget = (left + v * v / (2.0 * a) + a * a * a / 24.0).max(0.0);
+    let product = sqrt(2.0 * a * budget);
+    let depth = 2.0 * product / (a + sqrt(a * a + 4.0 * product));
+    if depth <= brake {
+        return depth * depth;
+    }
+    let linear = a * brake;
+    let constant = 2.0 * linear * budget / (a + brake);
+    2.0 * constant / (linear + sqrt(linear * linear + 4.0 * constant))
+}

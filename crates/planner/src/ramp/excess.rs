@@ -1,0 +1,86 @@
+//! The extremes of a ramp, and by how much they exceed the limits.
+
+use super::path::Path;
+use crate::kernel::ON_LIMIT;
+use crate::{Limits, Order};
+
+/// By how much a start state forced a plan out of its limits, as magnitudes above the limit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Excess {
+    /// Velocity above its limit, or against the sign a stop should keep (u/s).
+    pub velocity: f64,
+    /// Acceleration above its limit (u/s^2).
+    pub acceleration: f64,
+    /// Jerk above its limit (u/s^3).
+    pub jerk: f64,
+}
+
+/// The largest magnitudes of a continuous plan; infinite where its order leaves jumps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Peaks {
+    /// Velocity (u/s).
+    pub velocity: f64,
+    /// Acceleration (u/s^2).
+    pub acceleration: f64,
+    /// Jerk (u/s^3); infinite at order 2.
+    pub jerk: f64,
+    /// Snap (u/s^4); infinite at orders 2 and 3.
+    pub snap: f64,
+}
+
+/// The largest magnitudes along `path`, which ends at `goal` (R20).
+pub(super) fn peaks(path: &Path, goal: f64) -> Peaks {
+    let mut peaks = Peaks {
+        velocity: goal.abs(),
+        ..Peaks::default()
+    };
+    path.extremes(|state| {
+        peaks.velocity = peaks.velocity.max(state.velocity.abs());
+        peaks.acceleration = peaks.acceleration.max(state.acceleration.abs());
+        peaks.jerk = peaks.jerk.max(state.jerk.abs());
+        peaks.snap = peaks.snap.max(state.snap.abs());
+    });
+    if path.order() < Order::Four {
+        peaks.snap = f64::INFINITY;
+    }
+    if path.order() < Order::Three {
+        peaks.jerk = f64::INFINITY;
+    }
+    peaks
+}
+
+/// By how much `path`, a ramp to `goal` that starts in the direction `heading` (1 or -1), exceeds `limits`;
+/// `None` if by no more than rounding and [`ON_LIMIT`].
+pub(super) fn excess(path: &Path, goal: f64, heading: f64, limits: &Limits) -> Option<Excess> {
+    let mut excess = Excess::default();
+    let mut largest = goal.abs();
+    path.extremes(|state| {
+        let velocity = state.velocity;
+        largest = largest.max(velocity.abs());
+        let outside = velocity.abs() - limits.velocity;
+        let reversed = if goal == 0.0 { -heading * velocity } else { 0.0 };
+        excess.velocity = excess.velocity.max(outside).max(reversed);
+
+        // Against the motion it lowers the speed; where the velocity is zero it may do either.
+        let product = state.acceleration * velocity;
+        let bound = if velocity.abs() <= ON_LIMIT * largest {
+            limits.acceleration.max(limits.deceleration)
+        } else if product > 0.0 {
+            limits.acceleration
+        } else {
+            limits.deceleration
+        };
+        let over = state.acceleration.abs() - bound;
+        excess.acceleration = excess.acceleration.max(beyond(over, bound));
+        excess.jerk = excess
+            .jerk
+            .max(beyond(state.jerk.abs() - limits.jerk, limits.jerk));
+    });
+    excess.velocity = beyond(excess.velocity, limits.velocity.min(largest));
+    (excess != Excess::default()).then_some(excess)
+}
+
+/// `over` if it is more than the tolerance for `bound`, else 0.
+fn beyond(over: f64, bound: f64) -> f64 {
+    if over > ON_LIMIT * bound { over } else { 0.0 }
+}

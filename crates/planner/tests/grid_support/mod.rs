@@ -1,0 +1,164 @@
+//! What the grid tests share: the reference vectors, seeded random moves and a digest.
+#![allow(dead_code)] // Each test binary uses a part of it.
+
+use serde_json::Value;
+use standstill_planner::{GridPlan, Limits, Method, PlanError, Setpoint};
+
+/// One move to plan.
+#[derive(Clone, Copy, Debug)]
+pub struct Move {
+    pub start: f64,
+    pub target: f64,
+    pub limits: Limits,
+    pub cycle: f64,
+}
+
+impl Move {
+    pub fn plan(&self, method: Method) -> Result<GridPlan, PlanError> {
+        GridPlan::new(method, self.start, self.target, &self.limits, self.cycle)
+    }
+}
+
+/// The same bound on acceleration and deceleration; infinite is none.
+pub fn limits(velocity: f64, acceleration: f64, jerk: f64, snap: f64) -> Limits {
+    Limits {
+        velocity,
+        acceleration,
+        deceleration: acceleration,
+        jerk,
+        snap,
+    }
+}
+
+/// The vectors of tests/data/planner4-basic.json.
+pub fn vectors() -> Vec<Value> {
+    let text = include_str!("../data/planner4-basic.json");
+    let file: Value = serde_json::from_str(text).expect("the vector file is JSON");
+    file["vectors"].as_array().expect("vectors").clone()
+}
+
+/// A number of a vector file, where words stand for what JSON cannot say; null is an absent bound.
+pub fn number(value: &Value) -> f64 {
+    match value {
+        Value::Null => f64::INFINITY,
+        Value::String(word) if word == "NaN" => f64::NAN,
+        Value::String(word) if word == "Infinity" => f64::INFINITY,
+        Value::String(digits) => digits.parse().expect("a number"),
+        _ => value.as_f64().expect("a number"),
+    }
+}
+
+/// The move of a vector.
+pub fn vector_move(vector: &Value) -> Move {
+    let given = &vector["in"];
+    let start = number(&given["x0"]);
+    Move {
+        start,
+        // Vectors with an absolute target give both; dx is then the rounded difference.
+        target: match given.get("target") {
+            Some(target) => number(target),
+            None => start + number(&given["dx"]),
+        },
+        limits: limits(
+            number(&given["v"]),
+            number(&given["a"]),
+            number(&given["j"]),
+            number(&given["s"]),
+        ),
+        cycle: number(&given["ts"]),
+    }
+}
+
+/// The generator splitmix64: small, seeded, the same everywhere.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// From 0 to below 1.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn below(&mut self, bound: u64) -> u64 {
+        self.bits() % bound
+    }
+
+    /// Log-uniform, up to the error of a crude exponential that needs no math library.
+    pub fn log(&mut self, low: f64, high: f64) -> f64 {
+        let mut x = low;
+        let mut factor = high / low;
+        // Halve the exponent of the range 40 times, multiplying in a random half of the pieces.
+        for _ in 0..40 {
+            factor = factor.sqrt();
+            if self.bits() & 1 == 1 {
+                x *= factor;
+            }
+        }
+        x
+    }
+
+    /// A servo-like move of order 4, 3 or 2, mostly 4.
+    pub fn servo(&mut self) -> Move {
+        let velocity = self.log(0.01, 10.0);
+        let acceleration = velocity * self.log(1.0, 300.0);
+        let jerk = acceleration * self.log(1.0, 1000.0);
+        let snap = jerk * self.log(1.0, 3000.0);
+        let distance = velocity * self.log(1e-4, 10.0);
+        let absent = f64::INFINITY;
+        let kind = self.below(16);
+        let limits = match kind {
+            0 | 1 => limits(velocity, acceleration, jerk, absent),
+            2 => limits(velocity, acceleration, absent, absent),
+            3 => limits(absent, acceleration, jerk, snap),
+            4 => limits(velocity, absent, jerk, snap),
+            5 => limits(velocity, acceleration, absent, snap),
+            _ => limits(velocity, acceleration, jerk, snap),
+        };
+        let start = match self.below(3) {
+            0 => 0.0,
+            1 => self.log(1e-3, 1e3),
+            _ => -self.log(1e-3, 1e3),
+        };
+        let distance = if self.bits() & 1 == 1 { distance } else { -distance };
+        Move {
+            start,
+            target: start + distance,
+            limits,
+            cycle: self.log(1e-4, 1e-2),
+        }
+    }
+}
+
+/// FNV-1a of 64 bits over the bits of numbers.
+pub struct Digest(pub u64);
+
+impl Digest {
+    pub fn new() -> Self {
+        Self(0xCBF2_9CE4_8422_2325)
+    }
+
+    pub fn add(&mut self, word: u64) {
+        for byte in word.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3);
+        }
+    }
+
+    pub fn add_setpoint(&mut self, setpoint: &Setpoint) {
+        for value in [
+            setpoint.position,
+            setpoint.velocity,
+            setpoint.acceleration,
+            setpoint.jerk,
+            setpoint.snap,
+        ] {
+            self.add(value.to_bits());
+        }
+    }
+}

@@ -1,0 +1,4 @@
+//! Ramps of every order, from every kind of start state, judged from outside.
+
+mod chains;
+mod support;

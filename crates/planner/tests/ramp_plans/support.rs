@@ -1,0 +1,168 @@
+//! Random numbers, random problems, and an integrator that shares no code with the planner.
+
+use standstill_planner::{Limits, Order, RampPlan, Setpoint};
+
+/// splitmix64.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    pub fn log(&mut self, low: f64, high: f64) -> f64 {
+        (self.between(low.ln(), high.ln())).exp()
+    }
+
+    pub fn below(&mut self, count: u64) -> u64 {
+        self.bits() % count
+    }
+}
+
+/// Limits of the size servo axes have, with every order and a snap bound without a jerk bound among them.
+pub fn limits(random: &mut Random, order: Order) -> Limits {
+    let velocity = random.log(0.01, 10.0);
+    let acceleration = velocity * random.log(1.0, 300.0);
+    let deceleration = acceleration
+        * if random.below(3) == 0 {
+            1.0
+        } else {
+            random.log(0.2, 5.0)
+        };
+    let jerk = acceleration * random.log(1.0, 1000.0);
+    let snap = jerk * random.log(1.0, 3000.0);
+    let unbounded = f64::INFINITY;
+    Limits {
+        velocity,
+        acceleration,
+        deceleration,
+        jerk: match order {
+            Order::Two => unbounded,
+            Order::Three => jerk,
+            Order::Four => {
+                if random.below(8) == 0 {
+                    unbounded
+                } else {
+                    jerk
+                }
+            }
+        },
+        snap: if order == Order::Four { snap } else { unbounded },
+    }
+}
+
+pub const ORDERS: [Order; 3] = [Order::Two, Order::Three, Order::Four];
+
+/// What happened along a plan, as [`integrate`] saw it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seen {
+    pub end: Setpoint,
+    pub v_max: f64,
+    pub v_min: f64,
+    /// Largest acceleration with, and against, the direction of motion.
+    pub speeding: f64,
+    pub slowing: f64,
+    pub jerk: f64,
+    pub snap: f64,
+    pub duration: f64,
+}
+
+/// Follows the highest derivative of each segment from `start` by many small Taylor steps, and finds the
+/// extremes between them by bisection on the sign of the derivative.
+pub fn integrate(start: &Setpoint, plan: &RampPlan, order: Order) -> Seen {
+    let (mut p, mut v, mut a, mut j) = (start.position, start.velocity, start.acceleration, start.jerk);
+    let mut seen = Seen {
+        v_max: v,
+        v_min: v,
+        ..Seen::default()
+    };
+    const STEPS: u32 = 16;
+    let mut largest = v.abs();
+    for segment in plan.segments() {
+        assert!(segment.duration > 0.0, "a segment of no length");
+        let s = segment.snap;
+        match order {
+            Order::Four => {}
+            Order::Three => j = segment.jerk,
+            Order::Two => {
+                j = 0.0;
+                a = segment.acceleration;
+            }
+        }
+        seen.snap = seen.snap.max(s.abs());
+        seen.duration += segment.duration;
+        let h = segment.duration / f64::from(STEPS);
+        for _ in 0..STEPS {
+            let vel = |t: f64| v + a * t + j * t * t / 2.0 + s * t * t * t / 6.0;
+            let acc = |t: f64| a + j * t + s * t * t / 2.0;
+            let jer = |t: f64| j + s * t;
+            let mut look = |t: f64| {
+                let (v, a) = (vel(t), acc(t));
+                largest = largest.max(v.abs());
+                seen.v_max = seen.v_max.max(v);
+                seen.v_min = seen.v_min.min(v);
+                seen.jerk = seen.jerk.max(jer(t).abs());
+                if v.abs() <= 1e-12 * largest {
+                    // Rounding decides the sign; other instants of the segment tell.
+                } else if v * a > 0.0 {
+                    seen.speeding = seen.speeding.max(a.abs());
+                } else {
+                    seen.slowing = seen.slowing.max(a.abs());
+                }
+            };
+            look(0.0);
+            look(h);
+            for f in [&acc as &dyn Fn(f64) -> f64, &jer] {
+                if f(0.0) * f(h) < 0.0 {
+                    let (mut low, mut high) = (0.0, h);
+                    for _ in 0..60 {
+                        let middle = 0.5 * (low + high);
+                        if f(low) * f(middle) <= 0.0 {
+                            high = middle
+                        } else {
+                            low = middle
+                        }
+                    }
+                    look(low);
+                }
+            }
+            let t = h;
+            (p, v, a, j) = (
+                p + v * t + a * t * t / 2.0 + j * t * t * t / 6.0 + s * t * t * t * t / 24.0,
+                vel(t),
+                acc(t),
+                jer(t),
+            );
+        }
+    }
+    seen.end = Setpoint {
+        position: p,
+        velocity: v,
+        acceleration: a,
+        jerk: j,
+        snap: 0.0,
+    };
+    seen
+}
+
+/// Scale of velocity errors: what the integrator adds up.
+pub fn size(start: &Setpoint, goal: f64, seen: &Seen) -> f64 {
+    start
+        .velocity
+        .abs()
+        .max(goal.abs())
+        .max(seen.v_max.abs())
+        .max(seen.v_min.abs())
+}
