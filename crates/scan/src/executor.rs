@@ -1,0 +1,347 @@
+//! The executor: which programs run, and the order of everything in a scan.
+
+use crate::config::{check, find};
+use crate::task::Task;
+use crate::{
+    ConfigError, Fault, FaultText, Machine, ProgramConfig, ProgramId, Programs, RUNTIME, ScanTime, Start,
+    StillMoving, TaskConfig, TaskCounts, TaskId,
+};
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt;
+use core::num::NonZero;
+use standstill_axis::{Drive, Planner};
+
+/// What a scan did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use = "a fault of the resource shows only here and in Executor::fault"]
+pub struct ScanReport {
+    /// Number of the scan, from 0.
+    pub scan: u64,
+    /// Base tick since the start that its instant belongs to.
+    pub tick: u64,
+    /// Ticks since the scan before that had no scan of their own.
+    pub missed_ticks: u64,
+    /// Tasks executed.
+    pub executions: usize,
+    /// Of these, tasks whose next due time had passed when they ended.
+    pub overruns: usize,
+    /// The fault that stopped the resource, in this scan or before.
+    pub fault: Option<Fault>,
+}
+
+/// The instant given to a scan is before that of the scan before; nothing was executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TimeRanBackwards {
+    /// The instant given (ns).
+    pub now_ns: i64,
+    /// The instant of the last scan (ns).
+    pub previous_ns: i64,
+}
+
+impl fmt::Display for TimeRanBackwards {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "the scan's instant {} ns is before the last one, {} ns: use a monotonic time source",
+            self.now_ns, self.previous_ns
+        )
+    }
+}
+
+impl core::error::Error for TimeRanBackwards {}
+
+/// A program instance at run time.
+#[derive(Clone, Debug)]
+struct Program {
+    name: String,
+    task: Option<TaskId>,
+}
+
+/// One resource: its tasks and program instances, executed one after the other without preemption.
+///
+/// A task is due on the ticks of its phase grid, which begins at the first scan after a start. An instant
+/// belongs to the nearest tick, so jitter below half a tick changes nothing. Where programs say how long
+/// they take, the processing unit is taken for that long: what is due meanwhile waits, at most one
+/// execution of each task, and further periods are skipped and counted. Motion has the nominal tick
+/// whatever the programs take: axes advance once in every scan.
+#[derive(Clone, Debug)]
+pub struct Executor {
+    base_tick_ns: NonZero<u64>,
+    tasks: Vec<Task>,
+    programs: Vec<Program>,
+    /// Number of the next scan.
+    next_scan: u64,
+    previous_ns: Option<i64>,
+    /// Instant of tick 0, and the tick of the last scan.
+    grid: Option<(i64, u64)>,
+    /// First tick at which the processing unit is free.
+    free_from: u64,
+    fault: Option<Fault>,
+}
+
+/// What the programs of a scan did.
+#[derive(Clone, Copy, Default)]
+struct Work {
+    used_ns: u64,
+    executions: usize,
+    overruns: usize,
+}
+
+impl Executor {
+    /// An executor for these declarations. It uses the heap; nothing later does.
+    ///
+    /// # Errors
+    /// [`ConfigError`]: the first defect, with its values.
+    pub fn new(
+        base_tick_ns: u64,
+        tasks: &[TaskConfig],
+        programs: &[ProgramConfig],
+    ) -> Result<Self, ConfigError> {
+        check(base_tick_ns, tasks, programs)?;
+        Ok(Self {
+            base_tick_ns: NonZero::new(base_tick_ns).ok_or(ConfigError::BaseTick)?,
+            tasks: tasks.iter().map(|task| Task::new(task, base_tick_ns)).collect(),
+            programs: programs
+                .iter()
+                .map(|program| Program {
+                    name: program.name.clone(),
+                    task: program
+                        .task
+                        .as_ref()
+                        .and_then(|name| find(tasks, name))
+                        .map(TaskId),
+                })
+                .collect(),
+            next_scan: 0,
+            previous_ns: None,
+            grid: None,
+            free_from: 0,
+            fault: None,
+        })
+    }
+
+    /// Starts the resource: variables are set, tasks and counts begin anew, a fault is forgotten.
+    ///
+    /// Axes never start moving. Before the first scan they keep their configured state; a later start
+    /// switches them off. Scan numbers go on, so that records stay unambiguous. A resource whose programs
+    /// already have their initial values needs no start before its first scan.
+    ///
+    /// # Errors
+    /// [`StillMoving`] if an axis is in motion; nothing has changed then.
+    pub fn start<P: Planner, D: Drive>(
+        &mut self,
+        start: Start,
+        programs: &mut impl Programs<P, D>,
+        machine: &mut Machine<P, D>,
+    ) -> Result<(), StillMoving> {
+        machine.all_at_rest()?;
+        if self.next_scan > 0 {
+            machine.power_off(self.next_scan);
+        }
+        programs.start(start);
+        for task in &mut self.tasks {
+            task.restart();
+        }
+        self.grid = None;
+        self.free_from = 0;
+        self.fault = None;
+        Ok(())
+    }
+
+    /// One scan at the instant `now_ns`. This body is the order of everything in a scan.
+    ///
+    /// Work: each task at most once, each axis and drive once. After a fault no program runs any more, while
+    /// axes and drives are still served, so that every axis can stop in its configured way.
+    ///
+    /// # Errors
+    /// [`TimeRanBackwards`] if `now_ns` is smaller than that of the last scan; nothing was executed.
+    pub fn scan<P: Planner, D: Drive>(
+        &mut self,
+        now_ns: i64,
+        programs: &mut impl Programs<P, D>,
+        machine: &mut Machine<P, D>,
+    ) -> Result<ScanReport, TimeRanBackwards> {
+        let (tick, missed_ticks) = self.tick_of(now_ns)?;
+        let scan = self.next_scan;
+        let time = ScanTime { scan, now_ns };
+        self.next_scan += 1;
+
+        programs.latch(time, machine);
+        machine.read_feedback(time);
+        let work = self.run_due_tasks(time, tick, programs, machine);
+        programs.observe(time, machine);
+        machine.advance(time);
+        machine.publish(time);
+        if self.fault.is_none() {
+            programs.publish(time);
+        }
+        programs.published(time, machine);
+
+        Ok(ScanReport {
+            scan,
+            tick,
+            missed_ticks,
+            executions: work.executions,
+            overruns: work.overruns,
+            fault: self.fault,
+        })
+    }
+
+    /// The fault that stopped the resource.
+    pub fn fault(&self) -> Option<&Fault> {
+        self.fault.as_ref()
+    }
+
+    /// `fault` with the names of its task and program.
+    pub fn describe(&self, fault: Fault) -> FaultText<'_> {
+        let (task, program) = match fault {
+            Fault::Program { task, program, .. } => (task, Some(program)),
+            Fault::Watchdog { task, .. } => (Some(task), None),
+        };
+        FaultText {
+            fault,
+            task: task.and_then(|id| self.tasks.get(id.0)).map(|task| &*task.name),
+            program: program
+                .and_then(|id| self.programs.get(id.0))
+                .map(|program| &*program.name),
+        }
+    }
+
+    /// What a task did since the start.
+    pub fn counts(&self, task: TaskId) -> Option<TaskCounts> {
+        self.tasks.get(task.0).map(Task::counts)
+    }
+
+    /// The base tick (ns).
+    pub fn base_tick_ns(&self) -> u64 {
+        self.base_tick_ns.get()
+    }
+
+    /// The tick nearest to `now_ns`, and the ticks left out since the last scan.
+    fn tick_of(&mut self, now_ns: i64) -> Result<(u64, u64), TimeRanBackwards> {
+        if let Some(previous_ns) = self.previous_ns
+            && now_ns < previous_ns
+        {
+            return Err(TimeRanBackwards { now_ns, previous_ns });
+        }
+        self.previous_ns = Some(now_ns);
+        let Some((start_ns, last)) = self.grid else {
+            self.grid = Some((now_ns, 0));
+            return Ok((0, 0));
+        };
+        let elapsed = now_ns.abs_diff(start_ns);
+        let rest = elapsed % self.base_tick_ns;
+        let round_up = rest >= self.base_tick_ns.get() - rest;
+        let tick = elapsed / self.base_tick_ns + u64::from(round_up);
+        self.grid = Some((start_ns, tick));
+        Ok((tick, (tick - last).saturating_sub(1)))
+    }
+
+    /// Samples SINGLE, then runs what is due: tasks by priority, then programs without a task.
+    fn run_due_tasks<P: Planner, D: Drive>(
+        &mut self,
+        time: ScanTime,
+        tick: u64,
+        programs: &mut impl Programs<P, D>,
+        machine: &mut Machine<P, D>,
+    ) -> Work {
+        let mut work = Work::default();
+        if self.fault.is_some() {
+            return work;
+        }
+        for (index, task) in self.tasks.iter_mut().enumerate() {
+            let single = task.has_single && programs.single(TaskId(index));
+            task.release(tick, single);
+        }
+        if tick < self.free_from {
+            return work;
+        }
+        let outcome = self.run_all(time, tick, programs, machine, &mut work);
+        self.free_from = self.tick_after(tick, work.used_ns);
+        if let Err(fault) = outcome {
+            self.fault = Some(fault);
+            programs.fail(&fault);
+            machine.power_off(time.scan);
+        }
+        work
+    }
+
+    fn run_all<P: Planner, D: Drive>(
+        &mut self,
+        time: ScanTime,
+        tick: u64,
+        programs: &mut impl Programs<P, D>,
+        machine: &mut Machine<P, D>,
+        work: &mut Work,
+    ) -> Result<(), Fault> {
+        // Ends: an execution takes its task out of the waiting ones, and nothing puts one in.
+        while let Some(id) = self.most_urgent() {
+            let took_ns = self.run_programs(Some(id), time, programs, machine)?;
+            work.used_ns = work.used_ns.saturating_add(took_ns);
+            work.executions += 1;
+            let free_from = self.tick_after(tick, work.used_ns);
+            let Some(task) = self.tasks.get_mut(id.0) else {
+                break;
+            };
+            let ended = task.end(free_from, took_ns);
+            work.overruns += usize::from(ended.overrun);
+            if let Some(limit_ns) = ended.fired {
+                return Err(Fault::Watchdog {
+                    scan: time.scan,
+                    task: id,
+                    took_ns,
+                    limit_ns,
+                });
+            }
+        }
+        let took_ns = self.run_programs(None, time, programs, machine)?;
+        work.used_ns = work.used_ns.saturating_add(took_ns);
+        Ok(())
+    }
+
+    /// The waiting task of the highest priority; among equals the one that waits longest, then the one
+    /// declared first.
+    fn most_urgent(&self) -> Option<TaskId> {
+        self.tasks
+            .iter()
+            .enumerate()
+            .filter_map(|(index, task)| Some((task.priority, task.waiting_since()?, TaskId(index))))
+            .min()
+            .map(|(_, _, id)| id)
+    }
+
+    /// Runs the programs of `task`, or those without a task, in declaration order; gives what they took
+    /// together (ns).
+    fn run_programs<P: Planner, D: Drive>(
+        &self,
+        task: Option<TaskId>,
+        time: ScanTime,
+        programs: &mut impl Programs<P, D>,
+        machine: &mut Machine<P, D>,
+    ) -> Result<u64, Fault> {
+        let mut used_ns = 0_u64;
+        for (index, program) in self.programs.iter().enumerate() {
+            if program.task != task {
+                continue;
+            }
+            let program = ProgramId(index);
+            let mut context = machine.context(time, RUNTIME);
+            let took_ns = programs
+                .run(program, &mut context)
+                .map_err(|fault| Fault::Program {
+                    scan: time.scan,
+                    task,
+                    program,
+                    reason: fault.reason,
+                })?;
+            used_ns = used_ns.saturating_add(took_ns);
+        }
+        Ok(used_ns)
+    }
+
+    /// The first tick not before the end of work that began at `tick` and took `used_ns`.
+    fn tick_after(&self, tick: u64, used_ns: u64) -> u64 {
+        tick.saturating_add(used_ns.div_ceil(self.base_tick_ns.get()))
+    }
+}

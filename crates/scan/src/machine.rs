@@ -1,0 +1,246 @@
+//! The axes with their drives, and what a scan does to them.
+
+use crate::{ScanTime, StillMoving};
+use alloc::vec::Vec;
+use core::fmt;
+use standstill_axis::{
+    Axis, AxisConfig, AxisId, AxisState, ConfigError, Drive, DriveFeedback, InstanceId, Log, Planner, Source,
+    Standard,
+};
+use standstill_fb::Context;
+
+/// The instance in records of what no block instance caused.
+pub const RUNTIME: InstanceId = InstanceId(u16::MAX);
+
+/// All axes, the drive under each, and their common ring of records.
+#[derive(Clone, Debug)]
+pub struct Machine<P: Planner = Standard, D: Drive = standstill_axis::IdealDrive> {
+    axes: Vec<Axis<P>>,
+    drives: Vec<D>,
+    /// This scan's feedback in axis order; empty before the first scan.
+    feedback: Vec<DriveFeedback>,
+    /// Places of all axes in the order of the motion step.
+    order: Vec<AxisId>,
+    log: Log,
+}
+
+impl<P: Planner, D: Drive> Default for Machine<P, D> {
+    fn default() -> Self {
+        Self {
+            axes: Vec::new(),
+            drives: Vec::new(),
+            feedback: Vec::new(),
+            order: Vec::new(),
+            log: Log::default(),
+        }
+    }
+}
+
+impl<P: Planner, D: Drive> Machine<P, D> {
+    /// A machine without axes.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds an axis with its drive; the only step that uses the heap.
+    ///
+    /// # Errors
+    /// [`MachineError`] if the configuration is not usable or there are 65535 axes.
+    pub fn add_axis(&mut self, config: AxisConfig, planner: P, drive: D) -> Result<AxisId, MachineError> {
+        let id = u16::try_from(self.axes.len())
+            .map(AxisId::new)
+            .ok()
+            .filter(|id| *id != AxisId::NONE)
+            .ok_or(MachineError::TooManyAxes)?;
+        let axis = Axis::new(id, config, planner).map_err(MachineError::Axis)?;
+        self.axes.push(axis);
+        self.drives.push(drive);
+        self.order.push(id);
+        // Room for a whole scan, so that reading feedback never allocates.
+        self.feedback.reserve(self.drives.len());
+        Ok(id)
+    }
+
+    /// The order of the motion step, in which masters must stand before their slaves. Without this call it
+    /// is the order in which axes were added.
+    ///
+    /// # Errors
+    /// [`OrderError`] unless each axis stands in `order` exactly once; the order then stays as it was.
+    pub fn set_advance_order(&mut self, order: &[AxisId]) -> Result<(), OrderError> {
+        for (index, id) in order.iter().enumerate() {
+            if id.index() >= self.axes.len() {
+                return Err(OrderError::Unknown { axis: *id });
+            }
+            if order.iter().take(index).any(|other| other == id) {
+                return Err(OrderError::Twice { axis: *id });
+            }
+        }
+        if order.len() != self.axes.len() {
+            return Err(OrderError::Missing {
+                given: order.len(),
+                axes: self.axes.len(),
+            });
+        }
+        self.order = order.to_vec();
+        Ok(())
+    }
+
+    /// All axes; an [`AxisId`] is a place in here.
+    pub fn axes(&self) -> &[Axis<P>] {
+        &self.axes
+    }
+
+    /// All axes.
+    pub fn axes_mut(&mut self) -> &mut [Axis<P>] {
+        &mut self.axes
+    }
+
+    /// All drives, in axis order.
+    pub fn drives(&self) -> &[D] {
+        &self.drives
+    }
+
+    /// All drives, in axis order.
+    pub fn drives_mut(&mut self) -> &mut [D] {
+        &mut self.drives
+    }
+
+    /// What the drives told in this scan, in axis order; empty before the first scan.
+    pub fn feedback(&self) -> &[DriveFeedback] {
+        &self.feedback
+    }
+
+    /// The records.
+    pub fn log(&self) -> &Log {
+        &self.log
+    }
+
+    /// What a block called by `instance` may touch.
+    pub fn context(&mut self, time: ScanTime, instance: InstanceId) -> Context<'_, P> {
+        Context {
+            now_ns: time.now_ns,
+            scan: time.scan,
+            instance,
+            axes: &mut self.axes,
+            log: &mut self.log,
+        }
+    }
+
+    /// Reads every drive once, in axis order, then lets the axis states follow.
+    pub(crate) fn read_feedback(&mut self, time: ScanTime) {
+        self.feedback.clear();
+        self.feedback
+            .extend(self.drives.iter_mut().map(|drive| drive.read(time.now_ns)));
+        for (axis, feedback) in self.axes.iter_mut().zip(&self.feedback) {
+            axis.follow_feedback(feedback, time.scan, &mut self.log);
+        }
+    }
+
+    /// Advances every axis by one nominal tick, in advance order; a late scan does not stretch a motion.
+    pub(crate) fn advance(&mut self, time: ScanTime) {
+        for id in &self.order {
+            if let Some(axis) = self.axes.get_mut(id.index()) {
+                axis.advance(time.scan, &mut self.log);
+            }
+        }
+    }
+
+    /// Writes every drive once, in axis order.
+    pub(crate) fn publish(&mut self, time: ScanTime) {
+        for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
+            drive.write(time.now_ns, &axis.drive_command());
+        }
+    }
+
+    /// Asks every axis to stop and switch off, each as its configuration says.
+    pub(crate) fn power_off(&mut self, scan: u64) {
+        let source = Source {
+            scan,
+            instance: RUNTIME,
+        };
+        for axis in &mut self.axes {
+            axis.set_power(false, source, &mut self.log);
+        }
+    }
+
+    /// Finds the first axis in motion.
+    pub(crate) fn all_at_rest(&self) -> Result<(), StillMoving> {
+        for (index, axis) in (0..).zip(&self.axes) {
+            match axis.state() {
+                AxisState::Disabled | AxisState::Standstill => {}
+                // A drive that decelerates after a fault still moves.
+                AxisState::ErrorStop if axis.setpoint().is_at_rest() => {}
+                AxisState::ErrorStop
+                | AxisState::Homing
+                | AxisState::DiscreteMotion
+                | AxisState::ContinuousMotion
+                | AxisState::SynchronizedMotion
+                | AxisState::Stopping => {
+                    return Err(StillMoving {
+                        axis: AxisId::new(index),
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Why an axis was not added.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MachineError {
+    /// Its configuration is not usable.
+    Axis(ConfigError),
+    /// No handle is left.
+    TooManyAxes,
+}
+
+impl fmt::Display for MachineError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Axis(error) => error.fmt(f),
+            Self::TooManyAxes => write!(f, "a machine has at most 65535 axes: use a second one"),
+        }
+    }
+}
+
+impl core::error::Error for MachineError {}
+
+/// Why an advance order was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OrderError {
+    /// There is no such axis.
+    Unknown {
+        /// The handle.
+        axis: AxisId,
+    },
+    /// An axis stands twice.
+    Twice {
+        /// The axis.
+        axis: AxisId,
+    },
+    /// Some axes are missing.
+    Missing {
+        /// Axes in the order.
+        given: usize,
+        /// Axes of the machine.
+        axes: usize,
+    },
+}
+
+impl fmt::Display for OrderError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown { axis } => write!(f, "there is no axis {}: remove it", axis.index()),
+            Self::Twice { axis } => write!(f, "axis {} stands twice: name each axis once", axis.index()),
+            Self::Missing { given, axes } => {
+                write!(
+                    f,
+                    "the order has {given} of {axes} axes: name each axis exactly once"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for OrderError {}

@@ -1,0 +1,96 @@
+//! What a host brings: its programs, its inputs and outputs, and what it wants to see of a scan.
+
+use crate::{Fault, Machine};
+use standstill_axis::{AxisId, Drive, Planner};
+use standstill_fb::Context;
+
+/// A task: its place in the declaration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct TaskId(pub usize);
+
+/// A program instance: its place in the declaration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ProgramId(pub usize);
+
+/// Which scan, and its instant. Constant during the scan, so two timers called in it see the same time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ScanTime {
+    /// Number of the scan, from 0.
+    pub scan: u64,
+    /// Its instant (ns), as given to [`crate::Executor::scan`].
+    pub now_ns: i64,
+}
+
+/// How variables get their values before the first scan (IEC 61131-3, RETAIN).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// Every variable takes its initial value.
+    Cold,
+    /// Retained variables keep theirs; all others as in a cold start.
+    Warm,
+}
+
+/// A fault inside a program: a trap, a division by zero, an index out of range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProgramFault {
+    /// What happened, for people.
+    pub reason: &'static str,
+}
+
+/// A start was refused because an axis is in motion; motion is never carried over a start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StillMoving {
+    /// The first such axis.
+    pub axis: AxisId,
+}
+
+impl core::fmt::Display for StillMoving {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(
+            f,
+            "axis {} is still moving: stop it, or go on scanning until it stands, and start then",
+            self.axis.index()
+        )
+    }
+}
+
+impl core::error::Error for StillMoving {}
+
+/// The host's side of a scan. The hooks are called in the order in which they stand here, which is that of
+/// [`crate::Executor::scan`].
+pub trait Programs<P: Planner, D: Drive> {
+    /// Sets all variables: globals first, then program instances in declaration order, and nested
+    /// instances before their owner.
+    fn start(&mut self, _start: Start) {}
+
+    /// Latches the inputs: all programs of the scan see this image and nothing newer. A simulation changes
+    /// its drives here.
+    fn latch(&mut self, _time: ScanTime, _machine: &mut Machine<P, D>) {}
+
+    /// The BOOL bound to SINGLE of `task`. Asked once a scan and only of tasks that declare SINGLE.
+    fn single(&mut self, _task: TaskId) -> bool {
+        false
+    }
+
+    /// Runs a program instance to its end and says how long it took (ns): by a budget that is the same in
+    /// every run, such as counted instructions, or 0 if nobody counts. A measured time would make the
+    /// schedule differ from run to run.
+    ///
+    /// `context.instance` is [`crate::RUNTIME`] at first; a host that calls blocks sets it for each.
+    ///
+    /// # Errors
+    /// [`ProgramFault`] ends the scan's programs and stops the resource.
+    fn run(&mut self, program: ProgramId, context: &mut Context<'_, P>) -> Result<u64, ProgramFault>;
+
+    /// All programs of this scan have run, the motion step has not: axis states as the trace shows them.
+    fn observe(&mut self, _time: ScanTime, _machine: &Machine<P, D>) {}
+
+    /// Publishes the outputs of the programs. Not called in the scan of a fault nor after it.
+    fn publish(&mut self, _time: ScanTime) {}
+
+    /// The resource stopped: outputs take their fail values. Called once, instead of [`Programs::publish`].
+    fn fail(&mut self, _fault: &Fault) {}
+
+    /// The scan is over: set-points are those the drives were given.
+    fn published(&mut self, _time: ScanTime, _machine: &Machine<P, D>) {}
+}
