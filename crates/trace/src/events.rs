@@ -11,7 +11,7 @@ use crate::number::{cell_text, time_literal};
 use crate::trace::{Cell, Column, Kind, Note, Role, Trace};
 
 /// What the script's input variables are called together.
-const VARIABLES: &str = "inputs";
+pub(crate) const VARIABLES: &str = "inputs";
 
 /// What happened to one axis or instance in one scan.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,9 +28,18 @@ pub struct Event {
 /// instances in call order, the axes in script order; notes follow the line of their subject.
 #[must_use]
 pub fn events(trace: &Trace) -> Vec<Event> {
+    with_notes(trace, trace.notes())
+}
+
+/// The events that the rows alone tell: what a trace has that was read from a file.
+pub(crate) fn row_events(trace: &Trace) -> Vec<Event> {
+    with_notes(trace, &[])
+}
+
+fn with_notes(trace: &Trace, of_trace: &[Note]) -> Vec<Event> {
     let groups = groups(trace.columns());
     let mut notes: BTreeMap<usize, Vec<&Note>> = BTreeMap::new();
-    for note in trace.notes() {
+    for note in of_trace {
         notes.entry(note.scan).or_default().push(note);
     }
     let mut told = vec![None; trace.columns().len()];

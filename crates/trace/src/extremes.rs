@@ -60,11 +60,8 @@ pub fn extremes_text(trace: &Trace) -> String {
                 Some(limit) if quantity.ends_with("position") => format!("limit {}", shortest(limit)),
                 Some(limit) => format!("{:.2} % of {}", 100.0 * value / limit, shortest(limit)),
             };
-            let _ = writeln!(
-                text,
-                "  {quantity:<17} {:>16}  at {scan:<7} {bound}",
-                fixed(value)
-            );
+            let line = format!("  {quantity:<17} {:>16}  at {scan:<7} {bound}", fixed(value));
+            let _ = writeln!(text, "{}", line.trim_end());
         }
     }
     text

@@ -4,8 +4,8 @@
 //! the trace is read only: it can be written as CSV or JSON Lines and read back bit by bit, condensed
 //! into a golden text for people to review, compared with another one, and drawn in a terminal.
 //!
-//! What is not here: the crate knows no script, no executor and no block, reads no clock, and everything
-//! but [`golden::judge`] and [`golden::accept`] leaves files to the caller. The same trace gives the
+//! What is not here: the crate knows no script, no executor and no block, and reads no clock; only
+//! [`file`](mod@file) and [`golden`] touch files. The same trace gives the
 //! same bytes on every processor: numbers are written in shortest round-trip form, digests are taken in
 //! a fixed byte order, and nothing is iterated in a random one.
 //!
@@ -13,14 +13,18 @@
 
 #![forbid(unsafe_code)]
 
+pub mod compare;
 pub mod csv;
 pub mod digest;
 mod events;
+pub mod exact;
 mod extremes;
+pub mod file;
 pub mod golden;
 mod header;
 pub mod jsonl;
 mod number;
+pub mod plot;
 mod read;
 mod trace;
 

@@ -3,7 +3,7 @@
 
 mod common;
 
-use standstill_trace::{Cell, Header, Input, Trace, csv, digest, jsonl};
+use standstill_trace::{Cell, Header, Trace, csv, digest, jsonl};
 
 fn csv_text(trace: &Trace) -> String {
     let mut out = Vec::new();
@@ -24,60 +24,9 @@ fn assert_same(a: &Trace, b: &Trace) {
     assert_eq!(digest::whole(a), digest::whole(b));
 }
 
-/// One column of each kind, with values that are hard to carry.
-fn odd_values() -> Trace {
-    let input = |name: &str, iec_type: &str| Input {
-        name: name.into(),
-        iec_type: iec_type.into(),
-    };
-    let mut trace = Trace::new(Header {
-        cycle_ns: 250_000,
-        inputs: vec![
-            input("b", "BOOL"),
-            input("r", "LREAL"),
-            input("i", "LINT"),
-            input("n", "COLOUR"),
-        ],
-        ..Header::default()
-    });
-    let mut reals = vec![
-        f64::NAN,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-        -0.0,
-        5e-324,
-        -2.2e-308,
-        f64::MAX,
-        f64::MIN,
-        0.1 + 0.2,
-        1e21,
-        1e-7,
-    ];
-    // xorshift64: any bit pattern may turn up, denormals and NaNs too.
-    let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
-    for _ in 0..2000 {
-        bits ^= bits << 13;
-        bits ^= bits >> 7;
-        bits ^= bits << 17;
-        reals.push(f64::from_bits(bits));
-    }
-    let names = ["red", "with, comma", "with \"quotes\"", "7", "TRUE", "grün"];
-    for (at, &real) in reals.iter().enumerate() {
-        let integer = [i64::MIN, i64::MAX, 0, -1][at % 4];
-        let row = [
-            Cell::Bool(at % 3 == 0),
-            Cell::Real(real),
-            Cell::Integer(integer),
-            Cell::Name(names[at % 6]),
-        ];
-        trace.push_row(&row).expect("the row fits");
-    }
-    trace
-}
-
 #[test]
 fn csv_comes_back_to_the_bit() {
-    for trace in [common::run(200, None), odd_values()] {
+    for trace in [common::run(200, None), common::hard_values()] {
         let loaded = csv::read(&csv_text(&trace), Some(&trace.header().to_json())).expect("our own file");
         assert_same(&loaded.trace, &trace);
         assert!(loaded.lacks.is_empty(), "{:?}", loaded.lacks);
@@ -86,7 +35,7 @@ fn csv_comes_back_to_the_bit() {
 
 #[test]
 fn json_lines_come_back_to_the_bit() {
-    for trace in [common::run(200, None), odd_values()] {
+    for trace in [common::run(200, None), common::hard_values()] {
         let loaded = jsonl::read(&jsonl_text(&trace)).expect("our own file");
         assert_same(&loaded.trace, &trace);
         assert!(loaded.lacks.is_empty(), "{:?}", loaded.lacks);
@@ -113,7 +62,7 @@ fn csv_looks_as_the_format_says() {
 
 #[test]
 fn json_lines_look_as_the_format_says() {
-    let text = jsonl_text(&odd_values());
+    let text = jsonl_text(&common::hard_values());
     let lines: Vec<_> = text.lines().collect();
     assert!(
         lines[0].starts_with(r#"{"standstill_trace":1,"runtime":"#),

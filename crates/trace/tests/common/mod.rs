@@ -238,3 +238,54 @@ pub fn run(scans: usize, nudge: Option<usize>) -> Trace {
     }
     trace
 }
+
+/// One column of each kind, with values that are hard to carry.
+pub fn hard_values() -> Trace {
+    let input = |name: &str, iec_type: &str| Input {
+        name: name.into(),
+        iec_type: iec_type.into(),
+    };
+    let mut trace = Trace::new(Header {
+        cycle_ns: 250_000,
+        inputs: vec![
+            input("b", "BOOL"),
+            input("r", "LREAL"),
+            input("i", "LINT"),
+            input("n", "COLOUR"),
+        ],
+        ..Header::default()
+    });
+    let mut reals = vec![
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        -0.0,
+        5e-324,
+        -2.2e-308,
+        f64::MAX,
+        f64::MIN,
+        0.1 + 0.2,
+        1e21,
+        1e-7,
+    ];
+    // xorshift64: any bit pattern may turn up, denormals and NaNs too.
+    let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+    for _ in 0..2000 {
+        bits ^= bits << 13;
+        bits ^= bits >> 7;
+        bits ^= bits << 17;
+        reals.push(f64::from_bits(bits));
+    }
+    let names = ["red", "with, comma", "with \"quotes\"", "7", "TRUE", "grün"];
+    for (at, &real) in reals.iter().enumerate() {
+        let integer = [i64::MIN, i64::MAX, 0, -1][at % 4];
+        let row = [
+            Cell::Bool(at % 3 == 0),
+            Cell::Real(real),
+            Cell::Integer(integer),
+            Cell::Name(names[at % 6]),
+        ];
+        trace.push_row(&row).expect("the row fits");
+    }
+    trace
+}

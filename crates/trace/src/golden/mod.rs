@@ -1,0 +1,209 @@
+//! Goldens: the record of a run that people reviewed, and the judgement whether a run still agrees with it.
+//!
+//! A golden is two files side by side. `x.snap` is an insta snapshot of [`text`]: it is reviewed, and
+//! judges every bit by its digest. `x.exact` is its companion ([`crate::exact`]): it is not reviewed, and is
+//! there to name the first scan and signal in which a run differs.
+
+mod snap;
+mod text;
+
+use std::fmt;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use similar::TextDiff;
+
+use crate::compare::{Difference, compare};
+use crate::digest;
+use crate::exact::{self, ExactError};
+use crate::trace::Trace;
+
+pub use text::text;
+
+/// Lines of a text difference that are shown.
+const DIFF_LINES_SHOWN: usize = 60;
+
+/// What a run is, held against its golden.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// Every bit is as reviewed.
+    Same,
+    /// There is no golden yet.
+    Missing,
+    /// The text is as reviewed, but the companion is not that of this run: missing, damaged or of another
+    /// run. Accepting again writes it.
+    Companion(String),
+    /// The run differs.
+    Different(Box<Mismatch>),
+}
+
+/// How a run differs from its golden; `Display` tells it all.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mismatch {
+    /// The first scan and signals that differ; `None` if the rows are equal or the companion is no help.
+    pub difference: Option<Difference>,
+    /// Why the companion is no help; empty if it is.
+    pub companion: String,
+    /// The difference of the texts, in unified form, golden first.
+    pub text: String,
+}
+
+/// Why a golden could not be judged or accepted.
+#[derive(Debug, thiserror::Error)]
+pub enum GoldenError {
+    /// A file could not be read or written.
+    #[error("{}: {source}", .path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The snapshot is not in insta's form.
+    #[error("{}: no snapshot in insta's form (a header between two lines `---`, then the text)", .path.display())]
+    Form {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+impl GoldenError {
+    fn io(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::Io {
+            path: path.to_owned(),
+            source,
+        }
+    }
+}
+
+/// The companion of a snapshot: `x.exact` beside `x.snap`.
+#[must_use]
+pub fn exact_path(snap: &Path) -> PathBuf {
+    snap.with_extension("exact")
+}
+
+/// Holds a run against the golden of this path (`x.snap`). Writes nothing.
+///
+/// # Errors
+/// A file that is there but cannot be read, or a snapshot in another form.
+pub fn judge(snap: &Path, trace: &Trace) -> Result<Verdict, GoldenError> {
+    let Some(reviewed) = reviewed(snap)? else {
+        return Ok(Verdict::Missing);
+    };
+    let companion = read_if_there(&exact_path(snap))?;
+    let found = text(trace);
+    if snap::same(&reviewed, &found) {
+        return Ok(match companion.as_deref().map(exact::digest_of) {
+            Some(Ok(stated)) if stated == digest::whole(trace) => Verdict::Same,
+            Some(Ok(_)) => Verdict::Companion("the exact trace is of another run".to_owned()),
+            Some(Err(error)) => Verdict::Companion(error.to_string()),
+            None => Verdict::Companion("there is no exact trace".to_owned()),
+        });
+    }
+    let (difference, companion) = match expected_trace(&reviewed, companion.as_deref()) {
+        Ok(expected) => (compare(&expected, trace), String::new()),
+        Err(why) => (None, why),
+    };
+    let text = text_difference(&reviewed, &found);
+    Ok(Verdict::Different(Box::new(Mismatch {
+        difference,
+        companion,
+        text,
+    })))
+}
+
+/// Makes this run the golden of this path: writes `x.snap` and `x.exact` where they do not hold it already,
+/// and says whether it wrote. Whether a run deserves it (its claims hold, this is no CI) is for the caller
+/// to say.
+///
+/// # Errors
+/// A file that cannot be read or written.
+pub fn accept(snap: &Path, trace: &Trace) -> Result<bool, GoldenError> {
+    let found = text(trace);
+    let held = match reviewed(snap) {
+        Ok(text) => text,
+        // Accepting is the way out of a snapshot in another form.
+        Err(GoldenError::Form { .. }) => None,
+        Err(error) => return Err(error),
+    };
+    let mut wrote = false;
+    if !held.is_some_and(|held| snap::same(&held, &found)) {
+        fs::write(snap, snap::file(snap, &found)).map_err(GoldenError::io(snap))?;
+        wrote = true;
+    }
+    let path = exact_path(snap);
+    let file = read_if_there(&path)?;
+    let holds = file.as_deref().map(exact::decode).is_some_and(|held| {
+        // Digests do not tell of columns that were renamed, the comparison does.
+        held.is_ok_and(|held| compare(&held, trace).is_none())
+    });
+    if !holds {
+        fs::write(&path, exact::encode(trace)).map_err(GoldenError::io(&path))?;
+        wrote = true;
+    }
+    Ok(wrote)
+}
+
+fn reviewed(snap: &Path) -> Result<Option<String>, GoldenError> {
+    let Some(file) = read_if_there(snap)? else {
+        return Ok(None);
+    };
+    let text = String::from_utf8(file)
+        .ok()
+        .and_then(|file| snap::contents(&file));
+    text.map(Some).ok_or_else(|| GoldenError::Form {
+        path: snap.to_owned(),
+    })
+}
+
+fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, GoldenError> {
+    match fs::read(path) {
+        Ok(file) => Ok(Some(file)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(GoldenError::io(path)(error)),
+    }
+}
+
+/// The reviewed run from its companion, if that is the one the snapshot's last line speaks of.
+fn expected_trace(reviewed: &str, companion: Option<&[u8]>) -> Result<Trace, String> {
+    let file = companion.ok_or("there is no exact trace")?;
+    let stated = exact::digest_of(file).map_err(|error: ExactError| error.to_string())?;
+    if !reviewed.trim_end().ends_with(&text::digest_text(stated)) {
+        return Err("the exact trace is of another run than the snapshot".to_owned());
+    }
+    exact::decode(file).map_err(|error| error.to_string())
+}
+
+fn text_difference(reviewed: &str, found: &str) -> String {
+    let [old, new] = [reviewed, found].map(|text| format!("{}\n", text.trim_end()));
+    let all = TextDiff::from_lines(&old, &new)
+        .unified_diff()
+        .context_radius(1)
+        .to_string();
+    let mut lines = all.lines();
+    let mut shown: String = lines
+        .by_ref()
+        .take(DIFF_LINES_SHOWN)
+        .flat_map(|line| [line, "\n"])
+        .collect();
+    let hidden = lines.count();
+    if hidden > 0 {
+        shown.push_str(&format!("and {hidden} more lines\n"));
+    }
+    shown
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.difference, self.companion.as_str()) {
+            (Some(difference), _) => write!(out, "{difference}")?,
+            (None, "") => writeln!(
+                out,
+                "every bit of the rows is equal; what is told beside them differs"
+            )?,
+            (None, why) => writeln!(out, "the first differing scan cannot be named: {why}")?,
+        }
+        write!(out, "text: - golden, + this run\n{}", self.text)
+    }
+}
