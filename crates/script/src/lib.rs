@@ -5,4 +5,9 @@
 //! not: arguments and printing (the command line), motion, block behaviour.
 #![forbid(unsafe_code)]
 
+pub mod claims;
 pub mod model;
+pub mod run;
+
+pub use claims::{Failure, Verdict};
+pub use run::{Outcome, RunError, run, run_with};

@@ -100,13 +100,7 @@ pub(super) fn never(
     };
     let values: Vec<_> = that
         .iter()
-        .map(|condition| {
-            format!(
-                "{} {}",
-                condition.text,
-                describe::values(rows, condition, first)
-            )
-        })
+        .map(|condition| format!("{} {}", condition.text, describe::values(rows, condition, first)))
         .collect();
     let text = format!(
         "{} at scan {first}, expected never; it held {}",
@@ -160,8 +154,7 @@ pub(super) fn exclusive(
         Err(failure) => return vec![failure],
     };
     let raised = |scan| {
-        let is_true =
-            |point: &Point| rows.cell(&Signal::Point(*point), scan) == Some(Cell::Bool(true));
+        let is_true = |point: &Point| rows.cell(&Signal::Point(*point), scan) == Some(Cell::Bool(true));
         points
             .iter()
             .filter(move |(_, point)| is_true(point))
@@ -181,11 +174,7 @@ pub(super) fn exclusive(
 }
 
 /// The scans of a range, or the failure of a range that is not all within the run.
-pub(super) fn within_run(
-    rows: &Rows<'_>,
-    path: &str,
-    range: Range,
-) -> Result<RangeInclusive<u64>, Failure> {
+pub(super) fn within_run(rows: &Rows<'_>, path: &str, range: Range) -> Result<RangeInclusive<u64>, Failure> {
     let last = rows.count().saturating_sub(1);
     let to = range.to.unwrap_or(last);
     let furthest = range.from.max(to);
@@ -204,22 +193,11 @@ fn beyond(rows: &Rows<'_>, path: &str, scan: u64) -> Failure {
         Some(last) => format!("the run ended with scan {last}"),
         None => "the run has no scans".to_owned(),
     };
-    failure(
-        path,
-        None,
-        format!("it speaks of scan {scan}, but {end}"),
-    )
+    failure(path, None, format!("it speaks of scan {scan}, but {end}"))
 }
 
 /// `FALSE at scan 551, expected TRUE; it came at 553, 2 later`
-fn unmet(
-    rows: &Rows<'_>,
-    path: &str,
-    key: &str,
-    condition: &Condition,
-    scan: u64,
-    nearest: &str,
-) -> Failure {
+fn unmet(rows: &Rows<'_>, path: &str, key: &str, condition: &Condition, scan: u64, nearest: &str) -> Failure {
     let text = format!(
         "{} at scan {scan}, expected {}; {nearest}",
         describe::values(rows, condition, scan),

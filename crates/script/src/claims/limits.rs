@@ -22,13 +22,7 @@ use crate::run::{Derivatives, Rows};
 const RELATIVE: f64 = 1e-9;
 
 /// d1 to d4 of the axis stay within its limits times `factor`, and what positions resolve.
-pub(super) fn within(
-    rows: &Rows<'_>,
-    path: &str,
-    range: Range,
-    axis: usize,
-    factor: f64,
-) -> Vec<Failure> {
+pub(super) fn within(rows: &Rows<'_>, path: &str, range: Range, axis: usize, factor: f64) -> Vec<Failure> {
     let scans = match within_run(rows, path, range) {
         Ok(scans) => scans,
         Err(failure) => return vec![failure],

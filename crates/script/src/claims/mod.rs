@@ -75,8 +75,6 @@ fn failures(rows: &Rows<'_>, path: &str, kind: &ClaimKind) -> Vec<Failure> {
         ClaimKind::Never { range, during, that } => judge::never(rows, path, *range, during, that),
         ClaimKind::Once(range, that) => judge::once(rows, path, *range, that),
         ClaimKind::Exclusive(range, points) => judge::exclusive(rows, path, *range, points),
-        ClaimKind::WithinLimits { range, axis, factor } => {
-            limits::within(rows, path, *range, *axis, *factor)
-        }
+        ClaimKind::WithinLimits { range, axis, factor } => limits::within(rows, path, *range, *axis, *factor),
     }
 }

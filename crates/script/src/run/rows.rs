@@ -147,10 +147,9 @@ impl<'a> Rows<'a> {
                 let instance = self.script.blocks.get(instance)?;
                 instance.block.pins().nth(pin).map(|pin| pin.ty)
             }
-            Signal::Point(Point::Input(_))
-            | Signal::State(_)
-            | Signal::Axis(..)
-            | Signal::Difference(..) => None,
+            Signal::Point(Point::Input(_)) | Signal::State(_) | Signal::Axis(..) | Signal::Difference(..) => {
+                None
+            }
         }
     }
 }
