@@ -2,10 +2,9 @@
 //!
 //! The command line and the repository's own tests call the same functions, so both give the same verdict.
 
-use crate::error::ScriptError;
 use crate::golden::{self, Mode, Standing};
 use crate::run::{Outcome, RunError, run_with};
-use crate::{Verdict, read};
+use crate::{ScriptError, Verdict, read};
 use standstill_trace::golden::GoldenError;
 use std::fmt;
 use std::fs;
@@ -153,7 +152,11 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, SuiteError> {
 /// A folder that cannot be read.
 pub fn orphans(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
     let files = walk(folder)?;
-    let has_script = |stem: &str| files.binary_search(&PathBuf::from(format!("{stem}{EXTENSION}"))).is_ok();
+    let has_script = |stem: &str| {
+        files
+            .binary_search(&PathBuf::from(format!("{stem}{EXTENSION}")))
+            .is_ok()
+    };
     let lonely = |file: &Path| {
         COMPANIONS
             .iter()

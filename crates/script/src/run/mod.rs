@@ -11,15 +11,12 @@ mod values;
 pub(crate) use layout::Layout;
 pub(crate) use rows::{Derivatives, Rows};
 
+use crate::CELLS_MAX;
 use crate::claims::{self, Verdict};
 use crate::model::Script;
 use bench::Bench;
 use standstill_scan::{Executor, ProgramConfig, TaskConfig, Watchdog};
 use standstill_trace::{Claim, ClaimVerdict, Trace};
-
-/// Largest trace (rows times columns). A cell takes 8 bytes, so this is 2 GiB: some two hours of one axis
-/// and one move at 1 ms.
-const CELLS_MAX: u64 = 1 << 28;
 
 /// Scans between two reports of progress.
 const PROGRESS_EVERY: u64 = 1 << 14;
