@@ -5,13 +5,19 @@
 //! not: arguments and printing (the command line), motion, block behaviour.
 #![forbid(unsafe_code)]
 
+pub mod claims;
 mod error;
 mod format;
+pub mod golden;
 pub mod model;
 mod read;
+pub mod run;
 mod schema;
+pub mod suite;
 
+pub use claims::{Failure, Verdict};
 pub use error::{Code, DIAGNOSTICS_SHOWN, Diagnostic, ScriptError};
 pub use format::format;
 pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read};
+pub use run::{Outcome, RunError, run, run_with};
 pub use schema::schema;
