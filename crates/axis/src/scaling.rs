@@ -35,6 +35,26 @@ impl Scaling {
         })
     }
 
+    /// Increments of the ratio.
+    pub const fn increments(&self) -> u32 {
+        self.increments
+    }
+
+    /// User units of the ratio.
+    pub const fn units(&self) -> u32 {
+        self.units
+    }
+
+    /// Whether the drive counts the other way.
+    pub const fn invert(&self) -> bool {
+        self.invert
+    }
+
+    /// Position (u) at increment 0.
+    pub const fn offset(&self) -> f64 {
+        self.offset
+    }
+
     /// The increments nearest to `position` (u); saturates at the range of `i64`.
     ///
     /// The product is split into whole units and a fraction so that positions up to 2^53 u keep every bit

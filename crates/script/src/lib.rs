@@ -5,4 +5,15 @@
 //! not: arguments and printing (the command line), motion, block behaviour.
 #![forbid(unsafe_code)]
 
+pub mod claims;
+mod error;
+pub mod golden;
 pub mod model;
+mod read;
+pub mod run;
+pub mod suite;
+
+pub use claims::{Failure, Verdict};
+pub use error::{Code, DIAGNOSTICS_SHOWN, Diagnostic, ScriptError};
+pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read};
+pub use run::{Outcome, RunError, run, run_with};

@@ -145,6 +145,33 @@ pub fn accept(snap: &Path, trace: &Trace) -> Result<bool, GoldenError> {
     Ok(wrote)
 }
 
+/// The proposal beside a snapshot: `x.snap.new`, the name under which cargo-insta looks for it.
+#[must_use]
+pub fn proposal_path(snap: &Path) -> PathBuf {
+    snap.with_extension("snap.new")
+}
+
+/// Writes this run as a proposal for the golden of this path, to be accepted in review.
+///
+/// # Errors
+/// What the system says.
+pub fn propose(snap: &Path, trace: &Trace) -> Result<(), GoldenError> {
+    let path = proposal_path(snap);
+    fs::write(&path, snap::file(snap, &text(trace))).map_err(GoldenError::io(&path))
+}
+
+/// Removes the proposal beside a snapshot, if there is one.
+///
+/// # Errors
+/// What the system says.
+pub fn withdraw(snap: &Path) -> Result<(), GoldenError> {
+    let path = proposal_path(snap);
+    match fs::remove_file(&path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(GoldenError::io(&path)(error)),
+        _ => Ok(()),
+    }
+}
+
 fn reviewed(snap: &Path) -> Result<Option<String>, GoldenError> {
     let Some(file) = read_if_there(snap)? else {
         return Ok(None);

@@ -1,0 +1,132 @@
+//! Goldens: whether a run is as it was reviewed, and who may say that a new one is.
+//!
+//! The golden of `x.scan.json` is the insta snapshot `x.snap` beside it, with every exact bit in `x.exact`.
+//! A golden is a record of what a reviewed version did, never a claim; a script whose claims fail gets none.
+
+use crate::run::Outcome;
+use standstill_trace::golden::{self, GoldenError, Verdict};
+use std::path::{Path, PathBuf};
+
+/// What may be done to goldens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Nothing is written: as in continuous integration.
+    Check,
+    /// A golden that is missing or differs fails, and is proposed as `x.snap.new` for review, with
+    /// cargo-insta or by eye. An exact trace that does not belong to its snapshot is written anew.
+    Propose,
+    /// Goldens become what the run is, where all claims hold.
+    Accept,
+}
+
+/// Nothing is accepted where the environment says `CI`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("goldens are not accepted under CI: accept where you can review them, and unset CI there")]
+pub struct UnderCi;
+
+impl Mode {
+    /// The mode the environment asks for: `CI` (unless empty, `0` or `false`) and `INSTA_UPDATE=no` write
+    /// nothing, `INSTA_UPDATE=always` accepts, everything else proposes. `accept` is the user's own wish.
+    ///
+    /// # Errors
+    /// [`UnderCi`] if the user wishes to accept there.
+    pub fn from_environment(accept: bool) -> Result<Self, UnderCi> {
+        let variable = |name| std::env::var(name).unwrap_or_default();
+        Self::of(&variable("CI"), &variable("INSTA_UPDATE"), accept)
+    }
+
+    fn of(ci: &str, insta_update: &str, accept: bool) -> Result<Self, UnderCi> {
+        let under_ci = !matches!(ci, "" | "0" | "false");
+        match (under_ci, accept, insta_update) {
+            (true, true, _) => Err(UnderCi),
+            (true, false, _) | (false, false, "no") => Ok(Self::Check),
+            (false, true, _) | (false, false, "always") => Ok(Self::Accept),
+            (false, false, _) => Ok(Self::Propose),
+        }
+    }
+}
+
+/// How a run stands to its golden.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Standing {
+    /// Every bit is as reviewed.
+    Same,
+    /// It was written in this run.
+    Accepted,
+    /// It is not as reviewed: what differs, and what can be done.
+    Failed(String),
+}
+
+/// The golden of a script: `x.snap` beside `x.scan.json`.
+pub fn snap_path(script: &Path) -> PathBuf {
+    // Two extensions are one too many for `with_extension`.
+    script.with_extension("").with_extension("snap")
+}
+
+/// Holds a run against the golden of its script, and does to the golden what `mode` permits.
+///
+/// # Errors
+/// A file that cannot be read or written, or a snapshot in another form than insta's.
+pub fn judge(script: &Path, outcome: &Outcome, mode: Mode) -> Result<Standing, GoldenError> {
+    let snap = snap_path(script);
+    let trace = &outcome.trace;
+    if mode == Mode::Accept {
+        if !outcome.passed() {
+            return Ok(Standing::Failed(
+                "not accepted: claims fail; mend the script or the claims first".to_owned(),
+            ));
+        }
+        let wrote = golden::accept(&snap, trace)?;
+        golden::withdraw(&snap)?;
+        return Ok(if wrote { Standing::Accepted } else { Standing::Same });
+    }
+    let proposing = mode == Mode::Propose;
+    let what = match golden::judge(&snap, trace)? {
+        Verdict::Same => {
+            if proposing {
+                golden::withdraw(&snap)?;
+            }
+            return Ok(Standing::Same);
+        }
+        Verdict::Companion(_) if proposing => {
+            // The snapshot was accepted elsewhere, and its text holds the digest of every bit of this run.
+            golden::accept(&snap, trace)?;
+            golden::withdraw(&snap)?;
+            return Ok(Standing::Accepted);
+        }
+        Verdict::Companion(why) => format!("{why}; run the test once outside CI to write it"),
+        Verdict::Missing => "there is no golden yet".to_owned(),
+        Verdict::Different(mismatch) => format!("the run differs from its golden\n{mismatch}"),
+    };
+    if !proposing || !outcome.passed() {
+        return Ok(Standing::Failed(what));
+    }
+    golden::propose(&snap, trace)?;
+    let hint = "review the proposal (.snap.new), then accept it: `standstill test --accept` with the \
+                script's path, or `cargo insta review`";
+    Ok(Standing::Failed(format!("{}\n{hint}", what.trim_end())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_accepted_under_ci() {
+        assert_eq!(Mode::of("true", "", true), Err(UnderCi));
+        assert_eq!(Mode::of("1", "always", false), Ok(Mode::Check));
+        assert_eq!(Mode::of("", "always", false), Ok(Mode::Accept));
+        assert_eq!(Mode::of("", "no", false), Ok(Mode::Check));
+        assert_eq!(Mode::of("", "no", true), Ok(Mode::Accept));
+        assert_eq!(Mode::of("false", "auto", false), Ok(Mode::Propose));
+        assert_eq!(Mode::of("0", "", true), Ok(Mode::Accept));
+    }
+
+    #[test]
+    fn the_golden_stands_beside_its_script() {
+        assert_eq!(
+            snap_path(Path::new("a/b.c/second_move.scan.json")),
+            Path::new("a/b.c/second_move.snap")
+        );
+    }
+}

@@ -1,0 +1,276 @@
+//! Axes and their drives.
+
+use super::json::{Json, Key, Node};
+use super::value::Fields;
+use super::{Reader, shape};
+use crate::error::{Code, Diagnostic};
+use crate::model::{Axis, IdealDriveSetup, Span};
+use standstill_axis::{
+    AboveLimit, AxisConfig, AxisState, DELAY_MAX, Defaults, Limits, PowerOff, QUEUE_MAX, Scaling, StartState,
+};
+
+pub(crate) const ABOVE_LIMIT: [(&str, AboveLimit); 2] =
+    [("clamp", AboveLimit::Clamp), ("error", AboveLimit::Error)];
+pub(crate) const ON_POWER_OFF: [(&str, PowerOff); 3] = [
+    ("ramp", PowerOff::Ramp),
+    ("coast", PowerOff::Coast),
+    ("drive", PowerOff::Drive),
+];
+pub(crate) const START_STATES: [(&str, StartState); 2] = [
+    ("Disabled", StartState::Disabled),
+    ("Standstill", StartState::Standstill),
+];
+
+impl Reader {
+    pub(super) fn axes(&mut self, fields: &Fields<'_>) -> Option<Vec<Axis>> {
+        let node = self.require(fields, "axes", "a script")?;
+        let members = self.map(node, "`axes`")?;
+        self.check_count(members.iter().count(), node, "axes");
+        let axes: Vec<Option<Axis>> = members.iter().map(|(key, node)| self.axis(key, node)).collect();
+        axes.into_iter().collect()
+    }
+
+    fn axis(&mut self, key: &Key, node: &Node) -> Option<Axis> {
+        let fields = self.fields(node, &shape::AXIS)?;
+        let limits = self.limits(&fields);
+        // Without limits nothing below could be compared with them, but its own mistakes still show.
+        let mut config = AxisConfig::new(limits.unwrap_or(Limits::NONE));
+        let good = self.fill(&fields, &mut config);
+        let unit = fields
+            .get("unit")
+            .map_or(Some(""), |node| self.text(node, "`unit`"));
+        let drive = self.drive(&fields);
+        limits?;
+        good?;
+        if let Err(error) = config.check() {
+            self.report(Diagnostic::new(
+                Code::BadValue,
+                place_of(key, node, error.key()),
+                error.to_string(),
+            ));
+            return None;
+        }
+        Some(Axis {
+            name: key.text.clone(),
+            unit: unit?.to_owned(),
+            config,
+            drive: drive?,
+        })
+    }
+
+    fn limits(&mut self, axis: &Fields<'_>) -> Option<Limits> {
+        let node = self.require(axis, "limits", "an axis")?;
+        let fields = self.fields(node, &shape::LIMITS)?;
+        let velocity = self.needed_limit(&fields, "velocity");
+        let acceleration = self.needed_limit(&fields, "acceleration");
+        let deceleration = self.limit(&fields, "deceleration");
+        let jerk = self.limit(&fields, "jerk");
+        let snap = self.limit(&fields, "snap");
+        Some(Limits {
+            velocity: velocity?,
+            acceleration: acceleration?,
+            deceleration: deceleration?.or(acceleration)?,
+            jerk: jerk?.unwrap_or(f64::INFINITY),
+            snap: snap?.unwrap_or(f64::INFINITY),
+        })
+    }
+
+    /// A limit that may be absent or null.
+    fn limit(&mut self, fields: &Fields<'_>, key: &str) -> Option<Option<f64>> {
+        match fields.get(key) {
+            None | Some(Node { json: Json::Null, .. }) => Some(None),
+            Some(node) => self.finite(node, &format!("`limits.{key}`")).map(Some),
+        }
+    }
+
+    fn needed_limit(&mut self, fields: &Fields<'_>, key: &str) -> Option<f64> {
+        let limit = self.limit(fields, key)?;
+        if limit.is_none() {
+            let span = fields.entry(key).map_or(fields.brace(), |(_, node)| node.span);
+            self.report(
+                Diagnostic::new(Code::MissingKey, span, format!("`limits` needs a `{key}`"))
+                    .help("only deceleration, jerk and snap may be left out"),
+            );
+        }
+        limit
+    }
+
+    /// A number that may be absent, in `Some`; `None` if it was refused.
+    fn optional(&mut self, fields: &Fields<'_>, key: &str, what: &str) -> Option<Option<f64>> {
+        match fields.get(key) {
+            None => Some(None),
+            Some(node) => self.finite(node, what).map(Some),
+        }
+    }
+
+    /// Reads the keys that stand directly in an axis; reports all mistakes before it gives up.
+    fn fill(&mut self, fields: &Fields<'_>, config: &mut AxisConfig) -> Option<()> {
+        let defaults = self.defaults(fields);
+        let position = self.optional(fields, "position", "`position`");
+        let stop_deceleration = self.optional(fields, "stop_deceleration", "`stop_deceleration`");
+        let stop_jerk = self.optional(fields, "stop_jerk", "`stop_jerk`");
+        let start = fields
+            .get("state")
+            .map_or(Some(StartState::default()), |node| self.start_state(node));
+        let above_limit = fields
+            .get("above_limit")
+            .map_or(Some(AboveLimit::default()), |node| {
+                self.choice(node, "`above_limit`", &ABOVE_LIMIT)
+            });
+        let on_power_off = fields
+            .get("on_power_off")
+            .map_or(Some(PowerOff::default()), |node| {
+                self.choice(node, "`on_power_off`", &ON_POWER_OFF)
+            });
+        let queue = fields.get("queue").map_or(Some(config.queue as i64), |node| {
+            self.whole(node, "`queue`", 0..=QUEUE_MAX as i64)
+        });
+        let needs_homed = fields
+            .get("needs_homed")
+            .map_or(Some(false), |node| self.boolean(node, "`needs_homed`"));
+        let scaling = self.scaling(fields);
+        let software_limits = self.software_limits(fields);
+
+        config.defaults = defaults?;
+        config.position = position?.unwrap_or(0.0);
+        config.stop_deceleration = stop_deceleration?;
+        config.stop_jerk = stop_jerk?;
+        config.start = start?;
+        config.above_limit = above_limit?;
+        config.on_power_off = on_power_off?;
+        config.queue = usize::try_from(queue?).ok()?;
+        config.needs_homed = needs_homed?;
+        config.scaling = scaling?;
+        config.software_limits = software_limits?;
+        Some(())
+    }
+
+    fn defaults(&mut self, axis: &Fields<'_>) -> Option<Defaults> {
+        let Some(node) = axis.get("defaults") else {
+            return Some(Defaults::default());
+        };
+        let fields = self.fields(node, &shape::DEFAULTS)?;
+        let mut one = |key: &str| self.optional(&fields, key, &format!("`defaults.{key}`"));
+        let (acceleration, deceleration) = (one("acceleration"), one("deceleration"));
+        let (jerk, snap) = (one("jerk"), one("snap"));
+        Some(Defaults {
+            acceleration: acceleration?,
+            deceleration: deceleration?,
+            jerk: jerk?,
+            snap: snap?,
+        })
+    }
+
+    fn start_state(&mut self, node: &Node) -> Option<StartState> {
+        if let Json::Text(text) = &node.json
+            && AxisState::ALL.iter().any(|state| state.name() == text)
+            && START_STATES.iter().all(|(name, _)| name != text)
+        {
+            let message = format!("an axis cannot start in {text}");
+            self.report(
+                Diagnostic::new(Code::BadValue, node.span, message)
+                    .help("it starts in `Disabled` or `Standstill`"),
+            );
+            return None;
+        }
+        let names = START_STATES.map(|(name, _)| name);
+        let name = self.state_name(node, "`state`", &names)?;
+        START_STATES
+            .iter()
+            .find(|(known, _)| *known == name)
+            .map(|(_, state)| *state)
+    }
+
+    fn scaling(&mut self, axis: &Fields<'_>) -> Option<Option<Scaling>> {
+        let Some(node) = axis.get("scaling") else {
+            return Some(None);
+        };
+        let fields = self.fields(node, &shape::SCALING)?;
+        let mut count = |key: &str| {
+            let node = self.require(&fields, key, "`scaling`")?;
+            let value = self.whole(node, &format!("`scaling.{key}`"), 1..=i64::from(u32::MAX))?;
+            u32::try_from(value).ok()
+        };
+        let (increments, units) = (count("increments"), count("units"));
+        let invert = fields
+            .get("invert")
+            .map_or(Some(false), |node| self.boolean(node, "`scaling.invert`"));
+        let offset = self.optional(&fields, "offset", "`scaling.offset`");
+        match Scaling::new(increments?, units?, invert?, offset?.unwrap_or(0.0)) {
+            Ok(scaling) => Some(Some(scaling)),
+            Err(error) => {
+                self.report(Diagnostic::new(Code::BadValue, node.span, error.to_string()));
+                None
+            }
+        }
+    }
+
+    fn software_limits(&mut self, axis: &Fields<'_>) -> Option<Option<(f64, f64)>> {
+        let Some(node) = axis.get("software_limits") else {
+            return Some(None);
+        };
+        let fields = self.fields(node, &shape::SOFTWARE_LIMITS)?;
+        let min = self.optional(&fields, "min", "`software_limits.min`");
+        let max = self.optional(&fields, "max", "`software_limits.max`");
+        let (min, max) = (min?, max?);
+        if min.is_none() && max.is_none() {
+            let message = "`software_limits` needs `min`, `max` or both";
+            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
+            return None;
+        }
+        Some(Some((
+            min.unwrap_or(f64::NEG_INFINITY),
+            max.unwrap_or(f64::INFINITY),
+        )))
+    }
+
+    fn drive(&mut self, axis: &Fields<'_>) -> Option<IdealDriveSetup> {
+        let mut setup = IdealDriveSetup {
+            delay: 0,
+            power_on: Some(0),
+        };
+        let Some(node) = axis.get("drive") else {
+            return Some(setup);
+        };
+        let fields = self.fields(node, &shape::DRIVE)?;
+        let Some(ideal) = fields.get("ideal") else {
+            return Some(setup);
+        };
+        let fields = self.fields(ideal, &shape::IDEAL)?;
+        if let Some(node) = fields.get("delay") {
+            let delay = self.scans(node, "`delay`")?;
+            setup.delay = usize::try_from(delay)
+                .ok()
+                .filter(|delay| *delay <= DELAY_MAX)
+                .or_else(|| {
+                    let message = format!("the ideal drive delays by {DELAY_MAX} scans at most, not {delay}");
+                    self.report(Diagnostic::new(Code::BadValue, node.span, message));
+                    None
+                })?;
+        }
+        if let Some(node) = fields.get("power_on") {
+            setup.power_on = match node.json {
+                Json::Null => None,
+                _ => Some(u32::try_from(self.scans(node, "`power_on`")?).unwrap_or(u32::MAX)),
+            };
+        }
+        Some(setup)
+    }
+}
+
+/// Where the configuration key `path`, such as `limits.jerk`, stands in the axis `node`: its value, or the
+/// name of the axis if it was left out.
+fn place_of(axis: &Key, node: &Node, path: &str) -> Span {
+    let mut place = node;
+    for part in path.split('.') {
+        let member = match &place.json {
+            Json::Map(members) => members.iter().find(|(key, _)| key.text == part),
+            _ => None,
+        };
+        match member {
+            Some((_, value)) => place = value,
+            None => return axis.span,
+        }
+    }
+    place.span
+}

@@ -1,0 +1,376 @@
+//! From text to a checked [`Script`].
+//!
+//! Two passes over the parsed text: the first declares the names of axes, inputs and instances, the second
+//! reads the rest, so that a wire may look at a block further down. Every function reports what it finds
+//! wrong and goes on, so that one run shows all mistakes; a script is only given out if there was none.
+
+mod axis;
+mod block;
+mod condition;
+mod expect;
+pub(crate) mod json;
+pub(crate) mod names;
+pub(crate) mod shape;
+mod step;
+pub(crate) mod time;
+mod value;
+mod wiring;
+
+use crate::error::{Code, Diagnostic, ScriptError, quoted};
+use crate::model::{Conditions, Input, Script, Span};
+use json::{Json, Key, Node};
+use names::{Entity, Names, identifier_error, suggestion};
+use standstill_fb::{PinType, Value};
+use std::collections::BTreeMap;
+use value::Fields;
+
+/// Most scans of one run; 10^7 are 2 h 46 min at 1 ms.
+pub const SCANS_MAX: u64 = 10_000_000;
+
+/// Most cells, that is rows times columns, of one run's trace.
+pub const CELLS_MAX: u64 = 100_000_000;
+
+/// Most axes, inputs or instances of one script each: their numbers are 16 bits wide.
+pub const ENTITIES_MAX: usize = 65_000;
+
+/// The version of the format that is read.
+pub const VERSION: u32 = 1;
+
+/// What is collected while a script is read.
+#[derive(Default)]
+struct Reader {
+    parameters: BTreeMap<String, f64>,
+    names: Names,
+    cycle_ns: Option<i64>,
+    scan_count: Option<u64>,
+    /// Input pins that are wired, by instance and pin index, with the place of the pin's name.
+    wired: BTreeMap<(usize, usize), Span>,
+    errors: Vec<Diagnostic>,
+}
+
+/// Reads a scan script.
+///
+/// `file_name` only goes into messages. `overrides` replace values of the script's parameters; the last one
+/// of a name counts. A byte order mark and CRLF are accepted. The work is bounded by the length of the text.
+///
+/// # Errors
+/// [`ScriptError`] with everything that is wrong; after a syntax error only that.
+pub fn read(text: &str, file_name: &str, overrides: &[(String, f64)]) -> Result<Script, ScriptError> {
+    let plain = without_mark(text);
+    let error = |diagnostics| ScriptError::new(file_name, plain, diagnostics);
+    let root = json::parse(plain).map_err(|diagnostic| error(vec![diagnostic]))?;
+    let mut reader = Reader::default();
+    match reader.script(&root, overrides) {
+        Some(script) if reader.errors.is_empty() => Ok(Script {
+            hash: fnv1a_64(text.as_bytes()),
+            ..script
+        }),
+        _ => {
+            debug_assert!(!reader.errors.is_empty(), "refused without a reason");
+            Err(error(reader.errors))
+        }
+    }
+}
+
+/// `text` without a byte order mark.
+pub(crate) fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
+}
+
+/// FNV-1a, 64 bits.
+fn fnv1a_64(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+impl Reader {
+    fn script(&mut self, root: &Node, overrides: &[(String, f64)]) -> Option<Script> {
+        let fields = self.fields(root, &shape::SCRIPT)?;
+        self.version(&fields)?;
+        if let Some(node) = fields.get("$schema") {
+            self.text(node, "`$schema`")?;
+        }
+        self.parameters(&fields, overrides);
+        let cycle = self.cycle(&fields);
+        self.declare(&fields);
+        let scans = self.scan_number(&fields);
+
+        let title = fields
+            .get("title")
+            .map_or(Some(""), |node| self.text(node, "`title`"));
+        let covers = self.covers(&fields);
+        let axes = self.axes(&fields);
+        let inputs = self.inputs(&fields);
+        let tasks = self.tasks(&fields);
+        let blocks = self.blocks(&fields, tasks.as_deref());
+        let steps = self.steps(&fields);
+        let claims = self.claims(&fields);
+        let stop_when = self.stop_when(&fields);
+        let script = Script {
+            title: title?.to_owned(),
+            covers: covers?,
+            cycle_ns: cycle?,
+            scans: scans?,
+            axes: axes?,
+            inputs: inputs?,
+            blocks: blocks?,
+            tasks: tasks?,
+            steps: steps?,
+            claims: claims?,
+            stop_when: stop_when?,
+            parameters: std::mem::take(&mut self.parameters),
+            hash: 0,
+        };
+        self.check_size(&script, fields.get("scans")?.span);
+        Some(script)
+    }
+
+    fn version(&mut self, fields: &Fields<'_>) -> Option<()> {
+        let node = self.require(fields, "standstill", "a script")?;
+        let version = self.whole(
+            node,
+            "`standstill`, the version of the format,",
+            1..=i64::from(u32::MAX),
+        )?;
+        if version == i64::from(VERSION) {
+            return Some(());
+        }
+        self.report(
+            Diagnostic::new(
+                Code::Unsupported,
+                node.span,
+                format!("version {version} of the script format is not supported"),
+            )
+            .help(format!("this runtime reads version {VERSION}")),
+        );
+        None
+    }
+
+    fn parameters(&mut self, fields: &Fields<'_>, overrides: &[(String, f64)]) {
+        let declared = fields
+            .get("parameters")
+            .and_then(|node| self.map(node, "`parameters`"));
+        for (key, node) in declared.iter().flat_map(Fields::iter) {
+            let value = match &node.json {
+                // A parameter of a parameter would need an order; nobody needs it.
+                Json::Map(_) => {
+                    let diagnostic = self.wrong_type(node, &quoted(&key.text), "a number");
+                    self.report(diagnostic);
+                    None
+                }
+                _ => self.number(node, &quoted(&key.text)),
+            };
+            // A refused value is already reported; its uses need not be.
+            self.parameters.insert(key.text.clone(), value.unwrap_or(1.0));
+        }
+        for (name, value) in overrides {
+            if let Some(place) = self.parameters.get_mut(name) {
+                *place = *value;
+                continue;
+            }
+            let help = suggestion(name, self.parameters.keys().map(String::as_str)).unwrap_or_else(|| {
+                "declare it under \"parameters\" and use it as {\"param\": ..}".to_owned()
+            });
+            let message = format!("the script has no parameter {} to set to {value:?}", quoted(name));
+            let mut diagnostic = Diagnostic::new(Code::UnknownParameter, Span::default(), message).help(help);
+            diagnostic.span = None;
+            self.report(diagnostic);
+        }
+    }
+
+    fn cycle(&mut self, fields: &Fields<'_>) -> Option<i64> {
+        let node = self.require(fields, "cycle", "a script")?;
+        let ns = self.time_literal(node, "`cycle`")?;
+        if ns > 0 {
+            self.cycle_ns = Some(ns);
+            return Some(ns);
+        }
+        self.report(Diagnostic::new(
+            Code::BadTime,
+            node.span,
+            "`cycle` must be longer than nothing",
+        ));
+        None
+    }
+
+    fn scan_number(&mut self, fields: &Fields<'_>) -> Option<u64> {
+        let node = self.require(fields, "scans", "a script")?;
+        let scans = self.scans(node, "`scans`")?;
+        let end_ns = i64::try_from(scans)
+            .ok()
+            .and_then(|scans| scans.checked_mul(self.cycle_ns.unwrap_or(1)));
+        let diagnostic = if scans == 0 {
+            Diagnostic::new(Code::BadValue, node.span, "a run has at least one scan")
+        } else if scans > SCANS_MAX {
+            Diagnostic::new(
+                Code::TooLarge,
+                node.span,
+                format!("{scans} scans are more than the {SCANS_MAX} of one run"),
+            )
+            .help("a longer `cycle` covers the same time with fewer scans; `stop_when` ends a run earlier")
+        } else if end_ns.is_none() {
+            Diagnostic::new(
+                Code::TooLarge,
+                node.span,
+                "the run's end does not fit in 64 bits of nanoseconds",
+            )
+        } else {
+            self.scan_count = Some(scans);
+            return Some(scans);
+        };
+        self.report(diagnostic);
+        None
+    }
+
+    /// Declares every name, and checks it.
+    fn declare(&mut self, fields: &Fields<'_>) {
+        let mut places: BTreeMap<String, Span> = BTreeMap::new();
+        if let Some(Json::Map(members)) = fields.get("axes").map(|node| &node.json) {
+            for (index, (key, _)) in members.iter().enumerate() {
+                self.declare_name(&mut places, &key.text, key.span, Entity::Axis(index));
+            }
+        }
+        if let Some(Json::Map(members)) = fields.get("inputs").map(|node| &node.json) {
+            for (index, (key, node)) in members.iter().enumerate() {
+                let ty = match &node.json {
+                    Json::Bool(_) => Some(PinType::Bool),
+                    Json::Number(_) | Json::Text(_) | Json::Map(_) => Some(PinType::Lreal),
+                    Json::Null | Json::List(_) => None,
+                };
+                self.declare_name(&mut places, &key.text, key.span, Entity::Input(index, ty));
+            }
+        }
+        if let Some(Json::List(items)) = fields.get("blocks").map(|node| &node.json) {
+            for (index, node) in items.iter().enumerate() {
+                let member = |name: &str| match &node.json {
+                    Json::Map(members) => members
+                        .iter()
+                        .find(|(key, _)| key.text == name)
+                        .map(|(_, node)| node),
+                    _ => None,
+                };
+                let info = match member("type").map(|node| &node.json) {
+                    Some(Json::Text(name)) => standstill_blocks::registry::find(name),
+                    _ => None,
+                };
+                if let Some(Node {
+                    span,
+                    json: Json::Text(name),
+                }) = member("name")
+                {
+                    self.declare_name(&mut places, name, *span, Entity::Block(index, info));
+                }
+            }
+        }
+    }
+
+    fn declare_name(&mut self, places: &mut BTreeMap<String, Span>, name: &str, span: Span, entity: Entity) {
+        if let Some(why) = identifier_error(name) {
+            let message = format!("{} cannot be a name: {why}", quoted(name));
+            self.report(Diagnostic::new(Code::BadName, span, message));
+        }
+        if let Some(first) = places.insert(name.to_ascii_uppercase(), span) {
+            let message = format!("the name {} is taken", quoted(name));
+            self.report(
+                Diagnostic::new(Code::DuplicateName, span, message)
+                    .related(first, "by this one")
+                    .help("axes, inputs and instances share one set of names, without regard to case"),
+            );
+        }
+        self.names.add(name, entity);
+    }
+
+    fn covers(&mut self, fields: &Fields<'_>) -> Option<Vec<String>> {
+        let Some(node) = fields.get("covers") else {
+            return Some(Vec::new());
+        };
+        let items = self.list(node, "`covers`")?;
+        self.each(items, |reader, item| {
+            reader.text(item, "`covers`").map(str::to_owned)
+        })
+    }
+
+    fn inputs(&mut self, fields: &Fields<'_>) -> Option<Vec<Input>> {
+        let Some(node) = fields.get("inputs") else {
+            return Some(Vec::new());
+        };
+        let members = self.map(node, "`inputs`")?;
+        self.check_count(members.iter().count(), node, "inputs");
+        let mut inputs = Vec::new();
+        for (key, node) in members.iter() {
+            let what = quoted(&key.text);
+            let initial = match &node.json {
+                Json::Bool(value) => Some(Value::Bool(*value)),
+                Json::Null | Json::List(_) => {
+                    let diagnostic = self.wrong_type(node, &what, "a bool or a number");
+                    self.report(diagnostic);
+                    None
+                }
+                _ => self.number(node, &what).map(Value::Lreal),
+            };
+            inputs.push(initial.map(|initial| Input {
+                name: key.text.clone(),
+                initial,
+            }));
+        }
+        inputs.into_iter().collect()
+    }
+
+    fn stop_when(&mut self, fields: &Fields<'_>) -> Option<Option<(Conditions, u64)>> {
+        let after = match fields.get("after") {
+            None => Some(0),
+            Some(node) => self.scans(node, "`after`"),
+        };
+        match (fields.get("stop_when"), fields.entry("after")) {
+            (Some(node), _) => Some(Some((self.conditions(node, "`stop_when`")?, after?))),
+            (None, None) => Some(None),
+            (None, Some((key, _))) => {
+                let message = "`after` says how long a run goes on after `stop_when`, which is not given";
+                self.report(Diagnostic::new(Code::MissingKey, key.span, message));
+                None
+            }
+        }
+    }
+
+    /// All results of `f`, or none if one failed; `f` is called for every item, to report all errors.
+    fn each<T>(
+        &mut self,
+        items: &[Node],
+        mut f: impl FnMut(&mut Self, &Node) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        let results: Vec<Option<T>> = items.iter().map(|item| f(self, item)).collect();
+        results.into_iter().collect()
+    }
+
+    fn check_count(&mut self, count: usize, node: &Node, what: &str) {
+        if count > ENTITIES_MAX {
+            let span = Span {
+                start: node.span.start,
+                end: node.span.start + 1,
+            };
+            let message = format!("{count} {what} are more than the {ENTITIES_MAX} of one script");
+            self.report(Diagnostic::new(Code::TooLarge, span, message));
+        }
+    }
+
+    fn check_size(&mut self, script: &Script, span: Span) {
+        let pins: usize = script.blocks.iter().map(|block| block.block.pins().count()).sum();
+        let columns = (2 + 7 * script.axes.len() + script.inputs.len() + pins) as u64;
+        if script.scans.saturating_mul(columns) > CELLS_MAX {
+            let message = format!(
+                "{} scans of {columns} columns are more than the {CELLS_MAX} cells of one trace",
+                script.scans
+            );
+            self.report(Diagnostic::new(Code::TooLarge, span, message).help(format!(
+                "with these columns at most {} scans; a longer `cycle` covers the same time with fewer",
+                CELLS_MAX / columns
+            )));
+        }
+    }
+}
+
+/// The note of a map of names, which is no name: see the contract's rule that any object may carry one.
+fn is_note(key: &Key, node: &Node) -> bool {
+    key.text == "note" && matches!(node.json, Json::Text(_))
+}

@@ -1,0 +1,131 @@
+//! Which keys stand in which object of a script. The reader and the JSON Schema both read this.
+
+/// The keys of one kind of object.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shape {
+    /// The object in words, as in "unknown key `x` in ..".
+    pub(crate) what: &'static str,
+    /// Keys that exist.
+    pub(crate) keys: &'static [&'static str],
+    /// Keys of the format whose feature does not exist yet.
+    pub(crate) later: &'static [&'static str],
+}
+
+const fn shape(what: &'static str, keys: &'static [&'static str]) -> Shape {
+    Shape {
+        what,
+        keys,
+        later: &[],
+    }
+}
+
+pub(crate) const SCRIPT: Shape = shape(
+    "a script",
+    &[
+        "$schema",
+        "standstill",
+        "title",
+        "covers",
+        "cycle",
+        "scans",
+        "parameters",
+        "axes",
+        "inputs",
+        "tasks",
+        "blocks",
+        "steps",
+        "expect",
+        "stop_when",
+        "after",
+    ],
+);
+pub(crate) const PARAM: Shape = shape("a parameter's use", &["param", "note"]);
+
+pub(crate) const AXIS: Shape = Shape {
+    what: "an axis",
+    keys: &[
+        "unit",
+        "limits",
+        "defaults",
+        "position",
+        "state",
+        "scaling",
+        "software_limits",
+        "above_limit",
+        "queue",
+        "stop_deceleration",
+        "stop_jerk",
+        "on_power_off",
+        "needs_homed",
+        "drive",
+        "note",
+    ],
+    later: &["modulo", "in_position", "max_following_error"],
+};
+pub(crate) const LIMITS: Shape = shape(
+    "`limits`",
+    &["velocity", "acceleration", "deceleration", "jerk", "snap", "note"],
+);
+pub(crate) const DEFAULTS: Shape = shape(
+    "`defaults`",
+    &["acceleration", "deceleration", "jerk", "snap", "note"],
+);
+pub(crate) const SCALING: Shape = shape("`scaling`", &["increments", "units", "invert", "offset", "note"]);
+pub(crate) const SOFTWARE_LIMITS: Shape = shape("`software_limits`", &["min", "max", "note"]);
+pub(crate) const DRIVE: Shape = Shape {
+    what: "`drive`",
+    keys: &["ideal", "note"],
+    later: &["cia402", "plant"],
+};
+pub(crate) const IDEAL: Shape = shape("the ideal drive", &["delay", "power_on", "note"]);
+
+pub(crate) const BLOCK: Shape = shape("a block", &["name", "type", "task", "pins", "note"]);
+pub(crate) const WIRE: Shape = shape("a wire", &["from", "not", "any", "all", "note"]);
+pub(crate) const TASK: Shape = shape("a task", &["interval", "priority", "single", "watchdog"]);
+
+pub(crate) const STEP: Shape = shape(
+    "a step",
+    &[
+        "at", "when", "after", "every", "set", "fault", "clear", "drive", "note",
+    ],
+);
+pub(crate) const FAULT: Shape = shape("`fault`", &["axis", "kind", "code", "note"]);
+pub(crate) const CLEAR: Shape = shape("`clear`", &["axis", "note"]);
+pub(crate) const DRIVE_STEP: Shape = shape(
+    "a `drive` step; the ideal drive knows `displace`",
+    &["axis", "displace", "note"],
+);
+
+pub(crate) const COMPARISON: Shape = shape(
+    "a comparison",
+    &[
+        "near", "within", "le", "ge", "lt", "gt", "ne", "abs_le", "same_as", "note",
+    ],
+);
+
+pub(crate) const CLAIM_AT: Shape = shape("a claim with `at`", &["at", "that", "note"]);
+pub(crate) const CLAIM_BY: Shape = shape("a claim with `by`", &["by", "from", "that", "note"]);
+pub(crate) const CLAIM_ALWAYS: Shape = shape(
+    "a claim with `always`",
+    &["always", "from", "to", "while", "note"],
+);
+pub(crate) const CLAIM_NEVER: Shape =
+    shape("a claim with `never`", &["never", "from", "to", "while", "note"]);
+pub(crate) const CLAIM_ONCE: Shape = shape("a claim with `once`", &["once", "from", "to", "note"]);
+pub(crate) const CLAIM_EXCLUSIVE: Shape =
+    shape("a claim with `exclusive`", &["exclusive", "from", "to", "note"]);
+pub(crate) const CLAIM_WITHIN_LIMITS: Shape = shape(
+    "a claim with `within_limits`",
+    &["within_limits", "factor", "from", "to", "note"],
+);
+
+/// The kinds of claims; the first key of each names it.
+pub(crate) const CLAIMS: [Shape; 7] = [
+    CLAIM_AT,
+    CLAIM_BY,
+    CLAIM_ALWAYS,
+    CLAIM_NEVER,
+    CLAIM_ONCE,
+    CLAIM_EXCLUSIVE,
+    CLAIM_WITHIN_LIMITS,
+];

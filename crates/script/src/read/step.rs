@@ -1,0 +1,197 @@
+//! Steps: when, and what they do.
+
+use super::json::Node;
+use super::value::Fields;
+use super::{Reader, is_note, shape};
+use crate::error::{Code, Diagnostic, quoted};
+use crate::model::{Action, FaultKind, Point, Span, Step, When};
+use std::collections::BTreeMap;
+
+pub(crate) const FAULT_KINDS: [(&str, FaultKind); 4] = [
+    ("drive", FaultKind::Drive),
+    ("power", FaultKind::Power),
+    ("communication", FaultKind::Communication),
+    ("axis", FaultKind::Axis),
+];
+
+impl Reader {
+    pub(super) fn steps(&mut self, fields: &Fields<'_>) -> Option<Vec<Step>> {
+        let Some(node) = fields.get("steps") else {
+            return Some(Vec::new());
+        };
+        let items = self.list(node, "`steps`")?;
+        self.each(items, Self::step)
+    }
+
+    fn step(&mut self, node: &Node) -> Option<Step> {
+        let fields = self.fields(node, &shape::STEP)?;
+        let when = self.when(&fields);
+        let mut actions = Some(Vec::new());
+        for (key, value) in fields.iter() {
+            let new = match key.text.as_str() {
+                "set" => self.set(value),
+                "fault" => self.fault(value).map(|action| vec![action]),
+                "clear" => self.clear(value).map(|action| vec![action]),
+                "drive" => self.displace(value).map(|action| vec![action]),
+                _ => continue,
+            };
+            actions = actions.zip(new).map(|(mut actions, new)| {
+                actions.extend(new);
+                actions
+            });
+        }
+        let actions = actions?;
+        if actions.is_empty() {
+            let message = "a step does nothing without `set`, `fault`, `clear` or `drive`";
+            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
+            return None;
+        }
+        Some(Step { when: when?, actions })
+    }
+
+    fn when(&mut self, fields: &Fields<'_>) -> Option<When> {
+        match (fields.entry("at"), fields.entry("when")) {
+            (Some((_, node)), None) => {
+                for key in ["after", "every"] {
+                    if let Some((key, _)) = fields.entry(key) {
+                        let message = format!("`{}` belongs to `when`, not to `at`", key.text);
+                        self.report(Diagnostic::new(Code::UnknownKey, key.span, message));
+                    }
+                }
+                self.scan_in_run(node, "`at`").map(When::At)
+            }
+            (None, Some((_, node))) => {
+                let conditions = self.conditions(node, "`when`");
+                let after = fields
+                    .get("after")
+                    .map_or(Some(0), |node| self.scans(node, "`after`"));
+                let every = fields
+                    .get("every")
+                    .map_or(Some(false), |node| self.boolean(node, "`every`"));
+                Some(When::Holds {
+                    conditions: conditions?,
+                    after: after?,
+                    every: every?,
+                })
+            }
+            (Some((first, _)), Some((second, _))) => {
+                let message = "a step has `at` or `when`, not both";
+                self.report(
+                    Diagnostic::new(Code::UnknownKey, second.span, message)
+                        .related(first.span, "the other one"),
+                );
+                None
+            }
+            (None, None) => {
+                let message = "a step needs `at` or `when`";
+                self.report(
+                    Diagnostic::new(Code::MissingKey, fields.brace(), message)
+                        .help("`at` names a scan, `when` conditions on the trace"),
+                );
+                None
+            }
+        }
+    }
+
+    /// A scan of the run: 0 to `scans` - 1.
+    pub(super) fn scan_in_run(&mut self, node: &Node, what: &str) -> Option<u64> {
+        let scan = self.scans(node, what)?;
+        let Some(count) = self.scan_count else {
+            return Some(scan);
+        };
+        if scan < count {
+            return Some(scan);
+        }
+        let message = format!("{what} is scan {scan}, but the run's last scan is {}", count - 1);
+        self.report(
+            Diagnostic::new(Code::OutsideRun, node.span, message)
+                .help("scans are counted from 0; or raise `scans`"),
+        );
+        None
+    }
+
+    fn set(&mut self, node: &Node) -> Option<Vec<Action>> {
+        let members = self.map(node, "`set`")?;
+        let has_note_variable = self.names.get("note").is_some();
+        let mut places: BTreeMap<String, Span> = BTreeMap::new();
+        let mut actions = Vec::new();
+        for (key, value) in members.iter() {
+            if is_note(key, value) && !has_note_variable {
+                continue;
+            }
+            if let Some(first) = places.insert(key.text.to_ascii_uppercase(), key.span) {
+                let message = format!("two writers on {}", quoted(&key.text));
+                self.report(
+                    Diagnostic::new(Code::TwoWriters, key.span, message)
+                        .related(first, "the other one; case makes no difference"),
+                );
+            }
+            actions.push(self.set_one(&key.text, key.span, value));
+        }
+        actions.into_iter().collect()
+    }
+
+    fn set_one(&mut self, name: &str, span: Span, node: &Node) -> Option<Action> {
+        let (point, ty) = self.point(name, span)?;
+        if let Point::Pin(instance, pin) = point {
+            if let Some(super::Entity::Block(_, Some(block))) =
+                self.names.get(name.split('.').next().unwrap_or_default())
+                && pin >= block.input_count()
+            {
+                let message = format!("{} is an output: only inputs are written", quoted(name));
+                self.report(Diagnostic::new(Code::NotWritable, span, message));
+                return None;
+            }
+            if let Some(wire) = self.wired.get(&(instance, pin)).copied() {
+                let message = format!("two writers on {}: a wire and this step", quoted(name));
+                self.report(
+                    Diagnostic::new(Code::TwoWriters, span, message)
+                        .related(wire, "wired here")
+                        .help("set the input variable the wire reads, or replace the wire by a constant"),
+                );
+                return None;
+            }
+        }
+        let what = format!("{} ({})", quoted(name), ty.iec_name());
+        self.value(node, ty, &what).map(|value| Action::Set(point, value))
+    }
+
+    fn fault(&mut self, node: &Node) -> Option<Action> {
+        let fields = self.fields(node, &shape::FAULT)?;
+        let axis = self.axis_of(&fields, "`fault`");
+        let kind = self
+            .require(&fields, "kind", "`fault`")
+            .and_then(|node| self.choice(node, "`kind`", &FAULT_KINDS));
+        let code = fields.get("code").map_or(Some(0), |node| {
+            self.whole(node, "`code`", 0..=i64::from(u16::MAX))
+        });
+        Some(Action::Fault {
+            axis: axis?,
+            kind: kind?,
+            code: u16::try_from(code?).ok()?,
+        })
+    }
+
+    fn clear(&mut self, node: &Node) -> Option<Action> {
+        let fields = self.fields(node, &shape::CLEAR)?;
+        let axis = self.axis_of(&fields, "`clear`")?;
+        Some(Action::Clear { axis })
+    }
+
+    fn displace(&mut self, node: &Node) -> Option<Action> {
+        let fields = self.fields(node, &shape::DRIVE_STEP)?;
+        let axis = self.axis_of(&fields, "a `drive` step");
+        let distance = self
+            .require(&fields, "displace", "a `drive` step")
+            .and_then(|node| self.finite(node, "`displace`"));
+        Some(Action::Displace {
+            axis: axis?,
+            distance: distance?,
+        })
+    }
+
+    fn axis_of(&mut self, fields: &Fields<'_>, what: &str) -> Option<usize> {
+        let node = self.require(fields, "axis", what)?;
+        self.axis_index(node, "`axis`")
+    }
+}

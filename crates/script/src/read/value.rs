@@ -1,0 +1,384 @@
+//! Single values: bools, numbers with parameters, times, texts, and values of a pin's type.
+
+use super::json::{Json, Key, Node};
+use super::names::{Entity, suggestion};
+use super::shape::{self, Shape};
+use super::{Reader, time};
+use crate::error::{Code, Diagnostic, quoted};
+use crate::model::Span;
+use standstill_axis::AxisId;
+use standstill_fb::{PinType, Value};
+use std::ops::RangeInclusive;
+
+/// Whole numbers up to here are exact in a 64-bit float.
+pub(super) const WHOLE_MAX: f64 = 9_007_199_254_740_992.0;
+
+/// The members of an object whose keys have been checked.
+#[derive(Clone, Copy)]
+pub(super) struct Fields<'n> {
+    span: Span,
+    members: &'n [(Key, Node)],
+}
+
+impl<'n> Fields<'n> {
+    pub(super) fn entry(&self, key: &str) -> Option<(&'n Key, &'n Node)> {
+        let (key, node) = self.members.iter().find(|(k, _)| k.text == key)?;
+        Some((key, node))
+    }
+
+    pub(super) fn get(&self, key: &str) -> Option<&'n Node> {
+        self.entry(key).map(|(_, node)| node)
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = (&'n Key, &'n Node)> + use<'n> {
+        self.members.iter().map(|(key, node)| (key, node))
+    }
+
+    /// The opening brace: where a message about a missing key points.
+    pub(super) fn brace(&self) -> Span {
+        Span {
+            start: self.span.start,
+            end: self.span.start + 1,
+        }
+    }
+}
+
+/// The words a number may be written as.
+pub(crate) const NUMBER_WORDS: [(&str, f64); 3] = [
+    ("NaN", f64::NAN),
+    ("Infinity", f64::INFINITY),
+    ("-Infinity", f64::NEG_INFINITY),
+];
+
+fn number_word(text: &str) -> Option<f64> {
+    NUMBER_WORDS
+        .iter()
+        .find(|(word, _)| *word == text)
+        .map(|(_, value)| *value)
+}
+
+impl Reader {
+    pub(super) fn report(&mut self, diagnostic: Diagnostic) {
+        self.errors.push(diagnostic);
+    }
+
+    pub(super) fn wrong_type(&mut self, node: &Node, what: &str, expected: &str) -> Diagnostic {
+        Diagnostic::new(Code::WrongType, node.span, format!("{what} takes {expected}"))
+            .label(format!("this is {}", node.json.kind()))
+    }
+
+    pub(super) fn map<'n>(&mut self, node: &'n Node, what: &str) -> Option<Fields<'n>> {
+        if let Json::Map(members) = &node.json {
+            return Some(Fields {
+                span: node.span,
+                members,
+            });
+        }
+        let diagnostic = self.wrong_type(node, what, "an object");
+        self.report(diagnostic);
+        None
+    }
+
+    pub(super) fn list<'n>(&mut self, node: &'n Node, what: &str) -> Option<&'n [Node]> {
+        if let Json::List(items) = &node.json {
+            return Some(items);
+        }
+        let diagnostic = self.wrong_type(node, what, "a list");
+        self.report(diagnostic);
+        None
+    }
+
+    /// The members of `node`, every key of which `shape` must have.
+    pub(super) fn fields<'n>(&mut self, node: &'n Node, shape: &Shape) -> Option<Fields<'n>> {
+        let fields = self.map(node, shape.what)?;
+        for (key, value) in fields.iter() {
+            if key.text == "note" && shape.keys.contains(&"note") {
+                let _ = self.text(value, "`note`");
+            } else if shape.later.contains(&key.text.as_str()) {
+                self.report(Diagnostic::new(
+                    Code::Unsupported,
+                    key.span,
+                    format!("{} in {} is not supported yet", quoted(&key.text), shape.what),
+                ));
+            } else if !shape.keys.contains(&key.text.as_str()) {
+                self.report(
+                    Diagnostic::new(
+                        Code::UnknownKey,
+                        key.span,
+                        format!("unknown key {} in {}", quoted(&key.text), shape.what),
+                    )
+                    .maybe_help(suggestion(&key.text, shape.keys.iter().copied())),
+                );
+            }
+        }
+        Some(fields)
+    }
+
+    /// The value of a key that must be there.
+    pub(super) fn require<'n>(&mut self, fields: &Fields<'n>, key: &str, what: &str) -> Option<&'n Node> {
+        let node = fields.get(key);
+        if node.is_none() {
+            let message = format!("{what} needs the key `{key}`");
+            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
+        }
+        node
+    }
+
+    pub(super) fn text<'n>(&mut self, node: &'n Node, what: &str) -> Option<&'n str> {
+        if let Json::Text(text) = &node.json {
+            return Some(text);
+        }
+        let diagnostic = self.wrong_type(node, what, "a string");
+        self.report(diagnostic);
+        None
+    }
+
+    pub(super) fn boolean(&mut self, node: &Node, what: &str) -> Option<bool> {
+        if let Json::Bool(value) = node.json {
+            return Some(value);
+        }
+        let mut diagnostic = self.wrong_type(node, what, "true or false");
+        if let Json::Text(text) = &node.json
+            && self
+                .names
+                .get(text.split('.').next().unwrap_or_default())
+                .is_some()
+        {
+            diagnostic = diagnostic.help(format!("a wire is written {{\"from\": \"{text}\"}}"));
+        }
+        self.report(diagnostic);
+        None
+    }
+
+    /// A number: digits, one of the words, or a parameter.
+    pub(super) fn number(&mut self, node: &Node, what: &str) -> Option<f64> {
+        match &node.json {
+            Json::Number(value) => return Some(*value),
+            Json::Text(text) => {
+                if let Some(value) = number_word(text) {
+                    return Some(value);
+                }
+            }
+            Json::Map(members) if members.iter().any(|(key, _)| key.text == "param") => {
+                return self.parameter(node);
+            }
+            _ => {}
+        }
+        let mut diagnostic = self.wrong_type(node, what, "a number");
+        if let Json::Text(text) = &node.json {
+            diagnostic = if text.parse::<f64>().is_ok_and(f64::is_finite) {
+                diagnostic.help(format!("write {text} without quotes"))
+            } else {
+                diagnostic.help("of strings only \"NaN\", \"Infinity\" and \"-Infinity\" are numbers")
+            };
+        }
+        self.report(diagnostic);
+        None
+    }
+
+    fn parameter(&mut self, node: &Node) -> Option<f64> {
+        let fields = self.fields(node, &shape::PARAM)?;
+        let name_node = fields.get("param")?;
+        let name = self.text(name_node, "`param`")?;
+        let value = self.parameters.get(name).copied();
+        if value.is_none() {
+            let help = suggestion(name, self.parameters.keys().map(String::as_str))
+                .unwrap_or_else(|| format!("declare it: \"parameters\": {{{name:?}: 0}}"));
+            self.report(
+                Diagnostic::new(
+                    Code::UnknownParameter,
+                    name_node.span,
+                    format!("the script has no parameter {}", quoted(name)),
+                )
+                .help(help),
+            );
+        }
+        value
+    }
+
+    /// A number of the configuration: NaN and infinities have no meaning there.
+    pub(super) fn finite(&mut self, node: &Node, what: &str) -> Option<f64> {
+        let value = self.number(node, what)?;
+        if value.is_finite() {
+            return Some(value);
+        }
+        self.report(
+            Diagnostic::new(
+                Code::BadValue,
+                node.span,
+                format!("{what} is {value:?}: it must be a finite number"),
+            )
+            .help("leave an optional key out for no limit; NaN and infinities may stand at pins"),
+        );
+        None
+    }
+
+    /// A whole number within `range`.
+    pub(super) fn whole(&mut self, node: &Node, what: &str, range: RangeInclusive<i64>) -> Option<i64> {
+        let value = self.number(node, what)?;
+        // Casts saturate, and the range check below is on the float, so no value slips through.
+        let (low, high) = (*range.start() as f64, *range.end() as f64);
+        if value == value.trunc() && value >= low && value <= high {
+            return Some(value as i64);
+        }
+        let message = format!("{what} is {value:?}: it must be a whole number from {low} to {high}");
+        self.report(Diagnostic::new(Code::BadValue, node.span, message));
+        None
+    }
+
+    /// A scan number or a count of scans: a whole number, or a TIME literal that is a multiple of the cycle.
+    pub(super) fn scans(&mut self, node: &Node, what: &str) -> Option<u64> {
+        let Json::Text(_) = &node.json else {
+            if !matches!(&node.json, Json::Number(_) | Json::Map(_)) {
+                let diagnostic = self.wrong_type(node, what, "a count of scans or a TIME literal");
+                self.report(diagnostic.help("for example 501 or \"T#501ms\""));
+                return None;
+            }
+            return self
+                .whole(node, what, 0..=WHOLE_MAX as i64)
+                .map(i64::unsigned_abs);
+        };
+        let ns = self.time_literal(node, what)?;
+        if ns < 0 {
+            let message = format!("{what} is negative");
+            self.report(Diagnostic::new(Code::BadTime, node.span, message));
+            return None;
+        }
+        let cycle = self.cycle_ns?;
+        if ns % cycle == 0 {
+            return Some((ns / cycle).unsigned_abs());
+        }
+        let below = ns - ns % cycle;
+        let nearest = match below.checked_add(cycle) {
+            Some(above) => format!(
+                "the nearest are \"{}\" (scan {}) and \"{}\" (scan {})",
+                time::literal(below),
+                below / cycle,
+                time::literal(above),
+                above / cycle
+            ),
+            None => format!("the nearest is \"{}\"", time::literal(below)),
+        };
+        let message = format!(
+            "{what} is no whole multiple of the cycle {}",
+            time::literal(cycle)
+        );
+        self.report(Diagnostic::new(Code::BadTime, node.span, message).help(nearest));
+        None
+    }
+
+    /// A TIME literal, in nanoseconds.
+    pub(super) fn time_literal(&mut self, node: &Node, what: &str) -> Option<i64> {
+        let Json::Text(text) = &node.json else {
+            let diagnostic = self.wrong_type(node, what, "a TIME literal");
+            self.report(diagnostic.help("for example \"T#1ms\""));
+            return None;
+        };
+        match time::parse(text) {
+            Ok(ns) => Some(ns),
+            Err(why) => {
+                let message = format!("{} is no TIME literal: {why}", quoted(text));
+                self.report(
+                    Diagnostic::new(Code::BadTime, node.span, message).help("for example \"T#500ms\""),
+                );
+                None
+            }
+        }
+    }
+
+    /// The axis called by the string `node`.
+    pub(super) fn axis_index(&mut self, node: &Node, what: &str) -> Option<usize> {
+        let Json::Text(name) = &node.json else {
+            let diagnostic = self.wrong_type(node, what, "the name of an axis");
+            self.report(diagnostic);
+            return None;
+        };
+        if let Some(Entity::Axis(index)) = self.names.get(name) {
+            return Some(index);
+        }
+        let help = suggestion(name, self.names.of(|entity| matches!(entity, Entity::Axis(_))));
+        self.report(
+            Diagnostic::new(
+                Code::UnknownAxis,
+                node.span,
+                format!("the script has no axis {}", quoted(name)),
+            )
+            .maybe_help(help),
+        );
+        None
+    }
+
+    /// A value of type `ty`.
+    pub(super) fn value(&mut self, node: &Node, ty: PinType, what: &str) -> Option<Value> {
+        match ty {
+            PinType::Bool => self.boolean(node, what).map(Value::Bool),
+            PinType::Lreal => self.number(node, what).map(Value::Lreal),
+            PinType::Int => {
+                let value = self.whole(node, what, i16::MIN.into()..=i16::MAX.into())?;
+                i16::try_from(value).ok().map(Value::Int)
+            }
+            PinType::Word => {
+                let value = self.whole(node, what, 0..=u16::MAX.into())?;
+                u16::try_from(value).ok().map(Value::Word)
+            }
+            PinType::Time => self.duration(node, what).map(Value::Time),
+            PinType::Axis => {
+                let index = self.axis_index(node, what)?;
+                u16::try_from(index)
+                    .ok()
+                    .map(|index| Value::Axis(AxisId::new(index)))
+            }
+            PinType::Enum(info) => {
+                let Json::Text(name) = &node.json else {
+                    let value = self.whole(node, what, i32::MIN.into()..=i32::MAX.into())?;
+                    return i32::try_from(value).ok().map(Value::Enum);
+                };
+                let number = info.number_of(name);
+                if number.is_none() {
+                    self.report(
+                        Diagnostic::new(
+                            Code::UnknownElement,
+                            node.span,
+                            format!("{} has no element {}", info.name, quoted(name)),
+                        )
+                        .maybe_help(suggestion(name, info.elements.iter().map(|(name, _)| *name))),
+                    );
+                }
+                number.map(Value::Enum)
+            }
+        }
+    }
+
+    /// A TIME value in nanoseconds: any literal, or a count of scans.
+    pub(super) fn duration(&mut self, node: &Node, what: &str) -> Option<i64> {
+        if let Json::Text(_) = &node.json {
+            return self.time_literal(node, what);
+        }
+        let scans = self.scans(node, what)?;
+        let ns = i64::try_from(scans)
+            .ok()
+            .and_then(|scans| scans.checked_mul(self.cycle_ns?));
+        if ns.is_none() && self.cycle_ns.is_some() {
+            let message = format!("{what} does not fit in 64 bits of nanoseconds");
+            self.report(Diagnostic::new(Code::BadTime, node.span, message));
+        }
+        ns
+    }
+
+    /// One of a few words.
+    pub(super) fn choice<T: Copy>(&mut self, node: &Node, what: &str, words: &[(&str, T)]) -> Option<T> {
+        let text = self.text(node, what)?;
+        if let Some((_, value)) = words.iter().find(|(word, _)| *word == text) {
+            return Some(*value);
+        }
+        self.report(
+            Diagnostic::new(
+                Code::BadValue,
+                node.span,
+                format!("{what} cannot be {}", quoted(text)),
+            )
+            .maybe_help(suggestion(text, words.iter().map(|(word, _)| *word))),
+        );
+        None
+    }
+}

@@ -1,0 +1,282 @@
+//! The script's side of a scan: steps at the latch, blocks behind their wires, a row at the end.
+
+use super::RunError;
+use super::cells::{self, Undefined};
+use super::layout::Layout;
+use super::notes::Notes;
+use super::rows::Rows;
+use super::schedule::Schedule;
+use super::values::Values;
+use crate::model::{Action, FaultKind, Script, Wire};
+use standstill_axis::{
+    AxisId, AxisState, DrivePosition, ErrorId, IdealDrive, InstanceId, Standard, StartState,
+};
+use standstill_fb::{AnyInstance, Context, PinType};
+use standstill_scan::{Machine, ProgramFault, ProgramId, Programs, RUNTIME, ScanTime, TaskId};
+use standstill_trace::{Cell, Trace};
+
+/// The machine of a script: Standard planners over ideal drives.
+pub(crate) type ScriptMachine = Machine<Standard, IdealDrive>;
+
+/// The number of an instance in records: 0 is nobody's, so that it can stand for the host.
+pub(crate) fn instance_id(index: usize) -> InstanceId {
+    u16::try_from(index + 1).map_or(RUNTIME, InstanceId)
+}
+
+/// The axes and drives of a script as they stand before the first scan.
+pub(crate) fn machine(script: &Script) -> Result<ScriptMachine, RunError> {
+    let mut machine = Machine::new();
+    let planner = Standard::new(script.cycle_ns as f64 / 1e9);
+    for axis in &script.axes {
+        let position = match axis.config.scaling {
+            Some(scaling) => DrivePosition::Increments(scaling.to_increments(axis.config.position)),
+            None => DrivePosition::Units(axis.config.position),
+        };
+        let enabled = axis.config.start == StartState::Standstill;
+        let drive = IdealDrive::new(position, axis.drive.delay, axis.drive.power_on, enabled);
+        machine
+            .add_axis(axis.config, planner, drive)
+            .map_err(|error| RunError::Axis {
+                axis: axis.name.clone(),
+                reason: error.to_string(),
+            })?;
+    }
+    Ok(machine)
+}
+
+/// A script at work.
+pub(crate) struct Bench<'a> {
+    script: &'a Script,
+    layout: &'a Layout,
+    values: Values,
+    /// Pin types of all instances, in trace order.
+    types: Vec<PinType>,
+    undefined: Undefined,
+    schedule: Schedule,
+    /// Axis states after all blocks were called, before the motion step.
+    states: Vec<AxisState>,
+    notes: Notes,
+    trace: Trace,
+    /// Last scan of the run, once `stop_when` has held.
+    last_scan: Option<u64>,
+    /// What ended the run early. The executor's hooks return nothing, so it waits here.
+    error: Option<RunError>,
+}
+
+impl<'a> Bench<'a> {
+    pub(crate) fn new(script: &'a Script, layout: &'a Layout, trace: Trace) -> Result<Self, RunError> {
+        let values = Values::new(script)
+            .ok_or_else(|| RunError::Internal("the script was not checked before its run".to_owned()))?;
+        Ok(Self {
+            script,
+            layout,
+            values,
+            types: script
+                .blocks
+                .iter()
+                .flat_map(|instance| instance.block.pins().map(|pin| pin.ty))
+                .collect(),
+            undefined: Undefined::default(),
+            schedule: Schedule::new(script),
+            states: Vec::with_capacity(script.axes.len()),
+            notes: Notes::default(),
+            trace,
+            last_scan: None,
+            error: None,
+        })
+    }
+
+    /// Tells what went wrong in the last scan.
+    pub(crate) fn check(&mut self) -> Result<(), RunError> {
+        self.error.take().map_or(Ok(()), Err)
+    }
+
+    /// Whether `scan` is the last one.
+    pub(crate) fn is_over(&self, scan: u64) -> bool {
+        self.last_scan.is_some_and(|last| scan >= last)
+    }
+
+    pub(crate) fn into_trace(self) -> Trace {
+        self.trace
+    }
+
+    /// Remembers the first thing that went wrong.
+    fn fail(&mut self, error: RunError) {
+        self.error.get_or_insert(error);
+    }
+
+    fn apply(&mut self, step: usize, action: &Action, time: ScanTime, machine: &mut ScriptMachine) {
+        let scan = time.scan;
+        match *action {
+            Action::Set(point, value) => {
+                if self.values.write(point, value).is_none() {
+                    let value = cells::value_text(self.script, None, value);
+                    self.fail(RunError::Value {
+                        scan,
+                        target: format!("steps[{step}]: the signal"),
+                        value,
+                    });
+                }
+            }
+            Action::Fault {
+                axis,
+                kind: FaultKind::Axis,
+                code,
+            } => {
+                let mut context = machine.context(time, InstanceId::default());
+                let id = u16::try_from(axis).map_or(AxisId::NONE, AxisId::new);
+                if let Ok((axis, log, source)) = context.axis(id) {
+                    axis.raise(ErrorId::AxisFault, code, source, log);
+                }
+            }
+            Action::Fault { axis, kind, code } => {
+                if let Some(drive) = machine.drives_mut().get_mut(axis) {
+                    match kind {
+                        FaultKind::Drive | FaultKind::Axis => drive.fail(code),
+                        FaultKind::Power => drive.cut_power(),
+                        FaultKind::Communication => drive.cut_communication(),
+                    }
+                }
+            }
+            Action::Clear { axis } => {
+                if let Some(drive) = machine.drives_mut().get_mut(axis) {
+                    drive.clear_cause();
+                }
+                if let Some(axis) = machine.axes_mut().get_mut(axis) {
+                    axis.clear_cause();
+                }
+            }
+            Action::Displace { axis, distance } => {
+                let name = || {
+                    self.script
+                        .axes
+                        .get(axis)
+                        .map_or("", |axis| &axis.name)
+                        .to_owned()
+                };
+                let pushed = machine
+                    .drives_mut()
+                    .get_mut(axis)
+                    .map(|drive| drive.displace(distance));
+                if pushed.is_some_and(|pushed| pushed.is_err()) {
+                    let axis = name();
+                    self.fail(RunError::Displaced { step, scan, axis });
+                }
+            }
+        }
+    }
+
+    /// Feeds the wired inputs of an instance, in pin order.
+    fn feed(&mut self, instance: usize, wires: &[(usize, Wire)], scan: u64) {
+        for (pin, wire) in wires {
+            let value = self.values.wire(wire);
+            let point = crate::model::Point::Pin(instance, *pin);
+            if value.and_then(|value| self.values.write(point, value)).is_none() {
+                let declared = self.script.blocks.get(instance);
+                let pin = declared.and_then(|instance| instance.block.pins().nth(*pin));
+                let target = format!(
+                    "{}.{}",
+                    declared.map_or("", |instance| &instance.name),
+                    pin.map_or("", |pin| pin.name)
+                );
+                let value = value.map_or_else(
+                    || "what its wire carries".to_owned(),
+                    |value| cells::value_text(self.script, None, value),
+                );
+                self.fail(RunError::Value { scan, target, value });
+            }
+        }
+    }
+
+    /// The row of this scan.
+    fn push_row(&mut self, machine: &ScriptMachine) {
+        let instances = &self.values.instances;
+        let pins: Vec<_> = instances
+            .iter()
+            .flat_map(|instance| (0..).map_while(|pin| instance.get(pin)))
+            .zip(&self.types)
+            .map(|(value, ty)| (*ty, value))
+            .collect();
+        for (ty, value) in &pins {
+            self.undefined.prepare(*ty, *value);
+        }
+        let axes = machine.axes().iter().zip(&self.states).flat_map(|(axis, state)| {
+            let setpoint = axis.setpoint();
+            [
+                Cell::Name(state.name()),
+                Cell::Real(setpoint.position),
+                Cell::Real(setpoint.velocity),
+                Cell::Real(setpoint.acceleration),
+                Cell::Real(setpoint.jerk),
+                Cell::Real(setpoint.snap),
+                Cell::Real(axis.actual_position()),
+            ]
+        });
+        let (script, undefined) = (self.script, &self.undefined);
+        let variables = self
+            .values
+            .variables
+            .iter()
+            .map(|value| undefined.cell(script, PinType::Lreal, *value));
+        let pins = pins.iter().map(|(ty, value)| undefined.cell(script, *ty, *value));
+        let row: Vec<_> = axes.chain(variables).chain(pins).collect();
+        if let Err(error) = self.trace.push_row(&row) {
+            self.fail(RunError::Internal(error.to_string()));
+        }
+    }
+}
+
+impl Programs<Standard, IdealDrive> for Bench<'_> {
+    fn latch(&mut self, time: ScanTime, machine: &mut ScriptMachine) {
+        let script = self.script;
+        for index in self.schedule.take(time.scan) {
+            let actions = script.steps.get(index).map_or(&[][..], |step| &step.actions);
+            for action in actions {
+                self.apply(index, action, time, machine);
+            }
+        }
+    }
+
+    fn single(&mut self, task: TaskId) -> bool {
+        let task = self.script.tasks.get(task.0);
+        task.and_then(|task| self.values.wire_bool(task.single.as_ref()?))
+            .unwrap_or(false)
+    }
+
+    fn run(&mut self, program: ProgramId, context: &mut Context<'_, Standard>) -> Result<u64, ProgramFault> {
+        let script = self.script;
+        for (index, declared) in script.blocks.iter().enumerate() {
+            if declared.task != program.0 {
+                continue;
+            }
+            self.feed(index, &declared.wires, context.scan);
+            context.instance = instance_id(index);
+            if let Some(instance) = self.values.instances.get_mut(index) {
+                instance.call(context);
+            }
+        }
+        Ok(0)
+    }
+
+    fn observe(&mut self, _time: ScanTime, machine: &ScriptMachine) {
+        self.states.clear();
+        self.states.extend(machine.axes().iter().map(|axis| axis.state()));
+    }
+
+    fn published(&mut self, time: ScanTime, machine: &ScriptMachine) {
+        self.push_row(machine);
+        self.notes.take(self.script, machine, &mut self.trace);
+        let rows = Rows {
+            script: self.script,
+            layout: self.layout,
+            trace: &self.trace,
+        };
+        self.schedule.look(&rows, time.scan);
+        if self.last_scan.is_none()
+            && let Some((conditions, after)) = &self.script.stop_when
+            && rows.hold(conditions, time.scan)
+        {
+            self.last_scan = Some(time.scan.saturating_add(*after));
+        }
+    }
+}

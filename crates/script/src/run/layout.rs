@@ -1,0 +1,136 @@
+//! Where the signals of a script stand in a row of its trace, and the trace's header.
+
+use crate::model::{AxisNumber, Point, Script};
+use standstill_axis::{AxisConfig, Order};
+use standstill_fb::{Direction, PinType, Value};
+use standstill_trace as trace;
+
+/// Column numbers of a script's signals: the axes, the input variables, the pins in call order.
+#[derive(Clone, Debug)]
+pub(crate) struct Layout {
+    /// First column of the input variables.
+    variables: usize,
+    /// First column of each instance.
+    instances: Vec<usize>,
+}
+
+impl Layout {
+    pub(crate) fn new(script: &Script) -> Self {
+        let variables = script.axes.len() * trace::AXIS_SIGNALS.len();
+        let mut next = variables + script.inputs.len();
+        let mut instances = Vec::with_capacity(script.blocks.len());
+        for instance in &script.blocks {
+            instances.push(next);
+            next += instance.block.pins().count();
+        }
+        Self { variables, instances }
+    }
+
+    /// Column of a variable or pin.
+    pub(crate) fn point(&self, point: Point) -> Option<usize> {
+        match point {
+            Point::Input(index) => Some(self.variables + index),
+            Point::Pin(instance, pin) => Some(self.instances.get(instance)? + pin),
+        }
+    }
+
+    /// Column of an axis state.
+    pub(crate) fn state(&self, axis: usize) -> usize {
+        axis * trace::AXIS_SIGNALS.len()
+    }
+
+    /// Column of a number of an axis; the order is that of [`trace::AXIS_SIGNALS`].
+    pub(crate) fn number(&self, axis: usize, number: AxisNumber) -> usize {
+        let place = match number {
+            AxisNumber::Position => 1,
+            AxisNumber::Velocity => 2,
+            AxisNumber::Acceleration => 3,
+            AxisNumber::Jerk => 4,
+            AxisNumber::Snap => 5,
+            AxisNumber::ActualPosition => 6,
+        };
+        self.state(axis) + place
+    }
+}
+
+/// What a trace of the script says of itself before it has rows and verdicts.
+pub(crate) fn header(script: &Script) -> trace::Header {
+    trace::Header {
+        runtime: env!("CARGO_PKG_VERSION").to_owned(),
+        title: script.title.clone(),
+        covers: script.covers.clone(),
+        script_hash: format!("{:016x}", script.hash),
+        cycle_ns: script.cycle_ns.unsigned_abs(),
+        axes: script
+            .axes
+            .iter()
+            .map(|axis| trace::Axis {
+                name: axis.name.clone(),
+                unit: axis.unit.clone(),
+                order: match axis.config.limits.order() {
+                    Order::Two => 2,
+                    Order::Three => 3,
+                    Order::Four => 4,
+                },
+                limits: limits(&axis.config),
+                scaling: axis.config.scaling.map(|scaling| trace::Scaling {
+                    increments: scaling.increments().into(),
+                    units: scaling.units().into(),
+                    invert: scaling.invert(),
+                    offset: scaling.offset(),
+                }),
+            })
+            .collect(),
+        inputs: script
+            .inputs
+            .iter()
+            .map(|input| trace::Input {
+                name: input.name.clone(),
+                iec_type: type_of(input.initial).to_owned(),
+            })
+            .collect(),
+        instances: script
+            .blocks
+            .iter()
+            .map(|instance| trace::Instance {
+                name: instance.name.clone(),
+                block: instance.block.name.to_owned(),
+                pins: instance
+                    .block
+                    .pins()
+                    .map(|pin| trace::Pin {
+                        name: pin.name.to_owned(),
+                        iec_type: pin.ty.iec_name().to_owned(),
+                        direction: match pin.direction {
+                            Direction::InOut => trace::Direction::InOut,
+                            Direction::Input => trace::Direction::Input,
+                            Direction::Output => trace::Direction::Output,
+                        },
+                    })
+                    .collect(),
+            })
+            .collect(),
+        claims: Vec::new(),
+    }
+}
+
+/// Type of an input variable; a script knows only these two.
+fn type_of(value: Value) -> &'static str {
+    match value {
+        Value::Bool(_) => PinType::Bool.iec_name(),
+        _ => PinType::Lreal.iec_name(),
+    }
+}
+
+fn limits(config: &AxisConfig) -> trace::Limits {
+    let finite = |limit: f64| limit.is_finite().then_some(limit);
+    trace::Limits {
+        position_min: config.software_limits.and_then(|(min, _)| finite(min)),
+        position_max: config.software_limits.and_then(|(_, max)| finite(max)),
+        velocity: finite(config.limits.velocity),
+        acceleration: finite(config.limits.acceleration),
+        deceleration: finite(config.limits.deceleration),
+        jerk: finite(config.limits.jerk),
+        snap: finite(config.limits.snap),
+    }
+}

@@ -1,0 +1,188 @@
+//! The run of a script: bound once, then scan by scan through the executor into a trace.
+
+mod bench;
+pub(crate) mod cells;
+mod layout;
+mod notes;
+mod rows;
+mod schedule;
+mod values;
+
+pub(crate) use layout::Layout;
+pub(crate) use rows::{Derivatives, Rows};
+
+use crate::CELLS_MAX;
+use crate::claims::{self, Verdict};
+use crate::model::Script;
+use bench::Bench;
+use standstill_scan::{Executor, ProgramConfig, TaskConfig, Watchdog};
+use standstill_trace::{Claim, ClaimVerdict, Trace};
+
+/// Scans between two reports of progress.
+const PROGRESS_EVERY: u64 = 1 << 14;
+
+/// What a run left.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// One row a scan; its header holds the verdicts.
+    pub trace: Trace,
+    /// The script's claims in file order, judged.
+    pub verdicts: Vec<Verdict>,
+}
+
+impl Outcome {
+    /// Whether every claim held.
+    pub fn passed(&self) -> bool {
+        self.verdicts.iter().all(Verdict::passed)
+    }
+}
+
+/// Why a script could not be run to its end.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RunError {
+    /// The trace would not fit.
+    #[error(
+        "a trace of {scans} scans with {columns} columns is too large: {cells} cells at most; lower `scans`",
+        cells = CELLS_MAX
+    )]
+    TooLarge {
+        /// Rows asked for.
+        scans: u64,
+        /// Columns of a row.
+        columns: usize,
+    },
+    /// An axis cannot be set up like this.
+    #[error("axes.{axis}: {reason}")]
+    Axis {
+        /// Name of the axis.
+        axis: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The tasks cannot be set up like this.
+    #[error("tasks: {0}")]
+    Tasks(String),
+    /// A pin was given a value it cannot hold.
+    #[error("scan {scan}: {target} cannot hold {value}")]
+    Value {
+        /// The scan.
+        scan: u64,
+        /// The pin or task that was to take it.
+        target: String,
+        /// The value as text.
+        value: String,
+    },
+    /// A step pushes an axis whose power is on; the ideal drive then holds its position.
+    #[error(
+        "steps[{step}], scan {scan}: {axis} is powered, so it cannot be displaced; switch its power off first"
+    )]
+    Displaced {
+        /// Index of the step.
+        step: usize,
+        /// The scan.
+        scan: u64,
+        /// Name of the axis.
+        axis: String,
+    },
+    /// A defect of this program.
+    #[error("internal: {0}")]
+    Internal(String),
+}
+
+/// Runs a script to its end and judges its claims.
+///
+/// # Errors
+/// [`RunError`]; a claim that fails is none, it is a verdict.
+pub fn run(script: &Script) -> Result<Outcome, RunError> {
+    run_with(script, |_| {})
+}
+
+/// As [`run`], telling from time to time how many scans are done.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_with(script: &Script, mut progress: impl FnMut(u64)) -> Result<Outcome, RunError> {
+    let layout = Layout::new(script);
+    let header = layout::header(script);
+    let columns = header.columns().len();
+    if script.scans.saturating_mul(columns as u64) > CELLS_MAX {
+        return Err(RunError::TooLarge {
+            scans: script.scans,
+            columns,
+        });
+    }
+    let mut trace = record(script, &layout, Trace::new(header), &mut progress)?;
+    let verdicts = claims::judge(script, &trace);
+    trace.set_claims(verdicts.iter().map(told).collect());
+    Ok(Outcome { trace, verdicts })
+}
+
+fn told(verdict: &Verdict) -> Claim {
+    Claim {
+        path: verdict.path.clone(),
+        text: verdict.says.clone(),
+        verdict: if verdict.passed() {
+            ClaimVerdict::Passed
+        } else {
+            ClaimVerdict::Failed
+        },
+    }
+}
+
+/// Scans until the script's end.
+fn record(
+    script: &Script,
+    layout: &Layout,
+    trace: Trace,
+    progress: &mut impl FnMut(u64),
+) -> Result<Trace, RunError> {
+    let mut machine = bench::machine(script)?;
+    let mut executor = executor(script)?;
+    let mut bench = Bench::new(script, layout, trace)?;
+    for scan in 0..script.scans {
+        let now_ns = script.cycle_ns.saturating_mul(scan.cast_signed());
+        let report = executor
+            .scan(now_ns, &mut bench, &mut machine)
+            .map_err(|error| RunError::Internal(error.to_string()))?;
+        bench.check()?;
+        if let Some(fault) = report.fault {
+            return Err(RunError::Internal(executor.describe(fault).to_string()));
+        }
+        if bench.is_over(scan) {
+            break;
+        }
+        if scan % PROGRESS_EVERY == PROGRESS_EVERY - 1 {
+            progress(scan + 1);
+        }
+    }
+    Ok(bench.into_trace())
+}
+
+/// One program per task, in the order of the tasks: it calls the task's instances in file order.
+fn executor(script: &Script) -> Result<Executor, RunError> {
+    let cycle_ns = script.cycle_ns.unsigned_abs();
+    let tasks: Vec<_> = script
+        .tasks
+        .iter()
+        .map(|task| {
+            let interval_ns = task.interval.unwrap_or(0).saturating_mul(cycle_ns);
+            TaskConfig {
+                name: task.name.clone(),
+                interval_ns,
+                priority: task.priority,
+                single: task.single.is_some(),
+                // Nobody counts what a script's programs take, so it is there but never fires.
+                watchdog: task.watchdog.map(|sensitivity| Watchdog {
+                    limit_ns: interval_ns.max(cycle_ns),
+                    sensitivity,
+                }),
+            }
+        })
+        .collect();
+    let programs: Vec<_> = script
+        .tasks
+        .iter()
+        .map(|task| ProgramConfig::with(&task.name, &task.name))
+        .collect();
+    Executor::new(cycle_ns, &tasks, &programs).map_err(|error| RunError::Tasks(error.to_string()))
+}

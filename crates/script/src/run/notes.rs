@@ -1,0 +1,170 @@
+//! What the axes recorded, as notes in the trace.
+
+use super::bench::{ScriptMachine, instance_id};
+use super::cells::number_text;
+use crate::model::Script;
+use standstill_axis::{Event, Excess, Goal, LOG_KEPT, Order, Record, StandardPlan};
+use standstill_trace::{Note, Trace};
+
+/// How many records have been taken from the ring so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Notes {
+    taken: u64,
+}
+
+impl Notes {
+    /// Takes this scan's records into the trace.
+    pub(crate) fn take(&mut self, script: &Script, machine: &ScriptMachine, trace: &mut Trace) {
+        let log = machine.log();
+        let lost = (log.total() - self.taken).saturating_sub(LOG_KEPT as u64);
+        let records: Vec<_> = log.since(self.taken).collect();
+        self.taken = log.total();
+        let scan = trace.scans().saturating_sub(1);
+        if lost > 0 {
+            trace.push_note(Note {
+                scan,
+                subject: "log".to_owned(),
+                text: format!("{lost} records of this scan are lost: the ring holds {LOG_KEPT}"),
+            });
+        }
+        for (index, record) in records.iter().enumerate() {
+            // Only the last plan of an axis in a scan is still there to be told in full.
+            let replaced = records
+                .iter()
+                .skip(index + 1)
+                .any(|later| later.axis == record.axis && matches!(later.event, Event::Planned { .. }));
+            let axis = machine.axes().get(record.axis.index());
+            let plan = axis
+                .and_then(|axis| axis.plan())
+                .map(|(plan, _)| plan)
+                .filter(|_| !replaced);
+            trace.push_note(Note {
+                scan: usize::try_from(record.scan).unwrap_or(scan),
+                subject: subject(script, record),
+                text: text(script, record, plan),
+            });
+        }
+    }
+}
+
+fn axis_name(script: &Script, record: &Record) -> String {
+    let axis = script.axes.get(record.axis.index());
+    axis.map_or_else(String::new, |axis| axis.name.clone())
+}
+
+fn instance_name<'a>(script: &'a Script, record: &Record) -> Option<&'a str> {
+    (0..)
+        .zip(&script.blocks)
+        .find(|(index, _)| instance_id(*index) == record.instance)
+        .map(|(_, instance)| instance.name.as_str())
+}
+
+/// Whose line the note stands under: what a program asked for under its instance, what the axis did under
+/// the axis.
+fn subject(script: &Script, record: &Record) -> String {
+    match record.event {
+        Event::Refused { .. } | Event::Clamped { .. } | Event::LowerUsed { .. } => {
+            instance_name(script, record).map_or_else(|| axis_name(script, record), str::to_owned)
+        }
+        Event::Unavoidable(_) | Event::Planned { .. } | Event::Fault { .. } => axis_name(script, record),
+    }
+}
+
+fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String {
+    match record.event {
+        Event::Refused {
+            pin,
+            value,
+            limit,
+            error,
+        } => {
+            let number = error.number();
+            let value = match pin {
+                "" => String::new(),
+                pin if value.is_nan() => format!(", {pin}"),
+                pin => format!(", {pin} {}", number_text(value)),
+            };
+            let limit = if limit.is_nan() {
+                String::new()
+            } else {
+                format!(", limit {}", number_text(limit))
+            };
+            format!("refused: {number} {}{value}{limit}", error.name())
+        }
+        Event::Clamped { pin, value, limit } => {
+            format!("clamped: {pin} {} to {}", number_text(value), number_text(limit))
+        }
+        Event::LowerUsed { value, limit } => {
+            format!(
+                "lower used for Acceleration and Deceleration: {} instead of {}",
+                number_text(limit),
+                number_text(value)
+            )
+        }
+        Event::Unavoidable(excess) => format!("unavoidable: {}", excess_text(&excess)),
+        Event::Planned { goal, scans } => {
+            let goal = match goal {
+                Goal::Position(position) => format!("position {}", number_text(position)),
+                Goal::Velocity(velocity) => format!("velocity {}", number_text(velocity)),
+            };
+            let by = instance_name(script, record).map_or_else(String::new, |name| format!(" for {name}"));
+            let how = plan.map_or_else(String::new, |plan| format!("; {}", plan_text(plan)));
+            format!("plan{by} to {goal} in {scans} scans{how}")
+        }
+        Event::Fault { error, code } => {
+            format!("fault {} {}, code {code}", error.number(), error.name())
+        }
+    }
+}
+
+fn excess_text(excess: &Excess) -> String {
+    let parts = [
+        ("velocity", excess.velocity),
+        ("acceleration", excess.acceleration),
+        ("jerk", excess.jerk),
+    ];
+    let told = parts
+        .iter()
+        .filter(|(_, value)| *value != 0.0)
+        .map(|(name, value)| format!("{name} {} above its limit", number_text(*value)));
+    told.collect::<Vec<_>>().join(", ")
+}
+
+/// Everything a plan is made of, to the bit.
+fn plan_text(plan: &StandardPlan) -> String {
+    match plan {
+        StandardPlan::Grid(grid) => {
+            let boxes: Vec<_> = grid.boxes().iter().map(u32::to_string).collect();
+            let derivative = match grid.order() {
+                Order::Two => "acceleration",
+                Order::Three => "jerk",
+                Order::Four => "snap",
+            };
+            format!(
+                "from {}, boxes {}, {derivative} {}",
+                number_text(grid.start()),
+                boxes.join(" "),
+                number_text(grid.amplitude())
+            )
+        }
+        StandardPlan::Ramp(ramp) => {
+            let segments: Vec<_> = ramp
+                .segments()
+                .map(|segment| {
+                    format!(
+                        "{} s of a={} j={} s={}",
+                        number_text(segment.duration),
+                        number_text(segment.acceleration),
+                        number_text(segment.jerk),
+                        number_text(segment.snap)
+                    )
+                })
+                .collect();
+            format!("segments {}", segments.join(", "))
+        }
+        StandardPlan::BrakeThenGrid(brake, grid) => {
+            let brake = plan_text(&StandardPlan::Ramp(*brake));
+            format!("brake {brake}; then {}", plan_text(&StandardPlan::Grid(*grid)))
+        }
+    }
+}

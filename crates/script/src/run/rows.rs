@@ -1,0 +1,178 @@
+//! Conditions on the rows of a trace.
+
+use super::cells;
+use super::layout::Layout;
+use crate::model::{AxisNumber, Comparison, Condition, Point, Script, Signal, Test};
+use standstill_fb::PinType;
+use standstill_trace::{Cell, Trace};
+
+/// The rows of a run so far, reached by a script's signals.
+#[derive(Clone, Copy)]
+pub(crate) struct Rows<'a> {
+    pub(crate) script: &'a Script,
+    pub(crate) layout: &'a Layout,
+    pub(crate) trace: &'a Trace,
+}
+
+impl<'a> Rows<'a> {
+    /// Rows there are: scans 0 to this, exclusive.
+    pub(crate) fn count(&self) -> u64 {
+        self.trace.scans() as u64
+    }
+
+    /// The value of a signal in a scan; `None` outside the run.
+    pub(crate) fn cell(&self, signal: &Signal, scan: u64) -> Option<Cell<'a>> {
+        let column = match *signal {
+            Signal::Point(point) => self.layout.point(point)?,
+            Signal::State(axis) => self.layout.state(axis),
+            Signal::Axis(axis, number) => self.layout.number(axis, number),
+            Signal::Difference(axis, order) => {
+                let [.., last] = self.differences(axis, scan, order)?;
+                return Some(Cell::Real(last));
+            }
+        };
+        self.trace.cell(usize::try_from(scan).ok()?, column)
+    }
+
+    /// Published position of an axis (u) `back` scans before `scan`; before scan 0 it stood still where it
+    /// started. `None` past the end.
+    pub(crate) fn position(&self, axis: usize, scan: u64, back: u64) -> Option<f64> {
+        let Some(scan) = scan.checked_sub(back) else {
+            return Some(self.script.axes.get(axis)?.config.position);
+        };
+        let column = self.layout.number(axis, AxisNumber::Position);
+        match self.trace.cell(usize::try_from(scan).ok()?, column)? {
+            Cell::Real(position) => Some(position),
+            Cell::Bool(_) | Cell::Integer(_) | Cell::Name(_) => None,
+        }
+    }
+
+    /// Backward difference of published positions of this order (1 to 4) at `scan` over cycle^order, after
+    /// the one of the same order one scan earlier: [before, now].
+    ///
+    /// Subtracts neighbours `order` times rather than weighing positions with binomial coefficients:
+    /// neighbours are close, so nearly every subtraction is exact.
+    fn differences(&self, axis: usize, scan: u64, order: u8) -> Option<[f64; 2]> {
+        let order = usize::from(order);
+        // Newest first; order + 2 of them give two differences.
+        let mut values = [0.0; 6];
+        let used = values.get_mut(..order + 2)?;
+        for (back, value) in used.iter_mut().enumerate() {
+            *value = self.position(axis, scan, back as u64)?;
+        }
+        let cycle = self.script.cycle_ns as f64 / 1e9;
+        let mut unit = 1.0;
+        for length in (0..order).map(|done| order + 1 - done) {
+            unit *= cycle;
+            for index in 0..length {
+                if let [newer, older] = &mut used[index..index + 2] {
+                    *newer -= *older;
+                }
+            }
+        }
+        match used {
+            [now, before, ..] => Some([*before / unit, *now / unit]),
+            _ => None,
+        }
+    }
+
+    /// [`Rows::differences`] of orders 1 to 4, and the first one a scan earlier.
+    pub(crate) fn derivatives(&self, axis: usize, scan: u64) -> Option<Derivatives> {
+        let [velocity_before, velocity] = self.differences(axis, scan, 1)?;
+        let now = |order| self.differences(axis, scan, order).map(|[_, now]| now);
+        Some(Derivatives {
+            velocity_before,
+            orders: [velocity, now(2)?, now(3)?, now(4)?],
+        })
+    }
+
+    /// Whether all conditions hold on the row of `scan`.
+    pub(crate) fn hold(&self, conditions: &[Condition], scan: u64) -> bool {
+        conditions.iter().all(|condition| self.holds(condition, scan))
+    }
+
+    /// Whether a condition holds on the row of `scan`; on a row that does not exist it does not.
+    pub(crate) fn holds(&self, condition: &Condition, scan: u64) -> bool {
+        self.cell(&condition.signal, scan)
+            .is_some_and(|cell| self.meets(&condition.signal, &condition.test, cell, scan))
+    }
+
+    fn meets(&self, signal: &Signal, test: &Test, cell: Cell<'_>, scan: u64) -> bool {
+        match test {
+            Test::Bool(wanted) => cell == Cell::Bool(*wanted),
+            Test::State(wanted) => cell == Cell::Name(wanted.name()),
+            Test::Exactly(wanted) => match (cell, self.pin_type(signal)) {
+                (Cell::Name(name), Some(PinType::Enum(info))) => {
+                    cells::enum_number(&info, name).is_some_and(|number| f64::from(number) == *wanted)
+                }
+                _ => number(cell).is_some_and(|value| same(value, *wanted)),
+            },
+            Test::Named(wanted) => {
+                let text = cells::value_text(self.script, self.pin_type(signal), *wanted);
+                matches!(cell, Cell::Name(name) if name == text)
+            }
+            Test::Compare(comparisons) => comparisons
+                .iter()
+                .all(|comparison| self.compares(signal, comparison, cell, scan)),
+        }
+    }
+
+    fn compares(&self, signal: &Signal, comparison: &Comparison, cell: Cell<'_>, scan: u64) -> bool {
+        let is = |test: &dyn Fn(f64) -> bool| number(cell).is_some_and(test);
+        match comparison {
+            // Equal infinities have no difference.
+            Comparison::Near { near, within } => {
+                is(&|value| value == *near || (value - near).abs() <= *within)
+            }
+            Comparison::Le(bound) => is(&|value| value <= *bound),
+            Comparison::Ge(bound) => is(&|value| value >= *bound),
+            Comparison::Lt(bound) => is(&|value| value < *bound),
+            Comparison::Gt(bound) => is(&|value| value > *bound),
+            Comparison::AbsLe(bound) => is(&|value| value.abs() <= *bound),
+            Comparison::Ne(test) => !self.meets(signal, test, cell, scan),
+            Comparison::SameAs(_, other) => match self.cell(other, scan) {
+                Some(other) => match (number(cell), number(other)) {
+                    (Some(one), Some(other)) => same(one, other),
+                    _ => cell == other,
+                },
+                None => false,
+            },
+        }
+    }
+
+    /// Type of the pin a signal stands for, if it is one.
+    pub(crate) fn pin_type(&self, signal: &Signal) -> Option<PinType> {
+        match *signal {
+            Signal::Point(Point::Pin(instance, pin)) => {
+                let instance = self.script.blocks.get(instance)?;
+                instance.block.pins().nth(pin).map(|pin| pin.ty)
+            }
+            Signal::Point(Point::Input(_)) | Signal::State(_) | Signal::Axis(..) | Signal::Difference(..) => {
+                None
+            }
+        }
+    }
+}
+
+/// Backward differences of an axis in one scan.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Derivatives {
+    /// The first one, a scan earlier (u/s).
+    pub(crate) velocity_before: f64,
+    /// Velocity, acceleration, jerk, snap (u/s .. u/s^4).
+    pub(crate) orders: [f64; 4],
+}
+
+fn number(cell: Cell<'_>) -> Option<f64> {
+    match cell {
+        Cell::Real(value) => Some(value),
+        // Exact up to 2^53: TIME up to 104 days, and every other integer pin.
+        Cell::Integer(value) => Some(value as f64),
+        Cell::Bool(_) | Cell::Name(_) => None,
+    }
+}
+
+/// The same bits, but for the sign of zero and the payload of NaN, which a trace does not hold.
+fn same(one: f64, other: f64) -> bool {
+    one == other || (one.is_nan() && other.is_nan())
+}

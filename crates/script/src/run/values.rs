@@ -1,0 +1,88 @@
+//! What input variables and pins hold, and what wires make of it.
+
+use super::cells::convert;
+use crate::model::{Point, Script, Wire};
+use standstill_blocks::BlockInstance;
+use standstill_fb::{AnyInstance, PinType, Value};
+
+/// The values a script's wires read and its steps write, as they stand.
+#[derive(Clone, Debug)]
+pub(crate) struct Values {
+    pub(crate) variables: Vec<Value>,
+    pub(crate) instances: Vec<BlockInstance>,
+}
+
+impl Values {
+    /// Variables at their initial values, pins at the script's constants. `None` if a block is not in the
+    /// registry or does not take one of the constants, which a checked script rules out.
+    pub(crate) fn new(script: &Script) -> Option<Self> {
+        let mut instances = Vec::with_capacity(script.blocks.len());
+        for declared in &script.blocks {
+            let mut instance = BlockInstance::new(declared.block.name)?;
+            for (pin, value) in &declared.constants {
+                instance.set(*pin, *value).ok()?;
+            }
+            instances.push(instance);
+        }
+        Some(Self {
+            variables: script.inputs.iter().map(|input| input.initial).collect(),
+            instances,
+        })
+    }
+
+    /// The value at a point.
+    pub(crate) fn read(&self, point: Point) -> Option<Value> {
+        match point {
+            Point::Input(index) => self.variables.get(index).copied(),
+            Point::Pin(instance, pin) => self.instances.get(instance)?.get(pin),
+        }
+    }
+
+    /// Writes a variable, or an input pin if it can hold the value.
+    pub(crate) fn write(&mut self, point: Point, value: Value) -> Option<()> {
+        match point {
+            Point::Input(index) => {
+                let variable = self.variables.get_mut(index)?;
+                // A variable keeps the type it was declared with.
+                let ty = match variable {
+                    Value::Bool(_) => PinType::Bool,
+                    _ => PinType::Lreal,
+                };
+                *variable = convert(value, ty)?;
+            }
+            Point::Pin(instance, pin) => {
+                let instance = self.instances.get_mut(instance)?;
+                let ty = instance.info().pins().nth(pin)?.ty;
+                instance.set(pin, convert(value, ty)?).ok()?;
+            }
+        }
+        Some(())
+    }
+
+    /// What a wire carries; a logical wire carries nothing if one of its points is no BOOL.
+    pub(crate) fn wire(&self, wire: &Wire) -> Option<Value> {
+        let all: &dyn Fn(&[Point]) -> Option<Vec<bool>> =
+            &|points| points.iter().map(|point| self.bool(*point)).collect();
+        match wire {
+            Wire::From(point) => self.read(*point),
+            Wire::Not(point) => Some(Value::Bool(!self.bool(*point)?)),
+            Wire::Any(points) => Some(Value::Bool(all(points)?.contains(&true))),
+            Wire::All(points) => Some(Value::Bool(!all(points)?.contains(&false))),
+        }
+    }
+
+    /// The BOOL a wire carries.
+    pub(crate) fn wire_bool(&self, wire: &Wire) -> Option<bool> {
+        match self.wire(wire)? {
+            Value::Bool(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    fn bool(&self, point: Point) -> Option<bool> {
+        match self.read(point)? {
+            Value::Bool(value) => Some(value),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! Folders of scan scripts: finding them, and judging one as a test.
+//!
+//! The command line and the repository's own tests call the same functions, so both give the same verdict.
+
+use crate::golden::{self, Mode, Standing};
+use crate::run::{Outcome, RunError, run_with};
+use crate::{ScriptError, Verdict, read};
+use standstill_trace::golden::GoldenError;
+use std::fmt;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What the name of a scan script ends in.
+pub const EXTENSION: &str = ".scan.json";
+
+/// Endings of the files that belong to a script.
+const COMPANIONS: [&str; 3] = [".snap", ".exact", ".snap.new"];
+
+/// A script, run and judged.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Its trace and its judged claims.
+    pub outcome: Outcome,
+    /// How it stands to its golden.
+    pub golden: Standing,
+}
+
+impl Report {
+    /// Whether all claims hold and the golden is met.
+    pub fn passed(&self) -> bool {
+        self.outcome.passed() && !matches!(self.golden, Standing::Failed(_))
+    }
+}
+
+/// What failed, a paragraph each: claims first, in file order, then the golden.
+impl fmt::Display for Report {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for failure in self.outcome.verdicts.iter().flat_map(failures) {
+            writeln!(out, "{failure}")?;
+        }
+        match &self.golden {
+            Standing::Same | Standing::Accepted => Ok(()),
+            Standing::Failed(why) => writeln!(out, "golden: {}", why.trim_end()),
+        }
+    }
+}
+
+fn failures(verdict: &Verdict) -> impl Iterator<Item = &crate::Failure> {
+    verdict.failures.iter()
+}
+
+/// Why a script could not be judged.
+#[derive(Debug, thiserror::Error)]
+pub enum SuiteError {
+    /// A file or folder could not be read.
+    #[error("{}: {source}", shown(.path))]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The script is no UTF-8 text.
+    #[error("{}: not UTF-8 after {valid} bytes", shown(.path))]
+    Encoding {
+        /// The script.
+        path: PathBuf,
+        /// So many bytes are text.
+        valid: usize,
+    },
+    /// The script is not usable.
+    #[error(transparent)]
+    Script(#[from] ScriptError),
+    /// The script could not be run to its end.
+    #[error("{}: {source}", shown(.path))]
+    Run {
+        /// The script.
+        path: PathBuf,
+        /// Why.
+        source: RunError,
+    },
+    /// The golden could not be read or written.
+    #[error(transparent)]
+    Golden(#[from] GoldenError),
+}
+
+impl SuiteError {
+    fn io(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::Io {
+            path: path.to_owned(),
+            source,
+        }
+    }
+}
+
+/// A path as it is printed: with `/` on every system.
+pub fn shown(path: &Path) -> String {
+    path.display().to_string().replace(std::path::MAIN_SEPARATOR, "/")
+}
+
+/// Reads and runs the script at `path`, and holds it against its claims and its golden. `progress` is told
+/// from time to time how many scans are done.
+///
+/// # Errors
+/// [`SuiteError`]; claims and goldens that fail are no error but stand in the report.
+pub fn judge_file(path: &Path, mode: Mode, progress: impl FnMut(u64)) -> Result<Report, SuiteError> {
+    let outcome = run_file(path, &[], progress)?;
+    let golden = golden::judge(path, &outcome, mode)?;
+    Ok(Report { outcome, golden })
+}
+
+/// Reads and runs the script at `path`, with these values in place of its own parameters.
+///
+/// # Errors
+/// [`SuiteError`], but for [`SuiteError::Golden`].
+pub fn run_file(
+    path: &Path,
+    parameters: &[(String, f64)],
+    progress: impl FnMut(u64),
+) -> Result<Outcome, SuiteError> {
+    let bytes = fs::read(path).map_err(SuiteError::io(path))?;
+    let text = String::from_utf8(bytes).map_err(|error| SuiteError::Encoding {
+        path: path.to_owned(),
+        valid: error.utf8_error().valid_up_to(),
+    })?;
+    let script = read(&text, &shown(path), parameters)?;
+    run_with(&script, progress).map_err(|source| SuiteError::Run {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+/// All scan scripts in a folder and the folders in it, sorted by path; a path that is a file is taken as it
+/// is.
+///
+/// # Errors
+/// A folder that cannot be read.
+pub fn find(path: &Path) -> Result<Vec<PathBuf>, SuiteError> {
+    if !path.is_dir() {
+        fs::metadata(path).map_err(SuiteError::io(path))?;
+        return Ok(vec![path.to_owned()]);
+    }
+    let mut files = walk(path)?;
+    files.retain(|file| stem(file, EXTENSION).is_some());
+    Ok(files)
+}
+
+/// Goldens and proposals in a folder whose script is not there any more, sorted by path.
+///
+/// # Errors
+/// A folder that cannot be read.
+pub fn orphans(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
+    let files = walk(folder)?;
+    let has_script = |stem: &str| {
+        files
+            .binary_search(&PathBuf::from(format!("{stem}{EXTENSION}")))
+            .is_ok()
+    };
+    let lonely = |file: &Path| {
+        COMPANIONS
+            .iter()
+            .any(|ending| stem(file, ending).is_some_and(|stem| !has_script(&stem)))
+    };
+    Ok(files.iter().filter(|file| lonely(file)).cloned().collect())
+}
+
+/// The name of a script as a test: its path in `folder` without extension.
+pub fn name(folder: &Path, script: &Path) -> String {
+    let inner = script.strip_prefix(folder).unwrap_or(script);
+    stem(inner, EXTENSION).map_or_else(|| shown(inner), |stem| shown(Path::new(&stem)))
+}
+
+fn stem(file: &Path, ending: &str) -> Option<String> {
+    file.to_str()?.strip_suffix(ending).map(str::to_owned)
+}
+
+/// All files below a folder, sorted.
+fn walk(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
+    let mut files = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).map_err(SuiteError::io(&folder))? {
+            let entry = entry.map_err(SuiteError::io(&folder))?;
+            let kind = entry.file_type().map_err(SuiteError::io(&folder))?;
+            // Links to folders are not followed: they could lead back here.
+            if kind.is_dir() {
+                folders.push(entry.path());
+            } else {
+                files.push(entry.path());
+            }
+        }
+    }
+    files.sort();
+    Ok(files)
+}
