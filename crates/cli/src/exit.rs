@@ -1,11 +1,17 @@
 //! How a command ends: the exit statuses, and the failures that lead to them.
 
-use std::io::{self, Write};
+use standstill_script::RunError;
+use standstill_script::suite::SuiteError;
+use standstill_trace::file::FileError;
+use standstill_trace::golden::GoldenError;
+use std::io::{self, ErrorKind, Write};
 use std::panic::{self, UnwindSafe};
 use std::process::ExitCode;
 
 /// The exit statuses of the program. They are interface: scripts and CI jobs rely on them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+///
+/// Where several scripts are judged in one go the highest status counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Exit {
     /// Everything asked for was done and holds.
@@ -28,49 +34,95 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// Why a command stopped before its end. The texts are whole messages, several lines if need be.
+impl Exit {
+    /// [`Exit::Passed`] if so, else [`Exit::Failed`].
+    pub const fn of(passed: bool) -> Self {
+        if passed { Self::Passed } else { Self::Failed }
+    }
+}
+
+/// Why a command could not do what it was asked to.
 #[derive(Debug)]
 pub enum Failure {
-    /// Arguments that parse but make no sense together.
-    Usage(String),
-    /// A script, trace or configuration that is wrong.
-    BadInput(String),
-    /// A file that could not be read or written.
-    Io(String),
+    /// It ends with this status, after this message.
+    Told(Exit, String),
     /// Standard output could not be written.
     Output(io::Error),
 }
 
-impl From<io::Error> for Failure {
-    /// Only standard output is written with a bare `?`; errors of files are given their path first.
-    fn from(error: io::Error) -> Self {
-        Self::Output(error)
-    }
-}
-
 impl Failure {
-    /// Reports the failure on standard error; returns the status that goes with it.
+    /// Arguments that parse but make no sense together.
+    pub fn usage(text: &str) -> Self {
+        Self::Told(
+            Exit::Usage,
+            format!("error: {text}\n\nFor more information, try '--help'."),
+        )
+    }
+
+    /// A file that could not be read or written; text that is no UTF-8 is a wrong file, not a bad disk.
+    pub fn io(name: &str, error: &io::Error) -> Self {
+        Self::Told(io_exit(error), format!("error: {name}: {error}"))
+    }
+
+    /// Tells people on standard error; returns the status that goes with it.
     pub fn report(&self) -> Exit {
         match self {
-            Self::Usage(text) => {
-                complain(&format!("error: {text}\n\nFor more information, try '--help'."));
-                Exit::Usage
-            }
-            Self::BadInput(text) => {
+            Self::Told(exit, text) => {
                 complain(text);
-                Exit::BadInput
-            }
-            Self::Io(text) => {
-                complain(&format!("error: {text}"));
-                Exit::Io
+                *exit
             }
             // The reader has seen enough, as in `standstill plan | head -1`.
-            Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe => Exit::Passed,
+            Self::Output(error) if error.kind() == ErrorKind::BrokenPipe => Exit::Passed,
             Self::Output(error) => {
                 complain(&format!("error: standard output: {error}"));
                 Exit::Io
             }
         }
+    }
+}
+
+fn io_exit(error: &io::Error) -> Exit {
+    match error.kind() {
+        ErrorKind::InvalidData => Exit::BadInput,
+        _ => Exit::Io,
+    }
+}
+
+impl From<io::Error> for Failure {
+    /// Only standard output is written with a bare `?`; errors of files are given their name first.
+    fn from(error: io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+impl From<SuiteError> for Failure {
+    fn from(error: SuiteError) -> Self {
+        let exit = match &error {
+            SuiteError::Io { source, .. } | SuiteError::Golden(GoldenError::Io { source, .. }) => {
+                io_exit(source)
+            }
+            SuiteError::Run {
+                source: RunError::Internal(_),
+                ..
+            } => Exit::Internal,
+            SuiteError::Encoding { .. }
+            | SuiteError::Run { .. }
+            | SuiteError::Golden(GoldenError::Form { .. }) => Exit::BadInput,
+            // Its text is a rendered one.
+            SuiteError::Script(script) => return Self::Told(Exit::BadInput, script.to_string()),
+        };
+        Self::Told(exit, format!("error: {error}"))
+    }
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
+        let exit = match &error {
+            FileError::Form { .. } => Exit::Usage,
+            FileError::Io { source, .. } => io_exit(source),
+            FileError::Text { .. } | FileError::Exact { .. } => Exit::BadInput,
+        };
+        Self::Told(exit, format!("error: {error}"))
     }
 }
 
@@ -97,13 +149,41 @@ mod tests {
     fn a_panic_ends_with_the_status_of_an_internal_fault() {
         assert_eq!(guarded(|| panic!("an invariant broke")), Exit::Internal);
         assert_eq!(guarded(|| Exit::Failed), Exit::Failed);
-        assert_eq!(Exit::Internal as u8, 70);
     }
 
     #[test]
     fn a_closed_pipe_is_no_failure_and_a_full_disk_is_one() {
-        let output = |kind: io::ErrorKind| Failure::from(io::Error::from(kind)).report();
-        assert_eq!(output(io::ErrorKind::BrokenPipe), Exit::Passed);
-        assert_eq!(output(io::ErrorKind::StorageFull), Exit::Io);
+        let output = |kind: ErrorKind| Failure::from(io::Error::from(kind)).report();
+        assert_eq!(output(ErrorKind::BrokenPipe), Exit::Passed);
+        assert_eq!(output(ErrorKind::StorageFull), Exit::Io);
+    }
+
+    #[test]
+    fn a_defect_of_the_run_is_not_blamed_on_the_script() {
+        let run = |source| {
+            Failure::from(SuiteError::Run {
+                path: "a.scan.json".into(),
+                source,
+            })
+            .report()
+        };
+        assert_eq!(
+            run(RunError::Internal("an invariant broke".to_owned())),
+            Exit::Internal
+        );
+        assert_eq!(run(RunError::Tasks("no task".to_owned())), Exit::BadInput);
+    }
+
+    #[test]
+    fn the_statuses_are_the_published_ones() {
+        let all = [
+            Exit::Passed,
+            Exit::Failed,
+            Exit::Usage,
+            Exit::BadInput,
+            Exit::Io,
+            Exit::Internal,
+        ];
+        assert_eq!(all.map(|exit| exit as u8), [0, 1, 2, 3, 4, 70]);
     }
 }

@@ -6,13 +6,18 @@
 mod args;
 mod blocks;
 mod exit;
+mod explain;
 mod json;
 mod plan;
+mod progress;
+mod run;
 mod suggest;
+mod test;
 
 use args::{Arguments, Command};
 use clap::Parser;
 use exit::{Exit, Failure};
+use standstill_script::suite::shown;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, IsTerminal, Write};
 use std::path::Path;
@@ -25,7 +30,7 @@ fn main() -> ExitCode {
 fn program() -> Exit {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) => return arguments_exit(&error),
+        Err(error) => return explained(&error),
     };
     let mut out = BufWriter::new(io::stdout().lock());
     let result = dispatch(&arguments.command, &mut out);
@@ -38,7 +43,7 @@ fn program() -> Exit {
 }
 
 /// Prints what clap has to say: help and version on standard output, mistakes on standard error.
-fn arguments_exit(error: &clap::Error) -> Exit {
+fn explained(error: &clap::Error) -> Exit {
     match error.print() {
         Ok(()) if error.use_stderr() => Exit::Usage,
         Ok(()) => Exit::Passed,
@@ -48,17 +53,23 @@ fn arguments_exit(error: &clap::Error) -> Exit {
 
 fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
     match command {
-        Command::Plan { file } => match file.as_deref() {
-            Some(path) if path != Path::new("-") => {
-                let name = args::shown(path);
-                let open = File::open(path).map_err(|error| Failure::Io(format!("{name}: {error}")))?;
-                plan::plan(&mut BufReader::new(open), &name, out)
-            }
-            _ => plan::plan(&mut standard_input(), "standard input", out),
-        },
+        Command::Run(arguments) => run::run(arguments, out),
+        Command::Test { paths, accept } => test::test(paths, *accept, out),
+        Command::Explain { expected, found } => explain::explain(expected, found, out),
+        Command::Plan { file: Some(path) } if !is_standard(path) => {
+            let name = shown(path);
+            let file = File::open(path).map_err(|error| Failure::io(&name, &error))?;
+            plan::plan(&mut BufReader::new(file), &name, out)
+        }
+        Command::Plan { .. } => plan::plan(&mut standard_input(), "standard input", out),
         Command::Blocks { json: true } => blocks::json(out),
         Command::Blocks { json: false } => blocks::table(out),
     }
+}
+
+/// Whether a path stands for standard input.
+fn is_standard(path: &Path) -> bool {
+    path == Path::new("-")
 }
 
 /// Standard input; tells a person at a terminal that it is waited for.

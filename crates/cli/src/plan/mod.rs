@@ -19,7 +19,7 @@ pub fn plan(input: &mut dyn BufRead, name: &str, out: &mut dyn Write) -> Result<
     loop {
         line.clear();
         let read = input.read_until(b'\n', &mut line);
-        if read.map_err(|error| Failure::Io(format!("{name}: {error}")))? == 0 {
+        if read.map_err(|error| Failure::io(name, &error))? == 0 {
             return Ok(exit);
         }
         let text = if first {
