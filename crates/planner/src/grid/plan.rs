@@ -25,6 +25,9 @@ pub struct GridPlan {
     pub(super) wide: bool,
 }
 
+/// A plan is copied about by value, so it stays small.
+const _: () = assert!(size_of::<GridPlan>() <= 96);
+
 /// Durations of the segments in scans, as the published planner counts them (docs/planner.md, eq. 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counts {
