@@ -214,38 +214,36 @@ pub(super) fn arrested(state: State, jerk: f64) -> f64 {
         .v
 }
 
-/// The spans by which a velocity that a gentle arrest would take out of `low ..= high` is kept as near to
-/// them as can be (R17, R18), and the root steps taken; none if it stays inside.
-pub(super) fn relieve(state: State, low: f64, high: f64, slack: f64, bounds: &Bounds) -> (Spans<4>, u32) {
-    let (above, steps) = relieve_top(state, low, high, slack, bounds);
-    if above.is_empty() {
-        let (below, steps) = relieve_top(state.mirrored(), -high, -low, slack, &bounds.mirrored());
-        (below.mirrored(), steps)
+/// The spans by which a velocity that a gentle arrest, ending at `rest`, would take out of `low ..= high` is
+/// kept as near to them as can be (R17, R18), and the root steps taken; none if it stays inside.
+pub(super) fn relieve(state: State, rest: f64, low: f64, high: f64, bounds: &Bounds) -> (Spans<4>, u32) {
+    let slack = ON_LIMIT * high.min(state.v.abs().max(rest.abs()));
+    if (top(state, rest) - high).min(rest - low) > slack {
+        push_down(state, low, high, bounds)
+    } else if (top(state.mirrored(), -rest) + low).min(high - rest) > slack {
+        let (spans, steps) = push_down(state.mirrored(), -high, -low, &bounds.mirrored());
+        (spans.mirrored(), steps)
     } else {
-        (above, steps)
+        (Spans::new(), 0)
     }
 }
 
 /// Pushes down until the arrest peaks at `high`; at most until the acceleration is zero, when there is
 /// nothing more to gain, and not so long that the arrest ends below `low`.
-fn relieve_top(state: State, low: f64, high: f64, slack: f64, bounds: &Bounds) -> (Spans<4>, u32) {
-    let jerk = bounds.a.plus;
-    let beyond = |state: State| {
-        let rest = arrested(state, jerk);
-        (top(state, rest) - high).min(rest - low)
-    };
-    if beyond(state) <= slack {
-        return (Spans::new(), 0);
-    }
+fn push_down(state: State, low: f64, high: f64, bounds: &Bounds) -> (Spans<4>, u32) {
     let push = second(state.a, state.j, -bounds.v.minus, bounds.a);
     let Some(longest) = falls_through_zero(state, &push) else {
         return (Spans::new(), 0);
     };
-    let after = |time: f64| state.after_all(&push.until::<4>(time));
-    let (time, steps) = if beyond(after(longest)) >= 0.0 {
+    let beyond = |time: f64| {
+        let state = state.after_all(&push.until::<4>(time));
+        let rest = arrested(state, bounds.a.plus);
+        (top(state, rest) - high).min(rest - low)
+    };
+    let (time, steps) = if beyond(longest) >= 0.0 {
         (longest, 0)
     } else {
-        falling_root(0.0, longest, |time| beyond(after(time)))
+        falling_root(0.0, longest, beyond)
     };
     (push.until(time), steps)
 }

@@ -138,28 +138,33 @@ impl Problem<'_> {
         let sides = |dips| scaled(self.sides(dips), &scale, 2);
         let lowest = if goal < 0.0 { -limit } else { 0.0 };
         let mut steps;
-        let fastest = state.v.max(inside::arrested(state, jerk));
-        if bounds.is_lowered() && fastest > limit * (1.0 + ON_LIMIT) {
-            let hastened;
-            (hastened, steps) = inside::hasten(state, limit, goal, lowest, &bounds);
-            spans.extend(&hastened);
-            state = state.after_all(&hastened);
+        let mut rest = inside::arrested(state, jerk);
+        if bounds.is_lowered() && state.v.max(rest) > limit * (1.0 + ON_LIMIT) {
+            let lead;
+            (lead, steps) = inside::hasten(state, limit, goal, lowest, &bounds);
+            spans.extend(&lead);
+            state = state.after_all(&lead);
+            rest = inside::arrested(state, jerk);
         } else {
             let entering = inside::enter(state, &bounds);
-            spans.extend(&entering);
-            state = state.after_all(&entering);
-            let slack = ON_LIMIT * limit.min(state.v.abs().max(goal.abs()));
+            if !entering.is_empty() {
+                spans.extend(&entering);
+                state = state.after_all(&entering);
+                rest = inside::arrested(state, jerk);
+            }
             let bounds = Bounds {
                 v: sides(true),
                 a: Sides::both(jerk),
             };
             let relief;
-            (relief, steps) = inside::relieve(state, lowest, limit, slack, &bounds);
-            spans.extend(&relief);
-            state = state.after_all(&relief);
+            (relief, steps) = inside::relieve(state, rest, lowest, limit, &bounds);
+            if !relief.is_empty() {
+                spans.extend(&relief);
+                state = state.after_all(&relief);
+                rest = inside::arrested(state, jerk);
+            }
         }
 
-        let rest = inside::arrested(state, jerk);
         let dips = goal >= 0.0 && (state.v < 0.0 || rest < 0.0);
         let bounds = Bounds {
             v: sides(dips),

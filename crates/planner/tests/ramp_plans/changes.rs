@@ -1,6 +1,7 @@
 //! Reversals, limits that change on the way, and starts outside them.
 
 use crate::support::{self, ORDERS, Random, integrate};
+use standstill_planner::kernel::MAX_STEPS;
 use standstill_planner::{Excess, Limits, Order, RampPlan, Setpoint};
 use std::vec::Vec;
 
@@ -19,11 +20,11 @@ fn excess_seen(seen: &support::Seen, limits: &Limits, goal: f64, heading: f64) -
 }
 
 /// Any goal, and other limits at every link: each plan arrives, and its excess is what an integrator sees.
-#[test]
-fn chains_with_changing_limits_arrive_and_tell_their_excess() {
-    let mut random = Random(11);
+/// Returns the most pieces and root steps of a plan, and how many had an excess.
+fn changing_chains(seed: u64, chains: usize) -> (usize, u32, u32) {
+    let mut random = Random(seed);
     let (mut largest, mut steps, mut outside) = (0, 0, 0);
-    for chain in 0..1200 {
+    for chain in 0..chains {
         let order = ORDERS[chain % 3];
         let limits = support::limits(&mut random, order);
         let cycle = random.log(1e-4, 1e-2) * limits.velocity / limits.acceleration;
@@ -99,8 +100,25 @@ fn chains_with_changing_limits_arrive_and_tell_their_excess() {
             start = plan.at(random.below(u64::from(plan.scans()) + 2));
         }
     }
-    println!("largest {largest} steps {steps} outside {outside}");
+    (largest, steps, outside)
+}
+
+#[test]
+fn chains_with_changing_limits_arrive_and_tell_their_excess() {
+    let (largest, steps, outside) = changing_chains(11, 1200);
     assert!(outside > 500, "the test must meet starts outside: {outside}");
+    assert!(
+        largest <= 14 && steps < MAX_STEPS,
+        "{largest} pieces, {steps} steps"
+    );
+}
+
+/// `cargo test --release -p standstill-planner --test ramp_plans -- --ignored --nocapture`
+#[test]
+#[ignore = "some seconds in release"]
+fn a_million_ramps_with_changing_limits() {
+    let (largest, steps, outside) = changing_chains(12, 100_000);
+    println!("{largest} pieces, {steps} steps, {outside} of a million outside");
 }
 
 /// A plain simulation in small steps of the fastest way to bring a rising velocity to its peak: as much
