@@ -1,11 +1,12 @@
 //! A ramp as a list of polynomial pieces, its values and its extremes.
 
-use crate::kernel::falling_root;
+use super::inside::LEAD_SPANS;
+use crate::kernel::{THIRD_SPANS, falling_root};
 use crate::math::sqrt;
 use crate::{Order, Setpoint};
 
-/// Most pieces of a ramp: getting inside the limits, two relief spans and a third-order profile.
-pub(super) const MAX_PIECES: usize = 16;
+/// Most pieces of a ramp: getting inside the limits, then a third-order profile.
+pub(super) const MAX_PIECES: usize = LEAD_SPANS + THIRD_SPANS;
 
 /// What a jerk of zero may be off by, relative to the largest one before.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;

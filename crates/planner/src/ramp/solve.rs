@@ -22,6 +22,8 @@ pub(super) struct Problem<'a> {
 pub(super) struct Solution {
     pub(super) spans: Spans<MAX_PIECES>,
     pub(super) steps: u32,
+    /// Whether the start was inside and viable and the ramp keeps its direction, so that it exceeds nothing.
+    pub(super) viable: bool,
 }
 
 impl Problem<'_> {
@@ -49,6 +51,7 @@ impl Problem<'_> {
         let sides = self.sides(false);
         let mut velocity = self.start.velocity;
         let limit = self.limits.velocity;
+        let viable = velocity <= limit && velocity >= 0.0;
         if velocity > limit * (1.0 + ON_LIMIT) {
             let fast = self.wider.deceleration;
             spans.push((velocity - limit) / fast, -fast);
@@ -60,7 +63,11 @@ impl Problem<'_> {
         } else {
             spans.push(-change / sides.minus, -sides.minus);
         }
-        Solution { spans, steps: 0 }
+        Solution {
+            spans,
+            steps: 0,
+            viable,
+        }
     }
 
     /// Order 3: `(velocity, acceleration)` to `(goal, 0)` (R3).
@@ -101,6 +108,10 @@ impl Problem<'_> {
         } else {
             spans.extend(&state.inside(up, down, jerk));
         }
+        let viable = spans.is_empty()
+            && goal >= 0.0
+            && state.v.max(rest(state)) <= limit
+            && state.v.min(rest(state)) >= 0.0;
         state = state.after_all(&spans);
         let dips = goal >= 0.0 && rest(state) < 0.0;
         let sides = scaled(self.sides(dips), &scale, 1);
@@ -108,6 +119,7 @@ impl Problem<'_> {
         Solution {
             spans: in_seconds(&spans, &scale),
             steps,
+            viable,
         }
     }
 
@@ -115,8 +127,7 @@ impl Problem<'_> {
     pub(super) fn fourth_order(&self) -> Solution {
         let limits = self.limits;
         let scale = Scale::new(limits.acceleration.max(limits.deceleration), limits.snap, 2);
-        let mut spans = Spans::new();
-        let mut state = State {
+        let state = State {
             v: scale.inward(self.start.velocity, 3),
             a: scale.inward(self.start.acceleration, 2),
             j: scale.inward(self.start.jerk, 1),
@@ -135,47 +146,22 @@ impl Problem<'_> {
             jerk_before: scale.inward(self.wider.jerk, 1),
             snap_before: self.wider.snap / limits.snap,
         };
-        let sides = |dips| scaled(self.sides(dips), &scale, 2);
-        let lowest = if goal < 0.0 { -limit } else { 0.0 };
-        let mut steps;
-        let mut rest = inside::arrested(state, jerk);
-        if bounds.is_lowered() && state.v.max(rest) > limit * (1.0 + ON_LIMIT) {
-            let lead;
-            (lead, steps) = inside::hasten(state, limit, goal, lowest, &bounds);
-            spans.extend(&lead);
-            state = state.after_all(&lead);
-            rest = inside::arrested(state, jerk);
-        } else {
-            let entering = inside::enter(state, &bounds);
-            if !entering.is_empty() {
-                spans.extend(&entering);
-                state = state.after_all(&entering);
-                rest = inside::arrested(state, jerk);
-            }
-            let bounds = Bounds {
-                v: sides(true),
-                a: Sides::both(jerk),
-            };
-            let relief;
-            (relief, steps) = inside::relieve(state, rest, lowest, limit, &bounds);
-            if !relief.is_empty() {
-                spans.extend(&relief);
-                state = state.after_all(&relief);
-                rest = inside::arrested(state, jerk);
-            }
-        }
-
-        let dips = goal >= 0.0 && (state.v < 0.0 || rest < 0.0);
-        let bounds = Bounds {
-            v: sides(dips),
+        let own = |dips| Bounds {
+            v: scaled(self.sides(dips), &scale, 2),
             a: Sides::both(jerk),
         };
-        let profile = third(state.v, state.a, state.j, goal, &bounds);
+        let low = if goal < 0.0 { -limit } else { 0.0 };
+        let lead = inside::lead_in(state, goal, (low, limit), &bounds, &own(true));
+        let dips = goal >= 0.0 && (lead.state.v < 0.0 || lead.rest < 0.0);
+        let State { v, a, j } = lead.state;
+        let profile = third(v, a, j, goal, &own(dips));
+        let mut spans = Spans::new();
+        spans.extend(&lead.spans);
         spans.extend(&profile.spans);
-        steps = steps.max(profile.steps);
         Solution {
             spans: in_seconds(&spans, &scale),
-            steps,
+            steps: lead.steps.max(profile.steps),
+            viable: lead.viable && goal >= 0.0,
         }
     }
 }

@@ -152,7 +152,7 @@ fn greedy_peak(start: &Setpoint, limits: &Limits, step: f64) -> f64 {
 fn what_cannot_be_avoided_is_the_least_and_is_told() {
     let mut random = Random(41);
     let (mut exceeding, mut turning, mut gentle_is_worse) = (0, 0, 0);
-    for case in 0..3000 {
+    for case in 0..1200 {
         let velocity = random.log(0.1, 10.0);
         let acceleration = velocity * random.log(1.0, 10.0);
         let jerk = acceleration * random.log(30.0, 300.0);
@@ -247,7 +247,7 @@ fn what_cannot_be_avoided_is_the_least_and_is_told() {
     println!(
         "exceeding {exceeding} turning {turning} of them with an arrest that swings back {gentle_is_worse}"
     );
-    assert!(exceeding > 300 && turning > 300 && gentle_is_worse > 20);
+    assert!(exceeding > 300 && turning > 300 && gentle_is_worse > 15);
 }
 
 /// In the middle of a ramp under the old limits, new ones come: until the state is inside, the larger of

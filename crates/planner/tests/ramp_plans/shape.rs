@@ -577,3 +577,62 @@ fn unusable_inputs_are_refused_by_name() {
         "too long"
     );
 }
+
+/// Bounds of any size against each other: a plan or a refusal, and a plan ends exactly.
+#[test]
+fn absurd_inputs_end_in_a_plan_or_a_refusal() {
+    let mut random = Random(35);
+    let (mut planned, mut refused) = (0, 0);
+    for case in 0..20_000 {
+        let size = |random: &mut Random| random.log(1e-40, 1e40);
+        let signed = |random: &mut Random| match random.below(4) {
+            0 => 0.0,
+            1 => -random.log(1e-40, 1e40),
+            _ => random.log(1e-40, 1e40),
+        };
+        let bound = |random: &mut Random| {
+            if random.below(4) == 0 {
+                f64::INFINITY
+            } else {
+                random.log(1e-40, 1e40)
+            }
+        };
+        let limits = Limits {
+            velocity: bound(&mut random),
+            acceleration: size(&mut random),
+            deceleration: size(&mut random),
+            jerk: bound(&mut random),
+            snap: bound(&mut random),
+        };
+        let before = Limits {
+            jerk: bound(&mut random),
+            snap: bound(&mut random),
+            deceleration: bound(&mut random),
+            ..limits
+        };
+        let start = Setpoint {
+            position: signed(&mut random),
+            velocity: signed(&mut random),
+            acceleration: signed(&mut random),
+            jerk: signed(&mut random),
+            snap: 0.0,
+        };
+        let goal = signed(&mut random);
+        match RampPlan::new(&start, goal, &limits, &before, size(&mut random)) {
+            Ok(plan) => {
+                planned += 1;
+                let end = plan.at(u64::from(plan.scans()));
+                assert_eq!(
+                    (end.velocity, end.acceleration, end.jerk),
+                    (goal, 0.0, 0.0),
+                    "case {case}"
+                );
+                assert!(plan.segments().count() <= 14, "case {case}");
+                assert!(plan.duration() >= 0.0);
+            }
+            Err(_) => refused += 1,
+        }
+    }
+    println!("planned {planned} refused {refused}");
+    assert!(planned > 2000);
+}
