@@ -1,4 +1,4 @@
-//! Getting a start state inside the limits, before the ramp proper.
+//! Getting a start state inside the limits at order 4, before the ramp proper.
 //!
 //! Until it is inside, the larger ones of the old and the new limits hold, and the way takes the least time.
 //! Everything is in the kernel's units and mirrored so that the velocity is not negative.

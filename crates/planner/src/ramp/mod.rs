@@ -7,6 +7,7 @@
 mod excess;
 mod inside;
 mod path;
+mod slope;
 mod solve;
 
 pub use excess::{Excess, Peaks};

@@ -2,7 +2,8 @@
 
 use super::inside::{self, Box4, State};
 use super::path::MAX_PIECES;
-use crate::kernel::{Bounds, ON_LIMIT, Scale, Sides, Spans, falling_root, second, third};
+use super::slope::{Box3, Slope};
+use crate::kernel::{Bounds, ON_LIMIT, Scale, Sides, Spans, second, third};
 use crate::{Limits, Setpoint};
 
 /// A ramp to find: everything mirrored so that the motion starts forwards.
@@ -74,47 +75,25 @@ impl Problem<'_> {
     pub(super) fn third_order(&self) -> Solution {
         let limits = self.limits;
         let scale = Scale::new(limits.acceleration.max(limits.deceleration), limits.jerk, 1);
-        let mut spans = Spans::new();
-        let mut state = Slope {
+        let start = Slope {
             v: scale.inward(self.start.velocity, 2),
             a: scale.inward(self.start.acceleration, 1),
         };
         let goal = scale.inward(self.goal, 2);
-        let jerk = self.wider.jerk / limits.jerk;
         let limit = scale.inward(limits.velocity, 2);
-        let up = scale.inward(limits.acceleration, 1);
-        let down = scale.inward(limits.deceleration, 1);
-        let fast = scale.inward(self.wider.deceleration, 1);
-        let rest = |state: Slope| state.v + 0.5 * state.a * state.a.abs();
-        let mut steps = 0;
-        if (jerk > 1.0 || fast > down) && state.v.max(rest(state)) > limit * (1.0 + ON_LIMIT) {
-            // As at order 4 (R19), with a push of one span.
-            let mut push = Spans::<1>::new();
-            push.push((state.a + fast) / jerk, -jerk);
-            let lead = |time: f64| {
-                let mut spans = push.until::<3>(time);
-                spans.extend(&state.after_all(&spans).inside(up, down, jerk));
-                spans
-            };
-            let above = |time: f64| {
-                let state = state.after_all(&lead(time));
-                (state.v.max(rest(state)) - limit).min(rest(state) - goal)
-            };
-            let pushed = state.after_all(&push);
-            let longest = push.duration() + (pushed.v - goal).max(0.0) / fast;
-            let time;
-            (time, steps) = falling_root(0.0, longest, above);
-            spans.extend(&lead(time));
-        } else {
-            spans.extend(&state.inside(up, down, jerk));
-        }
-        let viable = spans.is_empty()
-            && goal >= 0.0
-            && state.v.max(rest(state)) <= limit
-            && state.v.min(rest(state)) >= 0.0;
-        state = state.after_all(&spans);
-        let dips = goal >= 0.0 && rest(state) < 0.0;
+        let bounds = Box3 {
+            up: scale.inward(limits.acceleration, 1),
+            down: scale.inward(limits.deceleration, 1),
+            brake_before: scale.inward(self.wider.deceleration, 1),
+            jerk_before: self.wider.jerk / limits.jerk,
+        };
+        let (lead, steps) = start.lead_in(goal, limit, &bounds);
+        let viable = lead.is_empty() && goal >= 0.0 && start.is_viable(limit);
+        let state = start.after_all(&lead);
+        let dips = goal >= 0.0 && state.rest() < 0.0;
         let sides = scaled(self.sides(dips), &scale, 1);
+        let mut spans = Spans::new();
+        spans.extend(&lead);
         spans.extend(&second(state.v, state.a, goal, sides));
         Solution {
             spans: in_seconds(&spans, &scale),
@@ -163,33 +142,6 @@ impl Problem<'_> {
             steps: lead.steps.max(profile.steps),
             viable: lead.viable && goal >= 0.0,
         }
-    }
-}
-
-/// Velocity and acceleration in the kernel's units; the jerk is the input.
-#[derive(Clone, Copy, Debug)]
-struct Slope {
-    v: f64,
-    a: f64,
-}
-
-impl Slope {
-    fn after_all<const N: usize>(self, spans: &Spans<N>) -> Self {
-        spans.iter().fold(self, |state, span| Self {
-            v: state.v + span.duration * (state.a + 0.5 * span.duration * span.input),
-            a: state.a + span.duration * span.input,
-        })
-    }
-
-    /// The span that brings an acceleration outside `-down ..= up` to it, if it is.
-    fn inside(self, up: f64, down: f64, jerk: f64) -> Spans<1> {
-        let mut spans = Spans::new();
-        if self.a > up * (1.0 + ON_LIMIT) {
-            spans.push((self.a - up) / jerk, -jerk);
-        } else if self.a < -down * (1.0 + ON_LIMIT) {
-            spans.push((-down - self.a) / jerk, jerk);
-        }
-        spans
     }
 }
 
