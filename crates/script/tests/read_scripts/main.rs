@@ -4,4 +4,5 @@ mod cases;
 mod contract;
 mod errors;
 mod format;
+mod mutations;
 mod schema;
