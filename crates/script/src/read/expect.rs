@@ -2,7 +2,7 @@
 
 use super::Reader;
 use super::json::Node;
-use super::names::suggestion;
+use super::names::nearest;
 use super::shape::{self, Shape};
 use super::value::Fields;
 use crate::error::{Code, Diagnostic, quoted};
@@ -37,9 +37,7 @@ impl Reader {
             let slip = members
                 .iter()
                 .filter(|(key, _)| key.text != "note")
-                .find_map(|(key, _)| {
-                    suggestion(&key.text, kinds.clone()).filter(|help| help.starts_with("did"))
-                });
+                .find_map(|(key, _)| nearest(&key.text, kinds.clone()));
             let message =
                 "a claim says one of `at`, `by`, `always`, `never`, `once`, `exclusive`, `within_limits`";
             self.report(Diagnostic::new(Code::MissingKey, members.brace(), message).maybe_help(slip));

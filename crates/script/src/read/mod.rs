@@ -6,15 +6,17 @@
 
 pub(crate) mod axis;
 mod block;
+mod circle;
 mod condition;
 mod expect;
 pub(crate) mod json;
 pub(crate) mod names;
 pub(crate) mod shape;
 pub(crate) mod step;
+mod task;
 pub(crate) mod time;
 pub(crate) mod value;
-mod wiring;
+mod wire;
 
 use crate::error::{Code, Diagnostic, ScriptError, quoted};
 use crate::format::number_text;
@@ -44,8 +46,8 @@ struct Reader {
     names: Names,
     cycle_ns: Option<i64>,
     scan_count: Option<u64>,
-    /// Input pins that are wired, by instance and pin index, with the place of the pin's name.
-    wired: BTreeMap<(usize, usize), Span>,
+    /// The wires read so far.
+    wires: circle::Wires,
     errors: Vec<Diagnostic>,
 }
 

@@ -24,7 +24,7 @@ pub(super) fn sources(wire: &Wire) -> Vec<Point> {
 
 /// The first circle of inputs into which nothing feeds, in the direction of reading. Every wire is followed
 /// once.
-pub(super) fn dead_circle(wires: &Wires) -> Option<Vec<Place>> {
+pub(super) fn dead(wires: &Wires) -> Option<Vec<Place>> {
     let wired = |point: &Point| match point {
         Point::Pin(instance, pin) => Some((*instance, *pin)).filter(|place| wires.contains_key(place)),
         Point::Input(_) => None,
@@ -62,7 +62,7 @@ pub(super) fn dead_circle(wires: &Wires) -> Option<Vec<Place>> {
 }
 
 /// The message for a circle.
-pub(super) fn circle_error(circle: &[Place], wires: &Wires, blocks: &[Instance]) -> Diagnostic {
+pub(super) fn error(circle: &[Place], wires: &Wires, blocks: &[Instance]) -> Diagnostic {
     let name = |place: &Place| {
         let block = blocks.get(place.0);
         let pin = block.and_then(|block| block.block.pins().nth(place.1));
@@ -97,26 +97,26 @@ mod tests {
     fn only_circles_into_which_nothing_feeds_are_dead() {
         let (a, b, c) = ((0, 1), (1, 1), (2, 1));
         let pin = |place: Place| Point::Pin(place.0, place.1);
-        let dead = |list: &[(Place, &[Point])]| dead_circle(&wires(list));
-        assert_eq!(dead(&[(a, &[pin(a)])]), Some(vec![a]));
-        assert_eq!(dead(&[(a, &[pin(b)]), (b, &[pin(a)])]), Some(vec![a, b]));
+        let find = |list: &[(Place, &[Point])]| dead(&wires(list));
+        assert_eq!(find(&[(a, &[pin(a)])]), Some(vec![a]));
+        assert_eq!(find(&[(a, &[pin(b)]), (b, &[pin(a)])]), Some(vec![a, b]));
         // `a` only reads the circle.
         assert_eq!(
-            dead(&[(a, &[pin(b)]), (b, &[pin(c)]), (c, &[pin(b)])]),
+            find(&[(a, &[pin(b)]), (b, &[pin(c)]), (c, &[pin(b)])]),
             Some(vec![b, c])
         );
         // A latch, a chain, a feedback through an output.
-        assert_eq!(dead(&[(a, &[pin(b)]), (b, &[pin(a), Point::Input(0)])]), None);
-        assert_eq!(dead(&[(a, &[pin(b)]), (b, &[pin(c)])]), None);
-        assert_eq!(dead(&[(a, &[Point::Pin(0, 9)])]), None);
+        assert_eq!(find(&[(a, &[pin(b)]), (b, &[pin(a), Point::Input(0)])]), None);
+        assert_eq!(find(&[(a, &[pin(b)]), (b, &[pin(c)])]), None);
+        assert_eq!(find(&[(a, &[Point::Pin(0, 9)])]), None);
     }
 
     #[test]
     fn a_long_chain_is_followed_without_recursion() {
         let chain = (0..100_000).map(|n| ((n, 1), (vec![Point::Pin(n + 1, 1)], Span::default())));
         let mut wires: Wires = chain.collect();
-        assert_eq!(dead_circle(&wires), None);
+        assert_eq!(dead(&wires), None);
         wires.insert((100_000, 1), (vec![Point::Pin(0, 1)], Span::default()));
-        assert_eq!(dead_circle(&wires).map(|circle| circle.len()), Some(100_001));
+        assert_eq!(dead(&wires).map(|circle| circle.len()), Some(100_001));
     }
 }
