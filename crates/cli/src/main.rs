@@ -1,2 +1,81 @@
-//! placeholder
-fn main() {}
+//! The program `standstill`: arguments, exit statuses, printing. What it prints comes from the libraries.
+//!
+//! Standard output is the same on every machine; messages and progress go to standard error.
+#![forbid(unsafe_code)]
+
+mod args;
+mod blocks;
+mod exit;
+mod explain;
+mod json;
+mod plan;
+mod progress;
+mod run;
+mod suggest;
+mod test;
+
+use args::{Arguments, Command};
+use clap::Parser;
+use exit::{Exit, Failure};
+use standstill_script::suite::shown;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, BufWriter, IsTerminal, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    exit::guarded(program).into()
+}
+
+fn program() -> Exit {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return explained(&error),
+    };
+    let mut out = BufWriter::new(io::stdout().lock());
+    let result = dispatch(&arguments.command, &mut out);
+    // What was printed stands before the message that follows from it.
+    let flushed = out.flush().map_err(Failure::from);
+    match result.and_then(|exit| flushed.map(|()| exit)) {
+        Ok(exit) => exit,
+        Err(failure) => failure.report(),
+    }
+}
+
+/// Prints what clap has to say: help and version on standard output, mistakes on standard error.
+fn explained(error: &clap::Error) -> Exit {
+    match error.print() {
+        Ok(()) if error.use_stderr() => Exit::Usage,
+        Ok(()) => Exit::Passed,
+        Err(error) => Failure::from(error).report(),
+    }
+}
+
+fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
+    match command {
+        Command::Run(arguments) => run::run(arguments, out),
+        Command::Test { paths, accept } => test::test(paths, *accept, out),
+        Command::Explain { expected, found } => explain::explain(expected, found, out),
+        Command::Plan { file: Some(path) } if !is_standard(path) => {
+            let name = shown(path);
+            let file = File::open(path).map_err(|error| Failure::io(&name, &error))?;
+            plan::plan(&mut BufReader::new(file), &name, out)
+        }
+        Command::Plan { .. } => plan::plan(&mut standard_input(), "standard input", out),
+        Command::Blocks { json: true } => blocks::json(out),
+        Command::Blocks { json: false } => blocks::table(out),
+    }
+}
+
+/// Whether a path stands for standard input.
+fn is_standard(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Standard input; tells a person at a terminal that it is waited for.
+fn standard_input() -> impl BufRead {
+    if io::stdin().is_terminal() {
+        exit::complain("reading from the terminal, one JSON object a line");
+    }
+    io::stdin().lock()
+}

@@ -3,10 +3,11 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
+use crate::column::Cell;
 use crate::events::{Event, VARIABLES, lines, row_events, same};
 use crate::exact::ordered;
 use crate::number::{cell_text, time_literal};
-use crate::trace::{Cell, Trace};
+use crate::trace::Trace;
 
 /// Signals that the text of a difference names at most.
 const SIGNALS_SHOWN: usize = 20;

@@ -5,7 +5,8 @@
 //! zero byte, so that neither the order in which names turned up nor the machine's byte order matters.
 //! Names of columns, the header and the notes do not count.
 
-use crate::trace::{Cell, Trace};
+use crate::column::Cell;
+use crate::trace::Trace;
 
 /// Scans that one digest of [`by_block`] covers.
 pub const BLOCK_SCANS: usize = 64;

@@ -7,8 +7,9 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use crate::column::{Cell, Column, Kind, Role};
 use crate::number::{cell_text, time_literal};
-use crate::trace::{Cell, Column, Kind, Note, Role, Trace};
+use crate::trace::{Note, Trace};
 
 /// What the script's input variables are called together.
 pub(crate) const VARIABLES: &str = "inputs";
@@ -139,92 +140,79 @@ fn groups(columns: &[Column]) -> Vec<Group<'_>> {
     groups.into_iter().map(|(_, group)| group).collect()
 }
 
-/// What changed in a group in a scan. `told` holds per column the input value that was told last.
+/// What changed in a group in a scan: Booleans first, then values in column order. `told` holds per column
+/// the value that was told last.
 fn changes<'t>(trace: &'t Trace, group: &Group<'_>, scan: usize, told: &mut [Option<Cell<'t>>]) -> String {
-    let mut edges = Vec::new();
-    let mut values = Vec::new();
-    let mut starts = false;
+    let mut words = Vec::new();
+    let mut takes_inputs = false;
     for &(at, column) in &group.columns {
-        let now = trace.cell(scan, at);
-        let before = scan.checked_sub(1).and_then(|scan| trace.cell(scan, at));
-        match (column.kind, now, before) {
-            (Kind::Bool, Some(Cell::Bool(now)), before) => {
-                let before = before == Some(Cell::Bool(true));
-                if now != before {
-                    edges.push(format!("{}{}", if now { '+' } else { '-' }, column.signal()));
-                    starts |= now && column.role == Role::Input;
-                }
-            }
-            (Kind::Name, Some(now), before) if column.role == Role::AxisState => match before {
-                None => values.push(cell_text(now)),
-                Some(before) if before != now => {
-                    values.push(format!("{} -> {}", cell_text(before), cell_text(now)));
-                }
-                Some(_) => {}
-            },
-            (_, Some(now), before) if is_change(trace, column, at, scan, now, before) => {
-                values.push(assignment(column, now));
-                if let Some(told) = told.get_mut(at) {
-                    *told = Some(now);
-                }
+        let before = scan
+            .checked_sub(1)
+            .and_then(|scan| trace.cell(scan, at))
+            .unwrap_or(Cell::Bool(false));
+        match trace.cell(scan, at) {
+            Some(Cell::Bool(now)) if before != Cell::Bool(now) => {
+                words.push(format!("{}{}", if now { '+' } else { '-' }, column.signal()));
+                takes_inputs |= now && column.role == Role::Input;
             }
             _ => {}
         }
     }
-    if starts {
-        values.extend(
-            group
-                .columns
-                .iter()
-                .filter_map(|&(at, column)| untold(trace, column, at, scan, told)),
-        );
+    for &(at, column) in group
+        .columns
+        .iter()
+        .filter(|(_, column)| column.kind != Kind::Bool)
+    {
+        let Some(now) = trace.cell(scan, at) else { continue };
+        let before = scan.checked_sub(1).and_then(|scan| trace.cell(scan, at));
+        if column.role == Role::AxisState {
+            words.extend(transition(before, now));
+            continue;
+        }
+        let taken = takes_inputs && column.role == Role::Input;
+        let known = told.get(at).copied().flatten();
+        if (taken && is_news(column, now, known)) || is_change(trace, at, column, scan) {
+            words.push(assignment(column, now));
+            if let Some(told) = told.get_mut(at) {
+                *told = Some(now);
+            }
+        }
     }
-    edges.extend(values);
-    edges.join(" ")
+    words.join(" ")
+}
+
+fn transition(before: Option<Cell<'_>>, now: Cell<'_>) -> Option<String> {
+    match before {
+        None => Some(cell_text(now)),
+        Some(before) if before != now => Some(format!("{} -> {}", cell_text(before), cell_text(now))),
+        Some(_) => None,
+    }
+}
+
+/// Whether an input that a block takes is to be told: not if it was told before, nor if it is zero and
+/// never was anything else. Zero takes the default, but for the pins that say where to go.
+fn is_news(column: &Column, now: Cell<'_>, told: Option<Cell<'_>>) -> bool {
+    match told {
+        Some(told) => !same(told, now),
+        None => !is_zero(now) || matches!(column.signal(), "Position" | "Distance"),
+    }
 }
 
 /// Whether a value that is no BOOL and no state makes an event by itself.
-fn is_change(
-    trace: &Trace,
-    column: &Column,
-    at: usize,
-    scan: usize,
-    now: Cell<'_>,
-    before: Option<Cell<'_>>,
-) -> bool {
+fn is_change(trace: &Trace, at: usize, column: &Column, scan: usize) -> bool {
+    let back = |scans| scan.checked_sub(scans).and_then(|scan| trace.cell(scan, at));
+    let Some(now) = back(0) else { return false };
     let jitters = column.kind == Kind::Real || column.is_time;
-    if jitters {
-        let stood = |before| scan < 2 || trace.cell(scan - 2, at).is_some_and(|cell| same(cell, before));
-        return matches!(column.role, Role::Input | Role::Variable)
-            && before.is_some_and(|before| !same(before, now) && stood(before));
+    match (back(1), column.role) {
+        (Some(before), Role::Input | Role::Variable) if jitters => {
+            let stood = back(2).is_none_or(|cell| same(cell, before));
+            stood && !same(before, now)
+        }
+        (Some(before), _) => !jitters && before != now,
+        // Variables and whole numbers start from zero, names from whatever they are. The other inputs of a
+        // block are told when it takes them.
+        (None, role) => (!jitters || role == Role::Variable) && !is_zero(now) && column.kind != Kind::Name,
     }
-    match before {
-        Some(before) => before != now,
-        // Scan 0 starts from zero; names start from whatever they are.
-        None => !matches!(now, Cell::Integer(0) | Cell::Name(_)),
-    }
-}
-
-/// The text of an input at a rising edge, unless it was told before or is zero and never was anything else.
-fn untold<'t>(
-    trace: &'t Trace,
-    column: &Column,
-    at: usize,
-    scan: usize,
-    told: &mut [Option<Cell<'t>>],
-) -> Option<String> {
-    if column.role != Role::Input || column.kind == Kind::Bool {
-        return None;
-    }
-    let now = trace.cell(scan, at)?;
-    let told = told.get_mut(at)?;
-    let known = match *told {
-        Some(told) => same(told, now),
-        // 0 takes the default, but for the pins that say where to go.
-        None => is_zero(now) && !matches!(column.signal(), "Position" | "Distance"),
-    };
-    *told = Some(now);
-    (!known).then(|| assignment(column, now))
 }
 
 fn assignment(column: &Column, cell: Cell<'_>) -> String {

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::column::{Column, Kind, Role};
 use crate::read::ReadError;
-use crate::trace::{Column, Kind, Role};
 
 /// The columns of every axis after its name, in the order of the file. `State` is a name, the others are
 /// numbers: the set-point at the end of the scan, and the position the drive reported at its start.

@@ -7,10 +7,11 @@ use std::io::{self, Write};
 
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 
+use crate::column::Cell;
 use crate::header::{Header, VERSION_KEY};
 use crate::number::{cell_text, shortest};
 use crate::read::{Field, Line, Loaded, ReadError, assemble};
-use crate::trace::{Cell, Trace};
+use crate::trace::Trace;
 
 /// Writes header and rows.
 ///

@@ -9,10 +9,23 @@
 //! same bytes on every processor: numbers are written in shortest round-trip form, digests are taken in
 //! a fixed byte order, and nothing is iterated in a random one.
 //!
+//! ```
+//! use standstill_trace::{Cell, Header, Input, Trace, events_text};
+//!
+//! let go = Input { name: "GO".into(), iec_type: "BOOL".into() };
+//! let mut trace = Trace::new(Header { cycle_ns: 1_000_000, inputs: vec![go], ..Header::default() });
+//! for scan in 0..10 {
+//!     trace.push_row(&[Cell::Bool(scan >= 3)])?;
+//! }
+//! assert_eq!(events_text(&trace), "    3  inputs  +GO\n");
+//! # Ok::<(), standstill_trace::RowError>(())
+//! ```
+//!
 //! The work of every function here is proportional to rows times columns, unless it says otherwise.
 
 #![forbid(unsafe_code)]
 
+mod column;
 pub mod compare;
 pub mod csv;
 pub mod digest;
@@ -28,10 +41,11 @@ pub mod plot;
 mod read;
 mod trace;
 
+pub use column::{Cell, Column, Kind, Role};
 pub use events::{Event, events, events_text};
 pub use extremes::{Extreme, extremes, extremes_text};
 pub use header::{
     AXIS_SIGNALS, Axis, Claim, ClaimVerdict, Direction, Header, Input, Instance, Limits, Pin, Scaling,
 };
 pub use read::{Loaded, ReadError};
-pub use trace::{Cell, Column, Kind, Note, Role, RowError, Trace};
+pub use trace::{Note, RowError, Trace};

@@ -1,6 +1,6 @@
 //! Numbers as text.
 
-use crate::trace::Cell;
+use crate::column::Cell;
 
 /// The shortest text that reads back as the same number; NaN and infinities as words, -0.0 as `0.0`.
 pub fn shortest(value: f64) -> String {

@@ -3,9 +3,10 @@
 use std::fmt::Write;
 use std::ops::Range;
 
+use crate::column::{Cell, Kind};
 use crate::extremes::axis_title;
 use crate::number::{fixed, time_literal};
-use crate::trace::{Cell, Kind, Trace};
+use crate::trace::Trace;
 
 /// Lines of a curve.
 const HEIGHT: usize = 10;

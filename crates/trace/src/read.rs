@@ -3,9 +3,10 @@
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::column::{Cell, Column, Kind, Role};
 use crate::header::{Axis, Header, axis_column};
 use crate::number;
-use crate::trace::{Cell, Column, Kind, Role, Trace};
+use crate::trace::Trace;
 
 /// A trace that was read, and what the files did not tell.
 #[derive(Clone, Debug)]

@@ -2,119 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::header::{Claim, Direction, Header};
-
-/// What the cells of a column are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
-    /// TRUE or FALSE.
-    Bool,
-    /// A 64-bit float.
-    Real,
-    /// A whole number: counters, `ErrorID`, TIME in nanoseconds. ULINT values above `i64::MAX` do not fit.
-    Integer,
-    /// A word: axis states, axes, enum elements, and whatever else has only a text.
-    Name,
-}
-
-impl Kind {
-    /// The kind of an IEC type. Types that are neither elementary numbers nor BOOL (enums, `AXIS_REF`,
-    /// structures) are told by name.
-    #[must_use]
-    pub fn of_iec_type(iec_type: &str) -> Self {
-        match iec_type {
-            "BOOL" => Self::Bool,
-            "REAL" | "LREAL" => Self::Real,
-            "SINT" | "INT" | "DINT" | "LINT" | "USINT" | "UINT" | "UDINT" | "ULINT" | "BYTE" | "WORD"
-            | "DWORD" | "LWORD" | "TIME" | "LTIME" => Self::Integer,
-            _ => Self::Name,
-        }
-    }
-}
-
-/// What a column tells of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// The state of an axis.
-    AxisState,
-    /// A set-point or feedback of an axis.
-    AxisValue,
-    /// An input variable of the script.
-    Variable,
-    /// An in-out pin.
-    InOut,
-    /// An input pin.
-    Input,
-    /// An output pin; also any pin of a trace that was read without its header.
-    Output,
-}
-
-impl Role {
-    /// The role of a pin that points this way.
-    #[must_use]
-    pub const fn of_direction(direction: Direction) -> Self {
-        match direction {
-            Direction::InOut => Self::InOut,
-            Direction::Input => Self::Input,
-            Direction::Output => Self::Output,
-        }
-    }
-}
-
-/// One column.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Column {
-    /// `axis.Signal`, `instance.Pin`, or the name of an input variable.
-    pub name: String,
-    /// What its cells are.
-    pub kind: Kind,
-    /// What it tells of.
-    pub role: Role,
-    /// It is a TIME (ns), which may tick in every scan.
-    pub is_time: bool,
-}
-
-impl Column {
-    /// The axis or instance; empty for an input variable.
-    #[must_use]
-    pub fn subject(&self) -> &str {
-        self.name.split_once('.').map_or("", |(subject, _)| subject)
-    }
-
-    /// The pin, the axis signal or the input variable.
-    #[must_use]
-    pub fn signal(&self) -> &str {
-        self.name
-            .split_once('.')
-            .map_or(self.name.as_str(), |(_, signal)| signal)
-    }
-}
-
-/// The value of a column in a scan.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cell<'a> {
-    /// TRUE or FALSE.
-    Bool(bool),
-    /// A number. A trace holds no -0.0 and only one NaN, see [`Trace::push_row`].
-    Real(f64),
-    /// A whole number; TIME is in nanoseconds.
-    Integer(i64),
-    /// A word.
-    Name(&'a str),
-}
-
-impl Cell<'_> {
-    /// What it is.
-    #[must_use]
-    pub const fn kind(&self) -> Kind {
-        match self {
-            Self::Bool(_) => Kind::Bool,
-            Self::Real(_) => Kind::Real,
-            Self::Integer(_) => Kind::Integer,
-            Self::Name(_) => Kind::Name,
-        }
-    }
-}
+use crate::column::{Cell, Column, Kind, canonical_bits};
+use crate::header::{Claim, Header};
 
 /// Something worth telling that is no column: an accepted plan, a refused or clamped command.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -290,8 +179,11 @@ impl Trace {
 
     /// The cells of a scan in column order; none outside the trace.
     pub fn row(&self, scan: usize) -> impl Iterator<Item = Cell<'_>> {
-        let width = self.columns.len();
-        let words = self.bits.get(scan * width..(scan + 1) * width).unwrap_or(&[]);
+        let words = self
+            .bits
+            .chunks_exact(self.columns.len().max(1))
+            .nth(scan)
+            .unwrap_or_default();
         self.columns
             .iter()
             .zip(words)
@@ -332,17 +224,6 @@ impl Trace {
             Kind::Integer => Cell::Integer(word.cast_signed()),
             Kind::Name => Cell::Name(self.names.text(word)),
         }
-    }
-}
-
-/// The bits under which a trace holds a number: without the sign of zero and the payload of NaN.
-pub(crate) const fn canonical_bits(value: f64) -> u64 {
-    if value.is_nan() {
-        0x7ff8_0000_0000_0000
-    } else if value == 0.0 {
-        0
-    } else {
-        value.to_bits()
     }
 }
 
@@ -436,6 +317,8 @@ mod tests {
         assert_eq!(trace.cell(1, 0), None);
         assert_eq!(trace.cell(0, 3), None);
         assert_eq!(trace.row(1).count(), 0);
+        assert_eq!(trace.row(usize::MAX).count(), 0);
+        assert_eq!(trace.cell(usize::MAX, 1), None);
     }
 
     #[test]

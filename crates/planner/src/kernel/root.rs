@@ -4,7 +4,10 @@ use super::third::depth_term;
 use crate::math::sqrt;
 
 /// Largest number of steps a root may take; the tests show how far from it the worst case found stays.
-pub const MAX_STEPS: u32 = 80;
+pub const MAX_STEPS: u32 = 96;
+
+/// A Newton step this small relative to the root is the last: the next would be of rounding size.
+const CONVERGED: f64 = 1e-9;
 
 /// The switch from push to stop.
 pub(super) struct Intercept {
@@ -84,10 +87,8 @@ impl Rising {
         let guess = guess_sum(offset, budget).max(low).min(high);
         let (sum, steps) = bracketed(low, high, guess, |s| {
             let ratio = offset / s;
-            (
-                s * (s * s + 4.0 * offset) - offset * ratio - 4.0 * budget,
-                (3.0 * s + ratio) * (s + ratio),
-            )
+            let terms = [s * s * s, 4.0 * offset * s, -offset * ratio, -4.0 * budget];
+            Sample::new(terms, (3.0 * s + ratio) * (s + ratio))
         });
         let ratio = if sum > 0.0 { offset / sum } else { 0.0 };
         let depth = 0.5 * (sum + ratio);
@@ -115,10 +116,9 @@ impl Rising {
         let guess = sqrt((sqrt(square.max(0.0)) - shift).max(0.0)).max(low).min(high);
         let (x, steps) = bracketed(low, high, guess, |x| {
             let y = x * x + shift;
-            (
-                y * y + 2.0 * brake * (offset * x - budget),
-                4.0 * x * y + 2.0 * brake * offset,
-            )
+            let linear = 2.0 * brake * offset;
+            let terms = [x * x * y, shift * y, linear * x, -2.0 * brake * budget];
+            Sample::new(terms, 4.0 * x * y + linear)
         });
         let a = (x - half).max(self.start);
         Intercept {
@@ -160,28 +160,82 @@ fn rough_cube_root(x: f64) -> f64 {
     }
 }
 
+/// A function at one point.
+struct Sample {
+    value: f64,
+    slope: f64,
+    /// What of the value may be rounding.
+    noise: f64,
+}
+
+impl Sample {
+    /// A value that is the sum of `terms`.
+    fn new(terms: [f64; 4], slope: f64) -> Self {
+        let [a, b, c, d] = terms;
+        Self {
+            value: (a + d) + (b + c),
+            slope,
+            noise: 2.0 * f64::EPSILON * (a.abs() + b.abs() + c.abs() + d.abs()),
+        }
+    }
+}
+
 /// The root of a function that does not fall between `low` and `high`: Newton's steps, kept in the bracket
 /// and halving it where they do not at least halve themselves.
 ///
-/// `function` gives value and slope. At most [`MAX_STEPS`] evaluations.
-fn bracketed(mut low: f64, mut high: f64, guess: f64, function: impl Fn(f64) -> (f64, f64)) -> (f64, u32) {
+/// Ends when the value is rounding, with at most [`MAX_STEPS`] evaluations.
+fn bracketed(mut low: f64, mut high: f64, guess: f64, function: impl Fn(f64) -> Sample) -> (f64, u32) {
     let mut x = guess;
     let mut last = high - low;
     for step in 1..=MAX_STEPS {
-        let (value, slope) = function(x);
+        let Sample { value, slope, noise } = function(x);
+        let newton = x - value / slope;
+        let small = (newton - x).abs() <= CONVERGED * x.abs();
+        if value.abs() <= noise || small || low >= high {
+            let better = newton >= low && newton <= high;
+            return (if better { newton } else { x }, step);
+        }
         if value > 0.0 {
             high = x;
         } else {
             low = x;
         }
-        let newton = x - value / slope;
         let good = newton >= low && newton <= high && (newton - x).abs() <= 0.5 * last;
         let next = if good { newton } else { 0.5 * (low + high) };
         last = (next - x).abs();
-        if value == 0.0 || last <= f64::EPSILON * next.abs() {
-            return (next, step);
-        }
         x = next;
     }
     (x, MAX_STEPS)
+}
+
+/// Where a continuous function that is positive at `low` and not at `high` first comes to zero, by false
+/// position with halved weights; also the steps taken, at most [`MAX_STEPS`].
+///
+/// The result is an argument at which the function is not positive, to 1e-14 of the bracket: every other
+/// step halves it, so 94 steps are enough for any function.
+pub fn falling_root(low: f64, high: f64, function: impl Fn(f64) -> f64) -> (f64, u32) {
+    let tolerance = 1e-14 * (high - low);
+    let (mut low, mut high) = (low, high);
+    let (mut above, mut below) = (function(low), function(high));
+    let mut side = 0;
+    for step in 1..=MAX_STEPS {
+        let slope = above - below;
+        let chord = low + (high - low) * (above / slope);
+        let inside = step % 2 != 0 && chord > low && chord < high;
+        let x = if inside { chord } else { 0.5 * (low + high) };
+        let value = function(x);
+        if value > 0.0 {
+            (low, above) = (x, value);
+            below *= if side == 1 { 0.5 } else { 1.0 };
+            side = 1;
+        } else {
+            (high, below) = (x, value);
+            above *= if side == -1 { 0.5 } else { 1.0 };
+            side = -1;
+        }
+        if high - low <= tolerance || value == 0.0 {
+            return (high, step);
+        }
+    }
+    (high, MAX_STEPS)
 }

@@ -72,6 +72,28 @@ impl<const N: usize> Spans<N> {
         self.len == 0
     }
 
+    /// What of the spans lies before `time`; where they end earlier, a span without input fills it.
+    #[must_use]
+    pub fn until<const M: usize>(&self, time: f64) -> Spans<M> {
+        let mut left = time;
+        let mut first = Spans::new();
+        for span in self.iter() {
+            first.push(span.duration.min(left), span.input);
+            left -= span.duration;
+        }
+        first.push(left, 0.0);
+        first
+    }
+
+    /// The spans with every input multiplied by `factor`.
+    #[must_use]
+    pub fn amplified(mut self, factor: f64) -> Self {
+        for span in &mut self.list {
+            span.input *= factor;
+        }
+        self
+    }
+
     /// Sum of all durations.
     pub fn duration(&self) -> f64 {
         self.iter().map(|span| span.duration).sum()
@@ -79,11 +101,8 @@ impl<const N: usize> Spans<N> {
 
     /// The spans of the mirrored problem.
     #[must_use]
-    pub fn mirrored(mut self) -> Self {
-        for span in &mut self.list {
-            span.input = -span.input;
-        }
-        self
+    pub fn mirrored(self) -> Self {
+        self.amplified(-1.0)
     }
 }
 

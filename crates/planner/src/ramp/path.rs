@@ -1,10 +1,14 @@
 //! A ramp as a list of polynomial pieces, its values and its extremes.
 
+use crate::kernel::falling_root;
 use crate::math::sqrt;
 use crate::{Order, Setpoint};
 
 /// Most pieces of a ramp: getting inside the limits, two relief spans and a third-order profile.
 pub(super) const MAX_PIECES: usize = 16;
+
+/// What a jerk of zero may be off by, relative to the largest one before.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// A stretch of constant snap (order 4), jerk (3) or acceleration (2).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,12 +49,22 @@ impl Path {
         let mut path = Self::new(order);
         let mut state = *start;
         let mut time = 0.0;
+        let mut largest_jerk: f64 = 0.0;
         for (duration, input) in spans {
             state = with_input(&state, order, input);
-            time += duration;
-            if let Some(piece) = path.pieces.get_mut(path.len) {
-                *piece = Piece { end: time, state };
+            // What rounding left of a jerk that is held at zero would be integrated over a long hold.
+            largest_jerk = largest_jerk.max(state.jerk.abs());
+            if input == 0.0 && state.jerk.abs() <= ROUNDING * largest_jerk {
+                state.jerk = 0.0;
+            }
+            let end = time + duration;
+            // A span too short to move the clock moves nothing else either.
+            if end > time
+                && let Some(piece) = path.pieces.get_mut(path.len)
+            {
+                *piece = Piece { end, state };
                 path.len += 1;
+                time = end;
             }
             state = moved(&state, duration);
         }
@@ -117,14 +131,25 @@ impl Path {
 
     /// The states that hold every extreme of velocity, acceleration and jerk: the ends of each piece, and
     /// inside it the zeros of jerk and acceleration (R20).
-    pub(super) fn extremes(&self, mut see: impl FnMut(&Setpoint)) {
+    ///
+    /// `see` is also shown the states at which the velocity passes zero, from beyond `small` to beyond it
+    /// on the other side, and told so, because the bounds of acceleration change there.
+    pub(super) fn extremes(&self, small: f64, mut see: impl FnMut(&Setpoint, bool)) {
         for (stretch, first) in self.stretches() {
             let length = stretch.end - stretch.begin;
-            see(&first);
-            see(&moved(&stretch.state, stretch.end - stretch.anchor));
-            for time in turning_times(&first) {
-                if time > 0.0 && time < length {
-                    see(&moved(&stretch.state, stretch.begin + time - stretch.anchor));
+            let state = |time: f64| moved(&stretch.state, stretch.begin + time - stretch.anchor);
+            let within = |time: f64| if time > 0.0 && time < length { time } else { length };
+            let [early, late] = zeros(first.acceleration, first.jerk, first.snap).map(within);
+            see(&state(within(-first.jerk / first.snap)), false);
+            let turns = [0.0, early.min(late), early.max(late), length];
+            for (&from, &to) in turns.iter().zip(turns.iter().skip(1)) {
+                let (low, high) = (state(from), state(to));
+                see(&low, false);
+                see(&high, false);
+                let sign = low.velocity.signum();
+                if sign * low.velocity > small && -sign * high.velocity > small {
+                    let (time, _) = falling_root(from, to, |t| sign * state(t).velocity);
+                    see(&state(time), true);
                 }
             }
         }
@@ -183,18 +208,6 @@ pub(super) fn moved(state: &Setpoint, t: f64) -> Setpoint {
         jerk: j + t * s,
         snap: s,
     }
-}
-
-/// The times at which jerk or acceleration are zero after `state`; any that do not exist are NaN or infinite.
-fn turning_times(state: &Setpoint) -> [f64; 3] {
-    let Setpoint {
-        acceleration: a,
-        jerk: j,
-        snap: s,
-        ..
-    } = *state;
-    let [early, late] = zeros(a, j, s);
-    [-j / s, early, late]
 }
 
 /// The zeros of `a + j t + s t^2/2`, in the form that loses no digits; NaN or infinite where there is none.

@@ -2,7 +2,7 @@
 
 use super::inside::{self, Box4, State};
 use super::path::MAX_PIECES;
-use crate::kernel::{Bounds, ON_LIMIT, Scale, Sides, Spans, second, third};
+use crate::kernel::{Bounds, ON_LIMIT, Scale, Sides, Spans, falling_root, second, third};
 use crate::{Limits, Setpoint};
 
 /// A ramp to find: everything mirrored so that the motion starts forwards.
@@ -68,34 +68,46 @@ impl Problem<'_> {
         let limits = self.limits;
         let scale = Scale::new(limits.acceleration.max(limits.deceleration), limits.jerk, 1);
         let mut spans = Spans::new();
-        let mut state = State {
+        let mut state = Slope {
             v: scale.inward(self.start.velocity, 2),
             a: scale.inward(self.start.acceleration, 1),
-            j: 0.0,
         };
         let goal = scale.inward(self.goal, 2);
         let jerk = self.wider.jerk / limits.jerk;
+        let limit = scale.inward(limits.velocity, 2);
         let up = scale.inward(limits.acceleration, 1);
         let down = scale.inward(limits.deceleration, 1);
-        // `j` is not a state here: it takes part as the input of each span.
-        let inside = if state.a > up * (1.0 + ON_LIMIT) {
-            Some(((state.a - up) / jerk, -jerk))
-        } else if state.a < -down * (1.0 + ON_LIMIT) {
-            Some(((-down - state.a) / jerk, jerk))
+        let fast = scale.inward(self.wider.deceleration, 1);
+        let rest = |state: Slope| state.v + 0.5 * state.a * state.a.abs();
+        let mut steps = 0;
+        if (jerk > 1.0 || fast > down) && state.v.max(rest(state)) > limit * (1.0 + ON_LIMIT) {
+            // As at order 4 (R19), with a push of one span.
+            let mut push = Spans::<1>::new();
+            push.push((state.a + fast) / jerk, -jerk);
+            let lead = |time: f64| {
+                let mut spans = push.until::<3>(time);
+                spans.extend(&state.after_all(&spans).inside(up, down, jerk));
+                spans
+            };
+            let above = |time: f64| {
+                let state = state.after_all(&lead(time));
+                (state.v.max(rest(state)) - limit).min(rest(state) - goal)
+            };
+            let pushed = state.after_all(&push);
+            let longest = push.duration() + (pushed.v - goal).max(0.0) / fast;
+            let time;
+            (time, steps) = falling_root(0.0, longest, above);
+            spans.extend(&lead(time));
         } else {
-            None
-        };
-        if let Some((duration, input)) = inside {
-            spans.push(duration, input);
-            state.v += duration * (state.a + 0.5 * duration * input);
-            state.a = if input < 0.0 { up } else { -down };
+            spans.extend(&state.inside(up, down, jerk));
         }
-        let dips = goal >= 0.0 && state.v + 0.5 * state.a * state.a.abs() < 0.0;
+        state = state.after_all(&spans);
+        let dips = goal >= 0.0 && rest(state) < 0.0;
         let sides = scaled(self.sides(dips), &scale, 1);
         spans.extend(&second(state.v, state.a, goal, sides));
         Solution {
             spans: in_seconds(&spans, &scale),
-            steps: 0,
+            steps,
         }
     }
 
@@ -116,37 +128,77 @@ impl Problem<'_> {
             minus: limits.deceleration,
             plus: limits.acceleration,
         };
-        let entering = inside::enter(
-            state,
-            &Box4 {
-                a: scaled(as_given, &scale, 2),
-                jerk,
-                jerk_before: scale.inward(self.wider.jerk, 1),
-                snap_before: self.wider.snap / limits.snap,
-            },
-        );
-        spans.extend(&entering);
-        state = state.after_all(&entering);
-
-        let lowest = if goal < 0.0 { -limit } else { 0.0 };
-        let slack = ON_LIMIT * limit.min(state.v.abs().max(goal.abs()));
+        let bounds = Box4 {
+            a: scaled(as_given, &scale, 2),
+            brake_before: scale.inward(self.wider.deceleration, 2),
+            jerk,
+            jerk_before: scale.inward(self.wider.jerk, 1),
+            snap_before: self.wider.snap / limits.snap,
+        };
         let sides = |dips| scaled(self.sides(dips), &scale, 2);
-        let relief = inside::relieve(state, lowest, limit, slack, sides(true), jerk);
-        spans.extend(&relief);
-        state = state.after_all(&relief);
+        let lowest = if goal < 0.0 { -limit } else { 0.0 };
+        let mut steps;
+        let fastest = state.v.max(inside::arrested(state, jerk));
+        if bounds.is_lowered() && fastest > limit * (1.0 + ON_LIMIT) {
+            let hastened;
+            (hastened, steps) = inside::hasten(state, limit, goal, lowest, &bounds);
+            spans.extend(&hastened);
+            state = state.after_all(&hastened);
+        } else {
+            let entering = inside::enter(state, &bounds);
+            spans.extend(&entering);
+            state = state.after_all(&entering);
+            let slack = ON_LIMIT * limit.min(state.v.abs().max(goal.abs()));
+            let bounds = Bounds {
+                v: sides(true),
+                a: Sides::both(jerk),
+            };
+            let relief;
+            (relief, steps) = inside::relieve(state, lowest, limit, slack, &bounds);
+            spans.extend(&relief);
+            state = state.after_all(&relief);
+        }
 
-        let rest = second(state.a, state.j, 0.0, Sides::both(jerk));
-        let dips = goal >= 0.0 && (state.v < 0.0 || state.after_all(&rest).v < 0.0);
+        let rest = inside::arrested(state, jerk);
+        let dips = goal >= 0.0 && (state.v < 0.0 || rest < 0.0);
         let bounds = Bounds {
             v: sides(dips),
             a: Sides::both(jerk),
         };
-        let profile = third(goal - state.v, state.a, state.j, &bounds);
+        let profile = third(state.v, state.a, state.j, goal, &bounds);
         spans.extend(&profile.spans);
+        steps = steps.max(profile.steps);
         Solution {
             spans: in_seconds(&spans, &scale),
-            steps: profile.steps,
+            steps,
         }
+    }
+}
+
+/// Velocity and acceleration in the kernel's units; the jerk is the input.
+#[derive(Clone, Copy, Debug)]
+struct Slope {
+    v: f64,
+    a: f64,
+}
+
+impl Slope {
+    fn after_all<const N: usize>(self, spans: &Spans<N>) -> Self {
+        spans.iter().fold(self, |state, span| Self {
+            v: state.v + span.duration * (state.a + 0.5 * span.duration * span.input),
+            a: state.a + span.duration * span.input,
+        })
+    }
+
+    /// The span that brings an acceleration outside `-down ..= up` to it, if it is.
+    fn inside(self, up: f64, down: f64, jerk: f64) -> Spans<1> {
+        let mut spans = Spans::new();
+        if self.a > up * (1.0 + ON_LIMIT) {
+            spans.push((self.a - up) / jerk, -jerk);
+        } else if self.a < -down * (1.0 + ON_LIMIT) {
+            spans.push((-down - self.a) / jerk, jerk);
+        }
+        spans
     }
 }
 

@@ -85,3 +85,42 @@ fn forward_chains_keep_every_limit_and_never_reverse() {
     println!("{worst:?}");
     assert!(worst.steps < 40, "{worst:?}");
 }
+
+/// `cargo test --release -p standstill-planner --test ramp_plans -- --ignored --nocapture`
+#[test]
+#[ignore = "a minute in release"]
+fn a_million_chained_ramps() {
+    let worst = forward_chains(2, 100_000);
+    println!("{worst:?}");
+    for order in ORDERS {
+        let mut random = Random(3);
+        let cases: Vec<_> = (0..20_000)
+            .map(|_| {
+                let limits = support::limits(&mut random, order);
+                let first = limits.velocity * random.unit();
+                let cycle = 0.01 * limits.velocity / limits.acceleration;
+                let rest = Setpoint::at_rest(0.0);
+                let plan = RampPlan::new(&rest, first, &limits, &limits, cycle).unwrap();
+                let state = plan.at(random.below(u64::from(plan.scans())));
+                (state, limits.velocity * random.unit(), limits, cycle)
+            })
+            .collect();
+        let mut times: Vec<f64> = Vec::new();
+        let mut steps = 0;
+        for (state, goal, limits, cycle) in &cases {
+            let begin = std::time::Instant::now();
+            let plan = RampPlan::new(state, *goal, limits, limits, *cycle);
+            times.push(begin.elapsed().as_nanos() as f64);
+            steps += plan.unwrap().steps();
+        }
+        times.sort_by(f64::total_cmp);
+        let at = |part: f64| times[(part * (times.len() - 1) as f64) as usize];
+        println!(
+            "{order:?}: ns per plan, timer included: median {} p99 {} p99.9 {}; steps per plan {:.2}",
+            at(0.5),
+            at(0.99),
+            at(0.999),
+            f64::from(steps) / times.len() as f64
+        );
+    }
+}

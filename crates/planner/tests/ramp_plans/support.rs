@@ -89,18 +89,27 @@ pub fn integrate(start: &Setpoint, plan: &RampPlan, order: Order) -> Seen {
         ..Seen::default()
     };
     const STEPS: u32 = 16;
-    let mut largest = v.abs();
+    let peaks = plan.peaks();
+    let fastest = peaks.velocity.max(v.abs());
     for segment in plan.segments() {
         assert!(segment.duration > 0.0, "a segment of no length");
         let s = segment.snap;
-        match order {
-            Order::Four => {}
-            Order::Three => j = segment.jerk,
-            Order::Two => {
-                j = 0.0;
-                a = segment.acceleration;
-            }
+        // What may not jump continues, to what a clock that has run for a while resolves; from here on the
+        // stated state holds.
+        let gap = (segment.velocity - v).abs();
+        assert!(gap <= 1e-12 * fastest, "velocity jumps by {gap:e} in {plan:?}");
+        if order >= Order::Three {
+            let gap = (segment.acceleration - a).abs();
+            assert!(
+                gap <= 1e-9 * peaks.acceleration,
+                "acceleration jumps by {gap:e} in {plan:?}"
+            );
         }
+        if order >= Order::Four {
+            let gap = (segment.jerk - j).abs();
+            assert!(gap <= 1e-8 * peaks.jerk, "jerk jumps by {gap:e} in {plan:?}");
+        }
+        (v, a, j) = (segment.velocity, segment.acceleration, segment.jerk);
         seen.snap = seen.snap.max(s.abs());
         seen.duration += segment.duration;
         let h = segment.duration / f64::from(STEPS);
@@ -110,11 +119,10 @@ pub fn integrate(start: &Setpoint, plan: &RampPlan, order: Order) -> Seen {
             let jer = |t: f64| j + s * t;
             let mut look = |t: f64| {
                 let (v, a) = (vel(t), acc(t));
-                largest = largest.max(v.abs());
                 seen.v_max = seen.v_max.max(v);
                 seen.v_min = seen.v_min.min(v);
                 seen.jerk = seen.jerk.max(jer(t).abs());
-                if v.abs() <= 1e-12 * largest {
+                if v.abs() <= 1e-12 * fastest {
                     // Rounding decides the sign; other instants of the segment tell.
                 } else if v * a > 0.0 {
                     seen.speeding = seen.speeding.max(a.abs());
@@ -126,17 +134,14 @@ pub fn integrate(start: &Setpoint, plan: &RampPlan, order: Order) -> Seen {
             look(h);
             for f in [&acc as &dyn Fn(f64) -> f64, &jer] {
                 if f(0.0) * f(h) < 0.0 {
-                    let (mut low, mut high) = (0.0, h);
-                    for _ in 0..60 {
-                        let middle = 0.5 * (low + high);
-                        if f(low) * f(middle) <= 0.0 {
-                            high = middle
-                        } else {
-                            low = middle
-                        }
-                    }
-                    look(low);
+                    look(zero(f, h));
                 }
+            }
+            // Where the velocity passes zero the acceleration belongs to both directions.
+            if vel(0.0).abs().min(vel(h).abs()) > 1e-12 * fastest && vel(0.0) * vel(h) < 0.0 {
+                let passing = acc(zero(&vel, h)).abs();
+                seen.speeding = seen.speeding.max(passing);
+                seen.slowing = seen.slowing.max(passing);
             }
             let t = h;
             (p, v, a, j) = (
@@ -157,12 +162,16 @@ pub fn integrate(start: &Setpoint, plan: &RampPlan, order: Order) -> Seen {
     seen
 }
 
-/// Scale of velocity errors: what the integrator adds up.
-pub fn size(start: &Setpoint, goal: f64, seen: &Seen) -> f64 {
-    start
-        .velocity
-        .abs()
-        .max(goal.abs())
-        .max(seen.v_max.abs())
-        .max(seen.v_min.abs())
+/// The zero of a function that changes its sign between 0 and `high`.
+fn zero(function: &dyn Fn(f64) -> f64, mut high: f64) -> f64 {
+    let mut low = 0.0;
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if function(low) * function(middle) <= 0.0 {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    low
 }

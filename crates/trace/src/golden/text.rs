@@ -2,12 +2,13 @@
 
 use std::fmt::Write;
 
+use crate::column::{Cell, Role};
 use crate::digest;
 use crate::events::{self, Event};
 use crate::extremes::{axis_title, extremes_text};
 use crate::header::{Axis, Header, Limits};
 use crate::number::{cell_text, fixed, shortest, time_literal};
-use crate::trace::{Cell, Role, Trace};
+use crate::trace::Trace;
 
 /// A set-point table holds about so many rows at equal distances, besides those of events.
 const TABLE_ROWS: usize = 16;

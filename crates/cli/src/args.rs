@@ -1,0 +1,108 @@
+//! The arguments of the program.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// A PLCopen motion runtime: run scan scripts, check their claims, plan moves.
+#[derive(Debug, Parser)]
+#[command(name = "standstill", version, arg_required_else_help = true, after_help = EXIT_STATUSES)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Shown below the help.
+const EXIT_STATUSES: &str = "Exit status: 0 passed, 1 a claim, golden or plan failed, 2 bad usage, \
+3 bad script or trace, 4 I/O, 70 internal fault";
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run scripts and show their events, curves and extremes
+    Run(RunArguments),
+    /// Hold scripts against their claims and goldens
+    Test {
+        /// Scripts, and folders of them
+        #[arg(value_name = "PATH", default_value = SCRIPTS)]
+        paths: Vec<PathBuf>,
+        /// Take the runs as they are for goldens, where all claims hold
+        #[arg(long)]
+        accept: bool,
+    },
+    /// Show where two traces part
+    Explain {
+        /// The trace as it should be (.csv, .jsonl, .exact)
+        expected: PathBuf,
+        /// The trace as it is
+        found: PathBuf,
+    },
+    /// Plan moves: one JSON object a line in, one a line out
+    Plan {
+        /// The lines; standard input if absent or `-`
+        file: Option<PathBuf>,
+    },
+    /// List the function blocks and their pins
+    Blocks {
+        /// As JSON
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+/// Where the scripts of a repository stand.
+const SCRIPTS: &str = "scan-tests";
+
+/// What `run` takes.
+#[derive(Args, Debug)]
+pub struct RunArguments {
+    /// The scripts, run in this order
+    #[arg(value_name = "SCRIPT", required = true)]
+    pub scripts: Vec<PathBuf>,
+    /// Write the trace to this file; its ending says how
+    #[arg(long, value_name = "FILE(.csv|.jsonl)")]
+    pub trace: Option<PathBuf>,
+    /// Replace the value of a parameter of the script
+    #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
+    pub set: Vec<(String, f64)>,
+    /// Print failing claims and one line a script
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Reads `NAME=VALUE`; the value is a number as in scripts and traces.
+fn parameter(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, such as v=60")?;
+    if name.is_empty() {
+        return Err("the name is missing".to_owned());
+    }
+    let number = match value {
+        "NaN" => Some(f64::NAN),
+        "Infinity" => Some(f64::INFINITY),
+        "-Infinity" => Some(f64::NEG_INFINITY),
+        _ => serde_json::from_str(value).ok(),
+    };
+    let number = number.ok_or_else(|| format!("`{value}` is no number"))?;
+    Ok((name.to_owned(), number))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn parameters_are_numbers_as_scripts_write_them() {
+        assert_eq!(parameter("v=-6e1"), Ok(("v".to_owned(), -60.0)));
+        assert_eq!(parameter("v=Infinity"), Ok(("v".to_owned(), f64::INFINITY)));
+        assert!(parameter("v=NaN").is_ok_and(|(_, value)| value.is_nan()));
+        for wrong in ["v", "=1", "v=", "v=inf", "v=1,5", "v=fast", "v=1e999"] {
+            assert!(parameter(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! How a command ends: the exit statuses, and the failures that lead to them.
+
+use standstill_script::RunError;
+use standstill_script::suite::SuiteError;
+use standstill_trace::file::FileError;
+use standstill_trace::golden::GoldenError;
+use std::io::{self, ErrorKind, Write};
+use std::panic::{self, UnwindSafe};
+use std::process::ExitCode;
+
+/// The exit statuses of the program. They are interface: scripts and CI jobs rely on them.
+///
+/// Where several scripts are judged in one go the highest status counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Exit {
+    /// Everything asked for was done and holds.
+    Passed = 0,
+    /// A claim, a golden or a plan failed, or two traces differ.
+    Failed = 1,
+    /// The arguments make no sense.
+    Usage = 2,
+    /// A script or a trace is wrong.
+    BadInput = 3,
+    /// A file could not be read or written.
+    Io = 4,
+    /// The program itself is wrong.
+    Internal = 70,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}
+
+impl Exit {
+    /// [`Exit::Passed`] if so, else [`Exit::Failed`].
+    pub const fn of(passed: bool) -> Self {
+        if passed { Self::Passed } else { Self::Failed }
+    }
+}
+
+/// Why a command could not do what it was asked to.
+#[derive(Debug)]
+pub enum Failure {
+    /// It ends with this status, after this message.
+    Told(Exit, String),
+    /// Standard output could not be written.
+    Output(io::Error),
+}
+
+impl Failure {
+    /// Arguments that parse but make no sense together.
+    pub fn usage(text: &str) -> Self {
+        Self::Told(
+            Exit::Usage,
+            format!("error: {text}\n\nFor more information, try '--help'."),
+        )
+    }
+
+    /// A file that could not be read or written; text that is no UTF-8 is a wrong file, not a bad disk.
+    pub fn io(name: &str, error: &io::Error) -> Self {
+        Self::Told(io_exit(error), format!("error: {name}: {error}"))
+    }
+
+    /// Tells people on standard error; returns the status that goes with it.
+    pub fn report(&self) -> Exit {
+        match self {
+            Self::Told(exit, text) => {
+                complain(text);
+                *exit
+            }
+            // The reader has seen enough, as in `standstill plan | head -1`.
+            Self::Output(error) if error.kind() == ErrorKind::BrokenPipe => Exit::Passed,
+            Self::Output(error) => {
+                complain(&format!("error: standard output: {error}"));
+                Exit::Io
+            }
+        }
+    }
+}
+
+fn io_exit(error: &io::Error) -> Exit {
+    match error.kind() {
+        ErrorKind::InvalidData => Exit::BadInput,
+        _ => Exit::Io,
+    }
+}
+
+impl From<io::Error> for Failure {
+    /// Only standard output is written with a bare `?`; errors of files are given their name first.
+    fn from(error: io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+impl From<SuiteError> for Failure {
+    fn from(error: SuiteError) -> Self {
+        let exit = match &error {
+            SuiteError::Io { source, .. } | SuiteError::Golden(GoldenError::Io { source, .. }) => {
+                io_exit(source)
+            }
+            SuiteError::Run {
+                source: RunError::Internal(_),
+                ..
+            } => Exit::Internal,
+            SuiteError::Encoding { .. }
+            | SuiteError::Run { .. }
+            | SuiteError::Golden(GoldenError::Form { .. }) => Exit::BadInput,
+            // Its text is a rendered one.
+            SuiteError::Script(script) => return Self::Told(Exit::BadInput, script.to_string()),
+        };
+        Self::Told(exit, format!("error: {error}"))
+    }
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
+        let exit = match &error {
+            FileError::Form { .. } => Exit::Usage,
+            FileError::Io { source, .. } => io_exit(source),
+            FileError::Text { .. } | FileError::Exact { .. } => Exit::BadInput,
+        };
+        Self::Told(exit, format!("error: {error}"))
+    }
+}
+
+/// Writes a line to standard error. Unlike `eprintln!` it does not panic when nobody can read it.
+pub fn complain(text: &str) {
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Runs the program; a panic becomes [`Exit::Internal`].
+pub fn guarded(program: impl FnOnce() -> Exit + UnwindSafe) -> Exit {
+    panic::catch_unwind(program).unwrap_or_else(|_| {
+        complain(
+            "error: this is a fault of standstill itself; please report it with the command and its input",
+        );
+        Exit::Internal
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_ends_with_the_status_of_an_internal_fault() {
+        assert_eq!(guarded(|| panic!("an invariant broke")), Exit::Internal);
+        assert_eq!(guarded(|| Exit::Failed), Exit::Failed);
+    }
+
+    #[test]
+    fn a_closed_pipe_is_no_failure_and_a_full_disk_is_one() {
+        let output = |kind: ErrorKind| Failure::from(io::Error::from(kind)).report();
+        assert_eq!(output(ErrorKind::BrokenPipe), Exit::Passed);
+        assert_eq!(output(ErrorKind::StorageFull), Exit::Io);
+    }
+
+    #[test]
+    fn a_defect_of_the_run_is_not_blamed_on_the_script() {
+        let run = |source| {
+            Failure::from(SuiteError::Run {
+                path: "a.scan.json".into(),
+                source,
+            })
+            .report()
+        };
+        assert_eq!(
+            run(RunError::Internal("an invariant broke".to_owned())),
+            Exit::Internal
+        );
+        assert_eq!(run(RunError::Tasks("no task".to_owned())), Exit::BadInput);
+    }
+
+    #[test]
+    fn the_statuses_are_the_published_ones() {
+        let all = [
+            Exit::Passed,
+            Exit::Failed,
+            Exit::Usage,
+            Exit::BadInput,
+            Exit::Io,
+            Exit::Internal,
+        ];
+        assert_eq!(all.map(|exit| exit as u8), [0, 1, 2, 3, 4, 70]);
+    }
+}

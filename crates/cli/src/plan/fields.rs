@@ -1,0 +1,271 @@
+//! The fields of a line: which exist, which values they may have.
+
+use crate::plan::methods::{self, MethodInfo};
+use crate::plan::refusal::{Code, Refusal};
+use crate::suggest::nearest;
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde_json::value::RawValue;
+use standstill_planner::{Field, Limits, Setpoint};
+use std::fmt;
+
+/// The fields every method takes. What only some take stands in the table of methods.
+const COMMON: [&str; 10] = [
+    "id",
+    "Ts",
+    "target",
+    "position",
+    "velocity",
+    "acceleration",
+    "jerk",
+    "end_velocity",
+    "limits",
+    "method",
+];
+
+/// The fields of `limits`.
+const LIMITS: [&str; 5] = ["velocity", "acceleration", "deceleration", "jerk", "snap"];
+
+/// The fields of one line, each with its text. The keys are known and stand there once.
+#[derive(Clone, Debug)]
+pub struct Fields<'a> {
+    members: Members<'a>,
+    limits: Members<'a>,
+}
+
+/// Start of a move and its limits: what every method reads.
+#[derive(Clone, Copy, Debug)]
+pub struct Problem {
+    /// Where the move starts (u and derivatives).
+    pub start: Setpoint,
+    /// Velocity at the target (u/s).
+    pub end_velocity: f64,
+    /// The limits; infinite where none is given.
+    pub limits: Limits,
+}
+
+impl Problem {
+    /// What keeps the move from being one from rest to rest, and its value.
+    pub fn first_motion(&self) -> Option<(Field, f64)> {
+        let moving = [
+            (Field::Velocity, self.start.velocity),
+            (Field::Acceleration, self.start.acceleration),
+            (Field::Jerk, self.start.jerk),
+            (Field::EndVelocity, self.end_velocity),
+        ];
+        moving.into_iter().find(|(_, value)| *value != 0.0)
+    }
+}
+
+impl<'a> Fields<'a> {
+    /// Reads a line: it must be a JSON object without duplicate keys.
+    pub fn of_line(line: &'a [u8]) -> Result<Self, Refusal> {
+        let text = std::str::from_utf8(line).map_err(|_| Refusal::of_line("the line is no UTF-8"))?;
+        let members = match serde_json::from_str(text) {
+            Ok(members) => members,
+            Err(error) => {
+                let other: Result<&RawValue, _> = serde_json::from_str(text);
+                return Err(match other {
+                    Ok(value) => Refusal::of_line("the line is no JSON object").value(value.get()),
+                    Err(_) => Refusal::of_line(format!("the line is no JSON: {}", cause(&error))),
+                });
+            }
+        };
+        Ok(Self {
+            members,
+            limits: Members(Vec::new()),
+        })
+    }
+
+    /// The `id` as it stands on the line; `null` if there is none.
+    pub fn id(&self) -> &'a str {
+        self.members.get("id").unwrap_or("null")
+    }
+
+    /// Opens `limits` and checks that all keys exist and stand there once.
+    pub fn checked(&self) -> Result<Self, Refusal> {
+        self.check_keys(
+            &self.members,
+            "",
+            COMMON.into_iter().chain(methods::extra_fields()),
+        )?;
+        let limits = match self.members.get("limits") {
+            None | Some("null") => Members(Vec::new()),
+            Some(text) => serde_json::from_str(text)
+                .map_err(|_| self.invalid("limits", "`limits` must be an object of numbers".to_owned()))?,
+        };
+        let opened = Self {
+            members: self.members.clone(),
+            limits,
+        };
+        opened.check_keys(&opened.limits, "limits.", LIMITS.into_iter())?;
+        Ok(opened)
+    }
+
+    fn check_keys(
+        &self,
+        members: &Members<'_>,
+        path: &str,
+        known: impl Iterator<Item = &'static str> + Clone,
+    ) -> Result<(), Refusal> {
+        for (index, (key, _)) in members.0.iter().enumerate() {
+            let field = format!("{path}{key}");
+            if !known.clone().any(|name| name == key) {
+                let hint = nearest(key, known)
+                    .map_or(String::new(), |name| format!("; did you mean `{path}{name}`?"));
+                return Err(self.invalid(&field, format!("there is no field `{field}`{hint}")));
+            }
+            if members.0.iter().skip(index + 1).any(|(later, _)| later == key) {
+                return Err(self.invalid(&field, format!("`{field}` is given twice")));
+            }
+        }
+        Ok(())
+    }
+
+    /// A refusal of `field` for its value.
+    pub fn invalid(&self, field: &str, message: String) -> Refusal {
+        Refusal::of_field(Code::InvalidInput, self, field, message)
+    }
+
+    /// The value of a field as JSON, for an answer; `limits.jerk` is a field of `limits`.
+    pub fn echo(&self, field: &str) -> Option<String> {
+        let text = self.text(field)?;
+        // A number no f64 can hold would make the answer unreadable to many, so it goes out as a string.
+        let readable = serde_json::from_str::<serde_json::Value>(text).is_ok();
+        Some(if readable {
+            text.to_owned()
+        } else {
+            crate::json::string(text)
+        })
+    }
+
+    fn text(&self, field: &str) -> Option<&'a str> {
+        match field.strip_prefix("limits.") {
+            Some(name) => self.limits.get(name),
+            None => self.members.get(field),
+        }
+    }
+
+    /// A finite number, if the field is there.
+    pub fn number(&self, field: &str) -> Result<Option<f64>, Refusal> {
+        let Some(text) = self.text(field) else {
+            return Ok(None);
+        };
+        if ["\"NaN\"", "\"Infinity\"", "\"-Infinity\""].contains(&text) {
+            return Err(self.invalid(field, format!("`{field}` must be finite")));
+        }
+        if !text.starts_with(|c: char| c == '-' || c.is_ascii_digit()) {
+            return Err(self.invalid(field, format!("`{field}` must be a number")));
+        }
+        match serde_json::from_str(text) {
+            Ok(value) => Ok(Some(value)),
+            Err(_) => Err(self.invalid(field, format!("`{field}` is too large for a 64-bit float"))),
+        }
+    }
+
+    /// A finite number that has to be there.
+    pub fn required(&self, field: &str) -> Result<f64, Refusal> {
+        self.number(field)?
+            .ok_or_else(|| self.invalid(field, format!("`{field}` is missing")))
+    }
+
+    /// A bound of `limits`; `absent` if it is null or not there.
+    fn limit(&self, field: &str, absent: f64) -> Result<f64, Refusal> {
+        if self.text(field) == Some("null") {
+            return Ok(absent);
+        }
+        Ok(self.number(field)?.unwrap_or(absent))
+    }
+
+    /// Start state, velocity at the end and limits. Whether they make sense is for the planner to say.
+    pub fn problem(&self) -> Result<Problem, Refusal> {
+        let state = |field| Ok(self.number(field)?.unwrap_or(0.0));
+        let acceleration = self.limit("limits.acceleration", f64::INFINITY)?;
+        Ok(Problem {
+            start: Setpoint {
+                position: state("position")?,
+                velocity: state("velocity")?,
+                acceleration: state("acceleration")?,
+                jerk: state("jerk")?,
+                snap: 0.0,
+            },
+            end_velocity: state("end_velocity")?,
+            limits: Limits {
+                velocity: self.limit("limits.velocity", f64::INFINITY)?,
+                acceleration,
+                deceleration: self.limit("limits.deceleration", acceleration)?,
+                jerk: self.limit("limits.jerk", f64::INFINITY)?,
+                snap: self.limit("limits.snap", f64::INFINITY)?,
+            },
+        })
+    }
+
+    /// The method the line names, if it names one.
+    pub fn method(&self) -> Result<Option<&'static MethodInfo>, Refusal> {
+        let Some(text) = self.members.get("method") else {
+            return Ok(None);
+        };
+        let Ok(name) = serde_json::from_str::<String>(text) else {
+            return Err(self.invalid("method", "`method` must be a string".to_owned()));
+        };
+        if let Some(found) = methods::find(&name) {
+            return Ok(Some(found));
+        }
+        let near = nearest(&name, methods::names());
+        let hint = match near {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("there are {}", methods::names().collect::<Vec<_>>().join(", ")),
+        };
+        let refusal = self.invalid("method", format!("there is no such method; {hint}"));
+        Err(refusal.nearest(near.map(crate::json::string)))
+    }
+
+    /// The names of all fields on the line.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.members.0.iter().map(|(key, _)| key.as_str())
+    }
+}
+
+/// What serde_json says, without the line number: every line is its line 1.
+fn cause(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    let what = text.strip_suffix(&place).unwrap_or(&text);
+    format!("{what} at column {}", error.column())
+}
+
+/// The members of an object in the order of the text, duplicates included.
+#[derive(Clone, Debug)]
+struct Members<'a>(Vec<(String, &'a RawValue)>);
+
+impl<'a> Members<'a> {
+    fn get(&self, key: &str) -> Option<&'a str> {
+        self.0
+            .iter()
+            .find(|(name, _)| name == key)
+            .map(|(_, value)| value.get())
+    }
+}
+
+impl<'de: 'a, 'a> Deserialize<'de> for Members<'a> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Collect;
+
+        impl<'de> Visitor<'de> for Collect {
+            type Value = Vec<(String, &'de RawValue)>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+                let mut members = Vec::new();
+                while let Some(member) = map.next_entry()? {
+                    members.push(member);
+                }
+                Ok(members)
+            }
+        }
+
+        deserializer.deserialize_map(Collect).map(Members)
+    }
+}

@@ -1,0 +1,101 @@
+//! Why a line was not planned.
+
+use crate::json::{Object, number, string};
+use crate::plan::fields::Fields;
+use standstill_planner::PlanError;
+
+/// The kinds of refusals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Code {
+    /// The line cannot be read, or a value in it cannot be used.
+    InvalidInput,
+    /// The move takes more scans than a plan can count.
+    TooLong,
+    /// A method or field this version does not have.
+    Unsupported,
+}
+
+impl Code {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::InvalidInput => "invalid_input",
+            Self::TooLong => "too_long",
+            Self::Unsupported => "unsupported",
+        }
+    }
+}
+
+/// The answer to a line that was not planned.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    code: Code,
+    field: Option<String>,
+    /// JSON.
+    value: Option<String>,
+    /// JSON.
+    nearest: Option<String>,
+    message: String,
+}
+
+impl Refusal {
+    /// Of a line as a whole.
+    pub fn of_line(message: impl Into<String>) -> Self {
+        Self {
+            code: Code::InvalidInput,
+            field: None,
+            value: None,
+            nearest: None,
+            message: message.into(),
+        }
+    }
+
+    /// Of one field; its value is what the line says, if it says anything.
+    pub fn of_field(code: Code, fields: &Fields<'_>, field: &str, message: impl Into<String>) -> Self {
+        Self {
+            code,
+            field: Some(field.to_owned()),
+            value: fields.echo(field),
+            nearest: None,
+            message: message.into(),
+        }
+    }
+
+    /// With the value, as JSON, that was refused.
+    pub fn value(mut self, json: &str) -> Self {
+        self.value = Some(json.to_owned());
+        self
+    }
+
+    /// With the value that would have been taken.
+    pub fn nearest(mut self, json: Option<String>) -> Self {
+        self.nearest = json;
+        self
+    }
+
+    /// Of the planner.
+    pub fn of_plan_error(fields: &Fields<'_>, error: PlanError) -> Self {
+        let (code, field, value) = match error {
+            PlanError::InvalidInput { field, value } => (Code::InvalidInput, field.name(), Some(value)),
+            PlanError::NotAtRest { field, value } => (Code::InvalidInput, field.name(), Some(value)),
+            PlanError::TooLong { field, value } => (Code::TooLong, field.name(), Some(value)),
+            PlanError::Unbounded => (Code::InvalidInput, "limits", None),
+            // The planner may learn to refuse for further reasons before this program knows them.
+            other => return Self::of_line(other.to_string()),
+        };
+        let mut refusal = Self::of_field(code, fields, field, error.to_string());
+        refusal.value = refusal.value.or(value.map(number));
+        refusal
+    }
+
+    /// The line to write; `id` is JSON.
+    pub fn line(&self, id: &str) -> String {
+        let null = || "null".to_owned();
+        let error = Object::new()
+            .with("code", string(self.code.name()))
+            .with("field", self.field.as_deref().map_or_else(null, string))
+            .with("value", self.value.clone().unwrap_or_else(null))
+            .with_some("nearest", self.nearest.clone())
+            .with("message", string(&self.message));
+        Object::new().with("id", id).with("error", error.text()).text()
+    }
+}

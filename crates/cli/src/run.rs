@@ -1,0 +1,112 @@
+//! `standstill run`: one or more scripts, shown to a person.
+
+use crate::args::RunArguments;
+use crate::exit::{Exit, Failure};
+use crate::progress::Progress;
+use standstill_script::suite::{self, SuiteError};
+use standstill_script::{Code, Outcome, ScriptError};
+use standstill_trace::{digest, events_text, extremes_text, file, plot};
+use std::io::Write;
+use std::path::Path;
+
+/// Width of drawings (characters). It does not follow the terminal: the output is the same everywhere.
+const WIDTH: usize = 100;
+
+/// Runs the scripts in the order given. A script that cannot be run does not keep the others from it.
+pub fn run(arguments: &RunArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
+    if let Some(path) = &arguments.trace {
+        if arguments.scripts.len() > 1 {
+            return Err(Failure::usage(
+                "--trace takes one script: one file cannot hold several runs",
+            ));
+        }
+        if !file::can_save(path) {
+            let name = suite::shown(path);
+            return Err(Failure::usage(&format!(
+                "--trace {name}: a trace is a .csv or a .jsonl file"
+            )));
+        }
+    }
+    let mut exit = Exit::Passed;
+    for (index, script) in arguments.scripts.iter().enumerate() {
+        if index > 0 && !arguments.quiet {
+            writeln!(out)?;
+        }
+        let this = match run_one(script, arguments, out) {
+            Err(Failure::Output(error)) => return Err(error.into()),
+            Err(failure) => {
+                out.flush()?;
+                failure.report()
+            }
+            Ok(exit) => exit,
+        };
+        exit = exit.max(this);
+    }
+    Ok(exit)
+}
+
+fn run_one(script: &Path, arguments: &RunArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
+    let name = suite::shown(script);
+    let outcome = {
+        let mut progress = Progress::new(!arguments.quiet);
+        suite::run_file(script, &arguments.set, |scans| {
+            progress.show(|| format!("{name}: {scans} scans"))
+        })
+    };
+    let outcome = outcome.map_err(failure)?;
+    if arguments.quiet {
+        write!(out, "{}", failing_claims(&outcome))?;
+    } else {
+        show(&name, &outcome, out)?;
+    }
+    writeln!(out, "{name}: {}", verdict(&outcome))?;
+    if let Some(path) = &arguments.trace {
+        file::save(&outcome.trace, path)?;
+    }
+    Ok(Exit::of(outcome.passed()))
+}
+
+/// A name after `--set` that no script parameter has is a mistake of the command line, not of the script.
+fn failure(error: SuiteError) -> Failure {
+    let is_argument = |script: &ScriptError| {
+        let mut diagnostics = script.diagnostics().iter();
+        diagnostics.all(|diagnostic| diagnostic.code == Code::UnknownParameter && diagnostic.span.is_none())
+    };
+    match error {
+        SuiteError::Script(script) if is_argument(&script) => Failure::Told(Exit::Usage, script.to_string()),
+        other => other.into(),
+    }
+}
+
+/// Events, drawing, extremes, failing claims.
+fn show(name: &str, outcome: &Outcome, out: &mut dyn Write) -> Result<(), Failure> {
+    let trace = &outcome.trace;
+    let title = &trace.header().title;
+    writeln!(out, "{}\n\nevents", if title.is_empty() { name } else { title })?;
+    writeln!(out, "{}", events_text(trace))?;
+    writeln!(out, "{}", plot::plot(trace, WIDTH))?;
+    writeln!(out, "{}", extremes_text(trace))?;
+    let failing = failing_claims(outcome);
+    if !failing.is_empty() {
+        writeln!(out, "failing claims\n{failing}")?;
+    }
+    Ok(())
+}
+
+fn failing_claims(outcome: &Outcome) -> String {
+    let failures = outcome.verdicts.iter().flat_map(|verdict| &verdict.failures);
+    failures.map(|failure| format!("  {failure}\n")).collect()
+}
+
+/// The last line: how many claims held, how long it was, and one number for every bit.
+fn verdict(outcome: &Outcome) -> String {
+    let (trace, verdicts) = (&outcome.trace, &outcome.verdicts);
+    let held = verdicts.iter().filter(|verdict| verdict.passed()).count();
+    let word = if outcome.passed() { "passed" } else { "FAILED" };
+    let digest = digest::whole(trace);
+    format!(
+        "{word}, {held} of {} claims, {} scans, digest {digest:016x}",
+        verdicts.len(),
+        trace.scans()
+    )
+}
