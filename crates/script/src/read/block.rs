@@ -96,8 +96,8 @@ impl Reader {
             block
         });
         let blocks = blocks?;
-        if let Some(cycle) = wiring::first_cycle(&wires) {
-            self.report(wiring::cycle_error(&cycle, &wires, &blocks));
+        if let Some(circle) = wiring::dead_circle(&wires) {
+            self.report(wiring::circle_error(&circle, &wires, &blocks));
         }
         Some(blocks)
     }
@@ -151,7 +151,7 @@ impl Reader {
                     );
                     good = false;
                 }
-                good &= self.pin(&mut instance, index, pin_index, pin, node).is_some();
+                good &= self.pin(&mut instance, pin_index, pin, node).is_some();
                 if let Some((_, wire)) = instance.wires.iter().find(|(wired, _)| *wired == pin_index) {
                     self.wired.insert((index, pin_index), key.span);
                     wires.insert((index, pin_index), (wiring::sources(wire), key.span));
@@ -237,7 +237,6 @@ impl Reader {
     fn pin(
         &mut self,
         instance: &mut Instance,
-        _index: usize,
         pin_index: usize,
         pin: &'static Pin,
         node: &Node,
@@ -305,8 +304,7 @@ impl Reader {
             return Some(point);
         }
         let message = format!(
-            "{what} takes {}, {} is {}",
-            ty.iec_name(),
+            "{what} cannot be wired from {}, which is {}",
             quoted(text),
             found.iec_name()
         );

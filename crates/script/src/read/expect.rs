@@ -6,6 +6,7 @@ use super::names::suggestion;
 use super::shape::{self, Shape};
 use super::value::Fields;
 use crate::error::{Code, Diagnostic, quoted};
+use crate::format::number_text;
 use crate::model::{Claim, ClaimKind, Conditions, Point, Range};
 use standstill_fb::PinType;
 
@@ -142,7 +143,7 @@ impl Reader {
         if factor > 0.0 {
             return Some(factor);
         }
-        let message = format!("`factor` is {factor:?}: it must be above 0");
+        let message = format!("`factor` is {}: it must be above 0", number_text(factor));
         self.report(Diagnostic::new(Code::BadValue, node.span, message));
         None
     }

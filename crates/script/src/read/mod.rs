@@ -17,6 +17,7 @@ pub(crate) mod value;
 mod wiring;
 
 use crate::error::{Code, Diagnostic, ScriptError, quoted};
+use crate::format::number_text;
 use crate::model::{Conditions, Input, Script, Span};
 use json::{Json, Key, Node};
 use names::{Entity, Names, identifier_error, suggestion};
@@ -172,7 +173,11 @@ impl Reader {
             let help = suggestion(name, self.parameters.keys().map(String::as_str)).unwrap_or_else(|| {
                 "declare it under \"parameters\" and use it as {\"param\": ..}".to_owned()
             });
-            let message = format!("the script has no parameter {} to set to {value:?}", quoted(name));
+            let message = format!(
+                "the script has no parameter {} to set to {}",
+                quoted(name),
+                number_text(*value)
+            );
             let mut diagnostic = Diagnostic::new(Code::UnknownParameter, Span::default(), message).help(help);
             diagnostic.span = None;
             self.report(diagnostic);
