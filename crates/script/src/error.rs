@@ -1,7 +1,7 @@
 //! What is wrong with a script, and how it is shown.
 
 use crate::model::Span;
-use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet, normalize_untrusted_str};
 use std::fmt;
 
 macro_rules! codes {
@@ -193,23 +193,23 @@ impl ScriptError {
         out.join("\n\n")
     }
 
-    fn group<'a>(&'a self, diagnostic: &'a Diagnostic) -> Group<'a> {
+    fn group<'a>(&'a self, diagnostic: &Diagnostic) -> Group<'a> {
+        // Pieces of the script stand in these; they must not reach a terminal as control characters.
+        let visible = normalize_untrusted_str;
         let title = Level::ERROR
-            .primary_title(diagnostic.message.as_str())
+            .primary_title(visible(&diagnostic.message))
             .id(diagnostic.code.name());
         let mut group = match diagnostic.span {
-            None => {
-                Group::with_title(title).element(annotate_snippets::Origin::path(self.file_name.as_str()))
-            }
+            None => Group::with_title(title).element(Origin::path(self.file_name.as_str())),
             Some(span) => {
                 let mut primary = AnnotationKind::Primary.span(span.start..span.end);
                 if !diagnostic.label.is_empty() {
-                    primary = primary.label(diagnostic.label.as_str());
+                    primary = primary.label(visible(&diagnostic.label));
                 }
                 let context = diagnostic.related.as_ref().map(|(span, label)| {
                     AnnotationKind::Context
                         .span(span.start..span.end)
-                        .label(label.as_str())
+                        .label(visible(label))
                 });
                 title.element(
                     Snippet::source(self.text.as_str())
@@ -220,7 +220,7 @@ impl ScriptError {
             }
         };
         if let Some(help) = &diagnostic.help {
-            group = group.element(Level::HELP.message(help.as_str()));
+            group = group.element(Level::HELP.message(visible(help)));
         }
         group
     }
@@ -242,22 +242,9 @@ pub(crate) fn line_column(text: &str, offset: usize) -> (usize, usize) {
     (line, before[line_start..].chars().count() + 1)
 }
 
-/// A piece of the script inside a sentence: in backticks, control characters escaped, cut if long.
+/// A piece of the script inside a sentence: in backticks, cut if long.
 pub(crate) fn quoted(text: &str) -> String {
-    let mut shown: String = text
-        .chars()
-        .take(SHOWN_CHARS)
-        .flat_map(|c| {
-            let escaped: Vec<char> = if c.is_control() {
-                c.escape_default().collect()
-            } else {
-                vec![c]
-            };
-            escaped
-        })
-        .collect();
-    if text.chars().nth(SHOWN_CHARS).is_some() {
-        shown.push_str("..");
-    }
-    format!("`{shown}`")
+    let shown: String = text.chars().take(SHOWN_CHARS).collect();
+    let cut = if shown.len() < text.len() { ".." } else { "" };
+    format!("`{shown}{cut}`")
 }

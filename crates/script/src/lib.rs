@@ -7,13 +7,17 @@
 
 pub mod claims;
 mod error;
+mod format;
 pub mod golden;
 pub mod model;
 mod read;
 pub mod run;
+mod schema;
 pub mod suite;
 
 pub use claims::{Failure, Verdict};
 pub use error::{Code, DIAGNOSTICS_SHOWN, Diagnostic, ScriptError};
+pub use format::format;
 pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read};
 pub use run::{Outcome, RunError, run, run_with};
+pub use schema::schema;

@@ -258,7 +258,7 @@ impl Reader {
         let fields = self.fields(node, &shape::WIRE)?;
         let mut kinds = fields
             .iter()
-            .filter(|(key, _)| shape::WIRE.keys[..4].contains(&key.text.as_str()));
+            .filter(|(key, _)| shape::WIRE_KINDS.contains(&key.text.as_str()));
         let Some((key, value)) = kinds.next() else {
             let message = "a wire says one of `from`, `not`, `any`, `all`";
             self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));

@@ -4,16 +4,16 @@
 //! reads the rest, so that a wire may look at a block further down. Every function reports what it finds
 //! wrong and goes on, so that one run shows all mistakes; a script is only given out if there was none.
 
-mod axis;
+pub(crate) mod axis;
 mod block;
 mod condition;
 mod expect;
 pub(crate) mod json;
 pub(crate) mod names;
 pub(crate) mod shape;
-mod step;
+pub(crate) mod step;
 pub(crate) mod time;
-mod value;
+pub(crate) mod value;
 mod wiring;
 
 use crate::error::{Code, Diagnostic, ScriptError, quoted};

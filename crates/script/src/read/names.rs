@@ -4,7 +4,7 @@ use standstill_fb::{BlockInfo, PinType};
 use std::collections::BTreeMap;
 
 /// Keywords of IEC 61131-3 and the elementary type names, which no axis, input or instance may be called.
-const KEYWORDS: &[&str] = &[
+pub(crate) const KEYWORDS: &[&str] = &[
     "ABSTRACT",
     "ACTION",
     "AND",
@@ -169,10 +169,11 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// Adds `name`; what it stood for before is replaced.
+    /// Adds `name`, unless it already stands for something.
     pub(crate) fn add(&mut self, name: &str, entity: Entity) {
         self.by_name
-            .insert(name.to_ascii_uppercase(), (name.to_owned(), entity));
+            .entry(name.to_ascii_uppercase())
+            .or_insert_with(|| (name.to_owned(), entity));
     }
 
     pub(crate) fn get(&self, name: &str) -> Option<Entity> {
@@ -197,8 +198,10 @@ pub(crate) fn suggestion<'a>(
 ) -> Option<String> {
     const LISTED: usize = 12;
     let wanted = name.to_ascii_lowercase();
-    // One slip in three letters still lets one guess what was meant.
-    let slips = (wanted.chars().count() / 3).max(1);
+    // One slip in three letters still lets one guess what was meant, and one in a word shorter than
+    // three; a single letter that differs says nothing.
+    let length = wanted.chars().count();
+    let slips = if length < 2 { 0 } else { (length / 3).max(1) };
     let nearest = candidates
         .clone()
         .map(|candidate| {

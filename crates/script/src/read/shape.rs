@@ -81,6 +81,8 @@ pub(crate) const IDEAL: Shape = shape("the ideal drive", &["delay", "power_on", 
 
 pub(crate) const BLOCK: Shape = shape("a block", &["name", "type", "task", "pins", "note"]);
 pub(crate) const WIRE: Shape = shape("a wire", &["from", "not", "any", "all", "note"]);
+/// The keys of a wire that say what it does; it has exactly one of them.
+pub(crate) const WIRE_KINDS: [&str; 4] = ["from", "not", "any", "all"];
 pub(crate) const TASK: Shape = shape("a task", &["interval", "priority", "single", "watchdog"]);
 
 pub(crate) const STEP: Shape = shape(

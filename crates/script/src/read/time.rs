@@ -129,13 +129,8 @@ mod tests {
             ("T#0s", 0),
             ("T#1_000ms", 1_000_000_000),
             ("T#1.500s", 1_500_000_000),
-            ("T#0.00000001157407407407d", 0),
         ] {
-            if ns == 0 && text.len() > 10 {
-                assert!(parse(text).is_err(), "{text}");
-            } else {
-                assert_eq!(parse(text), Ok(ns), "{text}");
-            }
+            assert_eq!(parse(text), Ok(ns), "{text}");
         }
     }
 
@@ -153,6 +148,7 @@ mod tests {
             "T#1h75m",
             "T#1x",
             "T#0.5ns",
+            "T#0.00000001157407407407d",
             "T#1.s",
             "T#.5s",
             "T#1__0ms",

@@ -5,7 +5,7 @@ use standstill_fb::Value;
 use standstill_script::model::{Action, ClaimKind, Comparison, Point, Range, Signal, Test, When, Wire};
 use standstill_script::read;
 
-const EXAMPLE: &str = include_str!("scripts/contract_example.scan.json");
+const EXAMPLE: &str = include_str!("contract_example.scan.json");
 
 #[test]
 fn every_value_of_the_example_arrives_in_the_model() {

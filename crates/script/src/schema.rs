@@ -1,0 +1,394 @@
+//! The JSON Schema of scripts, made from the tables that the reader and the runtime use.
+//!
+//! With it an editor completes and checks keys, block names, pins and enum elements. What a schema cannot say
+//! (which names exist, the types of wires, multiples of the cycle) only the reader checks.
+
+use crate::read::axis::{ABOVE_LIMIT, ON_POWER_OFF, START_STATES};
+use crate::read::names::KEYWORDS;
+use crate::read::shape::{self, Shape};
+use crate::read::step::FAULT_KINDS;
+use crate::read::value::NUMBER_WORDS;
+use crate::read::{SCANS_MAX, VERSION};
+use serde_json::{Map, Value, json};
+use standstill_axis::{DELAY_MAX, QUEUE_MAX};
+use standstill_blocks::REGISTRY;
+use standstill_fb::{BlockInfo, Direction, PinType};
+
+/// The JSON Schema (draft 2020-12) of scan scripts, in the layout of [`format`](crate::format).
+///
+/// It asks for the spelling of the tables, where the reader, like IEC 61131-3, takes any case.
+pub fn schema() -> String {
+    let mut document = document();
+    // The order of keys must not depend on which features of the JSON library other crates switch on.
+    document.sort_all_objects();
+    let text = document.to_string();
+    // A JSON writer made the text, so it can be laid out.
+    crate::format(&text, "scan-script.schema.json").unwrap_or(text)
+}
+
+fn document() -> Value {
+    let mut root = object(&shape::SCRIPT, script_key);
+    add(
+        &mut root,
+        "required",
+        json!(["standstill", "cycle", "scans", "axes", "blocks"]),
+    );
+    add(&mut root, "dependentRequired", json!({"after": ["stop_when"]}));
+    add(
+        &mut root,
+        "$schema",
+        json!("https://json-schema.org/draft/2020-12/schema"),
+    );
+    add(&mut root, "title", json!("Scan script"));
+    add(
+        &mut root,
+        "description",
+        json!("Drives PLCopen function blocks scan by scan and says what must happen."),
+    );
+    let pins = REGISTRY.iter().map(|info| (pins_name(info), pins(info)));
+    let defs: Map<String, Value> = scalars().into_iter().chain(parts()).chain(pins).collect();
+    add(&mut root, "$defs", Value::Object(defs));
+    root
+}
+
+/// An object with the keys of `shape`; `schema_of` gives the schema of each.
+fn object(shape: &Shape, schema_of: impl Fn(&str) -> Value) -> Value {
+    let property = |key: &&str| {
+        let schema = if *key == "note" {
+            json!({"type": "string"})
+        } else {
+            schema_of(key)
+        };
+        ((*key).to_owned(), schema)
+    };
+    let properties: Map<String, Value> = shape.keys.iter().map(property).collect();
+    json!({"type": "object", "properties": properties, "additionalProperties": false})
+}
+
+fn required(keys: &[&str], mut object: Value) -> Value {
+    add(&mut object, "required", json!(keys));
+    object
+}
+
+fn add(schema: &mut Value, key: &str, value: Value) {
+    if let Value::Object(members) = schema {
+        members.insert(key.to_owned(), value);
+    }
+}
+
+/// The definition called `name`.
+fn of(name: &str) -> Value {
+    json!({"$ref": format!("#/$defs/{name}")})
+}
+
+fn any(schemas: &[Value]) -> Value {
+    json!({"anyOf": schemas})
+}
+
+fn list(items: Value, least: usize) -> Value {
+    json!({"type": "array", "items": items, "minItems": least})
+}
+
+fn words<T>(table: &[(&str, T)]) -> Value {
+    let words: Vec<&str> = table.iter().map(|(word, _)| *word).collect();
+    json!({"enum": words})
+}
+
+fn text() -> Value {
+    json!({"type": "string"})
+}
+
+fn integer(least: i64, most: i64) -> Value {
+    any(&[
+        json!({"type": "integer", "minimum": least, "maximum": most}),
+        of("parameter"),
+    ])
+}
+
+/// An object whose keys are names the script declares.
+fn names(of_each: Value) -> Value {
+    json!({"type": "object", "propertyNames": of("identifier"), "additionalProperties": of_each})
+}
+
+fn script_key(key: &str) -> Value {
+    match key {
+        "standstill" => json!({"const": VERSION}),
+        "covers" => list(text(), 0),
+        "cycle" => of("time_literal"),
+        "scans" => any(&[integer(1, SCANS_MAX as i64), of("time_literal")]),
+        "after" => of("scans"),
+        "parameters" => json!({"type": "object", "additionalProperties": of("plain_number")}),
+        "axes" => names(of("axis")),
+        "inputs" => names(any(&[json!({"type": "boolean"}), of("number")])),
+        "tasks" => names(of("task")),
+        "blocks" => list(of("block"), 0),
+        "steps" => list(of("step"), 0),
+        "expect" => list(of("claim"), 0),
+        "stop_when" => of("conditions"),
+        _ => text(),
+    }
+}
+
+/// Definitions of single values.
+fn scalars() -> Vec<(String, Value)> {
+    let number = |bounds: Value| any(&[bounds, of("parameter")]);
+    let unit = "([dDhHsS]|[mM][sS]?|[uUnN][sS])";
+    let time = format!("^[lL]?[tT]([iI][mM][eE])?#-?([0-9][0-9_]*(\\.[0-9]+)?{unit}_?)+$");
+    let defs = [
+        (
+            "identifier",
+            json!({"type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_]*$", "not": {"enum": KEYWORDS}}),
+        ),
+        (
+            "parameter",
+            required(&["param"], object(&shape::PARAM, |_| text())),
+        ),
+        (
+            "plain_number",
+            any(&[json!({"type": "number"}), words(&NUMBER_WORDS)]),
+        ),
+        ("number", any(&[of("plain_number"), of("parameter")])),
+        ("finite", number(json!({"type": "number"}))),
+        (
+            "positive",
+            number(json!({"type": "number", "exclusiveMinimum": 0})),
+        ),
+        ("optional_limit", any(&[of("positive"), json!({"type": "null"})])),
+        ("count", number(json!({"type": "integer", "minimum": 0}))),
+        ("time_literal", json!({"type": "string", "pattern": time})),
+        ("scans", any(&[of("count"), of("time_literal")])),
+        (
+            "value",
+            any(&[json!({"type": ["boolean", "number", "string"]}), of("parameter")]),
+        ),
+    ];
+    defs.map(|(name, def)| (name.to_owned(), def)).into()
+}
+
+/// Definitions of the objects of a script.
+fn parts() -> Vec<(String, Value)> {
+    let defs = [
+        ("axis", required(&["limits"], object(&shape::AXIS, axis_key))),
+        ("task", task()),
+        ("block", block()),
+        ("wire", wire()),
+        ("step", step()),
+        ("conditions", conditions()),
+        ("comparison", comparison()),
+        (
+            "claim",
+            json!({"oneOf": shape::CLAIMS.map(|shape| claim(&shape))}),
+        ),
+    ];
+    defs.map(|(name, def)| (name.to_owned(), def)).into()
+}
+
+fn axis_key(key: &str) -> Value {
+    match key {
+        "unit" => text(),
+        "limits" => required(
+            &["velocity", "acceleration"],
+            object(&shape::LIMITS, |key| match key {
+                "velocity" | "acceleration" => of("positive"),
+                _ => of("optional_limit"),
+            }),
+        ),
+        "defaults" => object(&shape::DEFAULTS, |_| of("positive")),
+        "stop_deceleration" | "stop_jerk" => of("positive"),
+        "state" => words(&START_STATES),
+        "scaling" => required(
+            &["increments", "units"],
+            object(&shape::SCALING, |key| match key {
+                "invert" => json!({"type": "boolean"}),
+                "offset" => of("finite"),
+                _ => integer(1, u32::MAX.into()),
+            }),
+        ),
+        "software_limits" => {
+            let mut limits = object(&shape::SOFTWARE_LIMITS, |_| of("finite"));
+            add(
+                &mut limits,
+                "anyOf",
+                json!([{"required": ["min"]}, {"required": ["max"]}]),
+            );
+            limits
+        }
+        "above_limit" => words(&ABOVE_LIMIT),
+        "queue" => integer(0, QUEUE_MAX as i64),
+        "on_power_off" => words(&ON_POWER_OFF),
+        "needs_homed" => json!({"type": "boolean"}),
+        "drive" => object(&shape::DRIVE, |_| {
+            object(&shape::IDEAL, |key| match key {
+                "delay" => any(&[integer(0, DELAY_MAX as i64), of("time_literal")]),
+                _ => any(&[of("scans"), json!({"type": "null"})]),
+            })
+        }),
+        _ => of("finite"),
+    }
+}
+
+fn task() -> Value {
+    let mut task = object(&shape::TASK, |key| match key {
+        "interval" => any(&[integer(1, i64::from(u32::MAX)), of("time_literal")]),
+        "single" => of("wire"),
+        "watchdog" => integer(1, u32::MAX.into()),
+        _ => integer(0, u32::MAX.into()),
+    });
+    add(
+        &mut task,
+        "anyOf",
+        json!([{"required": ["interval"]}, {"required": ["single"]}]),
+    );
+    task
+}
+
+fn block() -> Value {
+    let names: Vec<&str> = REGISTRY.iter().map(|info| info.name).collect();
+    let mut block = object(&shape::BLOCK, |key| match key {
+        "name" => of("identifier"),
+        "type" => json!({"enum": names}),
+        "pins" => json!({"type": "object"}),
+        _ => text(),
+    });
+    let pins_by_type: Vec<Value> = REGISTRY
+        .iter()
+        .map(|info| {
+            let mut then = json!({"properties": {"pins": of(&pins_name(info))}});
+            if info.pins_of(Direction::InOut).next().is_some() {
+                add(&mut then, "required", json!(["pins"]));
+            }
+            json!({"if": {"properties": {"type": {"const": info.name}}}, "then": then})
+        })
+        .collect();
+    add(&mut block, "allOf", json!(pins_by_type));
+    required(&["name", "type"], block)
+}
+
+fn pins_name(info: &BlockInfo) -> String {
+    format!("pins_of_{}", info.name)
+}
+
+fn pins(info: &BlockInfo) -> Value {
+    let mut properties = Map::new();
+    properties.insert("note".to_owned(), text());
+    for pin in info.pins().take(info.input_count()) {
+        let unit = if pin.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" Unit: {}.", pin.unit)
+        };
+        let mut schema = any(&[constant(pin.ty), of("wire")]);
+        add(
+            &mut schema,
+            "description",
+            json!(format!("{}: {}{unit}", pin.ty.iec_name(), pin.doc.trim())),
+        );
+        properties.insert(pin.name.to_owned(), schema);
+    }
+    let in_outs: Vec<&str> = info.pins_of(Direction::InOut).map(|pin| pin.name).collect();
+    json!({
+        "description": info.doc,
+        "type": "object",
+        "properties": properties,
+        "required": in_outs,
+        "additionalProperties": false,
+    })
+}
+
+fn constant(ty: PinType) -> Value {
+    match ty {
+        PinType::Bool => json!({"type": "boolean"}),
+        PinType::Int => integer(i16::MIN.into(), i16::MAX.into()),
+        PinType::Lreal => of("number"),
+        PinType::Word => integer(0, u16::MAX.into()),
+        PinType::Time => of("scans"),
+        PinType::Axis => of("identifier"),
+        PinType::Enum(info) => any(&[words(info.elements), integer(i32::MIN.into(), i32::MAX.into())]),
+    }
+}
+
+fn wire() -> Value {
+    let mut wire = object(&shape::WIRE, |key| match key {
+        "any" | "all" => list(text(), 1),
+        _ => text(),
+    });
+    let kinds = shape::WIRE_KINDS.iter().map(|kind| json!({"required": [kind]}));
+    add(&mut wire, "oneOf", kinds.collect());
+    wire
+}
+
+fn step() -> Value {
+    let mut step = object(&shape::STEP, |key| match key {
+        "at" | "after" => of("scans"),
+        "when" => of("conditions"),
+        "every" => json!({"type": "boolean"}),
+        "set" => json!({"type": "object", "additionalProperties": of("value")}),
+        "fault" => required(
+            &["axis", "kind"],
+            object(&shape::FAULT, |key| match key {
+                "kind" => words(&FAULT_KINDS),
+                "code" => integer(0, u16::MAX.into()),
+                _ => text(),
+            }),
+        ),
+        "clear" => required(&["axis"], object(&shape::CLEAR, |_| text())),
+        _ => required(
+            &["axis", "displace"],
+            object(&shape::DRIVE_STEP, |key| {
+                if key == "displace" { of("finite") } else { text() }
+            }),
+        ),
+    });
+    add(
+        &mut step,
+        "oneOf",
+        json!([{"required": ["at"]}, {"required": ["when"]}]),
+    );
+    add(
+        &mut step,
+        "dependentRequired",
+        json!({"after": ["when"], "every": ["when"]}),
+    );
+    let actions = ["set", "fault", "clear", "drive"].map(|action| json!({"required": [action]}));
+    add(&mut step, "anyOf", json!(actions));
+    step
+}
+
+fn conditions() -> Value {
+    json!({
+        "type": "object",
+        "minProperties": 1,
+        "additionalProperties": any(&[of("value"), of("comparison")]),
+    })
+}
+
+fn comparison() -> Value {
+    let mut comparison = object(&shape::COMPARISON, |key| match key {
+        "ne" => of("value"),
+        "same_as" => text(),
+        _ => any(&[of("number"), of("time_literal")]),
+    });
+    add(&mut comparison, "minProperties", json!(1));
+    add(
+        &mut comparison,
+        "dependentRequired",
+        json!({"near": ["within"], "within": ["near"]}),
+    );
+    comparison
+}
+
+fn claim(shape: &Shape) -> Value {
+    let kind = shape.keys.first().copied().unwrap_or_default();
+    let claim = object(shape, |key| match key {
+        "at" | "by" | "from" | "to" => of("scans"),
+        "exclusive" => list(text(), 2),
+        "within_limits" => text(),
+        "factor" => of("positive"),
+        _ => of("conditions"),
+    });
+    if shape.keys.contains(&"that") {
+        required(&[kind, "that"], claim)
+    } else {
+        required(&[kind], claim)
+    }
+}
