@@ -1,6 +1,6 @@
 //! `standstill fmt`: scripts in their canonical layout.
 
-use crate::exit::{Exit, Failure};
+use crate::exit::{Exit, Failure, go_on};
 use standstill_script::suite::{self, SuiteError};
 use std::fs;
 use std::io::{self, Read, Write};
@@ -9,39 +9,44 @@ use std::path::{Path, PathBuf};
 /// Lays out the scripts at the paths in place and names those that changed. With `check` nothing is written,
 /// and a script that would change fails.
 pub fn files(paths: &[PathBuf], check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
-    let mut changed = 0;
+    let mut exit = Exit::Passed;
     for path in paths {
         for script in suite::find(path)? {
-            if lay_out(&script, check)? {
-                writeln!(out, "{}", suite::shown(&script))?;
-                changed += 1;
-            }
+            let this = lay_out(&script, check, out);
+            exit = exit.max(go_on(this, out)?);
         }
     }
-    Ok(Exit::of(!check || changed == 0))
+    Ok(exit)
 }
 
-/// Lays out a script from standard input to standard output.
-pub fn filter(out: &mut dyn Write) -> Result<Exit, Failure> {
-    const NAME: &str = "standard input";
+/// Lays out a script from standard input to standard output; with `check` only says by the status whether
+/// it is laid out already.
+pub fn filter(check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let mut text = String::new();
-    io::stdin()
-        .lock()
-        .read_to_string(&mut text)
-        .map_err(|error| Failure::io(NAME, &error))?;
-    let text = standstill_script::format(&text, NAME).map_err(SuiteError::from)?;
-    write!(out, "{text}")?;
+    let read = io::stdin().lock().read_to_string(&mut text);
+    read.map_err(|error| Failure::io("standard input", &error))?;
+    let canonical = canonical(&text, "standard input")?;
+    if check {
+        return Ok(Exit::of(text == canonical));
+    }
+    write!(out, "{canonical}")?;
     Ok(Exit::Passed)
 }
 
-/// Whether the layout of a script differs from the canonical one.
-fn lay_out(path: &Path, check: bool) -> Result<bool, Failure> {
+fn lay_out(path: &Path, check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let name = suite::shown(path);
     let text = fs::read_to_string(path).map_err(|error| Failure::io(&name, &error))?;
-    let canonical = standstill_script::format(&text, &name).map_err(SuiteError::from)?;
-    let differs = text != canonical;
-    if differs && !check {
+    let canonical = canonical(&text, &name)?;
+    if text == canonical {
+        return Ok(Exit::Passed);
+    }
+    if !check {
         fs::write(path, canonical).map_err(|error| Failure::io(&name, &error))?;
     }
-    Ok(differs)
+    writeln!(out, "{name}")?;
+    Ok(Exit::of(!check))
+}
+
+fn canonical(text: &str, name: &str) -> Result<String, Failure> {
+    Ok(standstill_script::format(text, name).map_err(SuiteError::from)?)
 }

@@ -69,7 +69,9 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             write!(out, "{}", standstill_script::schema())?;
             Ok(Exit::Passed)
         }
-        Command::Fmt { paths, .. } if paths.iter().any(|path| is_standard(path)) => fmt::filter(out),
+        Command::Fmt { paths, check } if paths.iter().all(|path| is_standard(path)) => {
+            fmt::filter(*check, out)
+        }
         Command::Fmt { paths, check } => fmt::files(paths, *check, out),
     }
 }
