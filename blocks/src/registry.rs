@@ -9,7 +9,9 @@ use crate::single_axis::{
     mc_halt::McHalt, mc_move_absolute::McMoveAbsolute, mc_move_relative::McMoveRelative,
     mc_move_velocity::McMoveVelocity, mc_stop::McStop,
 };
-use crate::standard::r_trig::RTrig;
+use crate::standard::{
+    ctd::Ctd, ctu::Ctu, ctud::Ctud, f_trig::FTrig, r_trig::RTrig, rs::Rs, sr::Sr, tof::Tof, ton::Ton, tp::Tp,
+};
 use standstill_axis::Planner;
 use standstill_fb::{AnyInstance, BlockInfo, Context, Described, Instance, PinError, Value};
 
@@ -57,7 +59,7 @@ registry! {
     McPower McReset McReadStatus McReadActualPosition McReadAxisError
     McHome
     McStop McHalt McMoveAbsolute McMoveRelative McMoveVelocity
-    RTrig
+    RTrig FTrig Sr Rs Ctu Ctd Ctud Ton Tof Tp
 }
 
 impl AnyInstance for BlockInstance {

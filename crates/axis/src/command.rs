@@ -31,7 +31,7 @@ impl Default for AxisId {
 pub struct InstanceId(pub u16);
 
 /// Number of a command, rising per axis and never reused (R94).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct CommandId(pub(crate) u64);
 
 /// An enumeration of the standard with its IEC names and our numbers.

@@ -29,7 +29,7 @@ pub enum ErrorClass {
 macro_rules! error_ids {
     ($($name:ident = $number:literal, $cause:literal, $remedy:literal;)*) => {
         /// The number at an `ErrorID` pin; `None` (0) whenever `Error` is FALSE.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]
         #[repr(u16)]
         pub enum ErrorId {

@@ -21,7 +21,7 @@ mod log;
 mod scaling;
 mod state;
 
-pub use axis::{Axis, Source};
+pub use axis::{Axis, Outlook, Source};
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, IecEnum, InstanceId, QUEUE_MAX, Raw, Request,
 };

@@ -13,11 +13,32 @@ pub fn sqrt(x: f64) -> f64 {
     }
 }
 
-/// The smallest whole number >= `x`, for 0 <= `x` < 2^63.
+/// The larger of two numbers that are not NaN: one instruction, where `f64::max` also sorts out NaN.
+#[inline]
+pub fn max(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two numbers that are not NaN.
+#[inline]
+pub fn min(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// From here on every `f64` is whole.
+const WHOLE: f64 = (1_u64 << 52) as f64;
+
+/// The largest whole number <= `x`, for `x` >= 0.
+#[inline]
+pub fn floor(x: f64) -> f64 {
+    if x < WHOLE { x as i64 as f64 } else { x }
+}
+
+/// The smallest whole number >= `x`, for `x` >= 0.
 #[inline]
 pub fn ceil(x: f64) -> f64 {
-    let whole = x as i64 as f64;
-    if whole < x { whole + 1.0 } else { whole }
+    let floor = floor(x);
+    if floor < x { floor + 1.0 } else { floor }
 }
 
 /// Cube root of a normal `x` > 0 within 6 %, a start for Newton's steps.

@@ -3,8 +3,8 @@
 use crate::config::{check, find};
 use crate::task::Task;
 use crate::{
-    ConfigError, Fault, FaultText, Machine, ProgramConfig, ProgramId, Programs, RUNTIME, ScanTime, Start,
-    StillMoving, TaskConfig, TaskCounts, TaskId,
+    ConfigError, Fault, FaultText, Machine, NotOff, ProgramConfig, ProgramId, Programs, RUNTIME, ScanTime,
+    Start, TaskConfig, TaskCounts, TaskId,
 };
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -14,7 +14,6 @@ use standstill_axis::{Drive, Planner};
 
 /// What a scan did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[must_use = "a fault of the resource shows only here and in Executor::fault"]
 pub struct ScanReport {
     /// Number of the scan, from 0.
     pub scan: u64,
@@ -26,8 +25,30 @@ pub struct ScanReport {
     pub executions: usize,
     /// Of these, tasks whose next due time had passed when they ended.
     pub overruns: usize,
-    /// The fault that stopped the resource, in this scan or before.
-    pub fault: Option<Fault>,
+    /// Whether programs run from now on.
+    pub mode: Mode,
+}
+
+/// Whether a resource runs its programs. Axes and drives are served in every mode.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// Programs run.
+    #[default]
+    Running,
+    /// Stopped on request.
+    Stopped,
+    /// Stopped by a fault.
+    Faulted(Fault),
+}
+
+impl Mode {
+    /// The fault that stopped the resource.
+    pub fn fault(&self) -> Option<&Fault> {
+        match self {
+            Self::Faulted(fault) => Some(fault),
+            Self::Running | Self::Stopped => None,
+        }
+    }
 }
 
 /// The instant given to a scan is before that of the scan before; nothing was executed.
@@ -77,7 +98,7 @@ pub struct Executor {
     grid: Option<(i64, u64)>,
     /// First tick at which the processing unit is free.
     free_from: u64,
-    fault: Option<Fault>,
+    mode: Mode,
 }
 
 /// What the programs of a scan did.
@@ -117,27 +138,26 @@ impl Executor {
             previous_ns: None,
             grid: None,
             free_from: 0,
-            fault: None,
+            mode: Mode::Running,
         })
     }
 
     /// Starts the resource: variables are set, tasks and counts begin anew, a fault is forgotten.
     ///
-    /// Axes never start moving. Before the first scan they keep their configured state; a later start
-    /// switches them off. Scan numbers go on, so that records stay unambiguous. A resource whose programs
-    /// already have their initial values needs no start before its first scan.
+    /// A resource whose programs already have their initial values needs no start before its first scan;
+    /// axes then have their configured state. Before any later start they must be off, so that no motion
+    /// is carried over. Scan numbers go on, so that records stay unambiguous.
     ///
     /// # Errors
-    /// [`StillMoving`] if an axis is in motion; nothing has changed then.
+    /// [`NotOff`] if an axis is not off; nothing has changed then.
     pub fn start<P: Planner, D: Drive>(
         &mut self,
         start: Start,
         programs: &mut impl Programs<P, D>,
-        machine: &mut Machine<P, D>,
-    ) -> Result<(), StillMoving> {
-        machine.all_at_rest()?;
+        machine: &Machine<P, D>,
+    ) -> Result<(), NotOff> {
         if self.next_scan > 0 {
-            machine.power_off(self.next_scan);
+            machine.is_off()?;
         }
         programs.start(start);
         for task in &mut self.tasks {
@@ -145,14 +165,26 @@ impl Executor {
         }
         self.grid = None;
         self.free_from = 0;
-        self.fault = None;
+        self.mode = Mode::Running;
         Ok(())
+    }
+
+    /// Stops the resource: no program runs any more, and every axis is asked to stop and switch off in its
+    /// configured way, which takes further scans. Without effect on a resource that has stopped.
+    pub fn stop<P: Planner, D: Drive>(
+        &mut self,
+        programs: &mut impl Programs<P, D>,
+        machine: &mut Machine<P, D>,
+    ) {
+        if self.mode == Mode::Running {
+            self.leave_running(Mode::Stopped, programs, machine);
+        }
     }
 
     /// One scan at the instant `now_ns`. This body is the order of everything in a scan.
     ///
-    /// Work: each task at most once, each axis and drive once. After a fault no program runs any more, while
-    /// axes and drives are still served, so that every axis can stop in its configured way.
+    /// Work: each task at most once, each axis and drive once. While the resource is stopped no program
+    /// runs, but axes and drives are served, because an axis can only stop in its configured way in scans.
     ///
     /// # Errors
     /// [`TimeRanBackwards`] if `now_ns` is smaller than that of the last scan; nothing was executed.
@@ -173,7 +205,7 @@ impl Executor {
         programs.observe(time, machine);
         machine.advance(time);
         machine.publish(time);
-        if self.fault.is_none() {
+        if self.mode == Mode::Running {
             programs.publish(time);
         }
         programs.published(time, machine);
@@ -184,13 +216,13 @@ impl Executor {
             missed_ticks,
             executions: work.executions,
             overruns: work.overruns,
-            fault: self.fault,
+            mode: self.mode,
         })
     }
 
-    /// The fault that stopped the resource.
-    pub fn fault(&self) -> Option<&Fault> {
-        self.fault.as_ref()
+    /// Whether programs run.
+    pub fn mode(&self) -> Mode {
+        self.mode
     }
 
     /// `fault` with the names of its task and program.
@@ -247,7 +279,7 @@ impl Executor {
         machine: &mut Machine<P, D>,
     ) -> Work {
         let mut work = Work::default();
-        if self.fault.is_some() {
+        if self.mode != Mode::Running {
             return work;
         }
         for (index, task) in self.tasks.iter_mut().enumerate() {
@@ -260,11 +292,21 @@ impl Executor {
         let outcome = self.run_all(time, tick, programs, machine, &mut work);
         self.free_from = self.tick_after(tick, work.used_ns);
         if let Err(fault) = outcome {
-            self.fault = Some(fault);
-            programs.fail(&fault);
-            machine.power_off(time.scan);
+            self.leave_running(Mode::Faulted(fault), programs, machine);
         }
         work
+    }
+
+    fn leave_running<P: Planner, D: Drive>(
+        &mut self,
+        mode: Mode,
+        programs: &mut impl Programs<P, D>,
+        machine: &mut Machine<P, D>,
+    ) {
+        self.mode = mode;
+        programs.stopped(mode.fault());
+        // The scan under way; after it, the last one.
+        machine.power_off(self.next_scan.saturating_sub(1));
     }
 
     fn run_all<P: Planner, D: Drive>(

@@ -17,8 +17,8 @@ mod programs;
 mod task;
 
 pub use config::{ConfigError, ProgramConfig, TaskConfig, Watchdog, common_tick_ns};
-pub use executor::{Executor, ScanReport, TimeRanBackwards};
+pub use executor::{Executor, Mode, ScanReport, TimeRanBackwards};
 pub use fault::{Fault, FaultText};
 pub use machine::{Machine, MachineError, OrderError, RUNTIME};
-pub use programs::{ProgramFault, ProgramId, Programs, ScanTime, Start, StillMoving, TaskId};
+pub use programs::{NotOff, ProgramFault, ProgramId, Programs, ScanTime, Start, TaskId};
 pub use task::TaskCounts;

@@ -1,6 +1,6 @@
 //! The axes with their drives, and what a scan does to them.
 
-use crate::{ScanTime, StillMoving};
+use crate::{NotOff, ScanTime};
 use alloc::vec::Vec;
 use core::fmt;
 use standstill_axis::{
@@ -163,26 +163,25 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         }
     }
 
-    /// Finds the first axis in motion.
-    pub(crate) fn all_at_rest(&self) -> Result<(), StillMoving> {
-        for (index, axis) in (0..).zip(&self.axes) {
-            match axis.state() {
-                AxisState::Disabled | AxisState::Standstill => {}
-                // A drive that decelerates after a fault still moves.
-                AxisState::ErrorStop if axis.setpoint().is_at_rest() => {}
-                AxisState::ErrorStop
-                | AxisState::Homing
-                | AxisState::DiscreteMotion
-                | AxisState::ContinuousMotion
-                | AxisState::SynchronizedMotion
-                | AxisState::Stopping => {
-                    return Err(StillMoving {
-                        axis: AxisId::new(index),
-                    });
-                }
-            }
-        }
-        Ok(())
+    /// Whether every axis is Disabled, or in ErrorStop and at rest.
+    pub(crate) fn is_off(&self) -> Result<(), NotOff> {
+        let on = (0..).zip(&self.axes).find(|(_, axis)| match axis.state() {
+            AxisState::Disabled => false,
+            // After a fault an axis may still be on its ramp.
+            AxisState::ErrorStop => !axis.setpoint().is_at_rest(),
+            AxisState::Standstill
+            | AxisState::Homing
+            | AxisState::DiscreteMotion
+            | AxisState::ContinuousMotion
+            | AxisState::SynchronizedMotion
+            | AxisState::Stopping => true,
+        });
+        on.map_or(Ok(()), |(index, axis)| {
+            Err(NotOff {
+                axis: AxisId::new(index),
+                state: axis.state(),
+            })
+        })
     }
 }
 

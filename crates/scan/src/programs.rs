@@ -1,7 +1,7 @@
 //! What a host brings: its programs, its inputs and outputs, and what it wants to see of a scan.
 
 use crate::{Fault, Machine};
-use standstill_axis::{AxisId, Drive, Planner};
+use standstill_axis::{AxisId, AxisState, Drive, Planner};
 use standstill_fb::Context;
 
 /// A task: its place in the declaration.
@@ -37,27 +37,29 @@ pub struct ProgramFault {
     pub reason: &'static str,
 }
 
-/// A start was refused because an axis is in motion; motion is never carried over a start.
+/// A start was refused because an axis is switched on or still moving; neither is carried over a start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct StillMoving {
+pub struct NotOff {
     /// The first such axis.
     pub axis: AxisId,
+    /// Its state.
+    pub state: AxisState,
 }
 
-impl core::fmt::Display for StillMoving {
+impl core::fmt::Display for NotOff {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         write!(
             f,
-            "axis {} is still moving: stop it, or go on scanning until it stands, and start then",
-            self.axis.index()
+            "axis {} is in {}: stop the resource and go on scanning until every axis is Disabled, then start",
+            self.axis.index(),
+            self.state.name()
         )
     }
 }
 
-impl core::error::Error for StillMoving {}
+impl core::error::Error for NotOff {}
 
-/// The host's side of a scan. The hooks are called in the order in which they stand here, which is that of
-/// [`crate::Executor::scan`].
+/// The host's side of a scan. [`crate::Executor::scan`] says when each hook is called.
 pub trait Programs<P: Planner, D: Drive> {
     /// Sets all variables: globals first, then program instances in declaration order, and nested
     /// instances before their owner.
@@ -85,11 +87,13 @@ pub trait Programs<P: Planner, D: Drive> {
     /// All programs of this scan have run, the motion step has not: axis states as the trace shows them.
     fn observe(&mut self, _time: ScanTime, _machine: &Machine<P, D>) {}
 
-    /// Publishes the outputs of the programs. Not called in the scan of a fault nor after it.
+    /// Publishes the outputs of the programs. Not called while the resource is stopped, nor in the scan of a
+    /// fault.
     fn publish(&mut self, _time: ScanTime) {}
 
-    /// The resource stopped: outputs take their fail values. Called once, instead of [`Programs::publish`].
-    fn fail(&mut self, _fault: &Fault) {}
+    /// The resource has stopped, because of a fault or on request: outputs take their fail values. Called
+    /// once.
+    fn stopped(&mut self, _fault: Option<&Fault>) {}
 
     /// The scan is over: set-points are those the drives were given.
     fn published(&mut self, _time: ScanTime, _machine: &Machine<P, D>) {}

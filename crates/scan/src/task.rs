@@ -98,14 +98,13 @@ impl Task {
 
     /// Ends an execution that took `took_ns`; the processing unit is free from tick `free_from` on.
     pub(crate) fn end(&mut self, free_from: u64, took_ns: u64) -> Ended {
-        let missed = self.pass(free_from);
+        let passed = self.pass(free_from);
+        let missed = if self.state.single { 0 } else { passed };
         let overrun = missed > 0;
         self.state.waiting_since = None;
         self.state.counts.executions += 1;
         self.state.counts.overruns += u64::from(overrun);
-        if !self.state.single {
-            self.state.counts.skipped += missed;
-        }
+        self.state.counts.skipped += missed;
         let violated = self.watchdog.filter(|watchdog| took_ns > watchdog.limit_ns);
         self.state.violations = violated.map_or(0, |_| self.state.violations.saturating_add(1));
         Ended {

@@ -7,8 +7,8 @@ mod common;
 use common::{MS, Rig, task};
 use standstill_axis::AxisId;
 use standstill_scan::{
-    Fault, OrderError, ProgramConfig, ProgramFault, ScanTime, Start, TaskConfig, TaskId, TimeRanBackwards,
-    Watchdog,
+    Fault, Mode, OrderError, ProgramConfig, ProgramFault, ScanTime, Start, TaskConfig, TaskId,
+    TimeRanBackwards, Watchdog,
 };
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -29,7 +29,7 @@ fn two_axes() -> Rig {
 #[test]
 fn a_scan_has_one_order() {
     let mut rig = two_axes();
-    let _ = rig.scan_at(0);
+    rig.scan_at(0);
     let order = [
         "latch",
         "read X",
@@ -90,7 +90,7 @@ fn programs_see_the_latched_image_only() {
     };
     let mut machine = Machine::new();
     for scan in 0..3 {
-        let _ = executor.scan(scan * MS as i64, &mut io, &mut machine).unwrap();
+        executor.scan(scan * MS as i64, &mut io, &mut machine).unwrap();
     }
     assert_eq!(io.published, [false, true, true]);
 }
@@ -105,8 +105,8 @@ fn time_is_the_argument_and_constant_in_a_scan() {
         note.borrow_mut().push((time.scan, time.now_ns));
         Ok(100)
     });
-    let _ = rig.scan_at(-7);
-    let _ = rig.scan_at(2_000_123);
+    rig.scan_at(-7);
+    rig.scan_at(2_000_123);
     assert_eq!(
         *seen.borrow(),
         [
@@ -124,7 +124,7 @@ fn time_is_the_argument_and_constant_in_a_scan() {
 #[test]
 fn time_running_backwards_is_refused() {
     let mut rig = two_axes();
-    let _ = rig.scan_at(5);
+    rig.scan_at(5);
     rig.taken_tape();
     let refused = rig.executor.scan(4, &mut rig.host, &mut rig.machine);
     assert_eq!(
@@ -163,7 +163,7 @@ fn the_same_inputs_give_the_same_tape() {
         let mut now = 0;
         for _ in 0..2000 {
             now += (MS / 2 + jitter() % MS) as i64;
-            let _ = rig.scan_at(now);
+            rig.scan_at(now);
         }
         let counts: Vec<_> = (0..3).map(|id| rig.executor.counts(TaskId(id))).collect();
         (rig.taken_tape(), counts)
@@ -175,7 +175,7 @@ fn the_same_inputs_give_the_same_tape() {
 #[test]
 fn missed_ticks_are_reported_and_not_made_up_for() {
     let mut rig = two_axes();
-    let _ = rig.scan_at(0);
+    rig.scan_at(0);
     let report = rig.scan_at(4 * MS as i64);
     assert_eq!((report.scan, report.tick, report.missed_ticks), (1, 4, 3));
     for drive in rig.machine.drives() {
@@ -216,13 +216,17 @@ fn the_watchdog_stops_the_resource() {
         let mut rig = watched(sensitivity);
         for scan in 0..10 {
             let report = rig.scan_at(scan * MS as i64);
-            assert_eq!(report.fault.is_some(), scan >= fires_in, "{sensitivity} {scan}");
+            assert_eq!(
+                report.mode.fault().is_some(),
+                scan >= fires_in,
+                "{sensitivity} {scan}"
+            );
             let tape = rig.taken_tape();
             let has = |line: &str| tape.iter().any(|other| other == line);
             assert_eq!(has("run p"), scan <= fires_in);
             assert_eq!(has("run q"), scan < fires_in);
             assert_eq!(has("publish"), scan < fires_in);
-            assert_eq!(has("fail"), scan == fires_in);
+            assert_eq!(has("stopped"), scan == fires_in);
             assert!(has("read X") && has("write X") && has("observe") && has("published"));
         }
         let fault = Fault::Watchdog {
@@ -250,17 +254,18 @@ fn a_program_fault_ends_the_scan() {
         _ => Ok(0),
     });
     for scan in 0..2 {
-        let _ = rig.scan_at(scan * MS as i64);
+        rig.scan_at(scan * MS as i64);
     }
     rig.taken_tape();
-    let fault = rig.scan_at(2 * MS as i64).fault.unwrap();
+    let mode = rig.scan_at(2 * MS as i64).mode;
+    let fault = *mode.fault().unwrap();
     let order = [
         "latch",
         "read X",
         "read Y",
         "run a",
         "run b",
-        "fail",
+        "stopped",
         "observe",
         "write X",
         "write Y",
@@ -271,7 +276,7 @@ fn a_program_fault_ends_the_scan() {
         rig.executor.describe(fault).to_string(),
         "scan 2, task slow, program b: division by zero"
     );
-    assert_eq!(rig.executor.fault(), Some(&fault));
+    assert_eq!(rig.executor.mode(), Mode::Faulted(fault));
 }
 
 /// ST-1, ST-2, ST-6 as far as an executor owns them: the host is told which start it is, tasks begin at
@@ -281,20 +286,18 @@ fn a_start_begins_anew() {
     for start in [Start::Cold, Start::Warm] {
         let mut rig = watched(1);
         for scan in 0..4 {
-            let _ = rig.scan_at(scan * MS as i64);
+            rig.scan_at(scan * MS as i64);
         }
-        assert!(rig.executor.fault().is_some());
+        assert!(rig.executor.mode().fault().is_some());
         rig.taken_tape();
-        rig.executor
-            .start(start, &mut rig.host, &mut rig.machine)
-            .unwrap();
+        rig.executor.start(start, &mut rig.host, &rig.machine).unwrap();
         assert_eq!(rig.taken_tape(), [format!("start {start:?}")]);
-        assert_eq!(rig.executor.fault(), None);
+        assert_eq!(rig.executor.mode(), Mode::Running);
         assert_eq!(rig.executor.counts(TaskId(0)).unwrap().executions, 0);
         rig.host.script = Box::new(|_, _| Ok(0));
         let report = rig.scan_at(1_234_567_890);
         assert_eq!((report.scan, report.tick, report.executions), (4, 0, 2));
-        assert_eq!(report.fault, None);
+        assert_eq!(report.mode, Mode::Running);
     }
 }
 

@@ -37,7 +37,7 @@
 //! let mut now_ns = 0;
 //! while !program.to_ten.outputs.done {
 //!     let report = executor.scan(now_ns, &mut program, &mut machine)?;
-//!     assert!(report.fault.is_none() && now_ns < 2_000_000_000);
+//!     assert!(report.mode.fault().is_none() && now_ns < 2_000_000_000);
 //!     now_ns += 1_000_000;
 //! }
 //! assert_eq!(machine.axes()[axis.index()].setpoint().position, 10.0);

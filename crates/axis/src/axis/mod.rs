@@ -12,7 +12,7 @@ mod step;
 use crate::fate::Fates;
 use crate::{
     AxisConfig, AxisEvent, AxisId, AxisState, CommandId, ConfigError, DriveCommand, DriveFeedback,
-    DrivePosition, ErrorId, Event, Fate, InstanceId, Log, Record, StartState, state,
+    DrivePosition, ErrorId, Event, Fate, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
 };
 use queue::{Entry, Queue, Work};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
@@ -48,6 +48,39 @@ struct Power {
     going_off: bool,
     /// Power was lost: it does not come back before a reset or a new rising Enable.
     tripped: bool,
+}
+
+/// What an axis will do next, see [`Axis::outlook`]; for searches over all reachable states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Outlook {
+    /// State of the axis.
+    pub state: AxisState,
+    /// `None` if the set-point follows the feedback, 0 if it holds, else one more than the scans to the goal.
+    pub scans_left: Option<u32>,
+    /// The owner: its number, what it does, and whether MC_Stop's Execute holds it.
+    pub owner: Option<(CommandId, &'static str, bool)>,
+    /// MC_Stop has come to rest and is held.
+    pub stop_held: bool,
+    /// Commands that wait, in order.
+    pub waiting: [Option<(CommandId, &'static str)>; QUEUE_MAX],
+    /// MC_Power.Enable.
+    pub power_wanted: bool,
+    /// Operation is enabled.
+    pub power_on: bool,
+    /// On the way to Disabled.
+    pub going_off: bool,
+    /// Power was lost and does not come back by itself.
+    pub tripped: bool,
+    /// The axis error.
+    pub error: ErrorId,
+    /// Its cause persists.
+    pub cause_present: bool,
+    /// A reset under way.
+    pub reset: Option<CommandId>,
+    /// MC_Home has been done.
+    pub homed: bool,
+    /// The last motion was in positive direction.
+    pub forward: bool,
 }
 
 /// One axis.
@@ -212,6 +245,42 @@ impl<P: Planner> Axis<P> {
             return Fate::Waiting;
         }
         self.fates.find(id).unwrap_or(Fate::Failed(ErrorId::FateLost))
+    }
+
+    /// What the axis will do next: everything but positions, results of ended commands and the configuration.
+    /// Two axes of equal outlook and set-point behave alike from now on.
+    pub fn outlook(&self) -> Outlook {
+        let mut waiting = [None; QUEUE_MAX];
+        for (slot, entry) in waiting.iter_mut().zip(self.queue.iter()) {
+            *slot = Some((entry.id, entry.work.kind()));
+        }
+        Outlook {
+            state: self.state,
+            scans_left: match &self.motion {
+                Motion::Follow => None,
+                Motion::Hold => Some(0),
+                Motion::Run { plan, elapsed } => {
+                    // At least 1, to tell a plan at its goal from holding.
+                    let left = u64::from(plan.scans()).saturating_sub(*elapsed);
+                    Some(u32::try_from(left).unwrap_or(u32::MAX).saturating_add(1))
+                }
+            },
+            owner: self
+                .owner
+                .as_ref()
+                .map(|owner| (owner.id, owner.work.kind(), owner.held)),
+            stop_held: self.stop_held,
+            waiting,
+            power_wanted: self.power.wanted,
+            power_on: self.power.on,
+            going_off: self.power.going_off,
+            tripped: self.power.tripped,
+            error: self.error,
+            cause_present: self.cause_present,
+            reset: self.reset.as_ref().map(|reset| reset.id),
+            homed: self.homed,
+            forward: self.last_direction > 0.0,
+        }
     }
 
     /// The drive's command for this scan.

@@ -20,6 +20,19 @@ pub(super) enum Work {
     Home(f64),
 }
 
+impl Work {
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Position(_) => "position",
+            Self::Distance(_) => "distance",
+            Self::Velocity { .. } => "velocity",
+            Self::Halt => "halt",
+            Self::Stop => "stop",
+            Self::Home(_) => "home",
+        }
+    }
+}
+
 /// A command with its number, its sender and its limits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
@@ -69,7 +82,11 @@ impl Queue {
         self.entries.get(self.len.checked_sub(1)?)?.as_ref()
     }
 
+    pub fn iter(&self) -> impl Iterator<Item = &Entry> {
+        self.entries.iter().flatten()
+    }
+
     pub fn contains(&self, id: CommandId) -> bool {
-        self.entries.iter().flatten().any(|entry| entry.id == id)
+        self.iter().any(|entry| entry.id == id)
     }
 }

@@ -111,7 +111,7 @@ impl GridPlan {
         };
         let count = scans(&boxes);
         if count == 0 || count > LONGEST {
-            return Err(problem.slowest(limits));
+            return Err(problem.too_long(limits));
         }
         plan.scans = count as u32;
         let [n1, n2, n3, n4] = boxes.map(|n| n as u32);
@@ -121,14 +121,7 @@ impl GridPlan {
             Order::Two => [n3, n4, 0, 0],
         };
         (plan.scale, plan.wide) = profile::scale(plan.order, plan.product(), distance, cycle);
-        if plan.scale.iter().all(|factor| factor.is_finite()) && plan.peaks().are_finite() {
-            Ok((plan, work))
-        } else {
-            Err(PlanError::InvalidInput {
-                field: Field::Cycle,
-                value: cycle,
-            })
-        }
+        Ok((plan, work))
     }
 
     /// Where the move starts (u).
@@ -173,8 +166,13 @@ impl GridPlan {
     }
 
     /// Product of the box lengths: the whole number the distance is divided by (docs/planner.md, eq. 4).
-    pub fn product(&self) -> i128 {
-        self.boxes().iter().map(|n| i128::from(*n)).product()
+    pub fn product(&self) -> u128 {
+        let [a, b, c, d] = self.boxes.map(u64::from);
+        match self.order {
+            Order::Four => u128::from(a * b) * u128::from(c * d),
+            Order::Three => u128::from(a * b) * u128::from(c),
+            Order::Two => u128::from(a * b),
+        }
     }
 
     /// The published planner's segment durations; none for [`Method::Overlapped`], whose cruise may be
@@ -225,6 +223,11 @@ fn checked_distance(start: f64, target: f64, limits: &Limits, cycle: f64) -> Res
     limits.check()?;
     if limits.is_unbounded() {
         return Err(PlanError::Unbounded);
+    }
+    // The first three derivatives can't exceed the larger of this and the distance.
+    let squared = cycle * cycle;
+    if !(distance / (squared * squared)).is_finite() {
+        return invalid(Field::Cycle, cycle);
     }
     Ok(distance)
 }

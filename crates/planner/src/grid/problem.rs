@@ -1,6 +1,6 @@
 //! From limits and a distance to four whole numbers: the only rounding of planning.
 
-use crate::{Field, Limits, Order, PlanError};
+use crate::{Field, Limits, Order, PlanError, math};
 
 /// A ratio counts as reached when it is missed by less than 2^-40 of itself, so that decimal inputs give
 /// their nominal counts (docs/planner.md, eq. 7).
@@ -13,18 +13,23 @@ pub(super) const LONGEST: u64 = (1 << 31) - 1;
 pub(super) type Boxes = [u64; 4];
 
 /// A rest-to-rest problem on the grid: find the boxes of the least sum whose products reach the thresholds.
+///
+/// The thresholds are whole numbers. As `f64` they are exact: a ratio of 2^53 or more is whole already.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Problem {
     /// How many boxes there are.
     pub order: Order,
-    /// Least n4.
-    pub k4: u64,
-    /// Least n3 n4.
-    pub k3: u64,
-    /// Least n2 n3 n4.
-    pub k2: u128,
-    /// Least n1 n2 n3 n4.
-    pub k1: u128,
+    /// Least n4, at most 2^31.
+    pub k4: f64,
+    /// Least n3 n4, at most 2^62.
+    pub k3: f64,
+    /// Least n2 n3 n4, at most 2^93.
+    pub k2: f64,
+    /// Least n1 n2 n3 n4, at most 2^116.
+    pub k1: f64,
+    /// Whether all are at most 2^53, so that a rounded product of whole numbers is below a threshold only if
+    /// the exact one is (docs/planner.md, eq. 9).
+    small: bool,
 }
 
 impl Problem {
@@ -34,96 +39,99 @@ impl Problem {
     /// # Errors
     /// [`PlanError::TooLong`] names the first bound that alone needs more than 2^31 scans.
     pub fn new(distance: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
-        let Limits {
-            velocity: v,
-            jerk: j,
-            snap: s,
-            ..
-        } = *limits;
+        let t = cycle;
         let a = limits.lower_acceleration();
-        // A box product of a plan that can be counted is below (2^31)^m at m boxes, and below 2^116 at four
-        // because the boxes sum to N (docs/planner.md, eq. 8).
-        let k4 = threshold(distance / (v * cycle), 31, Field::LimitVelocity, v)?;
-        let k3 = threshold(distance / (a * cycle * cycle), 62, acceleration_field(limits), a)?;
-        let k2 = threshold(distance / (j * cycle * cycle * cycle), 93, Field::LimitJerk, j)?;
-        let k1 = threshold(
-            distance / (s * cycle * cycle * cycle * cycle),
-            116,
-            Field::LimitSnap,
-            s,
-        )?;
+        let ratios = [
+            distance / (limits.velocity * t),
+            distance / (a * t * t),
+            distance / (limits.jerk * t * t * t),
+            distance / (limits.snap * t * t * t * t),
+        ];
+        // No plan that can be counted reaches more (docs/planner.md, eq. 8).
+        let most = [31, 62, 93, 116].map(|bits| (1_u128 << bits) as f64);
+        for ((ratio, most), bound) in ratios.iter().zip(most).zip(bounds(limits)) {
+            if *ratio > most {
+                let (field, value) = bound;
+                return Err(PlanError::TooLong { field, value });
+            }
+        }
+        let [k4, k3, k2, k1] = ratios.map(|ratio| math::max(math::ceil(ratio * ONE_LESS_SLACK), 1.0));
         Ok(Self {
             order: limits.order(),
-            k4: k4 as u64,
-            k3: k3 as u64,
+            k4,
+            k3,
             k2,
             k1,
+            small: math::max(math::max(k3, k2), k1) <= (1_u64 << 53) as f64,
         })
     }
 
-    /// The least n4 that reaches all thresholds with the other boxes given.
+    /// The least n4 that reaches all thresholds with the other boxes given, all at least 1.
     pub fn least_n4(&self, n1: u64, n2: u64, n3: u64) -> u64 {
-        let (n1, n2, n3) = (u128::from(n1.max(1)), u128::from(n2.max(1)), u128::from(n3));
-        let least = u128::from(self.k4)
-            .max(u128::from(self.k3).div_ceil(n3))
-            .max(self.k2.div_ceil(n2 * n3))
-            .max(self.k1.div_ceil(n1 * n2 * n3));
+        let (n3, n2_n3) = (u128::from(n3), u128::from(n2) * u128::from(n3));
+        let least = (self.k4 as u128)
+            .max((self.k3 as u128).div_ceil(n3))
+            .max((self.k2 as u128).div_ceil(n2_n3))
+            .max((self.k1 as u128).div_ceil(u128::from(n1) * n2_n3));
         u64::try_from(least).unwrap_or(u64::MAX)
     }
 
-    /// The bound that alone makes the move longest, for the message of a refusal.
-    pub fn slowest(&self, limits: &Limits) -> PlanError {
-        // Fourth powers of the number of scans each bound needs alone: N = K4, 2 sqrt(K3), cbrt(32 K2) or
-        // (512 K1)^(1/4). The jerk's is bracketed without a cube root: (32 K2)^4 against the others cubed
-        // would overflow nothing in f64, so all are compared as twelfth powers.
+    /// Whether whole box lengths below 2^32 reach all thresholds; boxes that are not there are 0.
+    pub fn reached_by(&self, boxes: [f64; 4]) -> bool {
+        let [n1, n2, n3, n4] = boxes;
+        if n4 < self.k4 {
+            return false;
+        }
+        let (n1, n2) = (math::max(n1, 1.0), math::max(n2, 1.0));
+        if self.small {
+            let p3 = n3 * n4;
+            let p2 = n2 * p3;
+            return p3 >= self.k3 && p2 >= self.k2 && n1 * p2 >= self.k1;
+        }
+        let [n1, n2, n3, n4] = [n1, n2, n3, n4].map(|n| n as u128);
+        let p3 = n3 * n4;
+        let p2 = n2 * p3;
+        p3 >= self.k3 as u128 && p2 >= self.k2 as u128 && n1 * p2 >= self.k1 as u128
+    }
+
+    /// The refusal of a move no bound alone makes too long, but all together do: names the bound that alone
+    /// would take the most scans.
+    pub fn too_long(&self, limits: &Limits) -> PlanError {
+        // Alone they take K4, 2 sqrt(K3), cbrt(32 K2) and (512 K1)^(1/4) scans; the twelfth powers compare
+        // the same way without roots.
+        let square = |x: f64| x * x;
         let cube = |x: f64| x * x * x;
-        let fourth = |x: f64| (x * x) * (x * x);
-        let (k4, k3) = (self.k4 as f64, self.k3 as f64);
-        let (k2, k1) = (self.k2 as f64, self.k1 as f64);
-        let candidates = [
-            (cube(fourth(k4)), Field::LimitVelocity, limits.velocity),
-            (
-                cube((4.0 * k3) * (4.0 * k3)),
-                acceleration_field(limits),
-                limits.lower_acceleration(),
-            ),
-            (fourth(32.0 * k2), Field::LimitJerk, limits.jerk),
-            (cube(512.0 * k1), Field::LimitSnap, limits.snap),
+        let powers = [
+            cube(square(square(self.k4))),
+            cube(square(4.0 * self.k3)),
+            square(square(32.0 * self.k2)),
+            cube(512.0 * self.k1),
         ];
-        let [mut worst, ..] = candidates;
-        for candidate in candidates {
-            if candidate.0 > worst.0 {
-                worst = candidate;
+        let mut most = 0.0;
+        let mut error = PlanError::Unbounded;
+        for (power, (field, value)) in powers.into_iter().zip(bounds(limits)) {
+            if power > most {
+                most = power;
+                error = PlanError::TooLong { field, value };
             }
         }
-        PlanError::TooLong {
-            field: worst.1,
-            value: worst.2,
-        }
+        error
     }
 }
 
-/// The smallest whole number, at least 1, that reaches `ratio` within the slack.
-fn threshold(ratio: f64, bits: i32, field: Field, value: f64) -> Result<u128, PlanError> {
-    if ratio > (1_u128 << bits) as f64 {
-        return Err(PlanError::TooLong { field, value });
-    }
-    Ok(ceil(ratio * ONE_LESS_SLACK).max(1))
-}
-
-/// The smallest whole number >= `x`, for 0 <= `x` < 2^127.
-fn ceil(x: f64) -> u128 {
-    let whole = x as u128;
-    whole + u128::from((whole as f64) < x)
-}
-
-/// The one of the two fields whose bound is used.
-fn acceleration_field(limits: &Limits) -> Field {
-    if limits.acceleration <= limits.deceleration {
+/// The bounds in the order of the thresholds K4 to K1, with their names.
+fn bounds(limits: &Limits) -> [(Field, f64); 4] {
+    let acceleration = if limits.acceleration <= limits.deceleration {
         Field::LimitAcceleration
     } else {
         Field::LimitDeceleration
-    }
+    };
+    [
+        (Field::LimitVelocity, limits.velocity),
+        (acceleration, limits.lower_acceleration()),
+        (Field::LimitJerk, limits.jerk),
+        (Field::LimitSnap, limits.snap),
+    ]
 }
 
 /// A ratio of two bounds, less the slack, as `mantissa * 2^exponent`: products with whole numbers stay exact.
@@ -172,5 +180,48 @@ impl Ratio {
     /// The smallest whole number >= the ratio; saturates.
     pub fn ceil(self) -> u128 {
         self.ceil_times(1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Problem, Ratio};
+    use crate::Limits;
+
+    /// Products beyond 53 bits that only rounding lifts to the threshold do not reach it.
+    #[test]
+    fn products_beyond_53_bits_are_compared_exactly() {
+        let limits = Limits {
+            snap: 1.0,
+            ..Limits::NONE
+        };
+        let mut told_apart = 0;
+        for n in 40_000..40_100 {
+            let boxes = [n, n + 3, 2 * n + 1, 5 * n].map(f64::from);
+            let product = boxes.iter().map(|n| *n as u128).product::<u128>();
+            let rounded = product as f64;
+            let slack = 1.0 + 1.0 / (1_u64 << 40) as f64;
+            let problem = Problem::new(rounded * slack, &limits, 1.0).expect("valid");
+            let reached = product >= problem.k1 as u128;
+            assert_eq!(problem.reached_by(boxes), reached);
+            told_apart += u32::from(!reached && problem.k1 == rounded);
+        }
+        assert!(told_apart > 0, "no product here is rounded up to its threshold");
+    }
+
+    /// A ratio times a whole number is rounded up exactly, less the slack.
+    #[test]
+    fn ratios_multiply_exactly() {
+        assert_eq!(Ratio::new(3.0).ceil(), 3);
+        assert_eq!(Ratio::new(3.0 + 1e-13).ceil(), 3);
+        assert_eq!(Ratio::new(3.0 + 1e-11).ceil(), 4);
+        assert_eq!(Ratio::new(0.25).ceil_times(12), 3);
+        assert_eq!(Ratio::new(0.25).ceil_times(13), 4);
+        assert_eq!(Ratio::new(0.0).ceil_times(1 << 62), 0);
+        assert_eq!(Ratio::new(1e-300).ceil_times(1), 1);
+        // 2^100, less the slack of 2^60.
+        let huge = (1_u128 << 100) as f64;
+        assert_eq!(Ratio::new(huge).ceil(), (1 << 100) - (1 << 60));
+        assert_eq!(Ratio::new(1e300).ceil_times(2), u128::MAX);
     }
 }

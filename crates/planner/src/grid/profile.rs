@@ -32,20 +32,6 @@ pub struct Peaks {
     pub snap: Option<f64>,
 }
 
-impl Peaks {
-    /// Whether all of them are finite.
-    pub(super) fn are_finite(&self) -> bool {
-        [
-            self.velocity,
-            self.acceleration,
-            self.jerk.unwrap_or(0.0),
-            self.snap.unwrap_or(0.0),
-        ]
-        .iter()
-        .all(|peak| peak.is_finite())
-    }
-}
-
 /// A stretch of constant snap (order 4), jerk (order 3) or acceleration (order 2): the state at its start,
 /// just after any jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,12 +84,16 @@ impl Iterator for Segments {
 
 /// The factors of the derivatives, and whether the position sums need more than 64 bits
 /// (docs/planner.md, eq. 25).
-pub(super) fn scale(order: Order, product: i128, distance: f64, cycle: f64) -> ([f64; 5], bool) {
-    let p = product as f64;
+pub(super) fn scale(order: Order, product: u128, distance: f64, cycle: f64) -> ([f64; 5], bool) {
+    // A conversion of 128 bits is slow and seldom needed.
+    let p = match u64::try_from(product) {
+        Ok(product) => product as f64,
+        Err(_) => product as f64,
+    };
     let (t2, p_t) = (cycle * cycle, p * cycle);
     let (p_t2, p_t3, p_t4) = (p * t2, p_t * t2, p * (t2 * t2));
     // The largest position sum asked for is half of m! P.
-    let (scale, largest) = match order {
+    let (scale, half_factorial) = match order {
         Order::Four => (
             [
                 distance / (24.0 * p),
@@ -112,7 +102,7 @@ pub(super) fn scale(order: Order, product: i128, distance: f64, cycle: f64) -> (
                 distance / p_t3,
                 distance / p_t4,
             ],
-            12 * product,
+            12,
         ),
         Order::Three => (
             [
@@ -122,14 +112,14 @@ pub(super) fn scale(order: Order, product: i128, distance: f64, cycle: f64) -> (
                 distance / p_t3,
                 0.0,
             ],
-            3 * product,
+            3,
         ),
         Order::Two => (
             [distance / (2.0 * p), distance / p_t, distance / p_t2, 0.0, 0.0],
-            product,
+            1,
         ),
     };
-    (scale, largest > i128::from(i64::MAX))
+    (scale, product > i64::MAX as u128 / half_factorial)
 }
 
 impl GridPlan {
@@ -323,5 +313,59 @@ where
         8 => [s4, s3, s2, s1, s0],
         4 => [s3, s2, s1, s0, 0.0],
         _ => [s2, s1, s0, 0.0, 0.0],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{GridPlan, Limits, Method};
+
+    /// The same bits come out of sums in 64 and in 128 bits.
+    #[test]
+    fn wide_and_narrow_sums_agree() {
+        let bounds = Limits {
+            velocity: 1.2,
+            acceleration: 15.0,
+            deceleration: 15.0,
+            jerk: 400.0,
+            snap: 21000.0,
+        };
+        let third = Limits {
+            snap: f64::INFINITY,
+            ..bounds
+        };
+        for limits in [bounds, third] {
+            for distance in [1e-6, 0.003, 0.35, -0.35, 40.0] {
+                let narrow =
+                    GridPlan::new(Method::Overlapped, 1.0, 1.0 + distance, &limits, 1e-3).expect("valid");
+                assert!(!narrow.wide);
+                let mut wide = narrow;
+                wide.wide = true;
+                for scan in 0..=u64::from(narrow.scans()) {
+                    assert_eq!(narrow.at(scan), wide.at(scan));
+                }
+            }
+        }
+    }
+
+    /// Just below and just above the border of 64 bits the profile is as exact as elsewhere.
+    #[test]
+    fn the_border_of_64_bits_is_where_half_the_position_sum_stops_fitting() {
+        let of = |snap: f64| {
+            let limits = Limits { snap, ..Limits::NONE };
+            GridPlan::new(Method::Sequential, 0.0, 1.0, &limits, 1.0).expect("valid")
+        };
+        // K1 is 1 / snap, and P just above it.
+        let border = 12.0 / 9_223_372_036_854_775_808.0;
+        assert!(!of(border * 1.01).wide);
+        assert!(of(border * 0.99).wide);
+        for plan in [of(border * 1.01), of(border * 0.99)] {
+            let half = u64::from(plan.scans()) / 2;
+            assert_eq!(plan.scans() % 2, 0);
+            assert_eq!(plan.at(half).position, 0.5);
+            let (before, after) = (plan.at(half - 1), plan.at(half + 1));
+            assert!((before.position + after.position - 1.0).abs() <= f64::EPSILON);
+            assert_eq!(before.velocity, after.velocity);
+        }
     }
 }

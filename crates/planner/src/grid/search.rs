@@ -2,19 +2,20 @@
 //! (docs/planner.md, section 5).
 
 use super::problem::{Boxes, LONGEST, Problem};
-use crate::{Order, math};
+use crate::Order;
+use crate::math::{self, max, min, sqrt};
 
 /// Most rows (values of n1) a search may visit before it settles for the best found.
 pub const MAX_ROWS: u32 = 1024;
 
 /// Most pairs (n1, n2) a search may try before it settles for the best found.
-pub const MAX_CANDIDATES: u32 = 4096;
+pub const MAX_CANDIDATES: u32 = 2048;
 
-/// Share by which the real bound is lowered, so that rounding can only add candidates, never lose one.
+/// Share by which the budget of the real bound is raised, so that rounding can only add candidates, never lose one.
 const MARGIN: f64 = 1e-12;
 
 /// Newton steps of a cubic root: the start is within 16 %, each step squares the error.
-const NEWTON_STEPS: u32 = 5;
+const NEWTON_STEPS: u32 = 4;
 
 /// How much work a search took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,16 +37,31 @@ pub(super) enum Family {
     Overlapped,
 }
 
-/// One search: the problem, the thresholds as reals, and the best so far.
+/// One search: the problem, what its bounds need often, and the best so far.
+///
+/// Box lengths are whole numbers held as `f64`, exact below 2^53, so that bounds and candidates share them.
 struct Search<'a> {
     problem: &'a Problem,
     family: Family,
-    k4: f64,
-    k3: f64,
-    best: Boxes,
+    /// 1 / K4 and 1 / K3, for the minimisers of the bound, which need not be exact.
+    per_k4: f64,
+    per_k3: f64,
+    best: [f64; 4],
     /// Sum of `best`; one more than the longest plan until there is one.
-    scans: u64,
+    scans: f64,
+    /// What a better sum may not exceed, [`MARGIN`] added.
+    budget: f64,
     work: Work,
+}
+
+/// A value of n1 with what follows from it.
+#[derive(Clone, Copy)]
+struct Row {
+    n1: f64,
+    /// Least n2 n3 n4, not rounded.
+    m2: f64,
+    /// The real n2 at which the real bound is least.
+    n2: f64,
 }
 
 /// The boxes of the least sum in `family`, and the work it took; no boxes (all 0) if that sum is above the
@@ -57,190 +73,191 @@ pub(super) fn fewest(problem: &Problem, family: Family) -> (Boxes, Work) {
     let mut search = Search {
         problem,
         family,
-        k4: problem.k4 as f64,
-        k3: problem.k3 as f64,
-        best: [0; 4],
-        scans: LONGEST + 1,
+        per_k4: 1.0 / problem.k4,
+        per_k3: 1.0 / problem.k3,
+        best: [0.0; 4],
+        scans: LONGEST as f64 + 1.0,
+        budget: LONGEST as f64,
         work: Work::default(),
     };
     match problem.order {
         Order::Four => search.rows(),
-        Order::Three => {
-            let k2 = problem.k2 as f64;
-            search.columns(0.0, search.best_n2(0.0, k2), k2);
-        }
-        Order::Two => search.solve(0, 0),
+        Order::Three => search.first_row(&search.row(0.0)),
+        Order::Two => search.solve(0.0, 0.0, problem.k3),
     }
-    (search.best, search.work)
+    (search.best.map(|n| n as u64), search.work)
 }
 
 impl Search<'_> {
-    /// Walks over n1 both ways from the minimiser of the real bound (docs/planner.md, eq. 19).
+    /// Walks over n1 both ways from the minimiser of the real bound (docs/planner.md, eq. 18).
     fn rows(&mut self) {
-        let (k2, k1) = (self.problem.k2 as f64, self.problem.k1 as f64);
-        let start = self.best_n1(k2, k1);
-        let m2 = k2.max(k1 / start);
-        self.work.rows = 1;
-        self.columns(start, self.best_n2(start, m2), m2);
-        let mut n1 = start + 1.0;
-        while self.try_row(n1, k2.max(k1 / n1)) {
-            n1 += 1.0;
+        let start = self.best_n1();
+        let mut row = self.row(start);
+        self.first_row(&row);
+        // Above the minimiser each step of n1 adds at least one to the bound, so a row that leaves no room
+        // for that ends the walk before the next one is computed.
+        while self.may_improve(&row, row.n2, self.budget - 1.0) {
+            row = self.row(row.n1 + 1.0);
+            if !self.try_row(&row) {
+                break;
+            }
         }
-        let mut n1 = start - 1.0;
-        while n1 >= 1.0 && self.try_row(n1, k2.max(k1 / n1)) {
-            n1 -= 1.0;
+        row = self.row(start);
+        while row.n1 > 1.0 {
+            row = self.row(row.n1 - 1.0);
+            if !self.try_row(&row) {
+                break;
+            }
         }
     }
 
-    /// Searches row `n1` unless no real n2 in it could beat the best; false ends the walk.
-    fn try_row(&mut self, n1: f64, m2: f64) -> bool {
+    /// The row of `n1`, or the only one at order 3, where `n1` is 0.
+    fn row(&self, n1: f64) -> Row {
+        let Problem { k2, k1, .. } = *self.problem;
+        let m2 = max(k2, k1 / max(n1, 1.0));
         let n2 = self.best_n2(n1, m2);
-        if !self.may_improve(self.bound(n1, n2, m2)) {
+        Row { n1, m2, n2 }
+    }
+
+    /// Searches the row that has nothing to be pruned by.
+    fn first_row(&mut self, row: &Row) {
+        self.work.rows = 1;
+        let n2 = math::ceil(row.n2);
+        self.solve(row.n1, n2, row.m2);
+        self.columns(row, n2 + 1.0, n2 - 1.0);
+    }
+
+    /// Searches a row unless no real n2 in it could beat the best; false ends the walk.
+    fn try_row(&mut self, row: &Row) -> bool {
+        if !self.may_improve(row, row.n2, self.budget) {
             return false;
         }
-        if self.work.rows == MAX_ROWS {
+        if self.work.rows >= MAX_ROWS {
             self.work.capped = true;
         }
         if self.work.capped {
             return false;
         }
         self.work.rows += 1;
-        self.columns(n1, n2, m2);
+        let n2 = math::ceil(row.n2);
+        self.columns(row, n2, n2 - 1.0);
         true
     }
 
-    /// Walks over n2 both ways from `best_n2`, the minimiser of the real bound in row `n1`, where
-    /// n2 n3 n4 >= `m2` is asked.
-    fn columns(&mut self, n1: f64, best_n2: f64, m2: f64) {
-        let start = math::ceil(best_n2);
-        self.solve(n1 as u64, start as u64);
-        let mut n2 = start + 1.0;
-        while self.try_pair(n1, n2, m2) {
+    /// Walks over n2 upwards from `up` and downwards from `down`.
+    fn columns(&mut self, row: &Row, up: f64, down: f64) {
+        let mut n2 = up;
+        while self.try_pair(row, n2) {
             n2 += 1.0;
         }
-        let mut n2 = start - 1.0;
-        while n2 >= n1.max(1.0) && self.try_pair(n1, n2, m2) {
+        let mut n2 = down;
+        while n2 >= max(row.n1, 1.0) && self.try_pair(row, n2) {
             n2 -= 1.0;
         }
     }
 
-    /// Solves the pair unless no real n3 and n4 could beat the best; false ends the walk.
-    fn try_pair(&mut self, n1: f64, n2: f64, m2: f64) -> bool {
-        if !self.may_improve(self.bound(n1, n2, m2)) {
+    /// Solves the pair if it may beat the best; false, when not even real n3 and n4 could, ends the walk.
+    fn try_pair(&mut self, row: &Row, n2: f64) -> bool {
+        if !self.may_improve(row, n2, self.budget) {
             return false;
         }
         if self.work.candidates >= MAX_CANDIDATES {
             self.work.capped = true;
             return false;
         }
-        self.solve(n1 as u64, n2 as u64);
+        self.solve(row.n1, n2, row.m2);
         true
     }
 
-    /// Whether a real lower bound of the sum leaves room for a sum below the best.
-    fn may_improve(&self, bound: f64) -> bool {
-        bound * (1.0 - MARGIN) <= (self.scans - 1) as f64
+    /// Whether some real n3 and n4 keep the sum with `n2` within `budget` (docs/planner.md, eq. 15).
+    fn may_improve(&self, row: &Row, n2: f64, budget: f64) -> bool {
+        let n1 = row.n1;
+        let rest = budget - n1 - n2;
+        let gap = self.gap(n1, n2);
+        // The more n3 takes of the rest the larger is the product, as long as enough is left for n4.
+        let n3 = min(rest - self.problem.k4, 0.5 * (rest - gap));
+        let product = n3 * (rest - n3);
+        n3 >= n1 + n2 && product >= self.problem.k3 && product * n2 >= row.m2
     }
 
-    /// Least sum over real n3 and n4 for the pair (docs/planner.md, eq. 16).
-    fn bound(&self, n1: f64, n2: f64, m2: f64) -> f64 {
-        let m = self.k3.max(m2 / n2);
-        let (least_n3, gap) = self.constraints(n1, n2);
-        let n3 = least_n3.max((m / self.k4).min(2.0 * m / (gap + math::sqrt(gap * gap + 4.0 * m))));
-        n1 + n2 + n3 + self.k4.max(gap + n3)
-    }
-
-    /// The least n3, and by how much n4 must exceed n3.
-    fn constraints(&self, n1: f64, n2: f64) -> (f64, f64) {
+    /// By how much n4 must exceed n3.
+    fn gap(&self, n1: f64, n2: f64) -> f64 {
         match self.family {
-            Family::Separate => (n1 + n2, n1 + n2),
-            Family::Overlapped => (n1 + n2, n2),
+            Family::Separate => n1 + n2,
+            Family::Overlapped => n2,
         }
     }
 
-    /// The real n1 >= 1 at which the bound is least, rounded up (docs/planner.md, eq. 18).
-    fn best_n1(&self, k2: f64, k1: f64) -> f64 {
+    /// The real n1 >= 1 at which the bound is least, rounded up (docs/planner.md, eq. 17).
+    fn best_n1(&self) -> f64 {
+        let Problem { k2, k1, .. } = *self.problem;
         let alone = match self.family {
-            Family::Separate => 8.0,
-            Family::Overlapped => 6.0,
+            Family::Separate => 1.0 / 8.0,
+            Family::Overlapped => 1.0 / 6.0,
         };
-        let mut n1 = (k1 / k2)
-            .min(math::sqrt(k1 / self.k3))
-            .min(math::sqrt(math::sqrt(k1 / alone)));
-        let k1_over_k4 = k1 / self.k4;
-        if 2.0 * n1 * n1 * n1 > k1_over_k4 {
-            n1 = cubic_root(0.0, 0.0, k1_over_k4);
+        let n1 = min(k1 / k2, min(sqrt(k1 * self.per_k3), sqrt(sqrt(k1 * alone))));
+        let n1 = max(n1, 1.0);
+        let cruising = k1 * self.per_k4;
+        if 2.0 * n1 * n1 * n1 <= cruising {
+            return math::ceil(n1);
         }
-        math::ceil(n1.max(1.0))
+        math::ceil(cubic_root(0.0, 0.0, max(cruising, 2.0)))
     }
 
-    /// The real n2 >= max(n1, 1) at which the bound is least in row `n1` (docs/planner.md, eq. 17).
+    /// The real n2 >= max(n1, 1) at which the bound is least in row `n1` (docs/planner.md, eq. 16).
     fn best_n2(&self, n1: f64, m2: f64) -> f64 {
-        let least = n1.max(1.0);
-        let m2_over_k4 = m2 / self.k4;
-        let n2 = (m2 / self.k3).min(0.5 * (math::sqrt(n1 * n1 + 4.0 * m2_over_k4) - n1));
-        if n2 <= least {
-            return least;
-        }
+        let least = max(n1, 1.0);
+        let cruising = 0.5 * (sqrt(n1 * n1 + 4.0 * m2 * self.per_k4) - n1);
+        let n2 = max(min(m2 * self.per_k3, cruising), least);
         // n (n1 + n) times the n4 that goes with n3 = n1 + n: 2 n1 + 2 n, or n1 + 2 n.
         let (p, q) = match self.family {
-            Family::Separate => (1.0, 1.0),
-            Family::Overlapped => (1.0, 0.5),
+            Family::Separate => (n1, n1),
+            Family::Overlapped => (n1, 0.5 * n1),
         };
-        let reached = |n: f64| 2.0 * n * (n + p * n1) * (n + q * n1) >= m2;
-        if !reached(n2) {
+        let reaches = |n: f64| 2.0 * n * (n + p) * (n + q) >= m2;
+        if !reaches(n2) || n2 <= least {
             n2
-        } else if reached(least) {
+        } else if reaches(least) {
             least
         } else {
-            cubic_root(p * n1, q * n1, m2)
+            cubic_root(p, q, m2)
         }
     }
 
-    /// The best n3 and n4 for a pair (docs/planner.md, eq. 15), kept if they beat the best.
-    fn solve(&mut self, n1: u64, n2: u64) {
+    /// The best n3 and n4 for a pair (docs/planner.md, eq. 14), kept if they beat the best.
+    fn solve(&mut self, n1: f64, n2: f64, m2: f64) {
         self.work.candidates += 1;
         let problem = self.problem;
-        let (least_n3, gap) = match self.family {
-            Family::Separate => (n1 + n2, n1 + n2),
-            Family::Overlapped => (n1 + n2, n2),
-        };
-        let least_n3 = least_n3.max(1);
-        let (some_n1, some_n2) = (u128::from(n1.max(1)), u128::from(n2.max(1)));
-        let product = u128::from(problem.k3)
-            .max(problem.k2.div_ceil(some_n2))
-            .max(problem.k1.div_ceil(some_n1 * some_n2));
-        // Longer than a plan can be, which also keeps the products below in 64 bits.
-        if least_n3 > LONGEST || product > u128::from(LONGEST) * u128::from(LONGEST) {
+        let gap = self.gap(n1, n2);
+        let least_n3 = max(n1 + n2, 1.0);
+        let product = max(problem.k3, m2 / max(n2, 1.0));
+        // Longer than a plan can be.
+        let longest = LONGEST as f64;
+        if least_n3 > longest || product > longest * longest {
             return;
         }
-        let product = product as u64;
-        let n4_of = |n3: u64| problem.k4.max(gap + n3);
-        let (m, g) = (product as f64, gap as f64);
-        let root = (m / self.k4).min(2.0 * m / (g + math::sqrt(g * g + 4.0 * m)));
-        // The real root is within one of the whole one; the products decide.
-        let mut n3 = least_n3.max(root as u64);
-        if n3 > least_n3 && (n3 - 1) * n4_of(n3 - 1) >= product {
-            n3 -= 1;
-        }
+        let n4_of = |n3| max(problem.k4, gap + n3);
+        // The real root of n3 n4 = product is within one of the whole one; the exact products decide.
+        let root = min(
+            product * self.per_k4,
+            0.5 * (sqrt(gap * gap + 4.0 * product) - gap),
+        );
+        let mut n3 = max(math::floor(root), least_n3);
         for _ in 0..2 {
-            if n3 * n4_of(n3) < product {
-                n3 += 1;
+            if !problem.reached_by([n1, n2, n3, n4_of(n3)]) {
+                n3 += 1.0;
             }
         }
-        self.keep([n1, n2, n3, n4_of(n3)]);
-        if n3 > least_n3 {
-            let n3 = n3 - 1;
-            self.keep([n1, n2, n3, n4_of(n3).max(product.div_ceil(n3))]);
+        let n4 = n4_of(n3);
+        // One less with the same n4 may do too; nothing else can be shorter.
+        if n3 > least_n3 && problem.reached_by([n1, n2, n3 - 1.0, n4]) {
+            n3 -= 1.0;
         }
-    }
-
-    /// Keeps the boxes if their sum beats the best.
-    fn keep(&mut self, boxes: Boxes) {
-        let scans = boxes.iter().sum();
+        let scans = n1 + n2 + n3 + n4;
         if scans < self.scans {
-            self.best = boxes;
+            self.best = [n1, n2, n3, n4];
             self.scans = scans;
+            self.budget = (scans - 1.0) * (1.0 + MARGIN);
         }
     }
 }

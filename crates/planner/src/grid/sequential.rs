@@ -50,26 +50,26 @@ pub(super) fn plan(problem: &Problem, distance: f64, limits: &Limits, cycle: f64
     let n3 = m + steps.acceleration_time(m, held);
     // The last step is n4 >= K4. Where two ratios are both reached only within the slack their product can
     // miss it; the thresholds of the products then ask for one scan more.
-    let n4 = (m + n3).max(problem.least_n4(nd, n2, n3));
+    let n4 = (m + n3).max(problem.least_n4(nd.max(1), n2.max(1), n3));
     [nd, n2, n3, n4]
 }
 
 impl Steps<'_> {
     /// nd and what holds the amplitude after it (docs/planner.md, eq. 10).
     fn snap_time(&self) -> (u64, Held) {
-        let Problem { k4, k3, k2, k1, .. } = *self.problem;
+        let [k4, k3, k2, k1] = self.thresholds();
         let (j, s) = (self.limits.jerk, self.limits.snap);
         let (v, a, t) = (self.limits.velocity, self.acceleration, self.cycle);
         let mut held = Held::Distance;
         let mut n = least(1, |n| 8 * n * n * n * n >= k1);
-        if 4 * n < k4 {
+        if 4 * u128::from(n) < k4 {
             let reach = Ratio::new(v / (s * t * t * t)).ceil();
             n = least(1, |n| 2 * n * n * n >= reach);
             held = Held::Velocity;
         }
         let n_wide = u128::from(n);
         let breaks_acceleration = match held {
-            Held::Distance => 8 * n_wide * n_wide < u128::from(k3),
+            Held::Distance => 8 * n_wide * n_wide < k3,
             _ => 2 * n_wide < self.v_over_a().ceil(),
         };
         if breaks_acceleration {
@@ -93,7 +93,7 @@ impl Steps<'_> {
 
     /// nj and what holds the amplitude after it (docs/planner.md, eq. 11).
     fn jerk_time(&self, nd: u64, from: Held) -> (u64, Held) {
-        let Problem { k4, k3, k2, .. } = *self.problem;
+        let [k4, k3, k2, _] = self.thresholds();
         // At order 3 this is the first step, and its time may not be 0.
         let first = u64::from(nd == 0);
         let nd = u128::from(nd);
@@ -111,7 +111,7 @@ impl Steps<'_> {
             }
             Held::Jerk => least(first, |n| 2 * cubic(n) >= k2),
         };
-        if 2 * (2 * nd + u128::from(n)) < u128::from(k4) {
+        if 2 * (2 * nd + u128::from(n)) < k4 {
             let square = |n: u128| (nd + n) * (2 * nd + n);
             n = match from {
                 Held::Distance | Held::Velocity => 0,
@@ -128,7 +128,7 @@ impl Steps<'_> {
         }
         let m = 2 * nd + u128::from(n);
         let breaks_acceleration = match held {
-            Held::Distance => 2 * m * m < u128::from(k3),
+            Held::Distance => 2 * m * m < k3,
             _ => m < self.v_over_a().ceil(),
         };
         if breaks_acceleration {
@@ -146,7 +146,7 @@ impl Steps<'_> {
 
     /// na (docs/planner.md, eq. 12), `m` = 2 nd + nj.
     fn acceleration_time(&self, m: u64, from: Held) -> u64 {
-        let Problem { k4, k3, .. } = *self.problem;
+        let [k4, k3, _, _] = self.thresholds();
         let first = u64::from(m == 0);
         let m = u128::from(m);
         let square = |n: u128| (m + n) * (2 * m + n);
@@ -156,9 +156,9 @@ impl Steps<'_> {
                 let reach = self.x_over_v().ceil_times(m);
                 least(first, |n| square(n) >= reach)
             }
-            Held::Acceleration | Held::Jerk => least(first, |n| square(n) >= u128::from(k3)),
+            Held::Acceleration | Held::Jerk => least(first, |n| square(n) >= k3),
         };
-        if 2 * m + u128::from(n) >= u128::from(k4) {
+        if 2 * m + u128::from(n) >= k4 {
             return n;
         }
         match from {
@@ -168,6 +168,11 @@ impl Steps<'_> {
                 least(first, |n| m + n >= reach)
             }
         }
+    }
+
+    fn thresholds(&self) -> [u128; 4] {
+        let Problem { k4, k3, k2, k1, .. } = *self.problem;
+        [k4, k3, k2, k1].map(|k| k as u128)
     }
 
     fn x_over_v(&self) -> Ratio {

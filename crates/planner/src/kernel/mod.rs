@@ -26,7 +26,7 @@ pub use third::{Bounds, Profile, THIRD_SPANS, third};
 /// How far outside a bound a state still counts as on it, relative to the bound.
 pub const ON_LIMIT: f64 = 1e-9;
 
-/// Distances smaller than this, relative to what was added up to get them, are rounding.
+/// Gaps smaller than this, relative to what was added up to get them, are rounding: nothing moves for them.
 const NOISE: f64 = 16.0 * f64::EPSILON;
 
 /// A pair of bounds as magnitudes: the value stays in `-minus ..= plus`. Infinite means no bound.

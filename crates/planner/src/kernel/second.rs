@@ -12,7 +12,7 @@ pub fn second(v: f64, a: f64, target: f64, rate: Sides) -> Spans<3> {
     // Where `v` goes while `a` is brought to zero as fast as the input allows.
     let arrest = 0.5 * a * a.abs();
     let gap = change - arrest;
-    if gap.abs() <= NOISE * (change.abs() + arrest.abs()) {
+    if gap.abs() <= NOISE * (v.abs() + target.abs() + arrest.abs()) {
         let mut spans = Spans::new();
         spans.push(a.abs(), if a > 0.0 { -1.0 } else { 1.0 });
         spans

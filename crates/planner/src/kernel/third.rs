@@ -17,7 +17,8 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    const fn mirrored(self) -> Self {
+    /// The bounds of the mirrored problem.
+    pub const fn mirrored(self) -> Self {
         Self {
             v: self.v.mirrored(),
             a: self.a.mirrored(),
@@ -59,16 +60,17 @@ impl State {
     }
 }
 
-/// The least-time spans that move the value by `distance` and end with `v = a = 0`.
+/// The least-time spans from `(x, v, a)` to `(target, 0, 0)`.
 ///
 /// The start `(v, a)` may be anything, also outside `bounds`; it is then brought inside first. Bounded work:
 /// closed forms, or one root of at most [`MAX_STEPS`](super::MAX_STEPS) steps (R4 to R10).
-pub fn third(distance: f64, v: f64, a: f64, bounds: &Bounds) -> Profile {
+pub fn third(x: f64, v: f64, a: f64, target: f64, bounds: &Bounds) -> Profile {
+    let distance = target - x;
     let start = State { x: 0.0, v, a };
     let stop = second(v, a, 0.0, bounds.a);
     let gap = distance - start.after_all(&stop).x;
     let t = stop.duration();
-    let added_up = distance.abs() + t * (v.abs() + t * (a.abs() + t));
+    let added_up = x.abs() + target.abs() + t * (v.abs() + t * (a.abs() + t));
     if gap.abs() <= NOISE * added_up {
         let mut spans = Spans::new();
         spans.extend(&stop);

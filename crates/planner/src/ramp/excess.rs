@@ -34,7 +34,7 @@ pub(super) fn peaks(path: &Path, goal: f64) -> Peaks {
         velocity: goal.abs(),
         ..Peaks::default()
     };
-    path.extremes(|state| {
+    path.extremes(f64::INFINITY, |state, _| {
         peaks.velocity = peaks.velocity.max(state.velocity.abs());
         peaks.acceleration = peaks.acceleration.max(state.acceleration.abs());
         peaks.jerk = peaks.jerk.max(state.jerk.abs());
@@ -53,19 +53,25 @@ pub(super) fn peaks(path: &Path, goal: f64) -> Peaks {
 /// `None` if by no more than rounding and [`ON_LIMIT`].
 pub(super) fn excess(path: &Path, goal: f64, heading: f64, limits: &Limits) -> Option<Excess> {
     let mut excess = Excess::default();
-    let mut largest = goal.abs();
-    path.extremes(|state| {
+    let scale = if limits.velocity.is_finite() {
+        limits.velocity
+    } else {
+        peaks(path, goal).velocity
+    };
+    let small = ON_LIMIT * scale;
+    path.extremes(small, |state, passes_zero| {
         let velocity = state.velocity;
-        largest = largest.max(velocity.abs());
         let outside = velocity.abs() - limits.velocity;
         let reversed = if goal == 0.0 { -heading * velocity } else { 0.0 };
         excess.velocity = excess.velocity.max(outside).max(reversed);
 
-        // Against the motion it lowers the speed; where the velocity is zero it may do either.
-        let product = state.acceleration * velocity;
-        let bound = if velocity.abs() <= ON_LIMIT * largest {
+        // With the motion it raises the speed, against it it lowers it. Where the velocity is nothing but
+        // rounding the rest of the piece tells which.
+        let bound = if passes_zero {
+            limits.lower_acceleration()
+        } else if velocity.abs() <= small {
             limits.acceleration.max(limits.deceleration)
-        } else if product > 0.0 {
+        } else if state.acceleration * velocity > 0.0 {
             limits.acceleration
         } else {
             limits.deceleration
@@ -76,11 +82,6 @@ pub(super) fn excess(path: &Path, goal: f64, heading: f64, limits: &Limits) -> O
             .jerk
             .max(beyond(state.jerk.abs() - limits.jerk, limits.jerk));
     });
-    let scale = if limits.velocity.is_finite() {
-        limits.velocity
-    } else {
-        largest
-    };
     excess.velocity = beyond(excess.velocity, scale);
     (excess != Excess::default()).then_some(excess)
 }

@@ -4,7 +4,7 @@
 //! Everything is in the kernel's units and mirrored so that the velocity is not negative.
 
 use super::path::zeros;
-use crate::kernel::{ON_LIMIT, Sides, Spans, falling_root, second};
+use crate::kernel::{Bounds, ON_LIMIT, Sides, Spans, falling_root, second};
 use crate::math::sqrt;
 
 /// A state in the kernel's units.
@@ -69,9 +69,9 @@ impl Box4 {
     }
 
     /// The largest jerk with which the acceleration may come in from above: it must still be possible to
-    /// keep it above its lower bound (R14).
+    /// stop it at zero, or getting inside sooner would swing it to the other side (R14).
     fn entry_jerk(&self) -> f64 {
-        self.jerk.min(sqrt(2.0 * (self.a.plus + self.a.minus)))
+        self.jerk.min(sqrt(2.0 * self.a.plus))
     }
 }
 
@@ -160,11 +160,18 @@ fn descend(state: State, bounds: &Box4) -> Spans<3> {
     spans
 }
 
-/// The spans under the old limits while the velocity is above `limit`: push down, and come back inside the
-/// new acceleration and jerk just when the velocity is inside too, or when a gentle stop ends on `goal` (R19).
+/// The spans under the old limits while the velocity is, or is bound to be, above `limit`: push down, and
+/// come back inside the new acceleration and jerk just when the velocity is inside too (R19).
 ///
-/// Also the root steps taken.
-pub(super) fn hasten(state: State, limit: f64, goal: f64, bounds: &Box4) -> (Spans<HASTEN_SPANS>, u32) {
+/// Sooner, if the arrest then ends on `goal`, or if it then ends on `low` without exceeding `limit`. Also
+/// the root steps taken.
+pub(super) fn hasten(
+    state: State,
+    limit: f64,
+    goal: f64,
+    low: f64,
+    bounds: &Box4,
+) -> (Spans<HASTEN_SPANS>, u32) {
     let snap = bounds.snap_before;
     let push = second(
         state.a / snap,
@@ -181,11 +188,22 @@ pub(super) fn hasten(state: State, limit: f64, goal: f64, bounds: &Box4) -> (Spa
     let above = |time: f64| {
         let state = state.after_all(&lead(time));
         let rest = arrested(state, bounds.jerk);
-        (state.v.max(rest) - limit).min(rest - goal)
+        let present = (state.v - limit).min(rest - goal);
+        let to_come = (top(state, rest) - limit).min(rest - low);
+        present.max(to_come)
     };
     let pushed = state.after_all(&push);
     let longest = push.duration() + (pushed.v - goal).max(0.0) / bounds.brake_before;
-    let (time, steps) = falling_root(0.0, longest, above);
+    let mut from = 0.0;
+    for span in push.iter() {
+        let to = from + span.duration;
+        if above(to) <= 0.0 {
+            let (time, steps) = falling_root(from, to, above);
+            return (lead(time), steps);
+        }
+        from = to;
+    }
+    let (time, steps) = falling_root(from, longest, above);
     (lead(time), steps)
 }
 
@@ -196,41 +214,69 @@ pub(super) fn arrested(state: State, jerk: f64) -> f64 {
         .v
 }
 
-/// The spans that bring a falling or rising acceleration to zero soonest, if stopping it gently would take
-/// the velocity further out of `low ..= high` than need be (R17, R18); none else.
-pub(super) fn relieve(state: State, low: f64, high: f64, slack: f64, a: Sides, jerk: f64) -> Spans<3> {
-    if state.a > 0.0 {
-        relieve_top(state, high, slack, a, jerk)
+/// The spans by which a velocity that a gentle arrest would take out of `low ..= high` is kept as near to
+/// them as can be (R17, R18), and the root steps taken; none if it stays inside.
+pub(super) fn relieve(state: State, low: f64, high: f64, slack: f64, bounds: &Bounds) -> (Spans<4>, u32) {
+    let (above, steps) = relieve_top(state, low, high, slack, bounds);
+    if above.is_empty() {
+        let (below, steps) = relieve_top(state.mirrored(), -high, -low, slack, &bounds.mirrored());
+        (below.mirrored(), steps)
     } else {
-        relieve_top(state.mirrored(), -low, slack, a.mirrored(), jerk).mirrored()
+        (above, steps)
     }
 }
 
-fn relieve_top(state: State, high: f64, slack: f64, a: Sides, jerk: f64) -> Spans<3> {
-    let mut spans = Spans::new();
-    let returns = state.a > 0.0 && state.j < 0.0 && state.a < 0.5 * state.j * state.j;
-    if !returns {
-        return spans;
+/// Pushes down until the arrest peaks at `high`; at most until the acceleration is zero, when there is
+/// nothing more to gain, and not so long that the arrest ends below `low`.
+fn relieve_top(state: State, low: f64, high: f64, slack: f64, bounds: &Bounds) -> (Spans<4>, u32) {
+    let jerk = bounds.a.plus;
+    let beyond = |state: State| {
+        let rest = arrested(state, jerk);
+        (top(state, rest) - high).min(rest - low)
+    };
+    if beyond(state) <= slack {
+        return (Spans::new(), 0);
     }
-    let [gentle, _] = zeros(state.a, state.j, 1.0);
-    if state.after(gentle, 1.0).v <= high + slack {
-        return spans;
+    let push = second(state.a, state.j, -bounds.v.minus, bounds.a);
+    let Some(longest) = falls_through_zero(state, &push) else {
+        return (Spans::new(), 0);
+    };
+    let after = |time: f64| state.after_all(&push.until::<4>(time));
+    let (time, steps) = if beyond(after(longest)) >= 0.0 {
+        (longest, 0)
+    } else {
+        falling_root(0.0, longest, |time| beyond(after(time)))
+    };
+    (push.until(time), steps)
+}
+
+/// The highest velocity of the arrest that ends at `rest`, if it has any to come.
+fn top(state: State, rest: f64) -> f64 {
+    let State { a, j, .. } = state;
+    if a > 0.0 && j < 0.0 && a < 0.5 * j * j {
+        // The jerk cannot be taken back before the acceleration is negative (R17).
+        let [zero, _] = zeros(a, j, 1.0);
+        state.after(zero, 1.0).v
+    } else if a > 0.0 || a + 0.5 * j * j.abs() > 0.0 {
+        rest
+    } else {
+        f64::NEG_INFINITY
     }
-    let push = second(state.a, state.j, -a.minus, Sides::both(jerk));
+}
+
+/// When the acceleration passes zero downwards on the way of `push`.
+fn falls_through_zero(state: State, push: &Spans<3>) -> Option<f64> {
     let mut state = state;
+    let mut begin = 0.0;
     for span in push.iter() {
-        let end = state.after(span.duration, span.input);
-        if end.a > 0.0 {
-            spans.push(span.duration, span.input);
-            state = end;
-            continue;
-        }
         let zero = zeros(state.a, state.j, span.input)
             .into_iter()
-            .filter(|t| *t >= 0.0 && *t <= span.duration)
-            .fold(span.duration, f64::min);
-        spans.push(zero, span.input);
-        break;
+            .find(|t| *t >= 0.0 && *t <= span.duration && state.j + span.input * *t < 0.0);
+        if let Some(zero) = zero {
+            return Some(begin + zero);
+        }
+        begin += span.duration;
+        state = state.after(span.duration, span.input);
     }
-    spans
+    None
 }

@@ -1,5 +1,6 @@
 //! A ramp as a list of polynomial pieces, its values and its extremes.
 
+use crate::kernel::falling_root;
 use crate::math::sqrt;
 use crate::{Order, Setpoint};
 
@@ -130,14 +131,25 @@ impl Path {
 
     /// The states that hold every extreme of velocity, acceleration and jerk: the ends of each piece, and
     /// inside it the zeros of jerk and acceleration (R20).
-    pub(super) fn extremes(&self, mut see: impl FnMut(&Setpoint)) {
+    ///
+    /// `see` is also shown the states at which the velocity passes zero, from beyond `small` to beyond it
+    /// on the other side, and told so, because the bounds of acceleration change there.
+    pub(super) fn extremes(&self, small: f64, mut see: impl FnMut(&Setpoint, bool)) {
         for (stretch, first) in self.stretches() {
             let length = stretch.end - stretch.begin;
-            see(&first);
-            see(&moved(&stretch.state, stretch.end - stretch.anchor));
-            for time in turning_times(&first) {
-                if time > 0.0 && time < length {
-                    see(&moved(&stretch.state, stretch.begin + time - stretch.anchor));
+            let state = |time: f64| moved(&stretch.state, stretch.begin + time - stretch.anchor);
+            let within = |time: f64| if time > 0.0 && time < length { time } else { length };
+            let [early, late] = zeros(first.acceleration, first.jerk, first.snap).map(within);
+            see(&state(within(-first.jerk / first.snap)), false);
+            let turns = [0.0, early.min(late), early.max(late), length];
+            for (&from, &to) in turns.iter().zip(turns.iter().skip(1)) {
+                let (low, high) = (state(from), state(to));
+                see(&low, false);
+                see(&high, false);
+                let sign = low.velocity.signum();
+                if sign * low.velocity > small && -sign * high.velocity > small {
+                    let (time, _) = falling_root(from, to, |t| sign * state(t).velocity);
+                    see(&state(time), true);
                 }
             }
         }
@@ -196,18 +208,6 @@ pub(super) fn moved(state: &Setpoint, t: f64) -> Setpoint {
         jerk: j + t * s,
         snap: s,
     }
-}
-
-/// The times at which jerk or acceleration are zero after `state`; any that do not exist are NaN or infinite.
-fn turning_times(state: &Setpoint) -> [f64; 3] {
-    let Setpoint {
-        acceleration: a,
-        jerk: j,
-        snap: s,
-        ..
-    } = *state;
-    let [early, late] = zeros(a, j, s);
-    [-j / s, early, late]
 }
 
 /// The zeros of `a + j t + s t^2/2`, in the form that loses no digits; NaN or infinite where there is none.

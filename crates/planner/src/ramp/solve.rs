@@ -135,23 +135,29 @@ impl Problem<'_> {
             jerk_before: scale.inward(self.wider.jerk, 1),
             snap_before: self.wider.snap / limits.snap,
         };
-        let mut steps = 0;
+        let sides = |dips| scaled(self.sides(dips), &scale, 2);
+        let lowest = if goal < 0.0 { -limit } else { 0.0 };
+        let mut steps;
         let fastest = state.v.max(inside::arrested(state, jerk));
         if bounds.is_lowered() && fastest > limit * (1.0 + ON_LIMIT) {
-            let (hastened, taken) = inside::hasten(state, limit, goal, &bounds);
+            let hastened;
+            (hastened, steps) = inside::hasten(state, limit, goal, lowest, &bounds);
             spans.extend(&hastened);
-            steps += taken;
+            state = state.after_all(&hastened);
         } else {
-            spans.extend(&inside::enter(state, &bounds));
+            let entering = inside::enter(state, &bounds);
+            spans.extend(&entering);
+            state = state.after_all(&entering);
+            let slack = ON_LIMIT * limit.min(state.v.abs().max(goal.abs()));
+            let bounds = Bounds {
+                v: sides(true),
+                a: Sides::both(jerk),
+            };
+            let relief;
+            (relief, steps) = inside::relieve(state, lowest, limit, slack, &bounds);
+            spans.extend(&relief);
+            state = state.after_all(&relief);
         }
-        state = state.after_all(&spans);
-
-        let lowest = if goal < 0.0 { -limit } else { 0.0 };
-        let slack = ON_LIMIT * limit.min(state.v.abs().max(goal.abs()));
-        let sides = |dips| scaled(self.sides(dips), &scale, 2);
-        let relief = inside::relieve(state, lowest, limit, slack, sides(true), jerk);
-        spans.extend(&relief);
-        state = state.after_all(&relief);
 
         let rest = inside::arrested(state, jerk);
         let dips = goal >= 0.0 && (state.v < 0.0 || rest < 0.0);
@@ -159,11 +165,12 @@ impl Problem<'_> {
             v: sides(dips),
             a: Sides::both(jerk),
         };
-        let profile = third(goal - state.v, state.a, state.j, &bounds);
+        let profile = third(state.v, state.a, state.j, goal, &bounds);
         spans.extend(&profile.spans);
+        steps = steps.max(profile.steps);
         Solution {
             spans: in_seconds(&spans, &scale),
-            steps: steps.max(profile.steps),
+            steps,
         }
     }
 }

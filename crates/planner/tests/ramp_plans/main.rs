@@ -1,4 +1,6 @@
 //! Ramps of every order, from every kind of start state, judged from outside.
 
 mod chains;
+mod changes;
+mod shape;
 mod support;

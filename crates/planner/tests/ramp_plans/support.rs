@@ -134,17 +134,14 @@ pub fn integrate(start: &Setpoint, plan: &RampPlan, order: Order) -> Seen {
             look(h);
             for f in [&acc as &dyn Fn(f64) -> f64, &jer] {
                 if f(0.0) * f(h) < 0.0 {
-                    let (mut low, mut high) = (0.0, h);
-                    for _ in 0..60 {
-                        let middle = 0.5 * (low + high);
-                        if f(low) * f(middle) <= 0.0 {
-                            high = middle
-                        } else {
-                            low = middle
-                        }
-                    }
-                    look(low);
+                    look(zero(f, h));
                 }
+            }
+            // Where the velocity passes zero the acceleration belongs to both directions.
+            if vel(0.0).abs().min(vel(h).abs()) > 1e-12 * fastest && vel(0.0) * vel(h) < 0.0 {
+                let passing = acc(zero(&vel, h)).abs();
+                seen.speeding = seen.speeding.max(passing);
+                seen.slowing = seen.slowing.max(passing);
             }
             let t = h;
             (p, v, a, j) = (
@@ -163,4 +160,18 @@ pub fn integrate(start: &Setpoint, plan: &RampPlan, order: Order) -> Seen {
         snap: 0.0,
     };
     seen
+}
+
+/// The zero of a function that changes its sign between 0 and `high`.
+fn zero(function: &dyn Fn(f64) -> f64, mut high: f64) -> f64 {
+    let mut low = 0.0;
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if function(low) * function(middle) <= 0.0 {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    low
 }

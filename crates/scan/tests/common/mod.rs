@@ -54,11 +54,15 @@ pub type TestMachine = Machine<Standard, TapeDrive>;
 /// What a program does in a scan: how long it took, or how it failed.
 pub type Script = Box<dyn FnMut(ScanTime, &str) -> Result<u64, ProgramFault>>;
 
+pub type Act = fn(u64, &mut Context<'_, Standard>) -> Result<(), ProgramFault>;
+
 /// Notes every hook.
 pub struct Host {
     pub tape: Tape,
     pub names: Vec<String>,
     pub script: Script,
+    /// What programs do to the axes in a scan.
+    pub act: Act,
     /// SINGLE by scan and task.
     pub single: fn(u64, TaskId) -> bool,
     scan: u64,
@@ -88,6 +92,7 @@ impl Programs<Standard, TapeDrive> for Host {
     fn run(&mut self, program: ProgramId, context: &mut Context<'_, Standard>) -> Result<u64, ProgramFault> {
         let name = &self.names[program.0];
         self.note(format!("run {name}"));
+        (self.act)(context.scan, context)?;
         let time = ScanTime {
             scan: context.scan,
             now_ns: context.now_ns,
@@ -103,9 +108,9 @@ impl Programs<Standard, TapeDrive> for Host {
         self.note("publish".into());
     }
 
-    fn fail(&mut self, fault: &Fault) {
-        self.failed.push(*fault);
-        self.note("fail".into());
+    fn stopped(&mut self, fault: Option<&Fault>) {
+        self.failed.extend(fault);
+        self.note("stopped".into());
     }
 
     fn published(&mut self, _time: ScanTime, _machine: &TestMachine) {
@@ -144,6 +149,7 @@ impl Rig {
                 tape,
                 names: programs.iter().map(|program| program.name.clone()).collect(),
                 script: Box::new(|_, _| Ok(0)),
+                act: |_, _| Ok(()),
                 single: |_, _| false,
                 scan: 0,
                 failed: Vec::new(),
@@ -172,7 +178,7 @@ impl Rig {
             .into_iter()
             .map(|tick| {
                 self.host.tape.borrow_mut().clear();
-                let _ = self.scan_at(tick * MS as i64);
+                self.scan_at(tick * MS as i64);
                 let tape = self.host.tape.borrow();
                 let ran: Vec<_> = tape.iter().filter_map(|line| line.strip_prefix("run ")).collect();
                 ran.join(" ")

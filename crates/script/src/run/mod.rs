@@ -145,7 +145,7 @@ fn record(
             .scan(now_ns, &mut bench, &mut machine)
             .map_err(|error| RunError::Internal(error.to_string()))?;
         bench.check()?;
-        if let Some(fault) = report.fault {
+        if let Some(&fault) = report.mode.fault() {
             return Err(RunError::Internal(executor.describe(fault).to_string()));
         }
         if bench.is_over(scan) {
