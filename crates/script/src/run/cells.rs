@@ -1,6 +1,6 @@
 //! Values at pins as cells of a trace.
 
-use crate::model::Script;
+use crate::model::{Point, Script};
 use standstill_axis::AxisId;
 use standstill_fb::{EnumInfo, PinType, Value};
 use standstill_trace::Cell;
@@ -60,6 +60,18 @@ pub(crate) fn value_text(script: &Script, ty: Option<PinType>, value: Value) -> 
         undefined.0.insert(number, number.to_string());
     }
     cell_text(undefined.cell(script, ty, value))
+}
+
+/// A variable or pin as scripts name it.
+pub(crate) fn point_name(script: &Script, point: Point) -> String {
+    match point {
+        Point::Input(index) => script.inputs.get(index).map(|input| input.name.clone()),
+        Point::Pin(instance, pin) => script.blocks.get(instance).and_then(|instance| {
+            let pin = instance.block.pins().nth(pin)?;
+            Some(format!("{}.{}", instance.name, pin.name))
+        }),
+    }
+    .unwrap_or_default()
 }
 
 /// A cell as text: BOOL in capitals, numbers in shortest round-trip form.

@@ -147,24 +147,32 @@ fn plan_text(plan: &StandardPlan) -> String {
                 number_text(grid.amplitude())
             )
         }
-        StandardPlan::Ramp(ramp) => {
-            let segments: Vec<_> = ramp
-                .segments()
-                .map(|segment| {
-                    format!(
-                        "{} s of a={} j={} s={}",
-                        number_text(segment.duration),
-                        number_text(segment.acceleration),
-                        number_text(segment.jerk),
-                        number_text(segment.snap)
-                    )
-                })
-                .collect();
-            format!("segments {}", segments.join(", "))
-        }
+        StandardPlan::Ramp(ramp) => ramp_text(
+            ramp.segments()
+                .map(|piece| [piece.duration, piece.acceleration, piece.jerk, piece.snap])
+                .collect(),
+        ),
         StandardPlan::BrakeThenGrid(brake, grid) => {
             let brake = plan_text(&StandardPlan::Ramp(*brake));
-            format!("brake {brake}; then {}", plan_text(&StandardPlan::Grid(*grid)))
+            let grid = plan_text(&StandardPlan::Grid(*grid));
+            format!("brake {brake}; then {grid}")
         }
     }
+}
+
+/// The highest derivative of a ramp piece by piece; with the state it starts from, that is all of it. A piece
+/// is given as its duration (s), acceleration, jerk and snap.
+fn ramp_text(pieces: Vec<[f64; 4]>) -> String {
+    // The highest one that is ever there: it is constant in every piece.
+    let highest = [("snap", 3), ("jerk", 2), ("acceleration", 1)]
+        .into_iter()
+        .find(|(_, place)| pieces.iter().any(|piece| piece[*place] != 0.0));
+    let Some((name, place)) = highest else {
+        return "nothing to change".to_owned();
+    };
+    let texts: Vec<_> = pieces
+        .iter()
+        .map(|piece| format!("{} for {} s", number_text(piece[place]), number_text(piece[0])))
+        .collect();
+    format!("{name} {}", texts.join(", "))
 }
