@@ -1,6 +1,6 @@
 //! The plan value and how it is made.
 
-use super::problem::{LONGEST, Problem};
+use super::problem::{Boxes, LONGEST, Problem};
 use super::search::{self, Family, Work};
 use super::{Method, profile, sequential};
 use crate::{Field, Limits, Order, PlanError};
@@ -24,6 +24,9 @@ pub struct GridPlan {
     /// Whether the position sums need more than 64 bits.
     pub(super) wide: bool,
 }
+
+/// A plan is copied about by value, so it stays small.
+const _: () = assert!(size_of::<GridPlan>() <= 96);
 
 /// Durations of the segments in scans, as the published planner counts them (docs/planner.md, eq. 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,10 +101,10 @@ impl GridPlan {
             Method::Grid => search::fewest(&problem, Family::Separate),
             Method::Overlapped => search::fewest(&problem, Family::Overlapped),
         };
-        let scans = |boxes: &[u64; 4]| boxes.iter().fold(0, |sum: u64, n| sum.saturating_add(*n));
+        let sum = |boxes: Boxes| boxes.iter().map(|n| u64::from(*n)).sum::<u64>();
         let boxes = if work.capped {
             let other = step_by_step();
-            if scans(&other) < scans(&boxes) {
+            if (1..sum(boxes)).contains(&sum(other)) {
                 other
             } else {
                 boxes
@@ -109,12 +112,12 @@ impl GridPlan {
         } else {
             boxes
         };
-        let count = scans(&boxes);
-        if count == 0 || count > LONGEST {
+        let scans = sum(boxes);
+        if !(1..=LONGEST).contains(&scans) {
             return Err(problem.too_long(limits));
         }
-        plan.scans = count as u32;
-        let [n1, n2, n3, n4] = boxes.map(|n| n as u32);
+        plan.scans = scans as u32;
+        let [n1, n2, n3, n4] = boxes;
         plan.boxes = match plan.order {
             Order::Four => [n1, n2, n3, n4],
             Order::Three => [n2, n3, n4, 0],

@@ -10,7 +10,7 @@ const ONE_LESS_SLACK: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
 pub(super) const LONGEST: u64 = (1 << 31) - 1;
 
 /// Box lengths n1..n4 in scans; the boxes an order does without are 0 (docs/planner.md, eq. 4).
-pub(super) type Boxes = [u64; 4];
+pub(super) type Boxes = [u32; 4];
 
 /// A rest-to-rest problem on the grid: find the boxes of the least sum whose products reach the thresholds.
 ///

@@ -14,7 +14,7 @@ pub const MAX_CANDIDATES: u32 = 2048;
 /// Share by which the budget of the real bound is raised, so that rounding can only add candidates, never lose one.
 const MARGIN: f64 = 1e-12;
 
-/// Newton steps of a cubic root: the start is within 16 %, each step squares the error.
+/// Newton steps of a cubic root: the start is within 13 %, and four steps end at the last place.
 const NEWTON_STEPS: u32 = 4;
 
 /// How much work a search took.
@@ -42,7 +42,8 @@ pub(super) enum Family {
 /// Box lengths are whole numbers held as `f64`, exact below 2^53, so that bounds and candidates share them.
 struct Search<'a> {
     problem: &'a Problem,
-    family: Family,
+    /// How much of n1 the gap between n3 and n4 holds beside n2: 1, or 0 where pulses may overlap.
+    share: f64,
     /// 1 / K4 and 1 / K3, for the minimisers of the bound, which need not be exact.
     per_k4: f64,
     per_k3: f64,
@@ -72,7 +73,10 @@ struct Row {
 pub(super) fn fewest(problem: &Problem, family: Family) -> (Boxes, Work) {
     let mut search = Search {
         problem,
-        family,
+        share: match family {
+            Family::Separate => 1.0,
+            Family::Overlapped => 0.0,
+        },
         per_k4: 1.0 / problem.k4,
         per_k3: 1.0 / problem.k3,
         best: [0.0; 4],
@@ -85,24 +89,24 @@ pub(super) fn fewest(problem: &Problem, family: Family) -> (Boxes, Work) {
         Order::Three => search.first_row(&search.row(0.0)),
         Order::Two => search.solve(0.0, 0.0, problem.k3),
     }
-    (search.best.map(|n| n as u64), search.work)
+    (search.best.map(|n| n as u32), search.work)
 }
 
 impl Search<'_> {
     /// Walks over n1 both ways from the minimiser of the real bound (docs/planner.md, eq. 18).
     fn rows(&mut self) {
-        let start = self.best_n1();
-        let mut row = self.row(start);
-        self.first_row(&row);
+        let first = self.row(self.best_n1());
+        self.first_row(&first);
+        let mut row = first;
         // Above the minimiser each step of n1 adds at least one to the bound, so a row that leaves no room
-        // for that ends the walk before the next one is computed.
+        // for that ends the walk before the next one is computed (docs/planner.md, eq. 19).
         while self.may_improve(&row, row.n2, self.budget - 1.0) {
             row = self.row(row.n1 + 1.0);
             if !self.try_row(&row) {
                 break;
             }
         }
-        row = self.row(start);
+        row = first;
         while row.n1 > 1.0 {
             row = self.row(row.n1 - 1.0);
             if !self.try_row(&row) {
@@ -182,20 +186,15 @@ impl Search<'_> {
 
     /// By how much n4 must exceed n3.
     fn gap(&self, n1: f64, n2: f64) -> f64 {
-        match self.family {
-            Family::Separate => n1 + n2,
-            Family::Overlapped => n2,
-        }
+        self.share * n1 + n2
     }
 
     /// The real n1 >= 1 at which the bound is least, rounded up (docs/planner.md, eq. 17).
     fn best_n1(&self) -> f64 {
         let Problem { k2, k1, .. } = *self.problem;
-        let alone = match self.family {
-            Family::Separate => 1.0 / 8.0,
-            Family::Overlapped => 1.0 / 6.0,
-        };
-        let n1 = min(k1 / k2, min(sqrt(k1 * self.per_k3), sqrt(sqrt(k1 * alone))));
+        // The least n2, n3 and n4 of n alone are n, 2 n and 3 n or 4 n.
+        let alone = k1 / (6.0 + 2.0 * self.share);
+        let n1 = min(k1 / k2, min(sqrt(k1 * self.per_k3), sqrt(sqrt(alone))));
         let n1 = max(n1, 1.0);
         let cruising = k1 * self.per_k4;
         if 2.0 * n1 * n1 * n1 <= cruising {
@@ -209,11 +208,8 @@ impl Search<'_> {
         let least = max(n1, 1.0);
         let cruising = 0.5 * (sqrt(n1 * n1 + 4.0 * m2 * self.per_k4) - n1);
         let n2 = max(min(m2 * self.per_k3, cruising), least);
-        // n (n1 + n) times the n4 that goes with n3 = n1 + n: 2 n1 + 2 n, or n1 + 2 n.
-        let (p, q) = match self.family {
-            Family::Separate => (n1, n1),
-            Family::Overlapped => (n1, 0.5 * n1),
-        };
+        // n (n1 + n) times the n4 that goes with n3 = n1 + n: n1 + n and the gap.
+        let (p, q) = (n1, 0.5 * (1.0 + self.share) * n1);
         let reaches = |n: f64| 2.0 * n * (n + p) * (n + q) >= m2;
         if !reaches(n2) || n2 <= least {
             n2
