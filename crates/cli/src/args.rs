@@ -48,6 +48,17 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Print the JSON Schema of scripts
+    Schema,
+    /// Lay out scripts in their canonical form
+    Fmt {
+        /// Scripts, and folders of them; `-` lays out standard input to standard output
+        #[arg(value_name = "PATH", default_value = SCRIPTS)]
+        paths: Vec<PathBuf>,
+        /// Write nothing; fail if a script would change
+        #[arg(long)]
+        check: bool,
+    },
 }
 
 /// Where the scripts of a repository stand.

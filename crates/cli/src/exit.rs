@@ -126,6 +126,18 @@ impl From<FileError> for Failure {
     }
 }
 
+/// Lets a command over several files go on after one of them: its failure is reported and becomes a status.
+pub fn go_on(result: Result<Exit, Failure>, out: &mut dyn Write) -> Result<Exit, Failure> {
+    match result {
+        Err(failure @ Failure::Told(..)) => {
+            // What was printed so far stands before the message.
+            out.flush()?;
+            Ok(failure.report())
+        }
+        other => other,
+    }
+}
+
 /// Writes a line to standard error. Unlike `eprintln!` it does not panic when nobody can read it.
 pub fn complain(text: &str) {
     let _ = writeln!(io::stderr(), "{text}");

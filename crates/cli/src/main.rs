@@ -7,6 +7,7 @@ mod args;
 mod blocks;
 mod exit;
 mod explain;
+mod fmt;
 mod json;
 mod plan;
 mod progress;
@@ -64,6 +65,14 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Plan { .. } => plan::plan(&mut standard_input(), "standard input", out),
         Command::Blocks { json: true } => blocks::json(out),
         Command::Blocks { json: false } => blocks::table(out),
+        Command::Schema => {
+            write!(out, "{}", standstill_script::schema())?;
+            Ok(Exit::Passed)
+        }
+        Command::Fmt { paths, check } if paths.iter().all(|path| is_standard(path)) => {
+            fmt::filter(*check, out)
+        }
+        Command::Fmt { paths, check } => fmt::files(paths, *check, out),
     }
 }
 

@@ -1,7 +1,7 @@
 //! `standstill run`: one or more scripts, shown to a person.
 
 use crate::args::RunArguments;
-use crate::exit::{Exit, Failure};
+use crate::exit::{Exit, Failure, go_on};
 use crate::progress::Progress;
 use standstill_script::suite::{self, SuiteError};
 use standstill_script::{Code, Outcome, ScriptError};
@@ -32,15 +32,8 @@ pub fn run(arguments: &RunArguments, out: &mut dyn Write) -> Result<Exit, Failur
         if index > 0 && !arguments.quiet {
             writeln!(out)?;
         }
-        let this = match run_one(script, arguments, out) {
-            Err(Failure::Output(error)) => return Err(error.into()),
-            Err(failure) => {
-                out.flush()?;
-                failure.report()
-            }
-            Ok(exit) => exit,
-        };
-        exit = exit.max(this);
+        let this = run_one(script, arguments, out);
+        exit = exit.max(go_on(this, out)?);
     }
     Ok(exit)
 }

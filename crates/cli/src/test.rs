@@ -1,6 +1,6 @@
 //! `standstill test`: scripts as tests, held against their claims and goldens.
 
-use crate::exit::{Exit, Failure};
+use crate::exit::{Exit, Failure, go_on};
 use crate::progress::Progress;
 use standstill_script::golden::{Mode, Standing};
 use standstill_script::suite::{self, Report};
@@ -32,7 +32,7 @@ pub fn test(paths: &[PathBuf], accept: bool, out: &mut dyn Write) -> Result<Exit
             progress.clear();
             match judged {
                 Ok(report) => tally.judged(&name, &report, out)?,
-                Err(error) => tally.broken(&name, &error.into(), out)?,
+                Err(error) => tally.broken(&name, error.into(), out)?,
             }
         }
         if path.is_dir() {
@@ -69,10 +69,9 @@ impl Tally {
         Ok(())
     }
 
-    fn broken(&mut self, name: &str, failure: &Failure, out: &mut dyn Write) -> Result<(), Failure> {
+    fn broken(&mut self, name: &str, failure: Failure, out: &mut dyn Write) -> Result<(), Failure> {
         writeln!(out, "BROKEN    {name}")?;
-        out.flush()?;
-        self.broken.push(failure.report());
+        self.broken.push(go_on(Err(failure), out)?);
         Ok(())
     }
 

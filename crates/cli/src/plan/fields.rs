@@ -151,7 +151,12 @@ impl<'a> Fields<'a> {
             return Ok(None);
         };
         if ["\"NaN\"", "\"Infinity\"", "\"-Infinity\""].contains(&text) {
-            return Err(self.invalid(field, format!("`{field}` must be finite")));
+            let remedy = if field.starts_with("limits.") {
+                "; leave it out for no limit"
+            } else {
+                ""
+            };
+            return Err(self.invalid(field, format!("`{field}` must be finite{remedy}")));
         }
         if !text.starts_with(|c: char| c == '-' || c.is_ascii_digit()) {
             return Err(self.invalid(field, format!("`{field}` must be a number")));

@@ -140,18 +140,17 @@ fn check_extra_field(fields: &Fields<'_>, name: &str, method: &MethodInfo) -> Re
     if takers.is_empty() || method.fields.contains(&name) {
         return Ok(());
     }
-    let built = takers.iter().any(|taker| taker.plan.is_some());
-    let code = if built {
-        Code::InvalidInput
+    let (code, remark) = if takers.iter().any(|taker| taker.plan.is_some()) {
+        (Code::InvalidInput, "")
     } else {
-        Code::Unsupported
+        (Code::Unsupported, ", and not built yet")
     };
     let takers = takers
         .iter()
         .map(|taker| taker.name)
         .collect::<Vec<_>>()
         .join(", ");
-    let message = format!("`{name}` is a field of {takers}, not of {}", method.name);
+    let message = format!("`{name}` is a field of {takers}, not of {}{remark}", method.name);
     Err(Refusal::of_field(code, fields, name, message))
 }
 

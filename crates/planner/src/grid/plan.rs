@@ -1,6 +1,6 @@
 //! The plan value and how it is made.
 
-use super::problem::{LONGEST, Problem};
+use super::problem::{Boxes, LONGEST, Problem};
 use super::search::{self, Family, Work};
 use super::{Method, profile, sequential};
 use crate::{Field, Limits, Order, PlanError};
@@ -24,6 +24,9 @@ pub struct GridPlan {
     /// Whether the position sums need more than 64 bits.
     pub(super) wide: bool,
 }
+
+/// A plan is copied about by value, so it stays small.
+const _: () = assert!(size_of::<GridPlan>() <= 96);
 
 /// Durations of the segments in scans, as the published planner counts them (docs/planner.md, eq. 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,29 +95,13 @@ impl GridPlan {
         }
         let length = distance.abs();
         let problem = Problem::new(length, limits, cycle)?;
-        let step_by_step = || sequential::plan(&problem, length, limits, cycle);
-        let (boxes, work) = match method {
-            Method::Sequential => (step_by_step(), Work::default()),
-            Method::Grid => search::fewest(&problem, Family::Separate),
-            Method::Overlapped => search::fewest(&problem, Family::Overlapped),
-        };
-        let scans = |boxes: &[u64; 4]| boxes.iter().fold(0, |sum: u64, n| sum.saturating_add(*n));
-        let boxes = if work.capped {
-            let other = step_by_step();
-            if scans(&other) < scans(&boxes) {
-                other
-            } else {
-                boxes
-            }
-        } else {
-            boxes
-        };
-        let count = scans(&boxes);
-        if count == 0 || count > LONGEST {
+        let (boxes, work) = choose(method, &problem, length, limits, cycle);
+        let scans = sum(&boxes);
+        if !(1..=LONGEST).contains(&scans) {
             return Err(problem.too_long(limits));
         }
-        plan.scans = count as u32;
-        let [n1, n2, n3, n4] = boxes.map(|n| n as u32);
+        plan.scans = scans as u32;
+        let [n1, n2, n3, n4] = boxes;
         plan.boxes = match plan.order {
             Order::Four => [n1, n2, n3, n4],
             Order::Three => [n2, n3, n4, 0],
@@ -204,6 +191,28 @@ impl GridPlan {
             Order::Two => acceleration,
         }
     }
+}
+
+/// The boxes by one method, none if they are too long to count, and the work it took.
+fn choose(method: Method, problem: &Problem, length: f64, limits: &Limits, cycle: f64) -> (Boxes, Work) {
+    let step_by_step = || sequential::plan(problem, length, limits, cycle);
+    let (best, work) = match method {
+        Method::Sequential => return (step_by_step(), Work::default()),
+        Method::Grid => search::fewest(problem, Family::Separate),
+        Method::Overlapped => search::fewest(problem, Family::Overlapped),
+    };
+    if work.capped {
+        let other = step_by_step();
+        if sum(&other) > 0 && sum(&other) < sum(&best) {
+            return (other, work);
+        }
+    }
+    (best, work)
+}
+
+/// The scans of all boxes together.
+fn sum(boxes: &Boxes) -> u64 {
+    boxes.iter().map(|n| u64::from(*n)).sum()
 }
 
 /// The signed distance (u) of a move whose inputs are all usable.

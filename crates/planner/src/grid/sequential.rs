@@ -26,7 +26,8 @@ struct Steps<'a> {
     cycle: f64,
 }
 
-/// The box lengths of the published steps. At most eight bisections of 32 steps each.
+/// The box lengths of the published steps, or none (all 0) if one is too long to count. At most seven
+/// bisections of 32 steps each.
 pub(super) fn plan(problem: &Problem, distance: f64, limits: &Limits, cycle: f64) -> Boxes {
     let steps = Steps {
         problem,
@@ -50,8 +51,12 @@ pub(super) fn plan(problem: &Problem, distance: f64, limits: &Limits, cycle: f64
     let n3 = m + steps.acceleration_time(m, held);
     // The last step is n4 >= K4. Where two ratios are both reached only within the slack their product can
     // miss it; the thresholds of the products then ask for one scan more.
-    let n4 = (m + n3).max(problem.least_n4(nd.max(1), n2.max(1), n3));
-    [nd, n2, n3, n4]
+    let n4 = (m + n3).max(problem.least_n4(nd, n2, n3));
+    let lengths = [nd, n2, n3, n4];
+    if lengths.iter().any(|n| *n > LONGEST) {
+        return [0; 4];
+    }
+    lengths.map(|n| n as u32)
 }
 
 impl Steps<'_> {

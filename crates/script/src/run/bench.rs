@@ -7,11 +7,11 @@ use super::notes::Notes;
 use super::rows::Rows;
 use super::schedule::Schedule;
 use super::values::Values;
-use crate::model::{Action, FaultKind, Script, Wire};
+use crate::model::{Action, FaultKind, Point, Script, Wire};
 use standstill_axis::{
     AxisId, AxisState, DrivePosition, ErrorId, IdealDrive, InstanceId, Standard, StartState,
 };
-use standstill_fb::{AnyInstance, Context, PinType};
+use standstill_fb::{AnyInstance, Context, PinType, Value};
 use standstill_scan::{Machine, ProgramFault, ProgramId, Programs, RUNTIME, ScanTime, TaskId};
 use standstill_trace::{Cell, Trace};
 
@@ -42,6 +42,24 @@ pub(crate) fn machine(script: &Script) -> Result<ScriptMachine, RunError> {
             })?;
     }
     Ok(machine)
+}
+
+/// Makes an axis or its drive fail.
+fn fail(axis: usize, kind: FaultKind, code: u16, time: ScanTime, machine: &mut ScriptMachine) {
+    let drive = machine.drives_mut().get_mut(axis);
+    match (kind, drive) {
+        (FaultKind::Drive, Some(drive)) => drive.fail(code),
+        (FaultKind::Power, Some(drive)) => drive.cut_power(),
+        (FaultKind::Communication, Some(drive)) => drive.cut_communication(),
+        (FaultKind::Axis, _) => {
+            let mut context = machine.context(time, InstanceId::default());
+            let id = u16::try_from(axis).map_or(AxisId::NONE, AxisId::new);
+            if let Ok((axis, log, source)) = context.axis(id) {
+                axis.raise(ErrorId::AxisFault, code, source, log);
+            }
+        }
+        (FaultKind::Drive | FaultKind::Power | FaultKind::Communication, None) => {}
+    }
 }
 
 /// A script at work.
@@ -100,44 +118,16 @@ impl<'a> Bench<'a> {
         self.trace
     }
 
-    /// Remembers the first thing that went wrong.
-    fn fail(&mut self, error: RunError) {
+    /// Ends the run after this scan; the first reason counts.
+    fn stop(&mut self, error: RunError) {
         self.error.get_or_insert(error);
     }
 
     fn apply(&mut self, step: usize, action: &Action, time: ScanTime, machine: &mut ScriptMachine) {
         let scan = time.scan;
         match *action {
-            Action::Set(point, value) => {
-                if self.values.write(point, value).is_none() {
-                    let value = cells::value_text(self.script, None, value);
-                    self.fail(RunError::Value {
-                        scan,
-                        target: format!("steps[{step}]: the signal"),
-                        value,
-                    });
-                }
-            }
-            Action::Fault {
-                axis,
-                kind: FaultKind::Axis,
-                code,
-            } => {
-                let mut context = machine.context(time, InstanceId::default());
-                let id = u16::try_from(axis).map_or(AxisId::NONE, AxisId::new);
-                if let Ok((axis, log, source)) = context.axis(id) {
-                    axis.raise(ErrorId::AxisFault, code, source, log);
-                }
-            }
-            Action::Fault { axis, kind, code } => {
-                if let Some(drive) = machine.drives_mut().get_mut(axis) {
-                    match kind {
-                        FaultKind::Drive | FaultKind::Axis => drive.fail(code),
-                        FaultKind::Power => drive.cut_power(),
-                        FaultKind::Communication => drive.cut_communication(),
-                    }
-                }
-            }
+            Action::Set(point, value) => self.write(point, Some(value), scan),
+            Action::Fault { axis, kind, code } => fail(axis, kind, code, time, machine),
             Action::Clear { axis } => {
                 if let Some(drive) = machine.drives_mut().get_mut(axis) {
                     drive.clear_cause();
@@ -147,20 +137,11 @@ impl<'a> Bench<'a> {
                 }
             }
             Action::Displace { axis, distance } => {
-                let name = || {
-                    self.script
-                        .axes
-                        .get(axis)
-                        .map_or("", |axis| &axis.name)
-                        .to_owned()
-                };
-                let pushed = machine
-                    .drives_mut()
-                    .get_mut(axis)
-                    .map(|drive| drive.displace(distance));
-                if pushed.is_some_and(|pushed| pushed.is_err()) {
-                    let axis = name();
-                    self.fail(RunError::Displaced { step, scan, axis });
+                let drive = machine.drives_mut().get_mut(axis);
+                if drive.is_some_and(|drive| drive.displace(distance).is_err()) {
+                    let axis = self.script.axes.get(axis);
+                    let axis = axis.map_or_else(String::new, |axis| axis.name.clone());
+                    self.stop(RunError::Displaced { step, scan, axis });
                 }
             }
         }
@@ -170,21 +151,22 @@ impl<'a> Bench<'a> {
     fn feed(&mut self, instance: usize, wires: &[(usize, Wire)], scan: u64) {
         for (pin, wire) in wires {
             let value = self.values.wire(wire);
-            let point = crate::model::Point::Pin(instance, *pin);
-            if value.and_then(|value| self.values.write(point, value)).is_none() {
-                let declared = self.script.blocks.get(instance);
-                let pin = declared.and_then(|instance| instance.block.pins().nth(*pin));
-                let target = format!(
-                    "{}.{}",
-                    declared.map_or("", |instance| &instance.name),
-                    pin.map_or("", |pin| pin.name)
-                );
-                let value = value.map_or_else(
-                    || "what its wire carries".to_owned(),
-                    |value| cells::value_text(self.script, None, value),
-                );
-                self.fail(RunError::Value { scan, target, value });
-            }
+            self.write(Point::Pin(instance, *pin), value, scan);
+        }
+    }
+
+    /// Writes a value where it is wanted; one that does not fit ends the run.
+    fn write(&mut self, point: Point, value: Option<Value>, scan: u64) {
+        if value.and_then(|value| self.values.write(point, value)).is_none() {
+            let value = value.map_or_else(
+                || "what its wire carries".to_owned(),
+                |value| cells::value_text(self.script, None, value),
+            );
+            self.stop(RunError::Value {
+                scan,
+                target: cells::point_name(self.script, point),
+                value,
+            });
         }
     }
 
@@ -221,7 +203,7 @@ impl<'a> Bench<'a> {
         let pins = pins.iter().map(|(ty, value)| undefined.cell(script, *ty, *value));
         let row: Vec<_> = axes.chain(variables).chain(pins).collect();
         if let Err(error) = self.trace.push_row(&row) {
-            self.fail(RunError::Internal(error.to_string()));
+            self.stop(RunError::Internal(error.to_string()));
         }
     }
 }

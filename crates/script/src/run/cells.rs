@@ -1,9 +1,9 @@
 //! Values at pins as cells of a trace.
 
-use crate::model::Script;
+use crate::model::{Point, Script};
 use standstill_axis::AxisId;
 use standstill_fb::{EnumInfo, PinType, Value};
-use standstill_trace::Cell;
+use standstill_trace::{Cell, cell_text};
 use std::collections::BTreeMap;
 
 /// Texts for enum numbers that have no name; a cell only borrows its text.
@@ -62,24 +62,16 @@ pub(crate) fn value_text(script: &Script, ty: Option<PinType>, value: Value) -> 
     cell_text(undefined.cell(script, ty, value))
 }
 
-/// A cell as text: BOOL in capitals, numbers in shortest round-trip form.
-pub(crate) fn cell_text(cell: Cell<'_>) -> String {
-    match cell {
-        Cell::Bool(value) => value.to_string().to_uppercase(),
-        Cell::Real(value) => number_text(value),
-        Cell::Integer(value) => value.to_string(),
-        Cell::Name(name) => name.to_owned(),
+/// A variable or pin as scripts name it.
+pub(crate) fn point_name(script: &Script, point: Point) -> String {
+    match point {
+        Point::Input(index) => script.inputs.get(index).map(|input| input.name.clone()),
+        Point::Pin(instance, pin) => script.blocks.get(instance).and_then(|instance| {
+            let pin = instance.block.pins().nth(pin)?;
+            Some(format!("{}.{}", instance.name, pin.name))
+        }),
     }
-}
-
-/// A number in shortest round-trip form, without the sign of zero.
-pub(crate) fn number_text(value: f64) -> String {
-    match value {
-        f64::INFINITY => "Infinity".to_owned(),
-        f64::NEG_INFINITY => "-Infinity".to_owned(),
-        // Adding 0.0 takes the sign off zero and changes nothing else.
-        _ => format!("{:?}", value + 0.0),
-    }
+    .unwrap_or_default()
 }
 
 /// A value as a pin of type `ty` takes it; `None` if the pin cannot hold it.

@@ -1,0 +1,139 @@
+//! How the program ends when something is in its way.
+
+use crate::support::{command, ended, standstill, with_script};
+use std::io::{Write, pipe};
+use std::process::Stdio;
+
+/// The status and the messages of a command whose output nobody reads.
+fn unread(folder: &std::path::Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let (reader, writer) = pipe().expect("a pipe");
+    drop(reader);
+    let output = command(arguments)
+        .current_dir(folder)
+        .stdout(writer)
+        .stderr(Stdio::piped())
+        .output()
+        .expect("the program starts");
+    (
+        output.status.code(),
+        String::from_utf8_lossy(&output.stderr).into_owned(),
+    )
+}
+
+#[test]
+fn a_closed_pipe_ends_quietly() {
+    let folder = with_script("ends_pipe");
+    for arguments in [
+        &["run", "move.scan.json"][..],
+        &["run", "-q", "--set", "v=2", "move.scan.json"],
+        &["test", "move.scan.json"],
+        &["blocks", "--json"],
+        &["blocks"],
+        &["schema"],
+        &["--help"],
+    ] {
+        assert_eq!(
+            unread(&folder, arguments),
+            (Some(0), String::new()),
+            "{arguments:?}"
+        );
+    }
+}
+
+#[test]
+fn a_pipe_that_closes_in_between_ends_quietly() {
+    let mut child = command(&["plan"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut stdin = child.stdin.take().expect("a pipe");
+    drop(child.stdout.take());
+    // It may stop to read before all is written.
+    while writeln!(stdin, r#"{{"Ts":0.01,"target":1,"limits":{{"velocity":1}}}}"#).is_ok() {}
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(
+        (output.status.code(), output.stderr.as_slice()),
+        (Some(0), &b""[..])
+    );
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_an_error_of_io() {
+    let full = std::fs::File::options()
+        .write(true)
+        .open("/dev/full")
+        .expect("Linux has it");
+    let output = command(&["blocks"])
+        .stdout(full)
+        .stderr(Stdio::piped())
+        .output()
+        .expect("it starts");
+    assert_eq!(output.status.code(), Some(4));
+    assert!(String::from_utf8_lossy(&output.stderr).starts_with("error: standard output: "));
+}
+
+#[test]
+fn bad_usage_is_told_before_anything_runs() {
+    let folder = with_script("ends_usage");
+    for (arguments, message) in [
+        (&[][..], "Usage: standstill <COMMAND>"),
+        (&["rum"], "a similar subcommand exists: 'run'"),
+        (&["run"], "required arguments were not provided"),
+        (
+            &["run", "--trase", "a.csv", "x"],
+            "a similar argument exists: '--trace'",
+        ),
+        (
+            &["run", "--trace", "a.txt", "move.scan.json"],
+            "--trace a.txt: a trace is a .csv or a .jsonl file",
+        ),
+        (
+            &["run", "--trace", "a.csv", "move.scan.json", "move.scan.json"],
+            "--trace takes one script",
+        ),
+        (&["explain", "a.csv"], "required arguments were not provided"),
+    ] {
+        let ended = standstill(&folder, arguments);
+        assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{arguments:?}");
+        assert!(ended.err.contains(message), "{}", ended.err);
+    }
+    assert!(!folder.join("a.csv").exists());
+}
+
+#[test]
+fn files_that_are_not_there_are_errors_of_io() {
+    let folder = with_script("ends_io");
+    for (arguments, name) in [
+        (&["run", "absent.scan.json"][..], "absent.scan.json"),
+        (&["test", "absent"], "absent"),
+        (&["fmt", "absent"], "absent"),
+        (&["plan", "absent.jsonl"], "absent.jsonl"),
+        (
+            &["run", "-q", "--trace", "absent/a.csv", "move.scan.json"],
+            "absent/a.csv",
+        ),
+    ] {
+        let ended = standstill(&folder, arguments);
+        assert_eq!(ended.status, 4, "{arguments:?}");
+        assert!(
+            ended.err.starts_with(&format!("error: {name}: ")),
+            "{}",
+            ended.err
+        );
+    }
+}
+
+#[test]
+fn no_colours_reach_a_file_or_a_pipe() {
+    let folder = with_script("ends_colours");
+    for arguments in [&["rum"][..], &["--help"], &["run", "absent"]] {
+        let ended = ended(command(arguments).current_dir(&folder).env("NO_COLOR", "1"));
+        assert!(
+            !ended.out.contains('\x1b') && !ended.err.contains('\x1b'),
+            "{arguments:?}"
+        );
+    }
+}

@@ -1,0 +1,10 @@
+//! The program from outside: what it prints, and how it ends.
+
+mod blocks;
+mod ends;
+mod fmt;
+mod plan;
+mod run;
+mod support;
+mod test;
+mod traces;

@@ -1,0 +1,174 @@
+//! Lines in, lines out.
+
+use crate::support::{command, ended, fed, scratch, write};
+use serde_json::Value;
+use std::io::{BufRead, BufReader, Write};
+use std::process::Stdio;
+
+/// The answers to these lines.
+fn answers(lines: &str) -> Vec<Value> {
+    let ended = fed(&["plan"], lines.as_bytes());
+    ended
+        .out
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .collect()
+}
+
+#[test]
+fn lines_are_answered_letter_by_letter_as_before() {
+    let lines = include_str!("plan.jsonl");
+    let ended = fed(&["plan"], lines.as_bytes());
+    let asked: Vec<_> = lines.lines().filter(|line| !line.trim().is_empty()).collect();
+    let answered: Vec<_> = ended.out.lines().collect();
+    assert_eq!(asked.len(), answered.len());
+    let pairs = asked.iter().zip(answered);
+    let text: String = pairs
+        .map(|(asked, answered)| format!("> {asked}\n{answered}\n\n"))
+        .collect();
+    insta::assert_snapshot!(text);
+    assert_eq!((ended.status, ended.err.as_str()), (1, ""));
+}
+
+#[test]
+fn reference_moves_are_planned_as_computed_elsewhere() {
+    let vectors = include_str!("../../../planner/tests/data/planner4-basic.json");
+    let vectors: Value = serde_json::from_str(vectors).expect("JSON");
+    let vectors = vectors["vectors"].as_array().expect("a list");
+    for (method, expected) in [
+        ("sequential", "seq"),
+        ("grid", "opt"),
+        ("overlapped", "ext_overlap"),
+    ] {
+        let line = |vector: &Value| {
+            let given = &vector["in"];
+            let target = given["target"].as_f64().map_or(given["dx"].clone(), Value::from);
+            let target = if given["target"].is_null() && given["x0"] != 0.0 {
+                Value::from(given["x0"].as_f64().unwrap() + given["dx"].as_f64().unwrap())
+            } else {
+                target
+            };
+            let limits = serde_json::json!({
+                "velocity": given["v"], "acceleration": given["a"], "jerk": given["j"], "snap": given["s"],
+            });
+            serde_json::json!({
+                "id": vector["id"], "Ts": given["ts"], "position": given["x0"], "target": target,
+                "limits": limits, "method": method,
+            })
+            .to_string()
+        };
+        let lines: Vec<_> = vectors.iter().map(line).collect();
+        let answers = answers(&lines.join("\n"));
+        assert_eq!(answers.len(), vectors.len());
+        for (answer, vector) in answers.iter().zip(vectors) {
+            assert_eq!(answer["id"], vector["id"]);
+            assert_eq!(answer["error"]["code"], vector["error"], "{answer}");
+            let boxes = answer["boxes"].as_array().into_iter().flatten();
+            let scans: u64 = boxes.filter_map(Value::as_u64).sum();
+            if vector["error"].is_null() {
+                assert_eq!(answer["scans"], scans, "{answer}");
+                assert_eq!(answer["counts"].is_null(), method == "overlapped");
+            }
+            if let Some(count) = vector[expected]["N"].as_u64() {
+                assert_eq!(answer["scans"], count, "{answer}");
+            }
+        }
+    }
+}
+
+#[test]
+fn segments_lead_from_the_start_to_the_target() {
+    let line =
+        r#"{"Ts":0.001,"target":0.35,"limits":{"velocity":1.2,"acceleration":15,"jerk":400,"snap":21000}}"#;
+    let answers = answers(line);
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let mut state = [0.0; 4];
+    for segment in answers[0]["segments"].as_array().expect("a list") {
+        let [t, v, a, j, s] =
+            ["duration", "velocity", "acceleration", "jerk", "snap"].map(|key| number(&segment[key]));
+        for (at, stated) in state[1..].iter().zip([v, a, j]) {
+            assert!((at - stated).abs() <= 1e-9 * (1.0 + stated.abs()), "{segment}");
+        }
+        state = [
+            state[0] + t * (v + t / 2.0 * (a + t / 3.0 * (j + t / 4.0 * s))),
+            v + t * (a + t / 2.0 * (j + t / 3.0 * s)),
+            a + t * (j + t / 2.0 * s),
+            j + t * s,
+        ];
+    }
+    assert!(
+        (state[0] - 0.35).abs() < 1e-12 && state[1..].iter().all(|rest| rest.abs() < 1e-9),
+        "{state:?}"
+    );
+    assert_eq!(answers[0]["end"]["position"], 0.35);
+}
+
+#[test]
+fn the_nearest_limit_can_be_planned_and_a_lower_one_cannot() {
+    let line = |velocity: &str| {
+        format!(
+            r#"{{"Ts":0.001,"target":1e9,"limits":{{"velocity":{velocity},"acceleration":15}},"method":"grid"}}"#
+        )
+    };
+    let refused = &answers(&line("1e-9"))[0]["error"];
+    assert_eq!(
+        (refused["code"].as_str(), refused["field"].as_str()),
+        (Some("too_long"), Some("limits.velocity"))
+    );
+    let nearest = refused["nearest"].as_f64().expect("a number");
+    let below = f64::from_bits(nearest.to_bits() - 1);
+    let answers = answers(&format!(
+        "{}\n{}",
+        line(&format!("{nearest:?}")),
+        line(&format!("{below:?}"))
+    ));
+    assert!(
+        answers[0]["scans"].as_u64() <= Some(i32::MAX as u64),
+        "{}",
+        answers[0]
+    );
+    assert_eq!(answers[1]["error"]["code"], "too_long");
+}
+
+#[test]
+fn an_answer_comes_before_the_next_question() {
+    let mut child = command(&["plan", "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut ask = child.stdin.take().unwrap();
+    let mut answers = BufReader::new(child.stdout.take().unwrap()).lines();
+    for id in 0..3 {
+        writeln!(
+            ask,
+            r#"{{"id":{id},"Ts":0.01,"target":1,"limits":{{"velocity":1,"acceleration":9}}}}"#
+        )
+        .unwrap();
+        let answer = answers.next().unwrap().unwrap();
+        assert!(
+            answer.starts_with(&format!(r#"{{"id":{id},"method":"overlapped","duration":"#)),
+            "{answer}"
+        );
+    }
+    drop(ask);
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn files_may_have_a_byte_order_mark_and_windows_line_ends() {
+    let folder = scratch("plan_file");
+    let line = r#"{"id":"a","Ts":0.01,"target":1,"limits":{"velocity":1,"acceleration":9}}"#;
+    write(&folder, "lines.jsonl", &format!("\u{feff}{line}\r\n\r\n{line}"));
+    let ended = ended(command(&["plan", "lines.jsonl"]).current_dir(&folder));
+    assert_eq!((ended.status, ended.out.lines().count()), (0, 2));
+}
+
+#[test]
+fn a_line_that_is_no_text_is_refused_and_the_next_one_is_read() {
+    let lines = b"\xff\n{\"Ts\":0.01,\"target\":1,\"limits\":{\"velocity\":1}}\n";
+    let ended = fed(&["plan"], lines);
+    let answers: Vec<_> = ended.out.lines().collect();
+    assert!(answers[0].starts_with(r#"{"id":null,"error":{"code":"invalid_input","field":null,"#));
+    assert!(answers[1].contains("\"scans\":"));
+}

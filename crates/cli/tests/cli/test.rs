@@ -1,0 +1,131 @@
+//! Scripts as tests.
+
+use crate::support::{SCRIPT, command, ended, read, scratch, standstill, with_script, write};
+use std::fs;
+
+#[test]
+fn a_golden_is_accepted_once_and_judges_from_then_on() {
+    let folder = with_script("test_accept");
+    let missing = standstill(&folder, &["test", "."]);
+    assert_eq!(missing.status, 1);
+    assert!(
+        missing
+            .out
+            .contains("FAILED    ./move.scan.json\n    golden: there is no golden yet\n"),
+        "{}",
+        missing.out
+    );
+    let accepted = standstill(&folder, &["test", "--accept", "."]);
+    assert_eq!((accepted.status, accepted.err.as_str()), (0, ""));
+    assert_eq!(
+        accepted.out,
+        "accepted  ./move.scan.json\n1 scripts: 1 accepted\n"
+    );
+    let passed = standstill(&folder, &["test", "."]);
+    assert_eq!(
+        (passed.status, passed.out.as_str()),
+        (0, "ok        ./move.scan.json\n1 scripts: 1 passed\n")
+    );
+    // Another run under the same claims: Done comes at the same scan, the position of one scan differs.
+    write(
+        &folder,
+        "move.scan.json",
+        &SCRIPT.replace(
+            "\"GO\": true}}",
+            "\"GO\": true}}, {\"at\": 25, \"set\": {\"GO\": false}}",
+        ),
+    );
+    let differs = standstill(&folder, &["test", "."]);
+    assert_eq!(differs.status, 1);
+    assert!(
+        differs.out.contains("first difference in scan 25"),
+        "{}",
+        differs.out
+    );
+}
+
+#[test]
+fn scan_tests_is_the_default_and_has_to_be_there() {
+    let folder = scratch("test_default");
+    let nothing = standstill(&folder, &["test"]);
+    assert_eq!(nothing.status, 4);
+    assert!(nothing.err.starts_with("error: scan-tests: "), "{}", nothing.err);
+    fs::create_dir_all(folder.join("scan-tests/moves")).unwrap();
+    let empty = standstill(&folder, &["test"]);
+    assert_eq!(empty.status, 2);
+    assert!(
+        empty
+            .err
+            .contains("scan-tests: there is no .scan.json file in it"),
+        "{}",
+        empty.err
+    );
+    write(&folder, "scan-tests/moves/move.scan.json", SCRIPT);
+    assert_eq!(standstill(&folder, &["test", "--accept"]).status, 0);
+    let passed = standstill(&folder, &["test"]);
+    assert_eq!(
+        passed.out,
+        "ok        scan-tests/moves/move.scan.json\n1 scripts: 1 passed\n"
+    );
+}
+
+#[test]
+fn nothing_is_accepted_under_ci_or_against_the_claims() {
+    let folder = scratch("test_refused");
+    write(
+        &folder,
+        "late.scan.json",
+        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
+    );
+    let claims = standstill(&folder, &["test", "--accept", "late.scan.json"]);
+    assert_eq!(claims.status, 1);
+    assert!(
+        claims.out.contains("golden: not accepted: claims fail"),
+        "{}",
+        claims.out
+    );
+    let ci = ended(
+        command(&["test", "--accept", "late.scan.json"])
+            .current_dir(&folder)
+            .env("CI", "true"),
+    );
+    assert_eq!((ci.status, ci.out.as_str()), (2, ""));
+    assert!(ci.err.contains("goldens are not accepted under CI"), "{}", ci.err);
+    assert!(!folder.join("late.snap").exists());
+}
+
+#[test]
+fn orphans_fail_and_broken_scripts_do_not_hide_the_others() {
+    let folder = with_script("test_orphan");
+    assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
+    fs::copy(folder.join("move.snap"), folder.join("gone.snap")).unwrap();
+    let orphan = standstill(&folder, &["test", "."]);
+    assert_eq!(orphan.status, 1);
+    assert!(orphan.out.contains("ORPHAN    ./gone.snap\n"), "{}", orphan.out);
+    assert!(orphan.out.ends_with("1 scripts: 1 passed, 1 orphaned\n"));
+    write(&folder, "broken.scan.json", "{");
+    let broken = standstill(&folder, &["test", "."]);
+    assert_eq!(broken.status, 3);
+    assert!(
+        broken
+            .out
+            .contains("BROKEN    ./broken.scan.json\nok        ./move.scan.json\n"),
+        "{}",
+        broken.out
+    );
+    assert!(broken.err.contains("broken.scan.json:1:2"), "{}", broken.err);
+}
+
+#[test]
+fn a_golden_that_is_no_snapshot_is_a_bad_file() {
+    let folder = with_script("test_form");
+    write(&folder, "move.snap", "not a snapshot");
+    let ended = standstill(&folder, &["test", "move.scan.json"]);
+    assert_eq!(ended.status, 3);
+    assert!(
+        ended.err.contains("move.snap: no snapshot in insta's form"),
+        "{}",
+        ended.err
+    );
+    assert_eq!(read(&folder, "move.snap"), "not a snapshot");
+}

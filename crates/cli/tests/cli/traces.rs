@@ -1,0 +1,95 @@
+//! Traces, written and compared.
+
+use crate::support::{Ended, read, standstill, with_script, write};
+use std::path::{Path, PathBuf};
+
+/// A folder with the trace of the script in both forms, and that of a slower run.
+fn traces(name: &str) -> PathBuf {
+    let folder = with_script(name);
+    for (file, set) in [("a.csv", "v=10"), ("a.jsonl", "v=10"), ("slow.csv", "v=2")] {
+        let status = standstill(
+            &folder,
+            &["run", "-q", "move.scan.json", "--set", set, "--trace", file],
+        )
+        .status;
+        assert_eq!(status, i32::from(file == "slow.csv"));
+    }
+    folder
+}
+
+fn explain(folder: &Path, expected: &str, found: &str) -> Ended {
+    standstill(folder, &["explain", expected, found])
+}
+
+#[test]
+fn a_trace_has_one_row_a_scan_and_its_header_beside_it() {
+    let folder = traces("traces_written");
+    let csv = read(&folder, "a.csv");
+    assert!(csv.starts_with("scan,time_ns,X.State,X.Position,X.Velocity,"));
+    assert_eq!(csv.lines().count(), 31);
+    assert!(read(&folder, "a.csv.meta.json").starts_with("{\"standstill_trace\":1,"));
+    assert_eq!(read(&folder, "a.jsonl").lines().count(), 31);
+}
+
+#[test]
+fn both_forms_hold_the_same_bits() {
+    let folder = traces("traces_equal");
+    let ended = explain(&folder, "a.csv", "a.jsonl");
+    assert_eq!(
+        (ended.status, ended.out.as_str()),
+        (0, "a.csv and a.jsonl are equal to the bit\n")
+    );
+}
+
+#[test]
+fn the_first_difference_is_explained() {
+    let folder = traces("traces_differ");
+    let ended = explain(&folder, "a.csv", "slow.csv");
+    assert_eq!((ended.status, ended.err.as_str()), (1, ""));
+    assert!(
+        ended
+            .out
+            .starts_with("expected: a.csv\nfound:    slow.csv\nfirst difference in scan "),
+        "{}",
+        ended.out
+    );
+    assert!(ended.out.contains("move.Velocity"), "{}", ended.out);
+}
+
+#[test]
+fn what_a_trace_lacks_is_said() {
+    let folder = traces("traces_lack");
+    std::fs::remove_file(folder.join("a.csv.meta.json")).unwrap();
+    let ended = explain(&folder, "a.csv", "a.jsonl");
+    assert!(ended.err.starts_with("note: a.csv lacks "), "{}", ended.err);
+}
+
+#[test]
+fn a_file_that_is_no_trace_is_told_apart_from_one_that_is_not_there() {
+    let folder = traces("traces_wrong");
+    write(
+        &folder,
+        "wrong.csv",
+        "scan,time_ns,X.Position\n0,0,zero\nnonsense\n",
+    );
+    std::fs::write(folder.join("bytes.csv"), b"scan,time_ns\n\xff,0\n").unwrap();
+    for (file, status, message) in [
+        ("wrong.csv", 3, "wrong.csv: "),
+        ("bytes.csv", 3, "bytes.csv: "),
+        ("absent.csv", 4, "absent.csv: "),
+        (
+            "move.scan.json",
+            2,
+            "a trace is a .csv, .jsonl or (for reading) .exact file",
+        ),
+    ] {
+        let ended = explain(&folder, "a.csv", file);
+        assert_eq!(
+            (ended.status, ended.out.as_str()),
+            (status, ""),
+            "{file}: {}",
+            ended.err
+        );
+        assert!(ended.err.contains(message), "{}", ended.err);
+    }
+}

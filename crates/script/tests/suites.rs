@@ -1,0 +1,174 @@
+//! Folders of scripts: what is found, and what each mode does to goldens.
+
+use standstill_script::golden::{Mode, Standing};
+use standstill_script::suite::{Report, SuiteError, find, judge_file, name, orphans};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A folder of its own for one test, removed at its end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).expect("the folder is ours");
+        Self(path)
+    }
+
+    fn write(&self, file: &str, text: &str) -> PathBuf {
+        let path = self.0.join(file);
+        fs::create_dir_all(path.parent().expect("a file has a folder")).expect("the folder is ours");
+        fs::write(&path, text).expect("the folder is ours");
+        path
+    }
+
+    /// Names of all files, sorted.
+    fn files(&self) -> Vec<String> {
+        let mut names: Vec<_> = fs::read_dir(&self.0)
+            .expect("the folder is there")
+            .map(|entry| {
+                entry
+                    .expect("readable")
+                    .file_name()
+                    .to_string_lossy()
+                    .into_owned()
+            })
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A move to this position, claimed to be Done in scan 11.
+fn script(position: f64) -> String {
+    format!(
+        r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 20,
+            "axes": {{"X": {{"limits": {{"velocity": 1000, "acceleration": 1000000}}, "state": "Standstill"}}}},
+            "blocks": [{{"name": "m", "type": "MC_MoveAbsolute", "pins": {{"Axis": "X", "Execute": true, "Position": {position}, "Velocity": 1000}}}}],
+            "expect": [{{"at": 11, "that": {{"m.Done": true}}}}]}}"#
+    )
+}
+
+fn judged(path: &Path, mode: Mode) -> Report {
+    judge_file(path, mode, |_| {}).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn failed(report: &Report) -> &str {
+    match &report.golden {
+        Standing::Failed(why) => why,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_missing_golden_fails_and_is_only_proposed_where_it_may_be_reviewed() {
+    let folder = Folder::new("missing");
+    let path = folder.write("x.scan.json", &script(10.0));
+    let report = judged(&path, Mode::Check);
+    assert!(!report.passed());
+    assert_eq!(failed(&report), "there is no golden yet");
+    assert_eq!(folder.files(), ["x.scan.json"]);
+    let report = judged(&path, Mode::Propose);
+    assert!(!report.passed());
+    assert!(failed(&report).contains("standstill test --accept"), "{report}");
+    assert_eq!(folder.files(), ["x.scan.json", "x.snap.new"]);
+    let report = judged(&path, Mode::Accept);
+    assert_eq!(report.golden, Standing::Accepted);
+    assert_eq!(folder.files(), ["x.exact", "x.scan.json", "x.snap"]);
+    for mode in [Mode::Check, Mode::Propose, Mode::Accept] {
+        assert_eq!(judged(&path, mode).golden, Standing::Same, "{mode:?}");
+    }
+}
+
+#[test]
+fn a_run_that_differs_names_scan_signal_and_values() {
+    let folder = Folder::new("differs");
+    let path = folder.write("x.scan.json", &script(10.0));
+    judged(&path, Mode::Accept);
+    folder.write("x.scan.json", &script(10.000000000000002));
+    let report = judged(&path, Mode::Check);
+    assert!(report.outcome.passed());
+    let why = failed(&report);
+    assert!(why.contains("scan 0"), "{why}");
+    assert!(why.contains("m.Position"), "{why}");
+    assert!(why.contains("10.000000000000002"), "{why}");
+    assert!(why.contains("ULP"), "{why}");
+    assert_eq!(folder.files(), ["x.exact", "x.scan.json", "x.snap"]);
+}
+
+#[test]
+fn a_script_whose_claims_fail_gets_no_golden() {
+    let folder = Folder::new("refused");
+    let path = folder.write("x.scan.json", &script(30.0));
+    for mode in [Mode::Accept, Mode::Propose, Mode::Check] {
+        let report = judged(&path, mode);
+        assert!(!report.passed());
+        assert!(
+            report.to_string().starts_with("expect[0].that.m.Done: "),
+            "{report}"
+        );
+        assert!(matches!(report.golden, Standing::Failed(_)));
+        assert_eq!(folder.files(), ["x.scan.json"], "{mode:?}");
+    }
+}
+
+/// As cargo-insta accepts: the proposal becomes the snapshot, and nothing is done to the exact trace.
+#[test]
+fn a_snapshot_accepted_elsewhere_gets_its_exact_trace_outside_ci() {
+    let folder = Folder::new("insta");
+    let path = folder.write("x.scan.json", &script(10.0));
+    judged(&path, Mode::Propose);
+    fs::rename(folder.0.join("x.snap.new"), folder.0.join("x.snap")).expect("it was proposed");
+    let report = judged(&path, Mode::Check);
+    assert!(failed(&report).contains("exact trace"), "{report}");
+    assert_eq!(judged(&path, Mode::Propose).golden, Standing::Accepted);
+    assert_eq!(judged(&path, Mode::Check).golden, Standing::Same);
+}
+
+#[test]
+fn scripts_are_found_in_sorted_order_and_orphans_reported() {
+    let folder = Folder::new("found");
+    let scripts = ["b/z.scan.json", "a.scan.json", "b/a.scan.json", "b.scan.json"];
+    for file in scripts {
+        folder.write(file, "");
+    }
+    for file in [
+        "a.snap",
+        "b/z.exact",
+        "c.snap",
+        "b/c.exact",
+        "b/d.snap.new",
+        "note.txt",
+    ] {
+        folder.write(file, "");
+    }
+    let names =
+        |paths: Vec<PathBuf>| -> Vec<String> { paths.iter().map(|path| name(&folder.0, path)).collect() };
+    let found = find(&folder.0).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(names(found), ["a", "b/a", "b/z", "b"]);
+    let lonely = orphans(&folder.0).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(names(lonely), ["b/c.exact", "b/d.snap.new", "c.snap"]);
+    assert!(matches!(
+        find(&folder.0.join("nowhere")),
+        Err(SuiteError::Io { .. })
+    ));
+}
+
+#[test]
+fn what_is_no_script_is_told_apart_from_what_cannot_be_read() {
+    let folder = Folder::new("broken");
+    let judge = |file: &str| judge_file(&folder.0.join(file), Mode::Check, |_| {});
+    assert!(matches!(judge("nowhere.scan.json"), Err(SuiteError::Io { .. })));
+    folder.write("broken.scan.json", "{,}");
+    assert!(matches!(judge("broken.scan.json"), Err(SuiteError::Script(_))));
+    fs::write(folder.0.join("bytes.scan.json"), [b'{', 0xff]).expect("the folder is ours");
+    let error = judge("bytes.scan.json").map(|_| ()).unwrap_err();
+    assert!(error.to_string().ends_with("not UTF-8 after 1 bytes"), "{error}");
+}
