@@ -7,9 +7,9 @@
 
 use core::hint::black_box;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, BufferMode, Command, Comms, Drive, DriveFeedback, DrivePosition,
-    ErrorId, Fault, IdealDrive, InstanceId, Limits, Log, Planner, PowerOff, Raw, Request, Scaling,
-    Setpoint, Source, Standard, StartState,
+    Axis, AxisConfig, AxisId, BufferMode, Command, Comms, Drive, DriveFeedback, DrivePosition, ErrorId,
+    Fault, IdealDrive, InstanceId, Limits, Log, Planner, PowerOff, Raw, Request, Scaling, Setpoint, Source,
+    Standard, StartState,
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::{AnyInstance, Context, PinType, Time, Value};
@@ -154,7 +154,13 @@ pub fn plan() {
     let from = any(Setpoint::at_rest(start));
     let method = any(Method::Overlapped);
     if let Ok((plan, work)) = any(GridPlan::new_counted(method, start, target, &limits, cycle)) {
-        any((work, plan.at(any(1)), plan.euler(any(1)), plan.peaks(), plan.counts()));
+        any((
+            work,
+            plan.at(any(1)),
+            plan.euler(any(1)),
+            plan.peaks(),
+            plan.counts(),
+        ));
         any((plan.boxes(), plan.product(), plan.amplitude()));
         for segment in any(plan.segments()) {
             any(segment);
