@@ -85,6 +85,10 @@ fn grid_and_overlapped_need_exactly_the_minimum_of_the_vectors() {
             Some(least) => assert_eq!(u64::from(overlapped.scans()), least, "{id}"),
             None => assert!(overlapped.scans() <= grid.scans(), "{id}"),
         }
+        // Rounding to the grid can't beat the optimum of continuous time.
+        if let Some(continuous) = vector["n_continuous"].as_f64() {
+            assert!(f64::from(grid.scans()) >= continuous * (1.0 - 1e-9), "{id}");
+        }
         if let Some(least) = vector["lp_lower_bound"].as_u64() {
             assert!(u64::from(overlapped.scans()) >= least, "{id}");
         }

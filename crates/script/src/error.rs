@@ -76,7 +76,7 @@ codes! {
     NotWritable = "not_writable",
     /// Two writers on one input.
     TwoWriters = "two_writers",
-    /// Inputs that are wired in a circle, so that none of them ever gets a value.
+    /// Inputs that are wired in a circle into which nothing feeds.
     WireCycle = "wire_cycle",
     /// A scan outside the run.
     OutsideRun = "outside_run",
@@ -95,8 +95,8 @@ pub struct Diagnostic {
     pub span: Option<Span>,
     /// A few words under the carets, possibly none.
     pub label: String,
-    /// Another place that matters, with a few words.
-    pub related: Option<(Span, String)>,
+    /// Another place that matters, with a few words; in a box because few have one.
+    pub related: Option<Box<(Span, String)>>,
     /// What to do about it.
     pub help: Option<String>,
 }
@@ -119,7 +119,7 @@ impl Diagnostic {
     }
 
     pub(crate) fn related(mut self, span: Span, label: impl Into<String>) -> Self {
-        self.related = Some((span, label.into()));
+        self.related = Some(Box::new((span, label.into())));
         self
     }
 
@@ -206,7 +206,7 @@ impl ScriptError {
                 if !diagnostic.label.is_empty() {
                     primary = primary.label(visible(&diagnostic.label));
                 }
-                let context = diagnostic.related.as_ref().map(|(span, label)| {
+                let context = diagnostic.related.as_deref().map(|(span, label)| {
                     AnnotationKind::Context
                         .span(span.start..span.end)
                         .label(visible(label))

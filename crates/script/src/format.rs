@@ -104,7 +104,7 @@ fn write_flat(out: &mut String, node: &Node) {
     match &node.json {
         Json::Null => out.push_str("null"),
         Json::Bool(value) => out.push_str(if *value { "true" } else { "false" }),
-        Json::Number(value) => write_number(out, *value),
+        Json::Number(value) => out.push_str(&number_text(*value)),
         Json::Text(text) => write_text(out, text),
         Json::List(items) => {
             out.push('[');
@@ -128,14 +128,23 @@ fn write_flat(out: &mut String, node: &Node) {
 }
 
 /// The shortest digits that read back to the same bits; whole numbers without a point. -0.0 keeps its sign,
-/// because a script may want just that bit.
-fn write_number(out: &mut String, value: f64) {
+/// because a script may want just that bit. What is not finite is written as the word of the format.
+pub(crate) fn number_text(value: f64) -> String {
+    if !value.is_finite() {
+        return if value.is_nan() {
+            "NaN"
+        } else if value > 0.0 {
+            "Infinity"
+        } else {
+            "-Infinity"
+        }
+        .to_owned();
+    }
     let shortest = format!("{value:?}");
-    let digits = match shortest.strip_suffix(".0") {
-        Some(whole) if value != 0.0 || value.is_sign_positive() => whole,
-        _ => &shortest,
-    };
-    out.push_str(digits);
+    match shortest.strip_suffix(".0") {
+        Some(whole) if value != 0.0 || value.is_sign_positive() => whole.to_owned(),
+        _ => shortest,
+    }
 }
 
 fn write_text(out: &mut String, text: &str) {
@@ -161,12 +170,6 @@ fn write_text(out: &mut String, text: &str) {
 mod tests {
     use super::*;
 
-    fn number(value: f64) -> String {
-        let mut out = String::new();
-        write_number(&mut out, value);
-        out
-    }
-
     #[test]
     fn numbers_are_short_and_read_back_to_the_same_bits() {
         for (value, text) in [
@@ -179,7 +182,7 @@ mod tests {
             (-2.5, "-2.5"),
             (123456789012345.0, "123456789012345"),
         ] {
-            assert_eq!(number(value), text);
+            assert_eq!(number_text(value), text);
             let Json::Number(read) = json::parse(text).unwrap().json else {
                 panic!()
             };

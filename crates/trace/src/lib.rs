@@ -47,5 +47,6 @@ pub use extremes::{Extreme, extremes, extremes_text};
 pub use header::{
     AXIS_SIGNALS, Axis, Claim, ClaimVerdict, Direction, Header, Input, Instance, Limits, Pin, Scaling,
 };
+pub use number::{cell_text, shortest};
 pub use read::{Loaded, ReadError};
 pub use trace::{Note, RowError, Trace};

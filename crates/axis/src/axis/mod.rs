@@ -83,6 +83,21 @@ pub struct Outlook {
     pub forward: bool,
 }
 
+impl Outlook {
+    /// Without command numbers, which only grow: those of different histories become comparable.
+    pub fn without_numbers(mut self) -> Self {
+        const NUMBERLESS: CommandId = CommandId(0);
+        if let Some((id, ..)) = &mut self.owner {
+            *id = NUMBERLESS;
+        }
+        for (id, _) in self.waiting.iter_mut().flatten() {
+            *id = NUMBERLESS;
+        }
+        self.reset = self.reset.map(|_| NUMBERLESS);
+        self
+    }
+}
+
 /// One axis.
 #[derive(Clone, Debug)]
 pub struct Axis<P: Planner = Standard> {

@@ -69,12 +69,9 @@ impl Queue {
     }
 
     pub fn pop(&mut self) -> Option<Entry> {
-        let first = self.entries.first().copied().flatten()?;
+        let first = self.entries.first_mut()?.take()?;
         self.entries.rotate_left(1);
         self.len -= 1;
-        if let Some(slot) = self.entries.get_mut(self.len) {
-            *slot = None;
-        }
         Some(first)
     }
 

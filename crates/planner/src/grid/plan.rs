@@ -95,24 +95,8 @@ impl GridPlan {
         }
         let length = distance.abs();
         let problem = Problem::new(length, limits, cycle)?;
-        let step_by_step = || sequential::plan(&problem, length, limits, cycle);
-        let (boxes, work) = match method {
-            Method::Sequential => (step_by_step(), Work::default()),
-            Method::Grid => search::fewest(&problem, Family::Separate),
-            Method::Overlapped => search::fewest(&problem, Family::Overlapped),
-        };
-        let sum = |boxes: Boxes| boxes.iter().map(|n| u64::from(*n)).sum::<u64>();
-        let boxes = if work.capped {
-            let other = step_by_step();
-            if (1..sum(boxes)).contains(&sum(other)) {
-                other
-            } else {
-                boxes
-            }
-        } else {
-            boxes
-        };
-        let scans = sum(boxes);
+        let (boxes, work) = choose(method, &problem, length, limits, cycle);
+        let scans = sum(&boxes);
         if !(1..=LONGEST).contains(&scans) {
             return Err(problem.too_long(limits));
         }
@@ -207,6 +191,28 @@ impl GridPlan {
             Order::Two => acceleration,
         }
     }
+}
+
+/// The boxes by one method, none if they are too long to count, and the work it took.
+fn choose(method: Method, problem: &Problem, length: f64, limits: &Limits, cycle: f64) -> (Boxes, Work) {
+    let step_by_step = || sequential::plan(problem, length, limits, cycle);
+    let (best, work) = match method {
+        Method::Sequential => return (step_by_step(), Work::default()),
+        Method::Grid => search::fewest(problem, Family::Separate),
+        Method::Overlapped => search::fewest(problem, Family::Overlapped),
+    };
+    if work.capped {
+        let other = step_by_step();
+        if sum(&other) > 0 && sum(&other) < sum(&best) {
+            return (other, work);
+        }
+    }
+    (best, work)
+}
+
+/// The scans of all boxes together.
+fn sum(boxes: &Boxes) -> u64 {
+    boxes.iter().map(|n| u64::from(*n)).sum()
 }
 
 /// The signed distance (u) of a move whose inputs are all usable.

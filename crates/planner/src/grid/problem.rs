@@ -66,13 +66,15 @@ impl Problem {
         })
     }
 
-    /// The least n4 that reaches all thresholds with the other boxes given, all at least 1.
+    /// The least n4 that reaches all thresholds with the other boxes given, where a box that is not there is 0.
     pub fn least_n4(&self, n1: u64, n2: u64, n3: u64) -> u64 {
-        let (n3, n2_n3) = (u128::from(n3), u128::from(n2) * u128::from(n3));
+        let n3 = u128::from(n3.max(1));
+        let n2_n3 = u128::from(n2.max(1)) * n3;
+        let n1_n2_n3 = u128::from(n1.max(1)) * n2_n3;
         let least = (self.k4 as u128)
             .max((self.k3 as u128).div_ceil(n3))
             .max((self.k2 as u128).div_ceil(n2_n3))
-            .max((self.k1 as u128).div_ceil(u128::from(n1) * n2_n3));
+            .max((self.k1 as u128).div_ceil(n1_n2_n3));
         u64::try_from(least).unwrap_or(u64::MAX)
     }
 

@@ -119,7 +119,7 @@ pub(super) fn scale(order: Order, product: u128, distance: f64, cycle: f64) -> (
             1,
         ),
     };
-    (scale, product > i64::MAX as u128 / half_factorial)
+    (scale, half_factorial * product > i64::MAX as u128)
 }
 
 impl GridPlan {

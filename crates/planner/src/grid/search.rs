@@ -44,9 +44,6 @@ struct Search<'a> {
     problem: &'a Problem,
     /// How much of n1 the gap between n3 and n4 holds beside n2: 1, or 0 where pulses may overlap.
     share: f64,
-    /// 1 / K4 and 1 / K3, for the minimisers of the bound, which need not be exact.
-    per_k4: f64,
-    per_k3: f64,
     best: [f64; 4],
     /// Sum of `best`; one more than the longest plan until there is one.
     scans: f64,
@@ -77,8 +74,6 @@ pub(super) fn fewest(problem: &Problem, family: Family) -> (Boxes, Work) {
             Family::Separate => 1.0,
             Family::Overlapped => 0.0,
         },
-        per_k4: 1.0 / problem.k4,
-        per_k3: 1.0 / problem.k3,
         best: [0.0; 4],
         scans: LONGEST as f64 + 1.0,
         budget: LONGEST as f64,
@@ -189,35 +184,45 @@ impl Search<'_> {
         self.share * n1 + n2
     }
 
+    // The roots below are taken one by one, each only if it is smaller than the last: which bounds decide
+    // seldom changes from move to move, so the processor need not wait for roots that don't.
+
     /// The real n1 >= 1 at which the bound is least, rounded up (docs/planner.md, eq. 17).
     fn best_n1(&self) -> f64 {
-        let Problem { k2, k1, .. } = *self.problem;
-        // The least n2, n3 and n4 of n alone are n, 2 n and 3 n or 4 n.
-        let alone = k1 / (6.0 + 2.0 * self.share);
-        let n1 = min(k1 / k2, min(sqrt(k1 * self.per_k3), sqrt(sqrt(alone))));
-        let n1 = max(n1, 1.0);
-        let cruising = k1 * self.per_k4;
-        if 2.0 * n1 * n1 * n1 <= cruising {
-            return math::ceil(n1);
+        let Problem { k4, k3, k2, k1, .. } = *self.problem;
+        let alone = 6.0 + 2.0 * self.share;
+        let mut n = k1 / k2;
+        if n * n * k3 > k1 {
+            n = sqrt(k1 / k3);
         }
-        math::ceil(cubic_root(0.0, 0.0, max(cruising, 2.0)))
+        if alone * (n * n) * (n * n) > k1 {
+            n = sqrt(sqrt(k1 / alone));
+        }
+        if n > 1.0 && 2.0 * n * n * n * k4 > k1 {
+            n = cubic_root(0.0, 0.0, k1 / k4);
+        }
+        math::ceil(max(n, 1.0))
     }
 
     /// The real n2 >= max(n1, 1) at which the bound is least in row `n1` (docs/planner.md, eq. 16).
     fn best_n2(&self, n1: f64, m2: f64) -> f64 {
+        let Problem { k4, k3, .. } = *self.problem;
         let least = max(n1, 1.0);
-        let cruising = 0.5 * (sqrt(n1 * n1 + 4.0 * m2 * self.per_k4) - n1);
-        let n2 = max(min(m2 * self.per_k3, cruising), least);
+        let mut n = m2 / k3;
+        if n * (n1 + n) * k4 > m2 {
+            n = 0.5 * (sqrt(n1 * n1 + 4.0 * (m2 / k4)) - n1);
+        }
         // n (n1 + n) times the n4 that goes with n3 = n1 + n: n1 + n and the gap.
         let (p, q) = (n1, 0.5 * (1.0 + self.share) * n1);
-        let reaches = |n: f64| 2.0 * n * (n + p) * (n + q) >= m2;
-        if !reaches(n2) || n2 <= least {
-            n2
-        } else if reaches(least) {
-            least
-        } else {
-            cubic_root(p, q, m2)
+        let reaches = |n: f64| 2.0 * n * (n + p) * (n + q) > m2;
+        if n > least && reaches(n) {
+            n = if reaches(least) {
+                least
+            } else {
+                cubic_root(p, q, m2)
+            };
         }
+        max(n, least)
     }
 
     /// The best n3 and n4 for a pair (docs/planner.md, eq. 14), kept if they beat the best.
@@ -234,10 +239,10 @@ impl Search<'_> {
         }
         let n4_of = |n3| max(problem.k4, gap + n3);
         // The real root of n3 n4 = product is within one of the whole one; the exact products decide.
-        let root = min(
-            product * self.per_k4,
-            0.5 * (sqrt(gap * gap + 4.0 * product) - gap),
-        );
+        let mut root = product / problem.k4;
+        if gap + root > problem.k4 {
+            root = 0.5 * (sqrt(gap * gap + 4.0 * product) - gap);
+        }
         let mut n3 = max(math::floor(root), least_n3);
         for _ in 0..2 {
             if !problem.reached_by([n1, n2, n3, n4_of(n3)]) {

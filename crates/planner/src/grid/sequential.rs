@@ -51,7 +51,7 @@ pub(super) fn plan(problem: &Problem, distance: f64, limits: &Limits, cycle: f64
     let n3 = m + steps.acceleration_time(m, held);
     // The last step is n4 >= K4. Where two ratios are both reached only within the slack their product can
     // miss it; the thresholds of the products then ask for one scan more.
-    let n4 = (m + n3).max(problem.least_n4(nd.max(1), n2.max(1), n3));
+    let n4 = (m + n3).max(problem.least_n4(nd, n2, n3));
     let lengths = [nd, n2, n3, n4];
     if lengths.iter().any(|n| *n > LONGEST) {
         return [0; 4];

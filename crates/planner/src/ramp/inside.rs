@@ -1,4 +1,4 @@
-//! Getting a start state inside the limits, before the ramp proper.
+//! Getting a start state inside the limits at order 4, before the ramp proper.
 //!
 //! Until it is inside, the larger ones of the old and the new limits hold, and the way takes the least time.
 //! Everything is in the kernel's units and mirrored so that the velocity is not negative.
@@ -64,7 +64,7 @@ impl Box4 {
     }
 
     /// Whether the old limits allow a falling velocity more than the new ones.
-    pub(super) fn is_lowered(&self) -> bool {
+    fn is_lowered(&self) -> bool {
         self.brake_before > self.a.minus || self.jerk_before > self.jerk || self.snap_before > 1.0
     }
 
@@ -75,17 +75,82 @@ impl Box4 {
     }
 }
 
-/// Most spans of [`enter`]: a rule that follows another begins with the input that one ended with.
-pub(super) const ENTER_SPANS: usize = 4;
+/// What goes before the ramp proper.
+pub(super) struct Lead {
+    /// The spans; none from a viable state inside the limits.
+    pub(super) spans: Spans<LEAD_SPANS>,
+    /// The state after them.
+    pub(super) state: State,
+    /// The velocity at which the arrest from there ends.
+    pub(super) rest: f64,
+    /// Most root steps taken.
+    pub(super) steps: u32,
+    /// Whether the start was inside and viable, so that the ramp exceeds nothing.
+    pub(super) viable: bool,
+}
 
-/// Most spans of [`hasten`]: a push of two and a hold, then [`enter`].
-pub(super) const HASTEN_SPANS: usize = 3 + ENTER_SPANS;
+/// Brings `state` inside the limits, or as near to them as can be; the velocity has to be in `low ..= high`.
+///
+/// `own` are the bounds of the ramp proper, `bounds` those of the state.
+pub(super) fn lead_in(state: State, goal: f64, (low, high): (f64, f64), bounds: &Box4, own: &Bounds) -> Lead {
+    let mut lead = Lead {
+        spans: Spans::new(),
+        state,
+        rest: arrested(state, bounds.jerk),
+        steps: 0,
+        viable: false,
+    };
+    if bounds.is_lowered() && state.v.max(lead.rest) > high * (1.0 + ON_LIMIT) {
+        let (spans, steps) = hasten(state, high, goal, low, bounds);
+        lead.add(&spans, steps, bounds.jerk);
+        return lead;
+    }
+    lead.add(&enter(state, bounds), 0, bounds.jerk);
+    let (spans, steps) = relieve(lead.state, lead.rest, low, high, own);
+    lead.add(&spans, steps, bounds.jerk);
+    lead.viable = lead.spans.is_empty() && is_viable(state, lead.rest, low, high, bounds);
+    lead
+}
+
+impl Lead {
+    fn add<const N: usize>(&mut self, spans: &Spans<N>, steps: u32, jerk: f64) {
+        if !spans.is_empty() {
+            self.spans.extend(spans);
+            self.state = self.state.after_all(spans);
+            self.rest = arrested(self.state, jerk);
+            self.steps = self.steps.max(steps);
+        }
+    }
+}
+
+/// Whether the arrest from a state with jerk and acceleration inside keeps acceleration and velocity inside.
+fn is_viable(state: State, rest: f64, low: f64, high: f64, bounds: &Box4) -> bool {
+    let slack = slack(state, rest, high);
+    let coming = state.a + 0.5 * state.j * state.j.abs();
+    state.v.max(top(state, rest)) <= high + slack
+        && state.v.min(bottom(state, rest)) >= low - slack
+        && coming <= bounds.a.plus * (1.0 + ON_LIMIT)
+        && coming >= -bounds.a.minus * (1.0 + ON_LIMIT)
+}
+
+/// Most spans of one rule of [`enter`].
+const RULE_SPANS: usize = 3;
+
+/// Most spans of [`enter`]. A rule that follows another begins with the input that one ended with, so that
+/// in fact three are enough.
+const ENTER_SPANS: usize = 2 * RULE_SPANS;
+
+/// Most spans of [`hasten`]: a push of three and a hold, then [`enter`].
+const HASTEN_SPANS: usize = 4 + ENTER_SPANS;
+
+/// Most spans of [`lead_in`]: [`hasten`], or [`enter`] and [`relieve`].
+pub(super) const LEAD_SPANS: usize = HASTEN_SPANS;
 
 /// Each round settles acceleration, jerk or the acceleration to come; no later one undoes an earlier.
 const ENTER_ROUNDS: usize = 3;
 
 /// The spans that bring acceleration and jerk inside in least time (R13 to R16); none if they are inside.
-pub(super) fn enter(state: State, bounds: &Box4) -> Spans<ENTER_SPANS> {
+fn enter(state: State, bounds: &Box4) -> Spans<ENTER_SPANS> {
     let mut all = Spans::new();
     let mut state = state;
     for _ in 0..ENTER_ROUNDS {
@@ -96,6 +161,10 @@ pub(super) fn enter(state: State, bounds: &Box4) -> Spans<ENTER_SPANS> {
                     .or_else(|| rule(state.mirrored(), &bounds.mirrored()).map(Spans::mirrored))
             });
         let Some(step) = step else { break };
+        // Only rounding among absurd numbers gets here with a list so long; the ramp copes with the rest.
+        if all.len() > ENTER_SPANS - RULE_SPANS {
+            break;
+        }
         state = state.after_all(&step);
         all.extend(&step);
     }
@@ -103,13 +172,13 @@ pub(super) fn enter(state: State, bounds: &Box4) -> Spans<ENTER_SPANS> {
 }
 
 /// An acceleration above its bound comes down to it with [`Box4::entry_jerk`] (R14).
-fn lower_acceleration(state: State, bounds: &Box4) -> Option<Spans<3>> {
+fn lower_acceleration(state: State, bounds: &Box4) -> Option<Spans<RULE_SPANS>> {
     let above = state.a > bounds.a.plus * (1.0 + ON_LIMIT);
     above.then(|| descend(state, bounds))
 }
 
 /// A jerk above its bound comes down to it (R13).
-fn lower_jerk(state: State, bounds: &Box4) -> Option<Spans<3>> {
+fn lower_jerk(state: State, bounds: &Box4) -> Option<Spans<RULE_SPANS>> {
     let above = state.j > bounds.jerk * (1.0 + ON_LIMIT);
     above.then(|| {
         let mut spans = Spans::new();
@@ -121,7 +190,7 @@ fn lower_jerk(state: State, bounds: &Box4) -> Option<Spans<3>> {
 
 /// With an acceleration that will exceed its bound under the new snap, the old one is used while it helps
 /// (R15, R16). Where the old one is no larger, the ramp itself does what can be done.
-fn avert_excess(state: State, bounds: &Box4) -> Option<Spans<3>> {
+fn avert_excess(state: State, bounds: &Box4) -> Option<Spans<RULE_SPANS>> {
     let State { a, j, .. } = state;
     let snap = bounds.snap_before;
     let exceeds = j > 0.0 && a + 0.5 * j * j > bounds.a.plus * (1.0 + ON_LIMIT);
@@ -138,7 +207,7 @@ fn avert_excess(state: State, bounds: &Box4) -> Option<Spans<3>> {
 }
 
 /// From above (or bound to be above) the upper acceleration bound to it, ending at the entry jerk (R14).
-fn descend(state: State, bounds: &Box4) -> Spans<3> {
+fn descend(state: State, bounds: &Box4) -> Spans<RULE_SPANS> {
     let State { a, j, .. } = state;
     let (snap, entry) = (bounds.snap_before, bounds.entry_jerk());
     let drop = snap * (a - bounds.a.plus);
@@ -165,13 +234,7 @@ fn descend(state: State, bounds: &Box4) -> Spans<3> {
 ///
 /// Sooner, if the arrest then ends on `goal`, or if it then ends on `low` without exceeding `limit`. Also
 /// the root steps taken.
-pub(super) fn hasten(
-    state: State,
-    limit: f64,
-    goal: f64,
-    low: f64,
-    bounds: &Box4,
-) -> (Spans<HASTEN_SPANS>, u32) {
+fn hasten(state: State, limit: f64, goal: f64, low: f64, bounds: &Box4) -> (Spans<HASTEN_SPANS>, u32) {
     let snap = bounds.snap_before;
     let push = second(
         state.a / snap,
@@ -208,44 +271,47 @@ pub(super) fn hasten(
 }
 
 /// The velocity once acceleration and jerk are zero as soon as can be.
-pub(super) fn arrested(state: State, jerk: f64) -> f64 {
+fn arrested(state: State, jerk: f64) -> f64 {
     state
         .after_all(&second(state.a, state.j, 0.0, Sides::both(jerk)))
         .v
 }
 
-/// The spans by which a velocity that a gentle arrest would take out of `low ..= high` is kept as near to
-/// them as can be (R17, R18), and the root steps taken; none if it stays inside.
-pub(super) fn relieve(state: State, low: f64, high: f64, slack: f64, bounds: &Bounds) -> (Spans<4>, u32) {
-    let (above, steps) = relieve_top(state, low, high, slack, bounds);
-    if above.is_empty() {
-        let (below, steps) = relieve_top(state.mirrored(), -high, -low, slack, &bounds.mirrored());
-        (below.mirrored(), steps)
+/// The spans by which a velocity that a gentle arrest, ending at `rest`, would take out of `low ..= high` is
+/// kept as near to them as can be (R17, R18), and the root steps taken; none if it stays inside.
+fn relieve(state: State, rest: f64, low: f64, high: f64, bounds: &Bounds) -> (Spans<4>, u32) {
+    let slack = slack(state, rest, high);
+    if (top(state, rest) - high).min(rest - low) > slack {
+        push_down(state, low, high, bounds)
+    } else if (low - bottom(state, rest)).min(high - rest) > slack {
+        let (spans, steps) = push_down(state.mirrored(), -high, -low, &bounds.mirrored());
+        (spans.mirrored(), steps)
     } else {
-        (above, steps)
+        (Spans::new(), 0)
     }
+}
+
+/// How far outside a velocity bound counts as on it.
+fn slack(state: State, rest: f64, high: f64) -> f64 {
+    ON_LIMIT * high.min(state.v.abs().max(rest.abs()))
 }
 
 /// Pushes down until the arrest peaks at `high`; at most until the acceleration is zero, when there is
 /// nothing more to gain, and not so long that the arrest ends below `low`.
-fn relieve_top(state: State, low: f64, high: f64, slack: f64, bounds: &Bounds) -> (Spans<4>, u32) {
-    let jerk = bounds.a.plus;
-    let beyond = |state: State| {
-        let rest = arrested(state, jerk);
-        (top(state, rest) - high).min(rest - low)
-    };
-    if beyond(state) <= slack {
-        return (Spans::new(), 0);
-    }
+fn push_down(state: State, low: f64, high: f64, bounds: &Bounds) -> (Spans<4>, u32) {
     let push = second(state.a, state.j, -bounds.v.minus, bounds.a);
     let Some(longest) = falls_through_zero(state, &push) else {
         return (Spans::new(), 0);
     };
-    let after = |time: f64| state.after_all(&push.until::<4>(time));
-    let (time, steps) = if beyond(after(longest)) >= 0.0 {
+    let beyond = |time: f64| {
+        let state = state.after_all(&push.until::<4>(time));
+        let rest = arrested(state, bounds.a.plus);
+        (top(state, rest) - high).min(rest - low)
+    };
+    let (time, steps) = if beyond(longest) >= 0.0 {
         (longest, 0)
     } else {
-        falling_root(0.0, longest, |time| beyond(after(time)))
+        falling_root(0.0, longest, beyond)
     };
     (push.until(time), steps)
 }
@@ -262,6 +328,11 @@ fn top(state: State, rest: f64) -> f64 {
     } else {
         f64::NEG_INFINITY
     }
+}
+
+/// The lowest velocity of the arrest that ends at `rest`, if it has any to come.
+fn bottom(state: State, rest: f64) -> f64 {
+    -top(state.mirrored(), -rest)
 }
 
 /// When the acceleration passes zero downwards on the way of `push`.

@@ -1,11 +1,12 @@
 //! A ramp as a list of polynomial pieces, its values and its extremes.
 
-use crate::kernel::falling_root;
+use super::inside::LEAD_SPANS;
+use crate::kernel::{THIRD_SPANS, falling_root};
 use crate::math::sqrt;
 use crate::{Order, Setpoint};
 
-/// Most pieces of a ramp: getting inside the limits, two relief spans and a third-order profile.
-pub(super) const MAX_PIECES: usize = 16;
+/// Most pieces of a ramp: getting inside the limits, then a third-order profile.
+pub(super) const MAX_PIECES: usize = LEAD_SPANS + THIRD_SPANS;
 
 /// What a jerk of zero may be off by, relative to the largest one before.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -104,23 +105,33 @@ impl Path {
 
     /// The state at `time` (s) after the start; at the boundary of two pieces that of the earlier one.
     pub(super) fn at(&self, time: f64) -> Option<Setpoint> {
-        let (stretch, _) = self.stretches().find(|(s, _)| time <= s.end)?;
-        Some(moved(&stretch.state, time - stretch.anchor))
+        let mut begin = 0.0;
+        for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
+            if time <= piece.end {
+                return Some(moved(&piece.state, time - self.anchor(index, begin, piece)));
+            }
+            begin = piece.end;
+        }
+        None
+    }
+
+    /// The instant the stored state of a piece belongs to: its start, or the end of the last piece.
+    fn anchor(&self, index: usize, begin: f64, piece: &Piece) -> f64 {
+        if index + 1 == self.len { piece.end } else { begin }
     }
 
     /// Every piece with its bounds in time, and the state at its start.
     pub(super) fn stretches(&self) -> impl Iterator<Item = (Stretch, Setpoint)> {
         let mut begin = 0.0;
-        let len = self.len;
         self.pieces
             .iter()
-            .take(len)
+            .take(self.len)
             .enumerate()
             .map(move |(index, piece)| {
                 let stretch = Stretch {
                     begin,
                     end: piece.end,
-                    anchor: if index + 1 == len { piece.end } else { begin },
+                    anchor: self.anchor(index, begin, piece),
                     state: piece.state,
                 };
                 begin = piece.end;
@@ -139,18 +150,25 @@ impl Path {
             let length = stretch.end - stretch.begin;
             let state = |time: f64| moved(&stretch.state, stretch.begin + time - stretch.anchor);
             let within = |time: f64| if time > 0.0 && time < length { time } else { length };
+            see(&first, false);
+            let flat = within(-first.jerk / first.snap);
+            if flat < length {
+                see(&state(flat), false);
+            }
             let [early, late] = zeros(first.acceleration, first.jerk, first.snap).map(within);
-            see(&state(within(-first.jerk / first.snap)), false);
-            let turns = [0.0, early.min(late), early.max(late), length];
-            for (&from, &to) in turns.iter().zip(turns.iter().skip(1)) {
-                let (low, high) = (state(from), state(to));
-                see(&low, false);
+            let (mut from, mut low) = (0.0, first);
+            for to in [early.min(late), early.max(late), length] {
+                if to <= from {
+                    continue;
+                }
+                let high = state(to);
                 see(&high, false);
                 let sign = low.velocity.signum();
                 if sign * low.velocity > small && -sign * high.velocity > small {
                     let (time, _) = falling_root(from, to, |t| sign * state(t).velocity);
                     see(&state(time), true);
                 }
+                (from, low) = (to, high);
             }
         }
     }

@@ -2,7 +2,8 @@
 
 use super::inside::{self, Box4, State};
 use super::path::MAX_PIECES;
-use crate::kernel::{Bounds, ON_LIMIT, Scale, Sides, Spans, falling_root, second, third};
+use super::slope::{Box3, Slope};
+use crate::kernel::{Bounds, ON_LIMIT, Scale, Sides, Spans, second, third};
 use crate::{Limits, Setpoint};
 
 /// A ramp to find: everything mirrored so that the motion starts forwards.
@@ -22,6 +23,8 @@ pub(super) struct Problem<'a> {
 pub(super) struct Solution {
     pub(super) spans: Spans<MAX_PIECES>,
     pub(super) steps: u32,
+    /// Whether the start was inside and viable and the ramp keeps its direction, so that it exceeds nothing.
+    pub(super) viable: bool,
 }
 
 impl Problem<'_> {
@@ -49,6 +52,7 @@ impl Problem<'_> {
         let sides = self.sides(false);
         let mut velocity = self.start.velocity;
         let limit = self.limits.velocity;
+        let viable = velocity <= limit && velocity >= 0.0;
         if velocity > limit * (1.0 + ON_LIMIT) {
             let fast = self.wider.deceleration;
             spans.push((velocity - limit) / fast, -fast);
@@ -60,54 +64,41 @@ impl Problem<'_> {
         } else {
             spans.push(-change / sides.minus, -sides.minus);
         }
-        Solution { spans, steps: 0 }
+        Solution {
+            spans,
+            steps: 0,
+            viable,
+        }
     }
 
     /// Order 3: `(velocity, acceleration)` to `(goal, 0)` (R3).
     pub(super) fn third_order(&self) -> Solution {
         let limits = self.limits;
         let scale = Scale::new(limits.acceleration.max(limits.deceleration), limits.jerk, 1);
-        let mut spans = Spans::new();
-        let mut state = Slope {
+        let start = Slope {
             v: scale.inward(self.start.velocity, 2),
             a: scale.inward(self.start.acceleration, 1),
         };
         let goal = scale.inward(self.goal, 2);
-        let jerk = self.wider.jerk / limits.jerk;
         let limit = scale.inward(limits.velocity, 2);
-        let up = scale.inward(limits.acceleration, 1);
-        let down = scale.inward(limits.deceleration, 1);
-        let fast = scale.inward(self.wider.deceleration, 1);
-        let rest = |state: Slope| state.v + 0.5 * state.a * state.a.abs();
-        let mut steps = 0;
-        if (jerk > 1.0 || fast > down) && state.v.max(rest(state)) > limit * (1.0 + ON_LIMIT) {
-            // As at order 4 (R19), with a push of one span.
-            let mut push = Spans::<1>::new();
-            push.push((state.a + fast) / jerk, -jerk);
-            let lead = |time: f64| {
-                let mut spans = push.until::<3>(time);
-                spans.extend(&state.after_all(&spans).inside(up, down, jerk));
-                spans
-            };
-            let above = |time: f64| {
-                let state = state.after_all(&lead(time));
-                (state.v.max(rest(state)) - limit).min(rest(state) - goal)
-            };
-            let pushed = state.after_all(&push);
-            let longest = push.duration() + (pushed.v - goal).max(0.0) / fast;
-            let time;
-            (time, steps) = falling_root(0.0, longest, above);
-            spans.extend(&lead(time));
-        } else {
-            spans.extend(&state.inside(up, down, jerk));
-        }
-        state = state.after_all(&spans);
-        let dips = goal >= 0.0 && rest(state) < 0.0;
+        let bounds = Box3 {
+            up: scale.inward(limits.acceleration, 1),
+            down: scale.inward(limits.deceleration, 1),
+            brake_before: scale.inward(self.wider.deceleration, 1),
+            jerk_before: self.wider.jerk / limits.jerk,
+        };
+        let (lead, steps) = start.lead_in(goal, limit, &bounds);
+        let viable = lead.is_empty() && goal >= 0.0 && start.is_viable(limit);
+        let state = start.after_all(&lead);
+        let dips = goal >= 0.0 && state.rest() < 0.0;
         let sides = scaled(self.sides(dips), &scale, 1);
+        let mut spans = Spans::new();
+        spans.extend(&lead);
         spans.extend(&second(state.v, state.a, goal, sides));
         Solution {
             spans: in_seconds(&spans, &scale),
             steps,
+            viable,
         }
     }
 
@@ -115,8 +106,7 @@ impl Problem<'_> {
     pub(super) fn fourth_order(&self) -> Solution {
         let limits = self.limits;
         let scale = Scale::new(limits.acceleration.max(limits.deceleration), limits.snap, 2);
-        let mut spans = Spans::new();
-        let mut state = State {
+        let state = State {
             v: scale.inward(self.start.velocity, 3),
             a: scale.inward(self.start.acceleration, 2),
             j: scale.inward(self.start.jerk, 1),
@@ -135,70 +125,23 @@ impl Problem<'_> {
             jerk_before: scale.inward(self.wider.jerk, 1),
             snap_before: self.wider.snap / limits.snap,
         };
-        let sides = |dips| scaled(self.sides(dips), &scale, 2);
-        let lowest = if goal < 0.0 { -limit } else { 0.0 };
-        let mut steps;
-        let fastest = state.v.max(inside::arrested(state, jerk));
-        if bounds.is_lowered() && fastest > limit * (1.0 + ON_LIMIT) {
-            let hastened;
-            (hastened, steps) = inside::hasten(state, limit, goal, lowest, &bounds);
-            spans.extend(&hastened);
-            state = state.after_all(&hastened);
-        } else {
-            let entering = inside::enter(state, &bounds);
-            spans.extend(&entering);
-            state = state.after_all(&entering);
-            let slack = ON_LIMIT * limit.min(state.v.abs().max(goal.abs()));
-            let bounds = Bounds {
-                v: sides(true),
-                a: Sides::both(jerk),
-            };
-            let relief;
-            (relief, steps) = inside::relieve(state, lowest, limit, slack, &bounds);
-            spans.extend(&relief);
-            state = state.after_all(&relief);
-        }
-
-        let rest = inside::arrested(state, jerk);
-        let dips = goal >= 0.0 && (state.v < 0.0 || rest < 0.0);
-        let bounds = Bounds {
-            v: sides(dips),
+        let own = |dips| Bounds {
+            v: scaled(self.sides(dips), &scale, 2),
             a: Sides::both(jerk),
         };
-        let profile = third(state.v, state.a, state.j, goal, &bounds);
+        let low = if goal < 0.0 { -limit } else { 0.0 };
+        let lead = inside::lead_in(state, goal, (low, limit), &bounds, &own(true));
+        let dips = goal >= 0.0 && (lead.state.v < 0.0 || lead.rest < 0.0);
+        let State { v, a, j } = lead.state;
+        let profile = third(v, a, j, goal, &own(dips));
+        let mut spans = Spans::new();
+        spans.extend(&lead.spans);
         spans.extend(&profile.spans);
-        steps = steps.max(profile.steps);
         Solution {
             spans: in_seconds(&spans, &scale),
-            steps,
+            steps: lead.steps.max(profile.steps),
+            viable: lead.viable && goal >= 0.0,
         }
-    }
-}
-
-/// Velocity and acceleration in the kernel's units; the jerk is the input.
-#[derive(Clone, Copy, Debug)]
-struct Slope {
-    v: f64,
-    a: f64,
-}
-
-impl Slope {
-    fn after_all<const N: usize>(self, spans: &Spans<N>) -> Self {
-        spans.iter().fold(self, |state, span| Self {
-            v: state.v + span.duration * (state.a + 0.5 * span.duration * span.input),
-            a: state.a + span.duration * span.input,
-        })
-    }
-
-    /// The span that brings an acceleration outside `-down ..= up` to it, if it is.
-    fn inside(self, up: f64, down: f64, jerk: f64) -> Spans<1> {
-        let mut spans = Spans::new();
-        if self.a > up * (1.0 + ON_LIMIT) {
-            spans.push((self.a - up) / jerk, -jerk);
-        } else if self.a < -down * (1.0 + ON_LIMIT) {
-            spans.push((-down - self.a) / jerk, jerk);
-        }
-        spans
     }
 }
 

@@ -8,6 +8,15 @@ fn plan(start: &Setpoint, goal: f64, limits: &Limits, cycle: f64) -> RampPlan {
     RampPlan::new(start, goal, limits, limits, cycle).unwrap()
 }
 
+/// By Newton's method from above.
+fn cube_root(x: f64) -> f64 {
+    let mut root = x.max(1.0);
+    for _ in 0..200 {
+        root = (2.0 * root + x / (root * root)) / 3.0;
+    }
+    root
+}
+
 /// From and to steady velocities the time is a sum of at most three boxes, longest last, whose product is
 /// the change of velocity.
 fn steady_duration(change: f64, acceleration: f64, limits: &Limits) -> f64 {
@@ -21,8 +30,7 @@ fn steady_duration(change: f64, acceleration: f64, limits: &Limits) -> f64 {
         Order::Four => {
             // The first box of the snap; the second of the jerk, at least as long; the third of the
             // acceleration, at least as long as both.
-            let first = (change / (2.0 * limits.snap))
-                .cbrt()
+            let first = cube_root(change / (2.0 * limits.snap))
                 .min((acceleration / limits.snap).sqrt())
                 .min(jerk_time);
             let by_acceleration = acceleration / (limits.snap * first);
@@ -214,12 +222,8 @@ fn other_units_change_no_bit() {
         let start = first.at(random.below(u64::from(first.scans()) + 1));
         let goal = limits.velocity * random.between(-1.0, 1.0);
         let reference = plan(&start, goal, &limits, 1e-3);
-        for (length, time) in [
-            (2f64.powi(20), 1.0),
-            (1.0, 2f64.powi(13)),
-            (2f64.powi(-21), 2f64.powi(-7)),
-        ] {
-            let per = |n: i32| length / time.powi(n);
+        for (length, time) in [(1048576.0, 1.0), (1.0, 8192.0), (1.0 / 2097152.0, 1.0 / 128.0)] {
+            let per = |n: usize| (0..n).fold(length, |unit, _| unit / time);
             let scaled = |s: &Setpoint| Setpoint {
                 position: s.position * per(0),
                 velocity: s.velocity * per(1),
@@ -572,4 +576,63 @@ fn unusable_inputs_are_refused_by_name() {
         ),
         "too long"
     );
+}
+
+/// Bounds of any size against each other: a plan or a refusal, and a plan ends exactly.
+#[test]
+fn absurd_inputs_end_in_a_plan_or_a_refusal() {
+    let mut random = Random(35);
+    let (mut planned, mut refused) = (0, 0);
+    for case in 0..20_000 {
+        let size = |random: &mut Random| random.log(1e-40, 1e40);
+        let signed = |random: &mut Random| match random.below(4) {
+            0 => 0.0,
+            1 => -random.log(1e-40, 1e40),
+            _ => random.log(1e-40, 1e40),
+        };
+        let bound = |random: &mut Random| {
+            if random.below(4) == 0 {
+                f64::INFINITY
+            } else {
+                random.log(1e-40, 1e40)
+            }
+        };
+        let limits = Limits {
+            velocity: bound(&mut random),
+            acceleration: size(&mut random),
+            deceleration: size(&mut random),
+            jerk: bound(&mut random),
+            snap: bound(&mut random),
+        };
+        let before = Limits {
+            jerk: bound(&mut random),
+            snap: bound(&mut random),
+            deceleration: bound(&mut random),
+            ..limits
+        };
+        let start = Setpoint {
+            position: signed(&mut random),
+            velocity: signed(&mut random),
+            acceleration: signed(&mut random),
+            jerk: signed(&mut random),
+            snap: 0.0,
+        };
+        let goal = signed(&mut random);
+        match RampPlan::new(&start, goal, &limits, &before, size(&mut random)) {
+            Ok(plan) => {
+                planned += 1;
+                let end = plan.at(u64::from(plan.scans()));
+                assert_eq!(
+                    (end.velocity, end.acceleration, end.jerk),
+                    (goal, 0.0, 0.0),
+                    "case {case}"
+                );
+                assert!(plan.segments().count() <= 14, "case {case}");
+                assert!(plan.duration() >= 0.0);
+            }
+            Err(_) => refused += 1,
+        }
+    }
+    println!("planned {planned} refused {refused}");
+    assert!(planned > 2000);
 }

@@ -23,7 +23,17 @@ impl Random {
     }
 
     pub fn log(&mut self, low: f64, high: f64) -> f64 {
-        (self.between(low.ln(), high.ln())).exp()
+        // Every binary digit of a uniform exponent by a square root: no logarithm, the same everywhere.
+        let (mut value, mut root, mut exponent) = (low, high / low, self.unit());
+        for _ in 0..20 {
+            root = root.sqrt();
+            exponent *= 2.0;
+            if exponent >= 1.0 {
+                value *= root;
+                exponent -= 1.0;
+            }
+        }
+        value
     }
 
     pub fn below(&mut self, count: u64) -> u64 {

@@ -2,7 +2,8 @@
 
 use crate::model::{ClaimKind, Comparison, Condition, Range, Signal, Test};
 use crate::run::Rows;
-use crate::run::cells::{cell_text, number_text, value_text};
+use crate::run::cells::value_text;
+use standstill_trace::{cell_text, shortest};
 
 /// What a claim says, in one line.
 pub(super) fn claim(rows: &Rows<'_>, kind: &ClaimKind) -> String {
@@ -38,7 +39,7 @@ pub(super) fn claim(rows: &Rows<'_>, kind: &ClaimKind) -> String {
             let axis = rows.script.axes.get(*axis).map_or("", |axis| axis.name.as_str());
             let factor = match factor {
                 1.0 => String::new(),
-                factor => format!(" times {}", number_text(*factor)),
+                factor => format!(" times {}", shortest(*factor)),
             };
             format!("{axis} within its limits{factor}{}", scans(*range))
         }
@@ -80,7 +81,7 @@ pub(super) fn conditions(rows: &Rows<'_>, conditions: &[Condition]) -> String {
 pub(super) fn test(rows: &Rows<'_>, signal: &Signal, test: &Test) -> String {
     match test {
         Test::Bool(value) => value.to_string().to_uppercase(),
-        Test::Exactly(value) => number_text(*value),
+        Test::Exactly(value) => shortest(*value),
         Test::State(state) => state.name().to_owned(),
         Test::Named(value) => value_text(rows.script, rows.pin_type(signal), *value),
         Test::Compare(comparisons) => comparisons
@@ -94,13 +95,13 @@ pub(super) fn test(rows: &Rows<'_>, signal: &Signal, test: &Test) -> String {
 fn comparison(rows: &Rows<'_>, signal: &Signal, comparison: &Comparison) -> String {
     match comparison {
         Comparison::Near { near, within } => {
-            format!("within {} of {}", number_text(*within), number_text(*near))
+            format!("within {} of {}", shortest(*within), shortest(*near))
         }
-        Comparison::Le(bound) => format!("<= {}", number_text(*bound)),
-        Comparison::Ge(bound) => format!(">= {}", number_text(*bound)),
-        Comparison::Lt(bound) => format!("< {}", number_text(*bound)),
-        Comparison::Gt(bound) => format!("> {}", number_text(*bound)),
-        Comparison::AbsLe(bound) => format!("of magnitude <= {}", number_text(*bound)),
+        Comparison::Le(bound) => format!("<= {}", shortest(*bound)),
+        Comparison::Ge(bound) => format!(">= {}", shortest(*bound)),
+        Comparison::Lt(bound) => format!("< {}", shortest(*bound)),
+        Comparison::Gt(bound) => format!("> {}", shortest(*bound)),
+        Comparison::AbsLe(bound) => format!("of magnitude <= {}", shortest(*bound)),
         Comparison::Ne(other) => format!("other than {}", test(rows, signal, other)),
         Comparison::SameAs(name, _) => format!("the same as {name}"),
     }

@@ -15,8 +15,8 @@
 use super::Failure;
 use super::judge::{failure, listed, within_run};
 use crate::model::Range;
-use crate::run::cells::number_text;
 use crate::run::{Derivatives, Rows};
+use standstill_trace::shortest;
 
 /// Relative accuracy of limits.
 const RELATIVE: f64 = 1e-9;
@@ -51,8 +51,8 @@ pub(super) fn within(rows: &Rows<'_>, path: &str, range: Range, axis: usize, fac
         if let Some((scan, value, bound)) = first {
             let text = format!(
                 "{} at scan {scan}, expected of magnitude <= {}; broken {}",
-                number_text(value),
-                number_text(bound),
+                shortest(value),
+                shortest(bound),
                 listed(broken.into_iter())
             );
             let path = format!("{path}.within_limits.{name}.Position.d{}", order + 1);

@@ -4,6 +4,7 @@ use super::json::{Json, Key, Node};
 use super::names::{Entity, suggestion};
 use super::{Reader, is_note, shape};
 use crate::error::{Code, Diagnostic, quoted};
+use crate::format::number_text;
 use crate::model::{AxisNumber, Comparison, Condition, Conditions, Signal, Span, Test};
 use standstill_axis::AxisState;
 use standstill_fb::{PinType, Value};
@@ -189,7 +190,7 @@ impl Reader {
         };
         let within = self.scalar(tolerance, kind, "`within`")?;
         if !(within >= 0.0) {
-            let message = format!("`within` is {within:?}: a tolerance is 0 or more");
+            let message = format!("`within` is {}: a tolerance is 0 or more", number_text(within));
             self.report(Diagnostic::new(Code::BadValue, tolerance.span, message));
             return None;
         }

@@ -2,10 +2,11 @@
 
 use super::Reader;
 use super::json::Node;
-use super::names::suggestion;
+use super::names::nearest;
 use super::shape::{self, Shape};
 use super::value::Fields;
 use crate::error::{Code, Diagnostic, quoted};
+use crate::format::number_text;
 use crate::model::{Claim, ClaimKind, Conditions, Point, Range};
 use standstill_fb::PinType;
 
@@ -36,9 +37,7 @@ impl Reader {
             let slip = members
                 .iter()
                 .filter(|(key, _)| key.text != "note")
-                .find_map(|(key, _)| {
-                    suggestion(&key.text, kinds.clone()).filter(|help| help.starts_with("did"))
-                });
+                .find_map(|(key, _)| nearest(&key.text, kinds.clone()));
             let message =
                 "a claim says one of `at`, `by`, `always`, `never`, `once`, `exclusive`, `within_limits`";
             self.report(Diagnostic::new(Code::MissingKey, members.brace(), message).maybe_help(slip));
@@ -142,7 +141,7 @@ impl Reader {
         if factor > 0.0 {
             return Some(factor);
         }
-        let message = format!("`factor` is {factor:?}: it must be above 0");
+        let message = format!("`factor` is {}: it must be above 0", number_text(factor));
         self.report(Diagnostic::new(Code::BadValue, node.span, message));
         None
     }

@@ -6,17 +6,20 @@
 
 pub(crate) mod axis;
 mod block;
+mod circle;
 mod condition;
 mod expect;
 pub(crate) mod json;
 pub(crate) mod names;
 pub(crate) mod shape;
 pub(crate) mod step;
+mod task;
 pub(crate) mod time;
 pub(crate) mod value;
-mod wiring;
+mod wire;
 
 use crate::error::{Code, Diagnostic, ScriptError, quoted};
+use crate::format::number_text;
 use crate::model::{Conditions, Input, Script, Span};
 use json::{Json, Key, Node};
 use names::{Entity, Names, identifier_error, suggestion};
@@ -43,8 +46,8 @@ struct Reader {
     names: Names,
     cycle_ns: Option<i64>,
     scan_count: Option<u64>,
-    /// Input pins that are wired, by instance and pin index, with the place of the pin's name.
-    wired: BTreeMap<(usize, usize), Span>,
+    /// The wires read so far.
+    wires: circle::Wires,
     errors: Vec<Diagnostic>,
 }
 
@@ -172,7 +175,11 @@ impl Reader {
             let help = suggestion(name, self.parameters.keys().map(String::as_str)).unwrap_or_else(|| {
                 "declare it under \"parameters\" and use it as {\"param\": ..}".to_owned()
             });
-            let message = format!("the script has no parameter {} to set to {value:?}", quoted(name));
+            let message = format!(
+                "the script has no parameter {} to set to {}",
+                quoted(name),
+                number_text(*value)
+            );
             let mut diagnostic = Diagnostic::new(Code::UnknownParameter, Span::default(), message).help(help);
             diagnostic.span = None;
             self.report(diagnostic);

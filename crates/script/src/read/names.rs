@@ -191,39 +191,40 @@ impl Names {
     }
 }
 
-/// A remedy for a name that is not among `candidates`: the nearest one, else all if they are few.
-pub(crate) fn suggestion<'a>(
-    name: &str,
-    candidates: impl Iterator<Item = &'a str> + Clone,
-) -> Option<String> {
-    const LISTED: usize = 12;
+/// The remedy for a name that is nearly one of `candidates`.
+pub(crate) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     let wanted = name.to_ascii_lowercase();
-    // One slip in three letters still lets one guess what was meant, and one in a word shorter than
-    // three; a single letter that differs says nothing.
     let length = wanted.chars().count();
+    // One slip in three letters still lets one guess what was meant, and one in a word shorter than three; a
+    // single letter that differs says nothing.
     let slips = if length < 2 { 0 } else { (length / 3).max(1) };
-    let nearest = candidates
-        .clone()
+    candidates
         .map(|candidate| {
             (
                 strsim::damerau_levenshtein(&wanted, &candidate.to_ascii_lowercase()),
                 candidate,
             )
         })
-        .min_by_key(|(distance, _)| *distance);
-    match nearest {
-        None => None,
-        Some((distance, candidate)) if distance <= slips => Some(format!("did you mean `{candidate}`?")),
-        Some(_) if candidates.clone().count() <= LISTED => {
-            let all: Vec<String> = candidates.map(|candidate| format!("`{candidate}`")).collect();
-            Some(if all.len() == 1 {
-                format!("there is only {}", all[0])
-            } else {
-                format!("one of {}", all.join(", "))
-            })
+        .min_by_key(|(distance, _)| *distance)
+        .filter(|(distance, _)| *distance <= slips)
+        .map(|(_, candidate)| format!("did you mean `{candidate}`?"))
+}
+
+/// The remedy for a name that is not among `candidates`: the nearest one, else all if they are few.
+pub(crate) fn suggestion<'a>(
+    name: &str,
+    candidates: impl Iterator<Item = &'a str> + Clone,
+) -> Option<String> {
+    const LISTED: usize = 12;
+    nearest(name, candidates.clone()).or_else(|| {
+        let all: Vec<String> = candidates.map(|candidate| format!("`{candidate}`")).collect();
+        match &all[..] {
+            [] => None,
+            [only] => Some(format!("there is only {only}")),
+            all if all.len() <= LISTED => Some(format!("one of {}", all.join(", "))),
+            _ => None,
         }
-        Some(_) => None,
-    }
+    })
 }
 
 #[cfg(test)]

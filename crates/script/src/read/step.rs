@@ -142,11 +142,11 @@ impl Reader {
                 self.report(Diagnostic::new(Code::NotWritable, span, message));
                 return None;
             }
-            if let Some(wire) = self.wired.get(&(instance, pin)).copied() {
+            if let Some((_, wire)) = self.wires.get(&(instance, pin)) {
                 let message = format!("two writers on {}: a wire and this step", quoted(name));
                 self.report(
                     Diagnostic::new(Code::TwoWriters, span, message)
-                        .related(wire, "wired here")
+                        .related(*wire, "wired here")
                         .help("set the input variable the wire reads, or replace the wire by a constant"),
                 );
                 return None;

@@ -5,6 +5,7 @@ use super::names::{Entity, suggestion};
 use super::shape::{self, Shape};
 use super::{Reader, time};
 use crate::error::{Code, Diagnostic, quoted};
+use crate::format::number_text;
 use crate::model::Span;
 use standstill_axis::AxisId;
 use standstill_fb::{PinType, Value};
@@ -206,9 +207,11 @@ impl Reader {
             Diagnostic::new(
                 Code::BadValue,
                 node.span,
-                format!("{what} is {value:?}: it must be a finite number"),
+                format!("{what} is {}: it must be a finite number", number_text(value)),
             )
-            .help("leave an optional key out for no limit; NaN and infinities may stand at pins"),
+            .help(
+                "NaN and infinities may stand at pins and in conditions only; for no limit leave the key out",
+            ),
         );
         None
     }
@@ -221,7 +224,10 @@ impl Reader {
         if value == value.trunc() && value >= low && value <= high {
             return Some(value as i64);
         }
-        let message = format!("{what} is {value:?}: it must be a whole number from {low} to {high}");
+        let message = format!(
+            "{what} is {}: it must be a whole number from {low} to {high}",
+            number_text(value)
+        );
         self.report(Diagnostic::new(Code::BadValue, node.span, message));
         None
     }

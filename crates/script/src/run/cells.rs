@@ -3,7 +3,7 @@
 use crate::model::{Point, Script};
 use standstill_axis::AxisId;
 use standstill_fb::{EnumInfo, PinType, Value};
-use standstill_trace::Cell;
+use standstill_trace::{Cell, cell_text};
 use std::collections::BTreeMap;
 
 /// Texts for enum numbers that have no name; a cell only borrows its text.
@@ -72,26 +72,6 @@ pub(crate) fn point_name(script: &Script, point: Point) -> String {
         }),
     }
     .unwrap_or_default()
-}
-
-/// A cell as text: BOOL in capitals, numbers in shortest round-trip form.
-pub(crate) fn cell_text(cell: Cell<'_>) -> String {
-    match cell {
-        Cell::Bool(value) => value.to_string().to_uppercase(),
-        Cell::Real(value) => number_text(value),
-        Cell::Integer(value) => value.to_string(),
-        Cell::Name(name) => name.to_owned(),
-    }
-}
-
-/// A number in shortest round-trip form, without the sign of zero.
-pub(crate) fn number_text(value: f64) -> String {
-    match value {
-        f64::INFINITY => "Infinity".to_owned(),
-        f64::NEG_INFINITY => "-Infinity".to_owned(),
-        // Adding 0.0 takes the sign off zero and changes nothing else.
-        _ => format!("{:?}", value + 0.0),
-    }
 }
 
 /// A value as a pin of type `ty` takes it; `None` if the pin cannot hold it.

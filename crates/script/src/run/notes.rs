@@ -1,10 +1,9 @@
 //! What the axes recorded, as notes in the trace.
 
 use super::bench::{ScriptMachine, instance_id};
-use super::cells::number_text;
 use crate::model::Script;
 use standstill_axis::{Event, Excess, Goal, LOG_KEPT, Order, Record, StandardPlan};
-use standstill_trace::{Note, Trace};
+use standstill_trace::{Note, Trace, shortest};
 
 /// How many records have been taken from the ring so far.
 #[derive(Clone, Copy, Debug, Default)]
@@ -82,30 +81,30 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
             let value = match pin {
                 "" => String::new(),
                 pin if value.is_nan() => format!(", {pin}"),
-                pin => format!(", {pin} {}", number_text(value)),
+                pin => format!(", {pin} {}", shortest(value)),
             };
             let limit = if limit.is_nan() {
                 String::new()
             } else {
-                format!(", limit {}", number_text(limit))
+                format!(", limit {}", shortest(limit))
             };
             format!("refused: {number} {}{value}{limit}", error.name())
         }
         Event::Clamped { pin, value, limit } => {
-            format!("clamped: {pin} {} to {}", number_text(value), number_text(limit))
+            format!("clamped: {pin} {} to {}", shortest(value), shortest(limit))
         }
         Event::LowerUsed { value, limit } => {
             format!(
                 "lower used for Acceleration and Deceleration: {} instead of {}",
-                number_text(limit),
-                number_text(value)
+                shortest(limit),
+                shortest(value)
             )
         }
         Event::Unavoidable(excess) => format!("unavoidable: {}", excess_text(&excess)),
         Event::Planned { goal, scans } => {
             let goal = match goal {
-                Goal::Position(position) => format!("position {}", number_text(position)),
-                Goal::Velocity(velocity) => format!("velocity {}", number_text(velocity)),
+                Goal::Position(position) => format!("position {}", shortest(position)),
+                Goal::Velocity(velocity) => format!("velocity {}", shortest(velocity)),
             };
             let by = instance_name(script, record).map_or_else(String::new, |name| format!(" for {name}"));
             let how = plan.map_or_else(String::new, |plan| format!("; {}", plan_text(plan)));
@@ -126,7 +125,7 @@ fn excess_text(excess: &Excess) -> String {
     let told = parts
         .iter()
         .filter(|(_, value)| *value != 0.0)
-        .map(|(name, value)| format!("{name} {} above its limit", number_text(*value)));
+        .map(|(name, value)| format!("{name} {} above its limit", shortest(*value)));
     told.collect::<Vec<_>>().join(", ")
 }
 
@@ -142,9 +141,9 @@ fn plan_text(plan: &StandardPlan) -> String {
             };
             format!(
                 "from {}, boxes {}, {derivative} {}",
-                number_text(grid.start()),
+                shortest(grid.start()),
                 boxes.join(" "),
-                number_text(grid.amplitude())
+                shortest(grid.amplitude())
             )
         }
         StandardPlan::Ramp(ramp) => ramp_text(
@@ -172,7 +171,7 @@ fn ramp_text(pieces: Vec<[f64; 4]>) -> String {
     };
     let texts: Vec<_> = pieces
         .iter()
-        .map(|piece| format!("{} for {} s", number_text(piece[place]), number_text(piece[0])))
+        .map(|piece| format!("{} for {} s", shortest(piece[place]), shortest(piece[0])))
         .collect();
     format!("{name} {}", texts.join(", "))
 }

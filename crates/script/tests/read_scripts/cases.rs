@@ -629,7 +629,7 @@ pub fn cases() -> Vec<Case> {
             Reader,
             "two inputs wired in a circle",
             "{\"from\": \"GO\"}}},\n    {\"name\": \"n\", \"type\": \"MC_MoveAbsolute\", \"pins\": {\"Axis\": \"X\", \"Execute\": false",
-            "{\"from\": \"n.Execute\"}}},\n    {\"name\": \"n\", \"type\": \"MC_MoveAbsolute\", \"pins\": {\"Axis\": \"X\", \"Execute\": {\"any\": [\"GO\", \"m.Execute\"]}",
+            "{\"from\": \"n.Execute\"}}},\n    {\"name\": \"n\", \"type\": \"MC_MoveAbsolute\", \"pins\": {\"Axis\": \"X\", \"Execute\": {\"any\": [\"m.Execute\", \"n.Execute\"]}",
         ),
         // Steps, tasks, claims.
         case(

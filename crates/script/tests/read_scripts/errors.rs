@@ -2,7 +2,7 @@
 //! are a snapshot to be read.
 
 use crate::cases::{GOOD, cases};
-use standstill_script::{Code, ScriptError, read};
+use standstill_script::{CELLS_MAX, Code, ENTITIES_MAX, SCANS_MAX, ScriptError, read};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -111,4 +111,35 @@ fn strange_names_cannot_disturb_the_terminal() {
     let error = refused(&text).render();
     assert!(error.contains("\u{241b}[2J"), "{error}");
     assert!(!error.contains('\u{1b}'), "{error}");
+}
+
+/// A script of `scans` scans and `inputs` inputs, and the codes of its errors.
+fn codes_of_size(cycle: &str, scans: u64, inputs: usize) -> Vec<&'static str> {
+    let inputs: Vec<String> = (0..inputs).map(|number| format!("\"i{number}\": 0")).collect();
+    let inputs = inputs.join(",");
+    let text = format!(
+        "{{\"standstill\": 1, \"cycle\": \"{cycle}\", \"scans\": {scans}, \"axes\": {{}}, \"blocks\": [], \"inputs\": {{{inputs}}}}}"
+    );
+    match read(&text, "size.scan.json", &[]) {
+        Ok(_) => Vec::new(),
+        Err(error) => error
+            .diagnostics()
+            .iter()
+            .map(|diagnostic| diagnostic.code.name())
+            .collect(),
+    }
+}
+
+#[test]
+fn sizes_are_allowed_up_to_the_named_limits_and_not_beyond() {
+    assert!(codes_of_size("T#1ms", SCANS_MAX, 8).is_empty());
+    assert_eq!(codes_of_size("T#1ms", SCANS_MAX + 1, 0), ["too_large"]);
+    // Scan, time and 98 inputs are 100 columns.
+    assert!(codes_of_size("T#1ms", CELLS_MAX / 100, 98).is_empty());
+    assert_eq!(codes_of_size("T#1ms", CELLS_MAX / 100 + 1, 98), ["too_large"]);
+    assert!(codes_of_size("T#1ms", 1, ENTITIES_MAX).is_empty());
+    assert_eq!(codes_of_size("T#1ms", 1, ENTITIES_MAX + 1), ["too_large"]);
+    // 2^63 ns are about 2,562,047 hours.
+    assert!(codes_of_size("T#1000h", 2562, 0).is_empty());
+    assert_eq!(codes_of_size("T#1000h", 2563, 0), ["too_large"]);
 }

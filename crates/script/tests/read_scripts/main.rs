@@ -2,6 +2,9 @@
 
 mod cases;
 mod contract;
+mod document;
 mod errors;
+mod every_key;
 mod format;
+mod mutations;
 mod schema;

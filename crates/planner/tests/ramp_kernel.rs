@@ -1,0 +1,212 @@
+//! The third-order kernel by itself: from any state, inside its bounds or not, it arrives; fast.
+
+use standstill_planner::kernel::{Bounds, MAX_STEPS, Profile, Sides, second, third};
+
+/// splitmix64, as a number in 0..1.
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn signed(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+
+    fn log(&mut self, low: f64, high: f64) -> f64 {
+        // Every binary digit of a uniform exponent by a square root: no logarithm, the same everywhere.
+        let (mut value, mut root, mut exponent) = (low, high / low, self.unit());
+        for _ in 0..20 {
+            root = root.sqrt();
+            exponent *= 2.0;
+            if exponent >= 1.0 {
+                value *= root;
+                exponent -= 1.0;
+            }
+        }
+        value
+    }
+}
+
+struct Case {
+    x: f64,
+    v: f64,
+    a: f64,
+    target: f64,
+    bounds: Bounds,
+}
+
+fn case(random: &mut Random, outside: f64) -> Case {
+    let top = random.log(0.3, 30.0);
+    let bounds = Bounds {
+        v: Sides {
+            minus: top * random.log(0.2, 5.0),
+            plus: top,
+        },
+        a: if random.unit() < 0.1 {
+            Sides::both(f64::INFINITY)
+        } else {
+            Sides {
+                minus: random.log(0.1, 10.0),
+                plus: random.log(0.1, 10.0),
+            }
+        },
+    };
+    let side = |sides: Sides, z: f64| {
+        if z < 0.0 {
+            z * sides.minus.min(10.0)
+        } else {
+            z * sides.plus.min(10.0)
+        }
+    };
+    let (v, a) = (
+        side(bounds.v, outside * random.signed()),
+        side(bounds.a, outside * random.signed()),
+    );
+    Case {
+        x: random.signed(),
+        v,
+        a,
+        target: random.signed() * random.log(1e-6, 1e3),
+        bounds,
+    }
+}
+
+fn solve(case: &Case) -> Profile {
+    third(case.x, case.v, case.a, case.target, &case.bounds)
+}
+
+/// The end of a profile, and how far `v` and `a` are outside their bounds at worst, relative to them.
+fn follow(case: &Case, profile: &Profile) -> ([f64; 3], f64, f64) {
+    let (mut x, mut v, mut a) = (case.x, case.v, case.a);
+    let (mut out_v, mut out_a) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    let mut peak_a = a.abs();
+    let ratio = |value: f64, sides: Sides| (value / sides.plus).max(-value / sides.minus) - 1.0;
+    for span in profile.spans.iter() {
+        let (t, u) = (span.duration, span.input);
+        assert!(t > 0.0 && t.is_finite() && u.abs() <= 1.0, "{profile:?}");
+        // What rounding left of zero is zero in a cruise, which may last long.
+        if u == 0.0 && a.abs() <= 1e-13 * peak_a {
+            a = 0.0;
+        }
+        peak_a = peak_a.max(a.abs()).max((a + t * u).abs());
+        // `v` is extreme at the ends and where `a` is zero.
+        let turn = if u != 0.0 { (-a / u).clamp(0.0, t) } else { 0.0 };
+        out_v = out_v.max(ratio(v + turn * (a + turn * u / 2.0), case.bounds.v));
+        x += t * v + t * t * a / 2.0 + t * t * t * u / 6.0;
+        v += t * a + t * t * u / 2.0;
+        a += t * u;
+        out_v = out_v.max(ratio(v, case.bounds.v));
+        out_a = out_a.max(ratio(a, case.bounds.a));
+    }
+    ([x, v, a], out_v, out_a)
+}
+
+#[test]
+fn every_state_arrives() {
+    let mut random = Random(51);
+    let (mut worst, mut steps, mut spans) = (0.0f64, 0, 0);
+    for index in 0..60_000 {
+        let outside = if index % 4 == 0 { 3.0 } else { 1.0 };
+        let case = case(&mut random, outside);
+        let profile = solve(&case);
+        let ([x, v, a], out_v, out_a) = follow(&case, &profile);
+        let t = profile.spans.duration();
+        let way = case
+            .x
+            .abs()
+            .max(case.target.abs())
+            .max(t * case.v.abs().max(case.bounds.v.plus));
+        let error = ((x - case.target) / way)
+            .abs()
+            .max(v.abs() / case.bounds.v.plus.max(case.v.abs()))
+            .max(a.abs() / case.bounds.a.plus.min(10.0).max(case.a.abs()));
+        assert!(
+            error <= 1e-11,
+            "{error:e} {x} {v} {a} {:?} {profile:?}",
+            case.target
+        );
+        worst = worst.max(error);
+        steps = steps.max(profile.steps);
+        spans = spans.max(profile.spans.len());
+        if outside == 1.0 {
+            assert!(out_a <= 1e-9, "{out_a:e} {profile:?}");
+            // Only a `v` that an arrest takes out of its bounds may leave them.
+            let arrest = case.v + case.a * case.a.abs() / 2.0;
+            if arrest <= case.bounds.v.plus && arrest >= -case.bounds.v.minus {
+                assert!(out_v <= 1e-9, "{out_v:e} {profile:?}");
+            }
+        }
+    }
+    println!("worst end {worst:e}, steps {steps} of {MAX_STEPS}, spans {spans}");
+    assert!(steps < MAX_STEPS / 2);
+}
+
+/// A push of any length to either side and a profile from there is never faster than the profile at once.
+#[test]
+fn no_detour_is_faster() {
+    let mut random = Random(53);
+    for _ in 0..20_000 {
+        let case = case(&mut random, 1.0);
+        let direct = solve(&case).spans.duration();
+        // Push for a random while, either way, and plan again from there.
+        let side = if random.unit() < 0.5 {
+            case.bounds.v.plus
+        } else {
+            -case.bounds.v.minus
+        };
+        let push = second(case.v, case.a, side, case.bounds.a);
+        let mut detour = Case { ..case };
+        let mut spent = 0.0;
+        for span in push.iter() {
+            let t = span.duration * if random.unit() < 0.5 { random.unit() } else { 1.0 };
+            detour.x += t * detour.v + t * t * detour.a / 2.0 + t * t * t * span.input / 6.0;
+            detour.v += t * detour.a + t * t * span.input / 2.0;
+            detour.a += t * span.input;
+            spent += t;
+            if t < span.duration {
+                break;
+            }
+        }
+        let indirect = spent + solve(&detour).spans.duration();
+        // The arrest must be inside, or coming inside comes first and is not the fastest.
+        let arrest = case.v + case.a * case.a.abs() / 2.0;
+        if arrest <= case.bounds.v.plus && arrest >= -case.bounds.v.minus {
+            assert!(
+                direct <= indirect * (1.0 + 1e-6),
+                "{direct} {indirect} {:?}",
+                case.bounds
+            );
+        }
+    }
+}
+
+/// `cargo test --release -p standstill-planner --features std --test ramp_kernel -- --ignored --nocapture`
+#[test]
+#[ignore = "timing"]
+fn nanoseconds() {
+    let mut random = Random(55);
+    let cases: Vec<Case> = (0..4096).map(|_| case(&mut random, 1.0)).collect();
+    let mut sum = 0.0;
+    for _ in 0..3 {
+        let begin = std::time::Instant::now();
+        for _ in 0..200 {
+            for case in &cases {
+                sum += solve(case).spans.duration();
+            }
+        }
+        let each = begin.elapsed().as_nanos() as f64 / (200.0 * cases.len() as f64);
+        println!("third: {each:.1} ns each");
+    }
+    let mut worst = 0;
+    let mut many = Random(57);
+    for _ in 0..5_000_000 {
+        worst = worst.max(solve(&case(&mut many, 1.0)).steps);
+    }
+    println!("most root steps in 5 million: {worst} of {MAX_STEPS}; {sum:e}");
+}

@@ -1,0 +1,111 @@
+//! Tasks: when they run, and which one a block belongs to.
+
+use super::json::Node;
+use super::names::{identifier_error, suggestion};
+use super::value::Fields;
+use super::{Reader, shape};
+use crate::error::{Code, Diagnostic, quoted};
+use crate::model::{Span, Task};
+use standstill_fb::PinType;
+use std::collections::BTreeMap;
+
+/// The task of blocks that name none.
+const MAIN: &str = "main";
+
+impl Reader {
+    pub(super) fn tasks(&mut self, fields: &Fields<'_>) -> Option<Vec<Task>> {
+        let Some(node) = fields.get("tasks") else {
+            return Some(vec![Task {
+                name: MAIN.to_owned(),
+                interval: Some(1),
+                priority: 0,
+                single: None,
+                watchdog: None,
+            }]);
+        };
+        let members = self.map(node, "`tasks`")?;
+        let mut places: BTreeMap<String, Span> = BTreeMap::new();
+        let mut tasks = Vec::new();
+        for (key, node) in members.iter() {
+            if let Some(why) = identifier_error(&key.text) {
+                let message = format!("{} cannot be a name: {why}", quoted(&key.text));
+                self.report(Diagnostic::new(Code::BadName, key.span, message));
+            }
+            if let Some(first) = places.insert(key.text.to_ascii_uppercase(), key.span) {
+                let message = format!("the name {} is taken", quoted(&key.text));
+                self.report(
+                    Diagnostic::new(Code::DuplicateName, key.span, message).related(first, "by this task"),
+                );
+            }
+            tasks.push(self.task(&key.text, node));
+        }
+        tasks.into_iter().collect()
+    }
+
+    fn task(&mut self, name: &str, node: &Node) -> Option<Task> {
+        let fields = self.fields(node, &shape::TASK)?;
+        let interval = match fields.get("interval") {
+            None => Some(None),
+            Some(node) => self.scans(node, "`interval`").and_then(|scans| {
+                if scans == 0 {
+                    let message = "`interval` must be at least one cycle";
+                    self.report(Diagnostic::new(Code::BadTime, node.span, message));
+                    return None;
+                }
+                Some(Some(scans))
+            }),
+        };
+        let priority = match fields.get("priority") {
+            None => Some(0),
+            Some(node) => self.whole(node, "`priority`", 0..=i64::from(u32::MAX)),
+        };
+        let single = match fields.get("single") {
+            None => Some(None),
+            Some(node) => self.wire(node, PinType::Bool, "`single`").map(Some),
+        };
+        let watchdog = match fields.get("watchdog") {
+            None => Some(None),
+            Some(node) => self.whole(node, "`watchdog`", 1..=i64::from(u32::MAX)).map(Some),
+        };
+        if fields.get("interval").is_none() && fields.get("single").is_none() {
+            let message = format!("the task {} would never run", quoted(name));
+            self.report(
+                Diagnostic::new(Code::MissingKey, fields.brace(), message)
+                    .help("give it an `interval`, a `single` or both"),
+            );
+            return None;
+        }
+        Some(Task {
+            name: name.to_owned(),
+            interval: interval?,
+            priority: u32::try_from(priority?).ok()?,
+            single: single?,
+            watchdog: watchdog?.and_then(|scans| u32::try_from(scans).ok()),
+        })
+    }
+
+    /// The task of the block `fields`.
+    pub(super) fn task_of(&mut self, fields: &Fields<'_>, tasks: Option<&[Task]>) -> Option<usize> {
+        match fields.get("task") {
+            None => self.task_index(MAIN, fields.brace(), tasks),
+            Some(node) => {
+                let name = self.text(node, "`task`")?;
+                self.task_index(name, node.span, tasks)
+            }
+        }
+    }
+
+    fn task_index(&mut self, name: &str, span: Span, tasks: Option<&[Task]>) -> Option<usize> {
+        // Tasks that were refused are already reported.
+        let tasks = tasks?;
+        let index = tasks.iter().position(|task| task.name.eq_ignore_ascii_case(name));
+        if index.is_none() {
+            let message = format!("the script has no task {}", quoted(name));
+            self.report(
+                Diagnostic::new(Code::UnknownTask, span, message)
+                    .maybe_help(suggestion(name, tasks.iter().map(|task| task.name.as_str()))),
+            );
+        }
+        index
+    }
+}

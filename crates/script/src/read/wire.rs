@@ -1,0 +1,118 @@
+//! Wires and what they read.
+
+use super::json::{Json, Node};
+use super::names::{Entity, suggestion};
+use super::{Reader, shape};
+use crate::error::{Code, Diagnostic, quoted};
+use crate::model::{Point, Span, Wire};
+use standstill_fb::PinType;
+
+impl Reader {
+    /// A wire that gives a value of type `ty`.
+    pub(super) fn wire(&mut self, node: &Node, ty: PinType, what: &str) -> Option<Wire> {
+        let fields = self.fields(node, &shape::WIRE)?;
+        let mut kinds = fields
+            .iter()
+            .filter(|(key, _)| shape::WIRE_KINDS.contains(&key.text.as_str()));
+        let Some((key, value)) = kinds.next() else {
+            let message = "a wire says one of `from`, `not`, `any`, `all`";
+            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
+            return None;
+        };
+        if let Some((second, _)) = kinds.next() {
+            let message =
+                format!("two writers on {what}: a wire says only one of `from`, `not`, `any`, `all`");
+            self.report(
+                Diagnostic::new(Code::TwoWriters, second.span, message).related(key.span, "the other one"),
+            );
+            return None;
+        }
+        if key.text == "from" {
+            return self.source(value, ty, what).map(Wire::From);
+        }
+        if ty != PinType::Bool {
+            let message = format!("{what} takes a wire with `from`: `{}` gives a BOOL", key.text);
+            self.report(Diagnostic::new(Code::WrongType, key.span, message));
+            return None;
+        }
+        if key.text == "not" {
+            return self.source(value, ty, what).map(Wire::Not);
+        }
+        let items = self.list(value, &quoted(&key.text))?;
+        if items.is_empty() {
+            let message = format!("`{}` needs at least one source", key.text);
+            self.report(Diagnostic::new(Code::BadValue, value.span, message));
+            return None;
+        }
+        let points = self.each(items, |reader, item| reader.source(item, ty, what))?;
+        Some(if key.text == "any" {
+            Wire::Any(points)
+        } else {
+            Wire::All(points)
+        })
+    }
+
+    /// A variable or pin of type `ty`.
+    fn source(&mut self, node: &Node, ty: PinType, what: &str) -> Option<Point> {
+        let text = self.text(node, "the source of a wire")?;
+        let (point, found) = self.point(text, node.span)?;
+        if found == ty {
+            return Some(point);
+        }
+        let message = format!(
+            "{what} cannot be wired from {}, which is {}",
+            quoted(text),
+            found.iec_name()
+        );
+        self.report(Diagnostic::new(Code::WrongType, node.span, message));
+        None
+    }
+
+    /// The variable or pin called `text`, and its type.
+    pub(super) fn point(&mut self, text: &str, span: Span) -> Option<(Point, PinType)> {
+        let (name, pin_name) = match text.split_once('.') {
+            Some((name, pin)) => (name, Some(pin)),
+            None => (text, None),
+        };
+        let message = match (self.names.get(name), pin_name) {
+            (Some(Entity::Input(index, ty)), None) => return ty.map(|ty| (Point::Input(index), ty)),
+            (Some(Entity::Input(..)), Some(_)) => {
+                format!("{} is an input variable and has no pins", quoted(name))
+            }
+            // A block whose type was refused is already reported; its pins cannot be checked.
+            (Some(Entity::Block(_, None)), Some(_)) => return None,
+            (Some(Entity::Block(index, Some(block))), Some(pin_name)) => {
+                if let Some((pin, info)) = block.pin(pin_name) {
+                    return Some((Point::Pin(index, pin), info.ty));
+                }
+                let message = format!("{} has no pin {}", block.name, quoted(pin_name));
+                self.report(
+                    Diagnostic::new(Code::UnknownPin, span, message)
+                        .maybe_help(suggestion(pin_name, block.pins().map(|pin| pin.name))),
+                );
+                return None;
+            }
+            (Some(Entity::Block(..)), None) => {
+                format!("{} is an instance: which pin? Write `{name}.Pin`", quoted(name))
+            }
+            (Some(Entity::Axis(_)), _) => {
+                format!(
+                    "{} is an axis: here an input variable or the pin of an instance must stand",
+                    quoted(name)
+                )
+            }
+            (None, _) => format!("there is no input variable or instance {}", quoted(name)),
+        };
+        let help = match self.names.get(name) {
+            None => suggestion(name, self.names.of(|entity| !matches!(entity, Entity::Axis(_)))),
+            Some(_) => None,
+        };
+        self.report(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(help));
+        None
+    }
+}
+
+/// Objects at a pin are wires, but for the use of a parameter.
+pub(super) fn is_wire(node: &Node) -> bool {
+    matches!(&node.json, Json::Map(members) if members.iter().all(|(key, _)| key.text != "param"))
+}

@@ -1,0 +1,155 @@
+//! Whatever is done to a script, reading it ends in a script or in at least one message with a place in the
+//! text, never in a panic. Seeded, so a failure comes back.
+
+use crate::cases::GOOD;
+use standstill_script::{format, read};
+
+const TEXTS: [&str; 3] = [
+    GOOD,
+    include_str!("contract_example.scan.json"),
+    include_str!("every_key.scan.json"),
+];
+
+/// Pieces that are put in place of others.
+const PIECES: &[&str] = &[
+    "null",
+    "true",
+    "0",
+    "-1",
+    "1.5",
+    "1e308",
+    "9007199254740993",
+    "\"\"",
+    "\"X\"",
+    "\"NaN\"",
+    "\"T#1ms\"",
+    "\"T#-5h\"",
+    "\"m.Busy\"",
+    "\"X.State\"",
+    "[]",
+    "{}",
+    "[{}]",
+    "{\"param\": \"v\"}",
+    "{\"from\": \"GO\"}",
+    ",",
+    ":",
+    "}",
+    "]",
+    "\"",
+    "\\u",
+    "\u{feff}",
+    "é",
+    "\u{0}",
+    "\n",
+];
+
+/// xorshift64*: small, and the same on every machine.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33) as usize % bound.max(1)
+    }
+}
+
+fn check(text: &str) {
+    match read(text, "mutated.scan.json", &[]) {
+        Ok(script) => {
+            let laid_out = format(text, "").unwrap();
+            assert_eq!(format(&laid_out, "").unwrap(), laid_out);
+            let again = read(&laid_out, "", &[]).unwrap_or_else(|error| panic!("{error}\n{laid_out}"));
+            assert_eq!(again.steps.len(), script.steps.len());
+        }
+        Err(error) => {
+            assert!(!error.diagnostics().is_empty(), "{text}");
+            for diagnostic in error.diagnostics() {
+                let span = diagnostic.span.unwrap();
+                let plain = text.strip_prefix('\u{feff}').unwrap_or(text);
+                assert!(
+                    plain.get(span.start..span.end).is_some(),
+                    "{diagnostic:?}\n{text}"
+                );
+            }
+            assert!(error.render().contains("mutated.scan.json:"), "{text}");
+        }
+    }
+}
+
+/// The tokens of a script, roughly: enough to swap values and keys for others.
+fn tokens(text: &str) -> Vec<(usize, usize)> {
+    let mut tokens = Vec::new();
+    let mut start = None;
+    let mut in_string = false;
+    for (at, c) in text.char_indices() {
+        let ends = if in_string {
+            c == '"'
+        } else {
+            c.is_whitespace() || ",:{}[]".contains(c)
+        };
+        match start {
+            Some(first) if ends => {
+                tokens.push((first, at + usize::from(in_string)));
+                (start, in_string) = (None, false);
+            }
+            None if !ends => (start, in_string) = (Some(at), c == '"'),
+            _ => {}
+        }
+    }
+    tokens
+}
+
+#[test]
+fn every_beginning_of_a_script_is_refused_with_a_place() {
+    for text in TEXTS {
+        let whole = text.trim_end();
+        for (at, _) in whole.char_indices() {
+            let error = read(&whole[..at], "cut.scan.json", &[]).expect_err("a beginning");
+            assert!(error.render().contains("cut.scan.json:"));
+        }
+    }
+}
+
+#[test]
+fn scripts_with_pieces_exchanged_never_panic() {
+    let mut random = Random(0x5eed);
+    for round in 0..1500 {
+        let mut text = TEXTS[round % TEXTS.len()].to_owned();
+        for _ in 0..=random.below(2) {
+            let places = tokens(&text);
+            let (start, end) = places[random.below(places.len())];
+            let piece = match random.below(3) {
+                0 => {
+                    let (from, to) = places[random.below(places.len())];
+                    text[from..to].to_owned()
+                }
+                _ => PIECES[random.below(PIECES.len())].to_owned(),
+            };
+            text.replace_range(start..end, &piece);
+        }
+        check(&text);
+    }
+}
+
+#[test]
+fn scripts_with_bytes_changed_never_panic() {
+    let mut random = Random(0xb17e);
+    for round in 0..1500 {
+        let mut bytes = TEXTS[round % TEXTS.len()].as_bytes().to_vec();
+        for _ in 0..=random.below(3) {
+            let at = random.below(bytes.len());
+            match random.below(3) {
+                0 => bytes[at] = random.below(256) as u8,
+                1 => drop(bytes.drain(at..(at + random.below(40)).min(bytes.len()))),
+                _ => {
+                    let copy: Vec<u8> = bytes[at..(at + random.below(40)).min(bytes.len())].to_vec();
+                    let to = random.below(bytes.len());
+                    bytes.splice(to..to, copy);
+                }
+            }
+        }
+        check(&String::from_utf8_lossy(&bytes));
+    }
+}
