@@ -18,8 +18,8 @@ pub fn print(first: &str, second: &str, path: &[Inputs]) -> String {
         "{{\n  \"standstill\": 1,\n  \"title\": \"Counterexample\",\n  \"cycle\": \"T#1ms\",\n  \"scans\": {},\n  \
          \"axes\": {{\"X\": {{\"limits\": {{\"velocity\": 10, \"acceleration\": 1000}}, \"queue\": 1, \"state\": \"Standstill\"}}}},\n  \
          \"blocks\": [\n    {{\"name\": \"reset\", \"type\": \"MC_Reset\", \"pins\": {{\"Axis\": \"X\"}}}},\n    {{\"name\": \"again\", \"type\": \"MC_Reset\", \"pins\": {{\"Axis\": \"X\"}}}},\n    {{\"name\": \"power\", \"type\": \"MC_Power\", \"pins\": {{\"Axis\": \"X\", \"Enable\": true}}}},\n{},\n    \
-         {{\"name\": \"stop\", \"type\": \"MC_Stop\", \"pins\": {{\"Axis\": \"X\"}}}},\n    \
- {}\n  ],\n  \"steps\": [\n",
+         {{\"name\": \"stop\", \"type\": \"MC_Stop\", \"pins\": {{\"Axis\": \"X\"}}}},\n\
+{}\n  ],\n  \"steps\": [\n",
         path.len() + 5,
         motion("first", first, "1"),
         motion("second", second, "0"),
