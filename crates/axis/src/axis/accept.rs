@@ -103,7 +103,7 @@ impl<P: Planner> Axis<P> {
             AxisState::Standstill if buffered && !self.queue.is_empty() => self.wait(),
             AxisState::Standstill => Ok(Way::Now),
             AxisState::Homing if stop || (home && !buffered) => Ok(Way::Now),
-            AxisState::Homing if buffered => self.wait(),
+            AxisState::Homing if buffered && !stop => self.wait(),
             AxisState::Homing => refuse(ErrorId::InHoming),
             // The same instance may stop again with other values (V7a).
             AxisState::Stopping
@@ -111,7 +111,7 @@ impl<P: Planner> Axis<P> {
             {
                 Ok(Way::Now)
             }
-            AxisState::Stopping if buffered && !stop => self.wait(),
+            AxisState::Stopping if buffered && !stop && !home => self.wait(),
             AxisState::Stopping => refuse(ErrorId::InStopping),
             AxisState::DiscreteMotion | AxisState::ContinuousMotion | AxisState::SynchronizedMotion => {
                 if home && (!buffered || self.predecessor_is_endless()) {
@@ -159,6 +159,16 @@ impl<P: Planner> Axis<P> {
                     ));
                 }
                 let position = self.finite("Position", position, source, log)?;
+                self.allowed(position).map_err(|error| {
+                    self.refuse(
+                        "Position",
+                        position,
+                        self.broken_software_limit(position),
+                        error,
+                        source,
+                        log,
+                    )
+                })?;
                 if self.config.needs_homed && !self.homed {
                     return Err(self.refuse("Position", position, f64::NAN, ErrorId::NotHomed, source, log));
                 }
@@ -267,6 +277,10 @@ impl<P: Planner> Axis<P> {
         match planned {
             Ok(plan) => Ok(Motion::Run { plan, elapsed: 0 }),
             Err(PlanError::TooLong { .. }) => Err(ErrorId::MoveTooLong),
+            // Distance over cycle^n does not fit into a number: longer than anything countable.
+            Err(PlanError::InvalidInput {
+                field: Field::Cycle, ..
+            }) => Err(ErrorId::MoveTooLong),
             Err(PlanError::InvalidInput {
                 field: Field::Target, ..
             }) => Err(ErrorId::PositionInvalid),
@@ -304,6 +318,20 @@ impl<P: Planner> Axis<P> {
             _ => f64::NAN,
         };
         self.refuse(pin, value, limit, error, source, log)
+    }
+
+    /// The software limit `target` is beyond (u).
+    fn broken_software_limit(&self, target: f64) -> f64 {
+        match self.config.software_limits {
+            Some((min, max)) => {
+                if target > max {
+                    max
+                } else {
+                    min
+                }
+            }
+            None => f64::NAN,
+        }
     }
 
     /// Where a positioning command ends (u).

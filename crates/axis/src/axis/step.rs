@@ -11,8 +11,14 @@ impl<P: Planner> Axis<P> {
     /// Computes the set-point for the end of scan `scan`, then decides completion and hand-over.
     ///
     /// Cost: one evaluation of the plan; at a hand-over at most one plan per waiting command; with software
-    /// limits one ramp plan per scan of an endless motion.
+    /// limits one ramp plan per scan of an endless motion or a stop.
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
+        self.apply_power(scan, log);
+        if self.owner.is_none() && self.goal_reached() {
+            // A ramp nobody commanded ended in the scan before; until then power stays on, so that the drive
+            // gets the last set-point.
+            self.motion = Motion::Hold;
+        }
         self.setpoint = match &mut self.motion {
             Motion::Follow => Setpoint::at_rest(self.actual),
             Motion::Hold => Setpoint::at_rest(self.setpoint.position),
@@ -57,32 +63,43 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether an endless motion, stopped from `next` on, would come to rest outside the software limits.
+    /// Whether this is the last scan in which the stop dynamics can keep a motion that would leave the
+    /// software limits inside them.
     fn would_leave(&self, next: &Setpoint) -> bool {
         let (Some((min, max)), Some(owner)) = (self.config.software_limits, &self.owner) else {
             return false;
         };
-        if !matches!(owner.work, Work::Velocity { .. }) {
-            return false;
-        }
-        let rest = match self
-            .planner
-            .ramp_to(next, 0.0, &self.stop_limits(), &self.in_force)
-        {
-            Ok(ramp) => ramp.at(u64::from(ramp.scans())).position,
-            Err(_) => next.position,
+        let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
+        let leaving = match owner.work {
+            Work::Velocity { .. } => true,
+            Work::Halt | Work::Stop => leaves(self.end_of_plan()),
+            // Targets were checked when the command was taken.
+            Work::Position(_) | Work::Distance(_) | Work::Home(_) => false,
         };
-        (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min)
+        leaving
+            && leaves(
+                match self
+                    .planner
+                    .ramp_to(next, 0.0, &self.stop_limits(), &self.in_force)
+                {
+                    Ok(ramp) => ramp.at(u64::from(ramp.scans())).position,
+                    Err(_) => next.position,
+                },
+            )
+    }
+
+    /// Where the running plan has its goal (u).
+    fn end_of_plan(&self) -> f64 {
+        match &self.motion {
+            Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
+            Motion::Follow | Motion::Hold => self.setpoint.position,
+        }
     }
 
     /// Completion and hand-over.
     fn settle(&mut self, scan: u64, log: &mut Log) {
         let reached = self.goal_reached();
         let Some(owner) = &self.owner else {
-            if reached && matches!(self.motion, Motion::Run { .. }) {
-                // A ramp nobody commanded has ended.
-                self.motion = Motion::Hold;
-            }
             if self.state == AxisState::Standstill && !self.queue.is_empty() {
                 // MC_Stop released the axis in this scan (note 6).
                 self.hand_over(scan, log);
