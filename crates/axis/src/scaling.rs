@@ -1,14 +1,16 @@
 //! User units to drive increments and back, by an integer ratio.
 
 use crate::ConfigError;
+use core::num::NonZero;
 
 /// `increments` drive increments are `units` user units.
 ///
 /// A set-point is rounded once, from the exact position, half away from zero; nothing is accumulated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaling {
-    increments: u32,
-    units: u32,
+    // Not zero by type, so that no division by them can panic.
+    increments: NonZero<u32>,
+    units: NonZero<u32>,
     invert: bool,
     offset: f64,
 }
@@ -20,29 +22,29 @@ impl Scaling {
     /// # Errors
     /// [`ConfigError::Scaling`] if one of the integers is 0 or `offset` is not finite.
     pub const fn new(increments: u32, units: u32, invert: bool, offset: f64) -> Result<Self, ConfigError> {
-        if increments == 0 || units == 0 || !offset.is_finite() {
-            return Err(ConfigError::Scaling {
+        match (NonZero::new(increments), NonZero::new(units)) {
+            (Some(increments), Some(units)) if offset.is_finite() => Ok(Self {
+                increments,
+                units,
+                invert,
+                offset,
+            }),
+            _ => Err(ConfigError::Scaling {
                 increments,
                 units,
                 offset,
-            });
+            }),
         }
-        Ok(Self {
-            increments,
-            units,
-            invert,
-            offset,
-        })
     }
 
     /// Increments of the ratio.
     pub const fn increments(&self) -> u32 {
-        self.increments
+        self.increments.get()
     }
 
     /// User units of the ratio.
     pub const fn units(&self) -> u32 {
-        self.units
+        self.units.get()
     }
 
     /// Whether the drive counts the other way.
@@ -68,21 +70,21 @@ impl Scaling {
         // A saturating conversion: NaN gives 0, which the axis never lets come here.
         let whole = position as i64;
         let fraction = position - whole as f64;
-        let scaled = i128::from(whole) * i128::from(self.increments);
-        let (units, increments) = (i128::from(self.units), f64::from(self.increments));
+        let scaled = i128::from(whole) * i128::from(self.increments.get());
+        let (units, increments) = (i128::from(self.units.get()), f64::from(self.increments.get()));
         let quotient = scaled.div_euclid(units);
         let rest = scaled.rem_euclid(units) as f64;
-        let small = (rest + fraction * increments) / f64::from(self.units);
+        let small = (rest + fraction * increments) / f64::from(self.units.get());
         let nearest = (if small < 0.0 { small - 0.5 } else { small + 0.5 }) as i64;
         (quotient + i128::from(nearest)).clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
     }
 
     /// The position (u) of `increments`.
     pub fn to_units(&self, increments: i64) -> f64 {
-        let scaled = i128::from(increments) * i128::from(self.units);
-        let ratio = i128::from(self.increments);
+        let scaled = i128::from(increments) * i128::from(self.units.get());
+        let ratio = i128::from(self.increments.get());
         let whole = scaled.div_euclid(ratio);
-        let rest = scaled.rem_euclid(ratio) as f64 / f64::from(self.increments);
+        let rest = scaled.rem_euclid(ratio) as f64 / f64::from(self.increments.get());
         let distance = whole as f64 + rest;
         if self.invert {
             self.offset - distance

@@ -5,7 +5,7 @@ use crate::exit::{Exit, Failure, go_on};
 use crate::progress::Progress;
 use standstill_script::suite::{self, SuiteError};
 use standstill_script::{Code, Outcome, ScriptError};
-use standstill_trace::{digest, events_text, extremes_text, file, plot};
+use standstill_trace::{Header, digest, events_text, extremes_text, file, plot};
 use std::io::Write;
 use std::path::Path;
 
@@ -71,12 +71,20 @@ fn failure(error: SuiteError) -> Failure {
     }
 }
 
-/// Events, drawing, extremes, failing claims.
+/// Header, events, drawing, extremes, failing claims.
 fn show(name: &str, outcome: &Outcome, out: &mut dyn Write) -> Result<(), Failure> {
     let trace = &outcome.trace;
-    let title = &trace.header().title;
-    writeln!(out, "{}\n\nevents", if title.is_empty() { name } else { title })?;
-    writeln!(out, "{}", events_text(trace))?;
+    let Header { title, axes, .. } = trace.header();
+    writeln!(out, "{}", if title.is_empty() { name } else { title })?;
+    for axis in axes {
+        let unit = if axis.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", axis.unit)
+        };
+        writeln!(out, "axis {}{unit}: order {}", axis.name, axis.order)?;
+    }
+    writeln!(out, "\nevents\n{}", events_text(trace))?;
     writeln!(out, "{}", plot::plot(trace, WIDTH))?;
     writeln!(out, "{}", extremes_text(trace))?;
     let failing = failing_claims(outcome);

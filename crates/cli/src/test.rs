@@ -112,6 +112,7 @@ impl fmt::Display for Tally {
         ];
         let counts = counts.iter().filter(|(count, _)| *count > 0);
         let counts: Vec<_> = counts.map(|(count, what)| format!("{count} {what}")).collect();
-        write!(f, "{scripts} scripts: {}", counts.join(", "))
+        let plural = if scripts == 1 { "" } else { "s" };
+        write!(f, "{scripts} script{plural}: {}", counts.join(", "))
     }
 }

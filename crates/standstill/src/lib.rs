@@ -6,7 +6,6 @@
 //!
 //! ```
 //! use standstill::prelude::*;
-//! use standstill::blocks::single_axis::mc_move_absolute::McMoveAbsolute;
 //!
 //! /// The host's program: what an IEC PROGRAM would be.
 //! #[derive(Default)]
@@ -58,6 +57,15 @@ pub mod prelude {
         Axis, AxisConfig, AxisId, AxisState, BufferMode, Direction, Drive, DriveCommand, DriveFeedback,
         DrivePosition, DriveRequest, ErrorId, IdealDrive, InstanceId, Limits, Log, Planner, Raw, Setpoint,
         Standard, StartState,
+    };
+    pub use standstill_blocks::administrative::{
+        mc_power::McPower, mc_read_actual_position::McReadActualPosition, mc_read_axis_error::McReadAxisError,
+        mc_read_status::McReadStatus, mc_reset::McReset,
+    };
+    pub use standstill_blocks::homing::mc_home::McHome;
+    pub use standstill_blocks::single_axis::{
+        mc_halt::McHalt, mc_move_absolute::McMoveAbsolute, mc_move_relative::McMoveRelative,
+        mc_move_velocity::McMoveVelocity, mc_stop::McStop,
     };
     pub use standstill_blocks::{BlockInstance, REGISTRY};
     pub use standstill_fb::{AnyInstance, Block, Context, Instance, Value};

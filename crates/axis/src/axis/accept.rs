@@ -9,7 +9,7 @@ use crate::{
     AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Event, Fate, Goal,
     Log, Raw, Request,
 };
-use standstill_planner::{Field, Limits, Plan, PlanError, Planner};
+use standstill_planner::{Excess, Field, Limits, Plan, PlanError, Planner};
 
 /// When an admitted command starts.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -315,6 +315,31 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// What of an excess over a command's limits is beyond those of the axis as well. A faster motion that
+    /// a slower command takes over from is no excess.
+    pub(super) fn beyond_axis(&self, excess: Excess, limits: &Limits) -> Option<Excess> {
+        let axis = &self.config.limits;
+        let beyond = |excess: f64, axis: f64, limit: f64| {
+            // A limit that is infinite has no excess; without headroom the difference is 0.
+            let left = if axis > limit {
+                excess - (axis - limit)
+            } else {
+                excess
+            };
+            if left > 0.0 { left } else { 0.0 }
+        };
+        let beyond = Excess {
+            velocity: beyond(excess.velocity, axis.velocity, limits.velocity),
+            acceleration: beyond(
+                excess.acceleration,
+                axis.lower_acceleration(),
+                limits.lower_acceleration(),
+            ),
+            jerk: beyond(excess.jerk, axis.jerk, limits.jerk),
+        };
+        (beyond != Excess::default()).then_some(beyond)
+    }
+
     /// Makes `entry` the owner.
     pub(super) fn begin(&mut self, entry: Entry, motion: Motion<P::Plan>, scan: u64, log: &mut Log) {
         let source = Source {
@@ -350,7 +375,10 @@ impl<P: Planner> Axis<P> {
                 source,
                 log,
             );
-            if let Some(excess) = plan.excess() {
+            if let Some(excess) = plan
+                .excess()
+                .and_then(|excess| self.beyond_axis(excess, &entry.limits))
+            {
                 self.record(Event::Unavoidable(excess), source, log);
             }
         }

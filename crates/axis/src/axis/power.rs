@@ -8,7 +8,7 @@ use crate::{
     AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
     Log, PowerOff,
 };
-use standstill_planner::Planner;
+use standstill_planner::{Plan, Planner};
 
 /// Scans a drive may take to answer a fault reset before MC_Reset gives up.
 const RESET_PATIENCE: u32 = 1000;
@@ -114,7 +114,7 @@ impl<P: Planner> Axis<P> {
         let limits = self.stop_limits();
         self.motion = match self.planner.ramp_to(&self.setpoint, 0.0, &limits, &self.in_force) {
             Ok(plan) => {
-                if let Some(excess) = standstill_planner::Plan::excess(&plan) {
+                if let Some(excess) = plan.excess().and_then(|excess| self.beyond_axis(excess, &limits)) {
                     self.record(Event::Unavoidable(excess), source, log);
                 }
                 Motion::Run { plan, elapsed: 0 }

@@ -13,10 +13,18 @@ impl<P: Planner> Axis<P> {
     /// Cost: one evaluation of the plan; at a hand-over at most one plan per waiting command; with software
     /// limits one ramp plan per scan of an endless motion.
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
-        self.setpoint = match self.motion {
+        self.setpoint = match &mut self.motion {
             Motion::Follow => Setpoint::at_rest(self.actual),
             Motion::Hold => Setpoint::at_rest(self.setpoint.position),
-            Motion::Run { plan, elapsed } => self.run(plan, elapsed.saturating_add(1), scan, log),
+            // By reference: a plan is large to copy in every scan.
+            Motion::Run { plan, elapsed } => {
+                *elapsed = elapsed.saturating_add(1);
+                let next = plan.at(*elapsed);
+                match self.forbids(&next) {
+                    None => next,
+                    Some(error) => self.fail(error, scan, log),
+                }
+            }
         };
         if self.setpoint.velocity != 0.0 {
             self.last_direction = if self.setpoint.velocity < 0.0 { -1.0 } else { 1.0 };
@@ -25,19 +33,21 @@ impl<P: Planner> Axis<P> {
         self.finish_reset();
     }
 
-    /// The set-point `elapsed` scans into `plan`, unless it must not be published.
-    fn run(&mut self, plan: P::Plan, elapsed: u64, scan: u64, log: &mut Log) -> Setpoint {
-        let next = plan.at(elapsed);
-        let error = if !next.is_finite() {
-            ErrorId::SetpointBroken
-        } else if self.would_leave(&next) {
-            ErrorId::SoftwareLimitReached
+    /// Why the set-point `next` must not be published, if it must not.
+    fn forbids(&self, next: &Setpoint) -> Option<ErrorId> {
+        if !next.is_finite() {
+            Some(ErrorId::SetpointBroken)
+        } else if self.would_leave(next) {
+            Some(ErrorId::SoftwareLimitReached)
         } else {
-            self.motion = Motion::Run { plan, elapsed };
-            return next;
-        };
+            None
+        }
+    }
+
+    /// Enters ErrorStop and gives the set-point of this scan: the first of the ramp, which starts at the last
+    /// set-point published.
+    fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) -> Setpoint {
         self.trip(error, 0, Reaction::Ramp, scan, log);
-        // The ramp starts at the last set-point published, so this scan is its first.
         match &mut self.motion {
             Motion::Run { plan, elapsed } => {
                 *elapsed = 1;

@@ -118,11 +118,18 @@ pub fn plan(fields: &Fields<'_>) -> Result<(&'static str, Planned), Refusal> {
     let motion = problem.first_motion();
     let method = chosen.unwrap_or(if motion.is_some() { ONLINE } else { OVERLAPPED });
     let Some(plan) = method.plan else {
+        let name = method.name;
         // Without a method on the line it is the motion that asks for one.
-        let field = motion
-            .filter(|_| chosen.is_none())
-            .map_or("method", |(field, _)| field.name());
-        let message = format!("method `{}` is not built yet", method.name);
+        let (field, message) = match motion.filter(|_| chosen.is_none()) {
+            Some((field, _)) => {
+                let field = field.name();
+                (
+                    field,
+                    format!("`{field}` other than 0 takes method `{name}`, which is not built yet"),
+                )
+            }
+            None => ("method", format!("method `{name}` is not built yet")),
+        };
         return Err(Refusal::of_field(Code::Unsupported, fields, field, message));
     };
     for name in fields.names() {
@@ -213,31 +220,39 @@ fn nearest_limit(error: PlanError, limits: &Limits, works: impl Fn(&Limits) -> b
     let PlanError::TooLong { field, value } = error else {
         return None;
     };
-    let with = |value| {
-        let mut limits = *limits;
-        let bound = match field {
-            Field::LimitVelocity => &mut limits.velocity,
-            Field::LimitAcceleration => &mut limits.acceleration,
-            Field::LimitDeceleration => &mut limits.deceleration,
-            Field::LimitJerk => &mut limits.jerk,
-            Field::LimitSnap => &mut limits.snap,
-            _ => return None,
-        };
-        *bound = value;
-        Some(limits)
-    };
+    let works = |bits| with_limit(limits, field, f64::from_bits(bits)).is_some_and(|limits| works(&limits));
     // Positive floats are ordered as their bits are.
     let (mut too_low, mut enough) = (value.to_bits(), f64::MAX.to_bits());
-    if !works(&with(f64::MAX)?) {
+    if !works(enough) {
         return None;
     }
     while enough - too_low > 1 {
         let middle = too_low + (enough - too_low) / 2;
-        if works(&with(f64::from_bits(middle))?) {
+        if works(middle) {
             enough = middle;
         } else {
             too_low = middle;
         }
     }
     Some(f64::from_bits(enough))
+}
+
+/// The limits with another value for one of them; none if `field` is no limit.
+fn with_limit(limits: &Limits, field: Field, value: f64) -> Option<Limits> {
+    let mut limits = *limits;
+    match field {
+        Field::LimitVelocity => limits.velocity = value,
+        Field::LimitAcceleration => {
+            // A deceleration that is not given follows.
+            if limits.deceleration == limits.acceleration {
+                limits.deceleration = value;
+            }
+            limits.acceleration = value;
+        }
+        Field::LimitDeceleration => limits.deceleration = value,
+        Field::LimitJerk => limits.jerk = value,
+        Field::LimitSnap => limits.snap = value,
+        _ => return None,
+    }
+    Some(limits)
 }

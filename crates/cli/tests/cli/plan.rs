@@ -105,29 +105,26 @@ fn segments_lead_from_the_start_to_the_target() {
 
 #[test]
 fn the_nearest_limit_can_be_planned_and_a_lower_one_cannot() {
-    let line = |velocity: &str| {
-        format!(
-            r#"{{"Ts":0.001,"target":1e9,"limits":{{"velocity":{velocity},"acceleration":15}},"method":"grid"}}"#
-        )
-    };
-    let refused = &answers(&line("1e-9"))[0]["error"];
-    assert_eq!(
-        (refused["code"].as_str(), refused["field"].as_str()),
-        (Some("too_long"), Some("limits.velocity"))
-    );
-    let nearest = refused["nearest"].as_f64().expect("a number");
-    let below = f64::from_bits(nearest.to_bits() - 1);
-    let answers = answers(&format!(
-        "{}\n{}",
-        line(&format!("{nearest:?}")),
-        line(&format!("{below:?}"))
-    ));
-    assert!(
-        answers[0]["scans"].as_u64() <= Some(i32::MAX as u64),
-        "{}",
-        answers[0]
-    );
-    assert_eq!(answers[1]["error"]["code"], "too_long");
+    for limit in ["velocity", "acceleration"] {
+        let line = |value: f64| {
+            let other = if limit == "velocity" { "jerk" } else { "velocity" };
+            format!(
+                r#"{{"Ts":0.001,"target":1e9,"limits":{{"{limit}":{value:?},"{other}":1e5}},"method":"grid"}}"#
+            )
+        };
+        let refused = &answers(&line(1e-9))[0]["error"];
+        assert_eq!(refused["code"], "too_long");
+        assert_eq!(refused["field"], format!("limits.{limit}"));
+        let nearest = refused["nearest"].as_f64().expect("a number");
+        let below = f64::from_bits(nearest.to_bits() - 1);
+        let answers = answers(&[line(nearest), line(below)].join("\n"));
+        assert!(
+            answers[0]["scans"].as_u64() <= Some(i32::MAX as u64),
+            "{}",
+            answers[0]
+        );
+        assert_eq!(answers[1]["error"]["code"], "too_long");
+    }
 }
 
 #[test]

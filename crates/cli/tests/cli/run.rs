@@ -8,7 +8,7 @@ fn a_run_shows_events_curves_extremes_and_a_digest() {
     let ended = standstill(&folder, &["run", "move.scan.json"]);
     assert_eq!((ended.status, ended.err.as_str()), (0, ""));
     for part in [
-        "One short move\n",
+        "One short move\naxis X (mm): order 2\n",
         "    1  move    +Execute +Busy +Active",
         "    1  X       Standstill -> DiscreteMotion\n",
         "   21  move    +Done -Busy -Active\n",

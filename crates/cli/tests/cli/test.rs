@@ -17,14 +17,11 @@ fn a_golden_is_accepted_once_and_judges_from_then_on() {
     );
     let accepted = standstill(&folder, &["test", "--accept", "."]);
     assert_eq!((accepted.status, accepted.err.as_str()), (0, ""));
-    assert_eq!(
-        accepted.out,
-        "accepted  ./move.scan.json\n1 scripts: 1 accepted\n"
-    );
+    assert_eq!(accepted.out, "accepted  ./move.scan.json\n1 script: 1 accepted\n");
     let passed = standstill(&folder, &["test", "."]);
     assert_eq!(
         (passed.status, passed.out.as_str()),
-        (0, "ok        ./move.scan.json\n1 scripts: 1 passed\n")
+        (0, "ok        ./move.scan.json\n1 script: 1 passed\n")
     );
     // Another run under the same claims: Done comes at the same scan, the position of one scan differs.
     write(
@@ -65,7 +62,7 @@ fn scan_tests_is_the_default_and_has_to_be_there() {
     let passed = standstill(&folder, &["test"]);
     assert_eq!(
         passed.out,
-        "ok        scan-tests/moves/move.scan.json\n1 scripts: 1 passed\n"
+        "ok        scan-tests/moves/move.scan.json\n1 script: 1 passed\n"
     );
 }
 
@@ -102,7 +99,7 @@ fn orphans_fail_and_broken_scripts_do_not_hide_the_others() {
     let orphan = standstill(&folder, &["test", "."]);
     assert_eq!(orphan.status, 1);
     assert!(orphan.out.contains("ORPHAN    ./gone.snap\n"), "{}", orphan.out);
-    assert!(orphan.out.ends_with("1 scripts: 1 passed, 1 orphaned\n"));
+    assert!(orphan.out.ends_with("1 script: 1 passed, 1 orphaned\n"));
     write(&folder, "broken.scan.json", "{");
     let broken = standstill(&folder, &["test", "."]);
     assert_eq!(broken.status, 3);

@@ -68,13 +68,13 @@ impl Problem {
 
     /// The least n4 that reaches all thresholds with the other boxes given, where a box that is not there is 0.
     pub fn least_n4(&self, n1: u64, n2: u64, n3: u64) -> u64 {
-        let n3 = u128::from(n3.max(1));
-        let n2_n3 = u128::from(n2.max(1)) * n3;
-        let n1_n2_n3 = u128::from(n1.max(1)) * n2_n3;
+        let [n1, n2, n3] = [n1, n2, n3].map(|n| u128::from(n.max(1)));
+        // The compiler does not know that no product is 0; a division that cannot panic has to say so.
+        let least_times = |threshold: f64, others: u128| (threshold as u128).div_ceil(others.max(1));
         let least = (self.k4 as u128)
-            .max((self.k3 as u128).div_ceil(n3))
-            .max((self.k2 as u128).div_ceil(n2_n3))
-            .max((self.k1 as u128).div_ceil(n1_n2_n3));
+            .max(least_times(self.k3, n3))
+            .max(least_times(self.k2, n2 * n3))
+            .max(least_times(self.k1, n1 * n2 * n3));
         u64::try_from(least).unwrap_or(u64::MAX)
     }
 

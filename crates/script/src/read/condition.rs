@@ -223,7 +223,7 @@ impl Reader {
             }
             None => {
                 let message = format!("there is no axis, input variable or instance {}", quoted(name));
-                let help = suggestion(name, self.names.of(|_| true));
+                let help = self.name_help(name, |_| true);
                 self.report(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(help));
                 return None;
             }

@@ -302,7 +302,7 @@ impl Reader {
         if let Some(Entity::Axis(index)) = self.names.get(name) {
             return Some(index);
         }
-        let help = suggestion(name, self.names.of(|entity| matches!(entity, Entity::Axis(_))));
+        let help = self.name_help(name, |entity| matches!(entity, Entity::Axis(_)));
         self.report(
             Diagnostic::new(
                 Code::UnknownAxis,
@@ -312,6 +312,15 @@ impl Reader {
             .maybe_help(help),
         );
         None
+    }
+
+    /// The remedy for an unknown name among those `filter` takes. Only the first errors get one: in a long
+    /// script a slip in every line would be compared with every name.
+    pub(super) fn name_help(&self, name: &str, filter: fn(&Entity) -> bool) -> Option<String> {
+        const ERRORS_WITH_HELP: usize = 200;
+        (self.errors.len() < ERRORS_WITH_HELP)
+            .then(|| suggestion(name, self.names.of(filter)))
+            .flatten()
     }
 
     /// A value of type `ty`.

@@ -104,7 +104,7 @@ impl Reader {
             (None, _) => format!("there is no input variable or instance {}", quoted(name)),
         };
         let help = match self.names.get(name) {
-            None => suggestion(name, self.names.of(|entity| !matches!(entity, Entity::Axis(_)))),
+            None => self.name_help(name, |entity| !matches!(entity, Entity::Axis(_))),
             Some(_) => None,
         };
         self.report(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(help));

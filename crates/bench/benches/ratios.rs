@@ -1,0 +1,205 @@
+//! Times of the scan path as multiples of one sample of a plain trapezoid, timed in the same run.
+//!
+//! Prints a table and ends with status 1 if a bar is missed.
+
+use standstill_bench::{CYCLE, Executed, LIMITS, Move, OneAxis, Random, TARGET, Trapezoid};
+use standstill_planner::{GridPlan, Method, RampPlan, Setpoint};
+use std::hint::black_box;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Rounds in which every measure is taken once; the median over them is reported.
+const ROUNDS: usize = 101;
+
+/// A measure: its name, the most yardsticks it may take, and one timed batch (ns for one operation).
+struct Measure {
+    name: &'static str,
+    bar: Option<f64>,
+    batch: Box<dyn FnMut() -> f64>,
+}
+
+/// Nanoseconds of one of `count` operations.
+fn time(count: u64, run: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    run();
+    start.elapsed().as_nanos() as f64 / count as f64
+}
+
+fn main() -> ExitCode {
+    let mut yardstick = trapezoid_sample();
+    let mut measures = [
+        Measure {
+            name: "scan in motion: axis, MC_Power, MC_MoveAbsolute",
+            bar: Some(4.0),
+            batch: Box::new(scan_in_motion()),
+        },
+        Measure {
+            name: "the same scan through executor, machine and drive",
+            bar: None,
+            batch: Box::new(executor_scan_in_motion()),
+        },
+        Measure {
+            name: "sample of a rest-to-rest plan",
+            bar: Some(6.0),
+            batch: Box::new(grid_sample()),
+        },
+        Measure {
+            name: "rest-to-rest plan, order 4, random moves",
+            bar: Some(60.0),
+            batch: Box::new(grid_plan()),
+        },
+        Measure {
+            name: "sample of a ramp",
+            bar: None,
+            batch: Box::new(ramp_sample()),
+        },
+        Measure {
+            name: "ramp to rest, order 4, from any scan of a move",
+            bar: None,
+            batch: Box::new(ramp_plan()),
+        },
+    ];
+    let mut yards = Vec::new();
+    let mut times = vec![Vec::new(); measures.len()];
+    let mut ratios = vec![Vec::new(); measures.len()];
+    for _ in 0..ROUNDS {
+        for (index, measure) in measures.iter_mut().enumerate() {
+            // Neighbours in time, so that a busy machine slows both.
+            let before = yardstick();
+            let took = (measure.batch)();
+            let yard = 0.5 * (before + yardstick());
+            yards.push(yard);
+            times[index].push(took);
+            ratios[index].push(took / yard);
+        }
+    }
+    println!("{:<52} {:>9} {:>7} {:>5}", "", "ns", "ratio", "bar");
+    println!(
+        "{:<52} {:>9.2} {:>7.2}",
+        "trapezoid sample (the yardstick)",
+        median(&mut yards),
+        1.0
+    );
+    let mut missed = false;
+    for (index, measure) in measures.iter().enumerate() {
+        let ratio = median(&mut ratios[index]);
+        let above = measure.bar.is_some_and(|bar| ratio > bar);
+        missed |= above;
+        println!(
+            "{:<52} {:>9.2} {ratio:>7.2} {:>5}{}",
+            measure.name,
+            median(&mut times[index]),
+            measure.bar.map_or(String::from("-"), |bar| bar.to_string()),
+            if above { "  ABOVE" } else { "" }
+        );
+    }
+    ExitCode::from(u8::from(missed))
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// The yardstick over a whole move, scan by scan.
+fn trapezoid_sample() -> impl FnMut() -> f64 {
+    let plan = Trapezoid::new(0.0, TARGET, LIMITS.velocity, 1.0);
+    let scans = (plan.duration() / CYCLE) as u64;
+    move || {
+        time(scans, || {
+            for scan in 0..scans {
+                black_box(black_box(&plan).at(black_box(scan as f64 * CYCLE)));
+            }
+        })
+    }
+}
+
+fn scan_in_motion() -> impl FnMut() -> f64 {
+    let (started, scans) = OneAxis::in_motion().expect("valid");
+    move || {
+        let mut axis = started.clone();
+        let took = time(scans, || {
+            for _ in 0..scans {
+                black_box(black_box(&mut axis).scan());
+            }
+        });
+        assert!(axis.to_target.outputs.active);
+        took
+    }
+}
+
+fn executor_scan_in_motion() -> impl FnMut() -> f64 {
+    let (started, scans) = Executed::in_motion().expect("valid");
+    move || {
+        let mut rig = started.clone();
+        let took = time(scans, || {
+            for _ in 0..scans {
+                assert!(black_box(black_box(&mut rig).scan()).is_ok());
+            }
+        });
+        assert!(rig.program.to_target.outputs.active);
+        took
+    }
+}
+
+fn grid_sample() -> impl FnMut() -> f64 {
+    let plan = GridPlan::new(Method::Overlapped, 0.0, TARGET, &LIMITS, CYCLE).expect("valid");
+    let scans = u64::from(plan.scans());
+    move || {
+        time(scans, || {
+            for scan in 0..scans {
+                black_box(black_box(&plan).at(black_box(scan)));
+            }
+        })
+    }
+}
+
+fn grid_plan() -> impl FnMut() -> f64 {
+    let mut random = Random(2026);
+    let moves: Vec<Move> = (0..1024).map(|_| random.servo()).collect();
+    move || {
+        time(moves.len() as u64, || {
+            for Move {
+                start,
+                target,
+                limits,
+                cycle,
+            } in black_box(&moves)
+            {
+                let plan = GridPlan::new(Method::Overlapped, *start, *target, limits, *cycle);
+                assert!(black_box(plan).is_ok());
+            }
+        })
+    }
+}
+
+/// The set-points of a move to [`TARGET`].
+fn setpoints() -> Vec<Setpoint> {
+    let plan = GridPlan::new(Method::Overlapped, 0.0, TARGET, &LIMITS, CYCLE).expect("valid");
+    (1..u64::from(plan.scans())).map(|scan| plan.at(scan)).collect()
+}
+
+fn ramp_sample() -> impl FnMut() -> f64 {
+    let plan =
+        RampPlan::new(&Setpoint::at_rest(0.0), LIMITS.velocity, &LIMITS, &LIMITS, CYCLE).expect("valid");
+    let scans = u64::from(plan.scans());
+    move || {
+        time(scans, || {
+            for scan in 0..scans {
+                black_box(black_box(&plan).at(black_box(scan)));
+            }
+        })
+    }
+}
+
+fn ramp_plan() -> impl FnMut() -> f64 {
+    let starts = setpoints();
+    move || {
+        time(starts.len() as u64, || {
+            for start in black_box(&starts) {
+                let plan = RampPlan::new(start, 0.0, &LIMITS, &LIMITS, CYCLE);
+                assert!(black_box(plan).is_ok());
+            }
+        })
+    }
+}

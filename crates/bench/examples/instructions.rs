@@ -1,0 +1,161 @@
+//! Workloads for counting instructions: each runs its operation inside `one_operation`, so that
+//! `valgrind --tool=callgrind --toggle-collect='*one_operation*'` counts nothing else. Prints how many
+//! operations ran. `.ci/instructions` compares the counts with the committed ones.
+
+use standstill_bench::{CYCLE, Executed, LIMITS, Move, OneAxis, Random, TARGET, Trapezoid};
+use standstill_planner::{GridPlan, Method, RampPlan, Setpoint};
+use std::hint::black_box;
+use std::process::ExitCode;
+
+/// The seed of the move with the most search steps among a million, found by `worst_plan.rs`.
+const WORST: u64 = 471_978;
+
+/// Scans counted of an axis at rest.
+const IDLE: u64 = 1000;
+
+/// Random plans counted.
+const PLANS: u64 = 1000;
+
+/// What is counted runs below this function.
+#[inline(never)]
+fn one_operation<T>(run: impl FnOnce() -> T) {
+    black_box(run());
+}
+
+/// A name, and what runs the operation and gives how often it did.
+type Workload = (&'static str, fn() -> u64);
+
+const WORKLOADS: [Workload; 11] = [
+    ("trapezoid-sample", trapezoid_sample),
+    ("idle-scan", idle_scan),
+    ("scan-in-motion", scan_in_motion),
+    ("scan-that-plans", scan_that_plans),
+    ("executor-idle-scan", executor_idle_scan),
+    ("executor-scan-in-motion", executor_scan_in_motion),
+    ("plan-sample", plan_sample),
+    ("plan", plan),
+    ("worst-plan", worst_plan),
+    ("ramp-sample", ramp_sample),
+    ("ramp-plan", ramp_plan),
+];
+
+fn main() -> ExitCode {
+    let names = || WORKLOADS.map(|(name, _)| name).join("\n");
+    match std::env::args().nth(1) {
+        None => {
+            println!("{}", names());
+            ExitCode::SUCCESS
+        }
+        Some(wanted) => match WORKLOADS.iter().find(|(name, _)| *name == wanted) {
+            Some((_, run)) => {
+                println!("{}", run());
+                ExitCode::SUCCESS
+            }
+            None => {
+                eprintln!("there is no workload {wanted}; there are:\n{}", names());
+                ExitCode::from(2)
+            }
+        },
+    }
+}
+
+fn trapezoid_sample() -> u64 {
+    let plan = Trapezoid::new(0.0, TARGET, LIMITS.velocity, 1.0);
+    let scans = (plan.duration() / CYCLE) as u64;
+    for scan in 0..scans {
+        let t = scan as f64 * CYCLE;
+        one_operation(|| black_box(&plan).at(black_box(t)));
+    }
+    scans
+}
+
+fn idle_scan() -> u64 {
+    let mut axis = OneAxis::at_rest().expect("valid");
+    for _ in 0..IDLE {
+        one_operation(|| black_box(&mut axis).scan());
+    }
+    IDLE
+}
+
+fn scan_in_motion() -> u64 {
+    let (mut axis, scans) = OneAxis::in_motion().expect("valid");
+    for _ in 0..scans {
+        one_operation(|| black_box(&mut axis).scan());
+    }
+    scans
+}
+
+fn scan_that_plans() -> u64 {
+    let mut axis = OneAxis::at_rest().expect("valid");
+    axis.to_target.inputs.execute = true;
+    one_operation(|| black_box(&mut axis).scan());
+    1
+}
+
+fn executor_idle_scan() -> u64 {
+    let mut rig = Executed::at_rest().expect("valid");
+    for _ in 0..IDLE {
+        one_operation(|| black_box(&mut rig).scan());
+    }
+    IDLE
+}
+
+fn executor_scan_in_motion() -> u64 {
+    let (mut rig, scans) = Executed::in_motion().expect("valid");
+    for _ in 0..scans {
+        one_operation(|| black_box(&mut rig).scan());
+    }
+    scans
+}
+
+fn one_plan(seed: u64) {
+    let Move {
+        start,
+        target,
+        limits,
+        cycle,
+    } = black_box(Random(seed).servo());
+    one_operation(|| GridPlan::new(Method::Overlapped, start, target, &limits, cycle));
+}
+
+fn plan() -> u64 {
+    (0..PLANS).for_each(one_plan);
+    PLANS
+}
+
+fn worst_plan() -> u64 {
+    one_plan(WORST);
+    1
+}
+
+/// The move of all measures.
+fn to_target() -> GridPlan {
+    GridPlan::new(Method::Overlapped, 0.0, TARGET, &LIMITS, CYCLE).expect("valid")
+}
+
+fn plan_sample() -> u64 {
+    let plan = to_target();
+    for scan in 0..u64::from(plan.scans()) {
+        one_operation(|| black_box(&plan).at(black_box(scan)));
+    }
+    u64::from(plan.scans())
+}
+
+fn ramp_sample() -> u64 {
+    let start = Setpoint::at_rest(0.0);
+    let plan = RampPlan::new(&start, LIMITS.velocity, &LIMITS, &LIMITS, CYCLE).expect("valid");
+    for scan in 0..u64::from(plan.scans()) {
+        one_operation(|| black_box(&plan).at(black_box(scan)));
+    }
+    u64::from(plan.scans())
+}
+
+fn ramp_plan() -> u64 {
+    let plan = to_target();
+    let scans = u64::from(plan.scans()) - 1;
+    for scan in 1..=scans {
+        let start = plan.at(scan);
+        one_operation(|| RampPlan::new(black_box(&start), 0.0, &LIMITS, &LIMITS, CYCLE));
+    }
+    scans
+}

@@ -1,0 +1,201 @@
+//! One axis with MC_Power and MC_MoveAbsolute: by hand without a drive model, and in an executor.
+
+use standstill_axis::{
+    Axis, AxisConfig, AxisId, Comms, ConfigError, DriveCommand, DriveFeedback, DrivePosition, IdealDrive,
+    InstanceId, Limits, Log, Plan, Standard, StartState,
+};
+use standstill_blocks::administrative::mc_power::McPower;
+use standstill_blocks::single_axis::mc_move_absolute::McMoveAbsolute;
+use standstill_fb::{Context, Instance};
+use standstill_scan::{
+    Executor, Machine, ProgramConfig, ProgramFault, ProgramId, Programs, ScanReport, TimeRanBackwards,
+};
+use std::error::Error;
+
+/// Limits of the axis: all four hold somewhere in a move of 1.5 u.
+pub const LIMITS: Limits = Limits {
+    velocity: 1.2,
+    acceleration: 15.0,
+    deceleration: 15.0,
+    jerk: 400.0,
+    snap: 21000.0,
+};
+
+/// Where the move goes (u); it starts at 0.
+pub const TARGET: f64 = 1.5;
+
+/// Sample time (s).
+pub const CYCLE: f64 = 0.001;
+
+/// One axis, two blocks, and a drive that follows at once.
+#[derive(Clone, Debug)]
+pub struct OneAxis {
+    axes: [Axis; 1],
+    log: Log,
+    power: Instance<McPower>,
+    /// MC_MoveAbsolute to [`TARGET`], Execute FALSE.
+    pub to_target: Instance<McMoveAbsolute>,
+    feedback: DriveFeedback,
+    scan: u64,
+}
+
+impl OneAxis {
+    /// A powered axis that has stood at 0 for a scan.
+    ///
+    /// # Errors
+    /// None with these constants.
+    pub fn at_rest() -> Result<Self, ConfigError> {
+        let mut axis = Self {
+            axes: [Axis::new(AXIS, config(), Standard::new(CYCLE))?],
+            log: Log::default(),
+            power: power(),
+            to_target: to_target(),
+            feedback: DriveFeedback {
+                enabled: true,
+                voltage: true,
+                fault: None,
+                position: DrivePosition::Units(0.0),
+                comms: Comms::Ok,
+            },
+            scan: 0,
+        };
+        axis.scan();
+        Ok(axis)
+    }
+
+    /// The axis in the first scan of its move, and for how many more scans the move is in progress.
+    ///
+    /// # Errors
+    /// None with these constants.
+    pub fn in_motion() -> Result<(Self, u64), ConfigError> {
+        let mut axis = Self::at_rest()?;
+        axis.to_target.inputs.execute = true;
+        axis.scan();
+        let [moving] = &axis.axes;
+        let scans = moving.plan().map_or(0, |(plan, _)| plan.scans());
+        Ok((axis, u64::from(scans).saturating_sub(2)))
+    }
+
+    /// One scan: feedback, both blocks, motion step, drive command.
+    pub fn scan(&mut self) -> DriveCommand {
+        let Self { axes, log, .. } = self;
+        let [axis] = axes;
+        axis.follow_feedback(&self.feedback, self.scan, log);
+        let mut context = Context {
+            now_ns: self.scan as i64 * 1_000_000,
+            scan: self.scan,
+            instance: InstanceId(0),
+            axes,
+            log,
+        };
+        self.power.call(&mut context);
+        context.instance = InstanceId(1);
+        self.to_target.call(&mut context);
+        let [axis] = axes;
+        axis.advance(self.scan, log);
+        let command = axis.drive_command();
+        self.feedback.position = command.position;
+        self.scan += 1;
+        command
+    }
+}
+
+/// The same axis and blocks in a machine with an ideal drive, run by an executor.
+#[derive(Clone, Debug)]
+pub struct Executed {
+    executor: Executor,
+    machine: Machine,
+    /// The host's program.
+    pub program: Program,
+    now_ns: i64,
+}
+
+/// A program of the two blocks.
+#[derive(Clone, Debug)]
+pub struct Program {
+    power: Instance<McPower>,
+    /// MC_MoveAbsolute to [`TARGET`].
+    pub to_target: Instance<McMoveAbsolute>,
+}
+
+impl Programs<Standard, IdealDrive> for Program {
+    fn run(&mut self, _: ProgramId, context: &mut Context<'_>) -> Result<u64, ProgramFault> {
+        context.instance = InstanceId(0);
+        self.power.call(context);
+        context.instance = InstanceId(1);
+        self.to_target.call(context);
+        Ok(0)
+    }
+}
+
+impl Executed {
+    /// As [`OneAxis::at_rest`].
+    ///
+    /// # Errors
+    /// None with these constants.
+    pub fn at_rest() -> Result<Self, Box<dyn Error>> {
+        let mut machine = Machine::new();
+        let drive = IdealDrive::new(DrivePosition::Units(0.0), 0, Some(0), true);
+        machine.add_axis(config(), Standard::new(CYCLE), drive)?;
+        let mut rig = Self {
+            executor: Executor::new(1_000_000, &[], &[ProgramConfig::free("main")])?,
+            machine,
+            program: Program {
+                power: power(),
+                to_target: to_target(),
+            },
+            now_ns: 0,
+        };
+        rig.scan()?;
+        Ok(rig)
+    }
+
+    /// As [`OneAxis::in_motion`].
+    ///
+    /// # Errors
+    /// None with these constants.
+    pub fn in_motion() -> Result<(Self, u64), Box<dyn Error>> {
+        let mut rig = Self::at_rest()?;
+        rig.program.to_target.inputs.execute = true;
+        rig.scan()?;
+        let axis = rig.machine.axes().first();
+        let scans = axis.and_then(Axis::plan).map_or(0, |(plan, _)| plan.scans());
+        Ok((rig, u64::from(scans).saturating_sub(2)))
+    }
+
+    /// One scan.
+    ///
+    /// # Errors
+    /// None: time does not run backwards here.
+    pub fn scan(&mut self) -> Result<ScanReport, TimeRanBackwards> {
+        let report = self
+            .executor
+            .scan(self.now_ns, &mut self.program, &mut self.machine);
+        self.now_ns += 1_000_000;
+        report
+    }
+}
+
+const AXIS: AxisId = AxisId::new(0);
+
+fn config() -> AxisConfig {
+    AxisConfig {
+        start: StartState::Standstill,
+        ..AxisConfig::new(LIMITS)
+    }
+}
+
+fn power() -> Instance<McPower> {
+    let mut power = Instance::<McPower>::default();
+    power.inputs.axis = AXIS;
+    power.inputs.enable = true;
+    power
+}
+
+fn to_target() -> Instance<McMoveAbsolute> {
+    let mut to_target = Instance::<McMoveAbsolute>::default();
+    to_target.inputs.axis = AXIS;
+    to_target.inputs.position = TARGET;
+    to_target.inputs.velocity = LIMITS.velocity;
+    to_target
+}

@@ -1,0 +1,202 @@
+//! A scan uses no heap, whatever happens in it: commands, buffers, aborts, faults, resets, bad numbers.
+//!
+//! The one place with unsafe code in this crate: an allocator has to be an unsafe trait.
+#![allow(unsafe_code)]
+
+use standstill_axis::{
+    AxisConfig, AxisId, AxisState, DrivePosition, IdealDrive, InstanceId, Scaling, Standard, StartState,
+};
+use standstill_bench::{CYCLE, LIMITS, Random};
+use standstill_blocks::{BlockInstance, REGISTRY};
+use standstill_fb::{AnyInstance, Context, Direction, PinType, Value};
+use standstill_scan::{
+    Executor, Machine, ProgramConfig, ProgramFault, ProgramId, Programs, ScanTime, TaskConfig,
+};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+const AXES: u16 = 4;
+const SCANS: i64 = 5000;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// The system's allocator, with a count for each thread.
+struct Counting;
+
+// SAFETY: every call is handed to the system's allocator unchanged; counting uses a constant thread-local
+// without a destructor, so it neither allocates nor unwinds.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        // SAFETY: the caller keeps the contract of `alloc`, which is that of `System`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: `pointer` came from `System` with this layout, because `alloc` and `realloc` take it there.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        // SAFETY: `pointer` came from `System` with this layout; the caller keeps the contract for `size`.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Every block of the registry on every axis, with inputs that change at random.
+struct Monkey {
+    random: Random,
+    /// Blocks of each axis, in call order.
+    blocks: Vec<Vec<BlockInstance>>,
+    /// States seen, by their place in [`AxisState::ALL`].
+    seen: [bool; AxisState::ALL.len()],
+}
+
+impl Monkey {
+    fn new() -> Self {
+        let of_axis = |axis| {
+            let wired = |info: &standstill_fb::BlockInfo| {
+                let mut block = BlockInstance::new(info.name).expect("registered");
+                if let Some((pin, _)) = block.info().pin("Axis") {
+                    block
+                        .set(pin, Value::Axis(AxisId::new(axis)))
+                        .expect("an axis pin");
+                }
+                block
+            };
+            REGISTRY.iter().map(wired).collect()
+        };
+        Self {
+            random: Random(4),
+            blocks: (0..AXES).map(of_axis).collect(),
+            seen: [false; AxisState::ALL.len()],
+        }
+    }
+
+    /// A value that suits the pin nearly always.
+    fn value(random: &mut Random, name: &str, ty: PinType) -> Option<Value> {
+        Some(match ty {
+            // Power stays on most of the time.
+            PinType::Bool if name == "Enable" => Value::Bool(!random.bits().is_multiple_of(8)),
+            PinType::Bool if name.starts_with("Enable") => Value::Bool(true),
+            PinType::Bool if name == "ContinuousUpdate" => Value::Bool(random.bits().is_multiple_of(32)),
+            PinType::Bool => Value::Bool(random.bits().is_multiple_of(2)),
+            PinType::Lreal => Value::Lreal(match random.bits() % 16 {
+                0 => f64::NAN,
+                1 => -1.0,
+                2..6 => 0.0,
+                _ => random.log(1e-2, 10.0),
+            }),
+            PinType::Int => Value::Int(3),
+            PinType::Time => Value::Time(10_000_000),
+            PinType::Enum(_) => Value::Enum((random.bits() % 8) as i32 - 1),
+            PinType::Word | PinType::Axis => return None,
+        })
+    }
+}
+
+impl Programs<Standard, IdealDrive> for Monkey {
+    /// The world: drives fail and recover.
+    fn latch(&mut self, _: ScanTime, machine: &mut Machine) {
+        for drive in machine.drives_mut() {
+            match self.random.bits() % 1000 {
+                0 => drive.fail(77),
+                1 => drive.cut_power(),
+                2 => drive.cut_communication(),
+                3..30 => drive.clear_cause(),
+                _ => {}
+            }
+        }
+    }
+
+    fn run(&mut self, program: ProgramId, context: &mut Context<'_>) -> Result<u64, ProgramFault> {
+        let random = &mut self.random;
+        let blocks = self.blocks.get_mut(program.0).into_iter().flatten();
+        for (number, block) in blocks.enumerate() {
+            if random.bits().is_multiple_of(40) {
+                let info = block.info();
+                let inputs = info.pins().filter(|pin| pin.direction == Direction::Input);
+                for pin in inputs {
+                    if let (Some((index, _)), Some(value)) =
+                        (info.pin(pin.name), Self::value(random, pin.name, pin.ty))
+                    {
+                        block.set(index, value).expect("an input of this type");
+                    }
+                }
+            }
+            context.instance = InstanceId(number as u16);
+            block.call(context);
+        }
+        Ok(0)
+    }
+
+    fn observe(&mut self, _: ScanTime, machine: &Machine) {
+        for (state, seen) in AxisState::ALL.iter().zip(&mut self.seen) {
+            *seen |= machine.axes().iter().any(|axis| axis.state() == *state);
+        }
+    }
+}
+
+fn machine() -> Machine {
+    let mut machine = Machine::new();
+    for axis in 0..AXES {
+        let config = AxisConfig {
+            start: StartState::Standstill,
+            scaling: (axis == 1).then(|| Scaling::new(1000, 1, false, 0.0).expect("valid")),
+            software_limits: (axis == 2).then_some((-20.0, 20.0)),
+            ..AxisConfig::new(LIMITS)
+        };
+        let home = if axis == 1 {
+            DrivePosition::Increments(0)
+        } else {
+            DrivePosition::Units(0.0)
+        };
+        let drive = IdealDrive::new(home, usize::from(axis), Some(2), true);
+        machine
+            .add_axis(config, Standard::new(CYCLE), drive)
+            .expect("valid");
+    }
+    machine
+}
+
+#[test]
+fn no_scan_uses_the_heap() {
+    let mut machine = machine();
+    let programs = [
+        ProgramConfig::with("a", "fast"),
+        ProgramConfig::with("b", "fast"),
+        ProgramConfig::with("c", "slow"),
+        ProgramConfig::free("d"),
+    ];
+    let tasks = [
+        TaskConfig::every("fast", 1_000_000),
+        TaskConfig::every("slow", 2_000_000),
+    ];
+    let mut executor = Executor::new(1_000_000, &tasks, &programs).expect("valid");
+    let mut monkey = Monkey::new();
+    for scan in 0..SCANS {
+        let before = ALLOCATIONS.get();
+        let report = executor.scan(scan * 1_000_000, &mut monkey, &mut machine);
+        assert_eq!(ALLOCATIONS.get() - before, 0, "scan {scan}");
+        assert!(report.is_ok());
+    }
+    // What was counted was worth counting.
+    for (state, seen) in AxisState::ALL.iter().zip(monkey.seen) {
+        let reachable = *state != AxisState::SynchronizedMotion;
+        assert_eq!(seen, reachable, "{}", state.name());
+    }
+    assert!(machine.log().total() > 500, "{} records", machine.log().total());
+}
+
+#[test]
+fn the_count_sees_an_allocation() {
+    let before = ALLOCATIONS.get();
+    drop(std::hint::black_box(Vec::<u8>::with_capacity(1)));
+    assert_eq!(ALLOCATIONS.get() - before, 1);
+}
