@@ -247,10 +247,11 @@ impl<P: Planner> Axis<P> {
         if let Some(owner) = &self.owner
             && owner.id == id
         {
-            let reached = self.goal_reached();
             return match owner.work {
                 Work::Stop if self.stop_held => Fate::Done,
-                Work::Velocity { .. } => Fate::Active { reached },
+                Work::Velocity { .. } => Fate::Active {
+                    reached: self.goal_reached(),
+                },
                 Work::Position(_) | Work::Distance(_) | Work::Halt | Work::Stop | Work::Home(_) => {
                     Fate::Active { reached: false }
                 }

@@ -137,6 +137,7 @@ impl<P: Planner> Axis<P> {
 
     /// Enters ErrorStop: the owner fails with `error`, what waits fails because of the state (R77). The first
     /// error stays the one shown.
+    #[cold]
     pub(super) fn trip(&mut self, error: ErrorId, code: u16, reaction: Reaction, scan: u64, log: &mut Log) {
         if self.state == AxisState::ErrorStop {
             return;
@@ -180,6 +181,13 @@ impl<P: Planner> Axis<P> {
 
     /// Completes a reset when all it waits for has happened (notes 3 and 4, S12).
     pub(super) fn finish_reset(&mut self) {
+        if self.reset.is_some() {
+            self.try_reset();
+        }
+    }
+
+    #[cold]
+    fn try_reset(&mut self) {
         let Some(reset) = &mut self.reset else { return };
         let id = reset.id;
         if self.state == AxisState::ErrorStop {

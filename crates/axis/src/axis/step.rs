@@ -44,6 +44,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    #[cold]
     /// Enters ErrorStop and gives the set-point of this scan: the first of the ramp, which starts at the last
     /// set-point published.
     fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) -> Setpoint {
@@ -114,6 +115,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The owner has completed at rest.
+    #[cold]
     fn complete(&mut self, scan: u64, log: &mut Log) {
         self.motion = Motion::Hold;
         self.end_owner(Fate::Done);
@@ -123,6 +125,7 @@ impl<P: Planner> Axis<P> {
 
     /// The next waiting command that can be planned becomes the owner; those that cannot fail (R79). An
     /// endless owner stays if there is none.
+    #[inline(never)]
     fn hand_over(&mut self, scan: u64, log: &mut Log) {
         for _ in 0..QUEUE_MAX {
             let Some(next) = self.queue.pop() else { return };

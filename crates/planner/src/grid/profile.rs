@@ -210,7 +210,7 @@ impl GridPlan {
     }
 
     /// The state at `scan` <= N, with the values of one side where a derivative jumps.
-    #[inline]
+    #[inline(always)]
     fn state(&self, scan: i64, side: Side) -> Setpoint {
         // Each half is computed from its own end: half the terms, and exact at both ends.
         let twice_left = 2 * scan - i64::from(self.scans);
