@@ -12,6 +12,7 @@ impl<P: Planner> Axis<P> {
     ///
     /// Cost: one evaluation of the plan; at a hand-over at most one plan per waiting command; with software
     /// limits one ramp plan per scan of an endless motion.
+    #[inline(always)]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
         self.setpoint = match &mut self.motion {
             Motion::Follow => Setpoint::at_rest(self.actual),
@@ -20,7 +21,7 @@ impl<P: Planner> Axis<P> {
             Motion::Run { plan, elapsed } => {
                 *elapsed = elapsed.saturating_add(1);
                 let next = plan.at(*elapsed);
-                match self.forbids(&next) {
+                match self.forbids(next) {
                     None => next,
                     Some(error) => self.fail(error, scan, log),
                 }
@@ -34,10 +35,13 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Why the set-point `next` must not be published, if it must not.
-    fn forbids(&self, next: &Setpoint) -> Option<ErrorId> {
+    ///
+    /// It takes a copy so that the caller's need not stand in memory.
+    #[inline]
+    fn forbids(&self, next: Setpoint) -> Option<ErrorId> {
         if !next.is_finite() {
             Some(ErrorId::SetpointBroken)
-        } else if self.would_leave(next) {
+        } else if self.config.software_limits.is_some() && self.would_leave(&next) {
             Some(ErrorId::SoftwareLimitReached)
         } else {
             None
@@ -58,6 +62,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    #[inline(never)]
     /// Whether an endless motion, stopped from `next` on, would come to rest outside the software limits.
     fn would_leave(&self, next: &Setpoint) -> bool {
         let (Some((min, max)), Some(owner)) = (self.config.software_limits, &self.owner) else {

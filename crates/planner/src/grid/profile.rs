@@ -128,7 +128,7 @@ impl GridPlan {
     /// From [`GridPlan::scans`] on it is rest on the target, to the bit; only at order 4 the snap of the
     /// last segment shows at the last scan itself. The position never leaves the way from start to target
     /// and never steps back.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, scan: u64) -> Setpoint {
         let scans = u64::from(self.scans);
         if scan < scans {
@@ -292,7 +292,7 @@ impl Whole for Wrapping<i128> {
 /// sums of signed powers over the instants passed (docs/planner.md, eq. 21).
 ///
 /// The highest derivative counts the instants before `through`.
-#[inline]
+#[inline(always)]
 fn derivatives<T, const M: usize>(instants: &[i64; 8], near: i64, through: i64) -> [f64; 5]
 where
     Wrapping<T>: Whole + Add<Output = Wrapping<T>> + Mul<Output = Wrapping<T>>,
