@@ -116,20 +116,22 @@ impl ExecuteCore {
                 }
             }
         }
-        match self.command {
+        let phase = match self.command {
             Some((axis, id)) => {
-                self.phase = match context.axes.get(axis.index()) {
+                let phase = match context.axes.get(axis.index()) {
                     Some(axis) => axis.fate(id).into(),
                     None => Phase::Failed(ErrorId::AxisUnknown),
                 };
-                if !self.phase.is_busy() {
+                if !phase.is_busy() {
                     self.command = None;
                 }
+                phase
             }
             // A result was already shown in an earlier call; with Execute FALSE it goes (R28, R30).
-            None if !execute => self.phase = Phase::Idle,
-            None => {}
-        }
-        self.phase
+            None if !execute => Phase::Idle,
+            None => self.phase,
+        };
+        self.phase = phase;
+        phase
     }
 }

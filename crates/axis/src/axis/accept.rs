@@ -11,6 +11,9 @@ use crate::{
 };
 use standstill_planner::{Excess, Field, Limits, Plan, PlanError, Planner};
 
+/// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
+const ROUNDING: f64 = 1e-9;
+
 /// When an admitted command starts.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Way {
@@ -343,8 +346,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What of an excess over a command's limits is beyond those of the axis as well. A faster motion that
-    /// a slower command takes over from is no excess.
+    /// What of an excess over a command's limits is beyond those of the axis as well, rounding apart. A faster
+    /// motion that a slower command takes over from is no excess.
     pub(super) fn beyond_axis(&self, excess: Excess, limits: &Limits) -> Option<Excess> {
         let axis = &self.config.limits;
         let beyond = |excess: f64, axis: f64, limit: f64| {
@@ -354,7 +357,7 @@ impl<P: Planner> Axis<P> {
             } else {
                 excess
             };
-            if left > 0.0 { left } else { 0.0 }
+            if left > axis * ROUNDING { left } else { 0.0 }
         };
         let beyond = Excess {
             velocity: beyond(excess.velocity, axis.velocity, limits.velocity),

@@ -249,14 +249,16 @@ impl<P: Planner> Axis<P> {
     }
 
     /// What became of command `id`. Bounded by the queue and the fates kept.
+    #[inline(always)]
     pub fn fate(&self, id: CommandId) -> Fate {
         if let Some(owner) = &self.owner
             && owner.id == id
         {
-            let reached = self.goal_reached();
             return match owner.work {
                 Work::Stop if self.stop_held => Fate::Done,
-                Work::Velocity { .. } => Fate::Active { reached },
+                Work::Velocity { .. } => Fate::Active {
+                    reached: self.goal_reached(),
+                },
                 Work::Position(_) | Work::Distance(_) | Work::Halt | Work::Stop | Work::Home(_) => {
                     Fate::Active { reached: false }
                 }
@@ -305,6 +307,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The drive's command for this scan.
+    #[inline(always)]
     pub fn drive_command(&mut self) -> DriveCommand {
         DriveCommand {
             request: self.drive_request(),

@@ -31,6 +31,7 @@ pub(super) struct Reset {
 
 impl<P: Planner> Axis<P> {
     /// Latches the drive's feedback of this scan and lets the state follow it. Called before any block.
+    #[inline(always)]
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
         self.feedback = *feedback;
         if feedback.comms == Comms::Lost {
@@ -168,6 +169,7 @@ impl<P: Planner> Axis<P> {
 
     /// Enters ErrorStop: the owner fails with `error`, what waits fails because of the state (R77). The first
     /// error stays the one shown.
+    #[cold]
     pub(super) fn trip(&mut self, error: ErrorId, code: u16, reaction: Reaction, scan: u64, log: &mut Log) {
         if self.state == AxisState::ErrorStop {
             return;
@@ -211,6 +213,13 @@ impl<P: Planner> Axis<P> {
 
     /// Completes a reset when all it waits for has happened (notes 3 and 4, S12).
     pub(super) fn finish_reset(&mut self) {
+        if self.reset.is_some() {
+            self.try_reset();
+        }
+    }
+
+    #[cold]
+    fn try_reset(&mut self) {
         let reached = self.goal_reached();
         let Some(reset) = &mut self.reset else { return };
         let id = reset.id;

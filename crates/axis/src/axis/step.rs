@@ -12,6 +12,7 @@ impl<P: Planner> Axis<P> {
     ///
     /// Cost: one evaluation of the plan; at a hand-over at most one plan per waiting command; with software
     /// limits one ramp plan per scan of an endless motion or a stop.
+    #[inline(always)]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
         self.apply_power(scan, log);
         if self.owner.is_none() && self.goal_reached() {
@@ -26,7 +27,7 @@ impl<P: Planner> Axis<P> {
             Motion::Run { plan, elapsed } => {
                 *elapsed = elapsed.saturating_add(1);
                 let next = plan.at(*elapsed);
-                match self.forbids(&next) {
+                match self.forbids(next) {
                     None => next,
                     Some(error) => self.fail(error, scan, log),
                 }
@@ -40,16 +41,20 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Why the set-point `next` must not be published, if it must not.
-    fn forbids(&self, next: &Setpoint) -> Option<ErrorId> {
+    ///
+    /// It takes a copy so that the caller's need not stand in memory.
+    #[inline]
+    fn forbids(&self, next: Setpoint) -> Option<ErrorId> {
         if !next.is_finite() {
             Some(ErrorId::SetpointBroken)
-        } else if self.would_leave(next) {
+        } else if self.config.software_limits.is_some() && self.would_leave(&next) {
             Some(ErrorId::SoftwareLimitReached)
         } else {
             None
         }
     }
 
+    #[cold]
     /// Enters ErrorStop and gives the set-point of this scan: the first of the ramp, which starts at the last
     /// set-point published.
     fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) -> Setpoint {
@@ -65,6 +70,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether this is the last scan in which the stop dynamics can keep a motion that would leave the
     /// software limits inside them.
+    #[inline(never)]
     fn would_leave(&self, next: &Setpoint) -> bool {
         let (Some((min, max)), Some(owner)) = (self.config.software_limits, &self.owner) else {
             return false;
@@ -131,6 +137,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The owner has completed at rest.
+    #[cold]
     fn complete(&mut self, scan: u64, log: &mut Log) {
         self.motion = Motion::Hold;
         self.end_owner(Fate::Done);
@@ -140,6 +147,7 @@ impl<P: Planner> Axis<P> {
 
     /// The next waiting command that can be planned becomes the owner; those that cannot fail (R79). An
     /// endless owner stays if there is none.
+    #[inline(never)]
     fn hand_over(&mut self, scan: u64, log: &mut Log) {
         for _ in 0..QUEUE_MAX {
             let Some(next) = self.queue.pop() else { return };

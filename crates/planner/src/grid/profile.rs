@@ -128,7 +128,7 @@ impl GridPlan {
     /// From [`GridPlan::scans`] on it is rest on the target, to the bit; only at order 4 the snap of the
     /// last segment shows at the last scan itself. The position never leaves the way from start to target
     /// and never steps back.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, scan: u64) -> Setpoint {
         let scans = u64::from(self.scans);
         if scan < scans {
@@ -210,7 +210,7 @@ impl GridPlan {
     }
 
     /// The state at `scan` <= N, with the values of one side where a derivative jumps.
-    #[inline]
+    #[inline(always)]
     fn state(&self, scan: i64, side: Side) -> Setpoint {
         // Each half is computed from its own end: half the terms, and exact at both ends.
         let twice_left = 2 * scan - i64::from(self.scans);
@@ -292,17 +292,24 @@ impl Whole for Wrapping<i128> {
 /// sums of signed powers over the instants passed (docs/planner.md, eq. 21).
 ///
 /// The highest derivative counts the instants before `through`.
-#[inline]
+#[inline(always)]
 fn derivatives<T, const M: usize>(instants: &[i64; 8], near: i64, through: i64) -> [f64; 5]
 where
     Wrapping<T>: Whole + Add<Output = Wrapping<T>> + Mul<Output = Wrapping<T>>,
 {
+    if let Some(cruise) = cruise::<T, M>(instants, near, through) {
+        return cruise;
+    }
     let mut sums = [Wrapping::<T>::of(0); 5];
     for (instant, sign) in instants.iter().zip(SIGNS).take(M) {
+        // They ascend, so the rest has not been passed either.
+        if *instant >= through {
+            break;
+        }
         let [s0, s1, s2, s3, s4] = sums;
-        let since = Wrapping::<T>::of((near - instant).max(0));
-        let p0 = Wrapping::<T>::of(if *instant < through { sign } else { 0 });
-        let p1 = Wrapping::<T>::of(sign) * since;
+        let since = Wrapping::<T>::of(near - instant);
+        let p0 = Wrapping::<T>::of(sign);
+        let p1 = p0 * since;
         let p2 = p1 * since;
         let p3 = p2 * since;
         let p4 = p3 * since;
@@ -314,6 +321,30 @@ where
         4 => [s3, s2, s1, s0, 0.0],
         _ => [s2, s1, s0, 0.0, 0.0],
     }
+}
+
+/// The same where all instants have passed and the velocity is constant, in closed form (docs/planner.md,
+/// eq. 21a); most scans of a long move are such ones.
+#[inline]
+fn cruise<T, const M: usize>(instants: &[i64; 8], near: i64, through: i64) -> Option<[f64; 5]>
+where
+    Wrapping<T>: Whole + Mul<Output = Wrapping<T>>,
+{
+    let [_, a, b, a_b, c, ..] = *instants;
+    // The boxes of the way up to the velocity: what they span and their product; m!/2 and (m-1)!.
+    let (span, factors, half_factorial, factorial) = match M {
+        8 => (a_b + c, [a, b, c], 12, 6),
+        4 => (a_b, [a, b, 1], 3, 2),
+        _ => (a, [a, 1, 1], 1, 1),
+    };
+    if through <= span {
+        return None;
+    }
+    let [f1, f2, f3] = factors.map(Wrapping::<T>::of);
+    let product = f1 * f2 * f3;
+    let position = Wrapping::<T>::of(half_factorial * (2 * near - span)) * product;
+    let velocity = Wrapping::<T>::of(factorial) * product;
+    Some([position.to_f64(), velocity.to_f64(), 0.0, 0.0, 0.0])
 }
 
 #[cfg(test)]
