@@ -271,7 +271,7 @@ fn hasten(state: State, limit: f64, goal: f64, low: f64, bounds: &Box4) -> (Span
 }
 
 /// The velocity once acceleration and jerk are zero as soon as can be.
-fn arrested(state: State, jerk: f64) -> f64 {
+pub(super) fn arrested(state: State, jerk: f64) -> f64 {
     state
         .after_all(&second(state.a, state.j, 0.0, Sides::both(jerk)))
         .v

@@ -1,0 +1,3 @@
+//! Plans from any moving state to a position: fewest scans, limits kept, targets met.
+
+mod scans;
