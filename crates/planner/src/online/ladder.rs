@@ -3,11 +3,11 @@
 use super::search::{Candidate, Search, follow};
 use super::{MAX_PIECES, grid_from};
 use crate::grid::GridPlan;
-use crate::kernel::{NOISE, ON_LIMIT};
+use crate::kernel::{NOISE, ON_LIMIT, Spans};
 use crate::ramp::excess::{self, Excess};
 use crate::ramp::path::Path;
 use crate::ramp::scans;
-use crate::ramp::solve::Ramps;
+use crate::ramp::solve::{RAMP_SPANS, Ramps};
 use crate::{Field, Limits, PlanError, Setpoint};
 
 /// The way a plan was found, best first. A plan of a later rung is longer, not less exact.
@@ -160,7 +160,7 @@ impl Climb<'_> {
         })
     }
 
-    /// Whether a stop at once, or a ramp to one of the velocity bounds, exceeds the limits as much.
+    /// Whether a stop at once, or getting inside the limits as soon as can be, exceeds the limits as much.
     fn is_unavoidable(&mut self, excess: &Excess) -> bool {
         let known = self.unavoidable.unwrap_or_else(|| self.least_excess());
         self.unavoidable = Some(known);
@@ -170,24 +170,25 @@ impl Climb<'_> {
             && within(excess.jerk, known.jerk)
     }
 
-    fn least_excess(&mut self) -> Excess {
-        let mut least = Excess::default();
-        for velocity in [0.0, self.limits.velocity, -self.limits.velocity] {
-            let goal = self.ramps.inward(velocity, 1);
-            let ramp = self.search.ramp(&self.inward, goal);
-            let path: Path<MAX_PIECES> = Path::lay(
-                self.ramps.order(),
-                &self.start,
-                self.ramps.scale().outward(&ramp),
-                velocity,
-            );
-            if let Some(excess) = excess::excess(&path, velocity, None, self.limits) {
-                least.velocity = least.velocity.max(excess.velocity);
-                least.acceleration = least.acceleration.max(excess.acceleration);
-                least.jerk = least.jerk.max(excess.jerk);
-            }
+    fn least_excess(&self) -> Excess {
+        let stop = self.search.whole_ramp(&self.inward, 0.0);
+        let bound = self.ramps.velocity();
+        let back = if self.start.velocity < 0.0 { bound } else { -bound };
+        let turn = self.search.whole_ramp(&self.inward, back);
+        let one = self.excess_of(&stop.spans, stop.spans.len());
+        let other = self.excess_of(&turn.spans, turn.lead);
+        Excess {
+            velocity: one.velocity.max(other.velocity),
+            acceleration: one.acceleration.max(other.acceleration),
+            jerk: one.jerk.max(other.jerk),
         }
-        least
+    }
+
+    /// The excess of the first `count` of `spans`.
+    fn excess_of(&self, spans: &Spans<RAMP_SPANS>, count: usize) -> Excess {
+        let spans = self.ramps.scale().outward(spans).take(count);
+        let path = Path::<MAX_PIECES>::follow(self.ramps.order(), &self.start, spans);
+        excess::excess(&path, 0.0, None, self.limits).unwrap_or_default()
     }
 
     /// To rest, and with the next scan a grid plan: what can't fail for want of accuracy.

@@ -64,7 +64,7 @@ impl<'a> Search<'a> {
     pub(super) fn push_then_stop(&self, start: &Setpoint) -> Candidate {
         let mut spans = Spans::new();
         let stop = self.stop(start);
-        if stop.beyond.abs() <= stop.noise {
+        if stop.beyond.abs() <= stop.noise.max(self.resolution) {
             spans.extend(&stop.spans);
             return spans;
         }
@@ -184,10 +184,14 @@ impl<'a> Search<'a> {
 
     /// The ramp from `start` to `velocity`, as a part of a move.
     pub(super) fn ramp(&self, start: &Setpoint, velocity: f64) -> Spans<RAMP_SPANS> {
+        self.whole_ramp(start, velocity).spans
+    }
+
+    /// As [`Search::ramp`], with what is known of it.
+    pub(super) fn whole_ramp(&self, start: &Setpoint, velocity: f64) -> Ramp {
         self.solves.set(self.solves.get() + 1);
         let heading = heading(start, velocity, self.ramps.velocity(), self.ramps.order());
-        let Ramp { spans, .. } = self.ramps.ramp(start, velocity, heading, Course::Free);
-        spans
+        self.ramps.ramp(start, velocity, heading, Course::Free)
     }
 
     /// The ramp from `start` to the end velocity.
@@ -197,7 +201,7 @@ impl<'a> Search<'a> {
         let added_up = start.position.abs() + self.target.abs() + spans.duration() * start.velocity.abs();
         Stop {
             beyond: end.position - self.target,
-            noise: 0.25 * NOISE * added_up + self.resolution,
+            noise: 0.25 * NOISE * added_up,
             spans,
         }
     }

@@ -14,7 +14,10 @@ pub use excess::{Excess, Peaks};
 
 use crate::{Field, Limits, PlanError, Setpoint};
 use path::Path;
-use solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
+use solve::{Course, Ramp, Ramps, heading};
+
+/// Most pieces of a plan.
+const MAX_PIECES: usize = 17;
 
 /// Largest number of scans of a plan.
 const MAX_SCANS: f64 = 2_147_483_647.0;
@@ -31,7 +34,7 @@ pub struct RampPlan {
     cycle: f64,
     scans: u32,
     steps: u32,
-    path: Path<RAMP_SPANS>,
+    path: Path<MAX_PIECES>,
     excess: Option<Excess>,
 }
 
@@ -80,7 +83,9 @@ impl RampPlan {
         let order = limits.order();
         let heading = heading(start, velocity, limits.velocity, order);
         let ramps = Ramps::new(limits, &wider(limits, before));
-        let Ramp { spans, steps, viable } = ramps.ramp(
+        let Ramp {
+            spans, steps, viable, ..
+        } = ramps.ramp(
             &ramps.state_inward(start),
             ramps.inward(velocity, 1),
             heading,

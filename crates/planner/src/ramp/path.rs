@@ -25,7 +25,7 @@ pub(crate) struct Path<const N: usize> {
 }
 
 impl<const N: usize> Path<N> {
-    pub(crate) fn new(order: Order) -> Self {
+    fn new(order: Order) -> Self {
         Self {
             pieces: [Piece::default(); N],
             len: 0,
@@ -43,6 +43,21 @@ impl<const N: usize> Path<N> {
         spans: impl Iterator<Item = (f64, f64)>,
         velocity: f64,
     ) -> Self {
+        let mut path = Self::follow(order, start, spans);
+        if let Some(last) = path.last_mut() {
+            last.state.velocity = velocity;
+            if order >= Order::Three {
+                last.state.acceleration = 0.0;
+            }
+            if order == Order::Four {
+                last.state.jerk = 0.0;
+            }
+        }
+        path
+    }
+
+    /// Lays `spans` from `start` on to wherever they end; what does not fit in is left out.
+    pub(crate) fn follow(order: Order, start: &Setpoint, spans: impl Iterator<Item = (f64, f64)>) -> Self {
         let mut path = Self::new(order);
         let mut way = Way::new(order, start);
         let mut time = 0.0;
@@ -59,25 +74,17 @@ impl<const N: usize> Path<N> {
             }
             way.go(duration);
         }
-        let state = way.state;
-        if let Some(last) = path.len.checked_sub(1).and_then(|i| path.pieces.get_mut(i)) {
+        if let Some(last) = path.last_mut() {
             last.state = Setpoint {
-                position: state.position,
-                velocity,
-                acceleration: if order == Order::Two {
-                    last.state.acceleration
-                } else {
-                    0.0
-                },
-                jerk: if order == Order::Three {
-                    last.state.jerk
-                } else {
-                    0.0
-                },
                 snap: last.state.snap,
+                ..way.state
             };
         }
         path
+    }
+
+    fn last_mut(&mut self) -> Option<&mut Piece> {
+        self.len.checked_sub(1).and_then(|i| self.pieces.get_mut(i))
     }
 
     /// When the last piece ends (s).

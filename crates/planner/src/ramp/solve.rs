@@ -42,6 +42,8 @@ struct Before {
 pub(crate) struct Ramp {
     /// Durations and inputs in the kernel's units.
     pub(crate) spans: Spans<RAMP_SPANS>,
+    /// How many of the spans bring the start inside the limits.
+    pub(crate) lead: usize,
     /// Root steps it took.
     pub(crate) steps: u32,
     /// Whether the start was inside and viable and the ramp keeps its direction, so that it exceeds nothing.
@@ -174,6 +176,7 @@ impl Ramps {
             spans.push((velocity - limit) / fast, -fast);
             velocity = limit;
         }
+        let lead = spans.len();
         let change = goal - velocity;
         if change > 0.0 {
             spans.push(change / sides.plus, sides.plus);
@@ -182,6 +185,7 @@ impl Ramps {
         }
         Ramp {
             spans,
+            lead,
             steps: 0,
             viable,
         }
@@ -206,11 +210,17 @@ impl Ramps {
         let mut spans = Spans::new();
         spans.extend(&lead);
         spans.extend(&second(state.v, state.a, goal, self.sides(goal, dips, course)));
-        Ramp { spans, steps, viable }
+        Ramp {
+            spans,
+            lead: lead.len(),
+            steps,
+            viable,
+        }
     }
 
     /// Order 4: `(velocity, acceleration, jerk)` to `(goal, 0, 0)` (R4 to R10).
     fn fourth_order(&self, start: State, goal: f64, course: Course) -> Ramp {
+        let may_turn = goal < 0.0 || course == Course::Free;
         let bounds = Box4 {
             a: Sides {
                 minus: self.deceleration,
@@ -225,9 +235,19 @@ impl Ramps {
             v: self.sides(goal, dips, course),
             a: Sides::both(self.jerk),
         };
-        let may_turn = goal < 0.0 || course == Course::Free;
         let low = if may_turn { -self.velocity } else { 0.0 };
-        let lead = inside::lead_in(start, goal, (low, self.velocity), &bounds, &own(true));
+        let mut lead = inside::lead_in(start, goal, (low, self.velocity), &bounds, &own(true));
+        let inside = lead.spans.len();
+        if goal < 0.0 && course == Course::Free {
+            // What only slows the motion down has to be inside before the velocity passes zero (O5).
+            lead.enter(&Box4 {
+                a: own(false).v,
+                brake_before: own(false).v.minus,
+                jerk_before: self.jerk,
+                snap_before: 1.0,
+                ..bounds
+            });
+        }
         let dips = goal >= 0.0 && (lead.state.v < 0.0 || lead.rest < 0.0);
         let State { v, a, j } = lead.state;
         let profile = third(v, a, j, goal, &own(dips));
@@ -236,6 +256,7 @@ impl Ramps {
         spans.extend(&profile.spans);
         Ramp {
             spans,
+            lead: inside,
             steps: lead.steps.max(profile.steps),
             viable: lead.viable && goal >= 0.0,
         }

@@ -71,7 +71,9 @@ fn check(text: &str) {
             overlapped_most = overlapped_most.max(i64::from(grid.scans()) - i64::from(case.least));
         }
     }
-    println!("(from rest, more scans than the least): cases {surplus:?}; overlapped at most {overlapped_most} more");
+    println!(
+        "(from rest, more scans than the least): cases {surplus:?}; overlapped at most {overlapped_most} more"
+    );
     assert!(failed.is_empty(), "{} {failed:?}", failed.len());
     assert!(overlapped_most <= 4);
 }
