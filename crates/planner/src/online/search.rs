@@ -12,6 +12,10 @@ use crate::{Order, Setpoint};
 /// Most spans of a candidate: a ramp before it, a push, a cruise and a stop.
 pub(super) const CANDIDATE_SPANS: usize = 3 * RAMP_SPANS + 1;
 
+/// In how many parts a span of the push is looked at for the first crossing of a move that does not end at
+/// rest; one that does has no second crossing in a span (O4).
+const PARTS: usize = 8;
+
 /// Spans of a whole move.
 pub(super) type Candidate = Spans<CANDIDATE_SPANS>;
 
@@ -35,6 +39,17 @@ struct Stop {
     beyond: f64,
     /// What of that may be rounding.
     noise: f64,
+}
+
+impl Stop {
+    /// How far it ends beyond the target in the direction `side`, for the argument `at` of a root.
+    fn ahead(&self, at: f64, side: f64) -> Point {
+        Point {
+            at,
+            value: side * self.beyond,
+            noise: self.noise,
+        }
+    }
 }
 
 impl<'a> Search<'a> {
@@ -72,53 +87,31 @@ impl<'a> Search<'a> {
         let top = side * self.ramps.velocity();
         let push = self.ramp(start, top);
         let mut way = Way::new(self.ramps.order(), start);
-        let mut from = Point {
-            at: 0.0,
-            value: side * stop.beyond,
-            noise: stop.noise,
-        };
-        for (index, span) in push.iter().enumerate() {
-            let begin = way.begin(span.input);
+        let mut from = stop.ahead(0.0, side);
+        let parts = if self.end_velocity == 0.0 { 1 } else { PARTS };
+        for span in push.split(parts) {
+            way.begin(span.input);
             let after = |time: f64| {
-                let mut way = Way::new(self.ramps.order(), &begin);
-                way.begin(span.input);
+                let mut way = way;
                 way.go(time);
                 way.state
             };
-            way.go(span.duration);
-            if index + 1 == push.len() {
-                way.state = steady(&way.state, top);
-            }
-            let stop = self.stop(&way.state);
-            let to = Point {
-                at: span.duration,
-                value: side * stop.beyond,
-                noise: stop.noise,
-            };
+            let ahead = |time: f64| self.stop(&after(time)).ahead(time, side);
+            let to = ahead(span.duration);
             if to.value >= 0.0 {
-                let switch = self.zero(Point { at: 0.0, ..from }, to, |time| {
-                    let stop = self.stop(&after(time));
-                    Point {
-                        at: time,
-                        value: side * stop.beyond,
-                        noise: stop.noise,
-                    }
-                });
+                let switch = self.zero(Point { at: 0.0, ..from }, to, ahead);
                 spans.push(switch.at, span.input);
-                let state = if switch.at == span.duration {
-                    way.state
-                } else {
-                    after(switch.at)
-                };
-                spans.extend(&self.stop(&state).spans);
+                spans.extend(&self.stop(&after(switch.at)).spans);
                 return spans;
             }
             spans.push(span.duration, span.input);
+            way.go(span.duration);
             from = to;
         }
-        self.cruise(&mut spans, -from.value);
         let state = steady(&way.state, top);
-        spans.extend(&self.stop(&state).spans);
+        let stop = self.stop(&state);
+        self.cruise(&mut spans, -stop.ahead(0.0, side).value);
+        spans.extend(&stop.spans);
         spans
     }
 
@@ -135,18 +128,10 @@ impl<'a> Search<'a> {
         };
         let at = |peak: f64| {
             let (_, stop) = through(peak);
-            Point {
-                at: peak,
-                value: side * stop.beyond,
-                noise: stop.noise,
-            }
+            stop.ahead(peak, side)
         };
         let highest = at(top);
-        let lowest = Point {
-            at: self.end_velocity,
-            value: side * stop.beyond,
-            noise: stop.noise,
-        };
+        let lowest = stop.ahead(self.end_velocity, side);
         let peak = if highest.value > 0.0 {
             self.zero(lowest, highest, at)
         } else {
