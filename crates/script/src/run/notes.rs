@@ -155,10 +155,12 @@ fn plan_text(plan: &StandardPlan) -> String {
                 .map(|piece| [piece.duration, piece.acceleration, piece.jerk, piece.snap])
                 .collect(),
         ),
-        StandardPlan::BrakeThenGrid(brake, grid) => {
-            let brake = plan_text(&StandardPlan::Ramp(*brake));
-            let grid = plan_text(&StandardPlan::Grid(*grid));
-            format!("brake {brake}; then {grid}")
+        StandardPlan::Online(plan) => {
+            let pieces = plan
+                .segments()
+                .map(|piece| [piece.duration, piece.acceleration, piece.jerk, piece.snap])
+                .collect();
+            format!("{} {}", plan.rung().name(), ramp_text(pieces))
         }
     }
 }
