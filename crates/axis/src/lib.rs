@@ -29,7 +29,7 @@ pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, PowerOff, StartS
 pub use drive::{Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, Fault};
 pub use error_id::{ErrorClass, ErrorId};
 pub use fate::{FATES_KEPT, Fate};
-pub use ideal_drive::{DELAY_MAX, IdealDrive};
+pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
 pub use log::{Event, Goal, LOG_KEPT, Log, Record};
 pub use scaling::Scaling;
 pub use standstill_planner::{

@@ -1,7 +1,7 @@
 //! From any moving state to a position.
 //!
 //! What stands here: the plan, and the ladder of ways to find one, each verified before it is taken. The
-//! ramps it is made of are those of [`ramp`](crate::ramp), their maths that of [`kernel`](crate::kernel).
+//! ramps it is made of are those of [`ramp`](mod@crate::ramp), their maths that of [`kernel`](mod@crate::kernel).
 //! What does not: which move an axis makes next. Equations (O1) and on are in `docs/planner-online.md`.
 
 mod ladder;
