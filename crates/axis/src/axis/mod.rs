@@ -243,7 +243,6 @@ impl<P: Planner> Axis<P> {
     }
 
     /// What became of command `id`. Bounded by the queue and the fates kept.
-    #[inline(always)]
     pub fn fate(&self, id: CommandId) -> Fate {
         if let Some(owner) = &self.owner
             && owner.id == id
@@ -301,7 +300,6 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The drive's command for this scan.
-    #[inline(always)]
     pub fn drive_command(&mut self) -> DriveCommand {
         DriveCommand {
             request: self.drive_request(),

@@ -31,7 +31,6 @@ pub(super) struct Reset {
 
 impl<P: Planner> Axis<P> {
     /// Latches the drive's feedback of this scan and lets the state follow it. Called before any block.
-    #[inline(always)]
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
         self.feedback = *feedback;
         if feedback.comms == Comms::Lost {

@@ -12,65 +12,66 @@ impl<P: Planner> Axis<P> {
     ///
     /// Cost: one evaluation of the plan; at a hand-over at most one plan per waiting command; with software
     /// limits one ramp plan per scan of an endless motion.
-    #[inline(always)]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
-        self.setpoint = match &mut self.motion {
-            Motion::Follow => Setpoint::at_rest(self.actual),
-            Motion::Hold => Setpoint::at_rest(self.setpoint.position),
-            // By reference: a plan is large to copy in every scan.
+        match &mut self.motion {
+            Motion::Follow => self.publish(Setpoint::at_rest(self.actual)),
+            Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
             Motion::Run { plan, elapsed } => {
                 *elapsed = elapsed.saturating_add(1);
                 let next = plan.at(*elapsed);
-                match self.forbids(next) {
-                    None => next,
-                    Some(error) => self.fail(error, scan, log),
+                if !next.is_finite() {
+                    self.fail(ErrorId::SetpointBroken, scan, log);
+                } else if self.would_leave() {
+                    self.fail(ErrorId::SoftwareLimitReached, scan, log);
+                } else {
+                    self.publish(next);
                 }
             }
-        };
-        if self.setpoint.velocity != 0.0 {
-            self.last_direction = if self.setpoint.velocity < 0.0 { -1.0 } else { 1.0 };
         }
         self.settle(scan, log);
         self.finish_reset();
     }
 
-    /// Why the set-point `next` must not be published, if it must not.
-    ///
-    /// It takes a copy so that the caller's need not stand in memory.
-    #[inline]
-    fn forbids(&self, next: Setpoint) -> Option<ErrorId> {
-        if !next.is_finite() {
-            Some(ErrorId::SetpointBroken)
-        } else if self.config.software_limits.is_some() && self.would_leave(&next) {
-            Some(ErrorId::SoftwareLimitReached)
-        } else {
-            None
+    // Inlined, so that a set-point goes from registers to its place and is not copied through memory, which
+    // takes longer than computing it.
+    #[inline(always)]
+    fn publish(&mut self, next: Setpoint) {
+        self.setpoint = next;
+        if next.velocity != 0.0 {
+            self.last_direction = if next.velocity < 0.0 { -1.0 } else { 1.0 };
         }
     }
 
+    /// Enters ErrorStop and publishes the first set-point of the ramp, which starts at the last one published.
     #[cold]
-    /// Enters ErrorStop and gives the set-point of this scan: the first of the ramp, which starts at the last
-    /// set-point published.
-    fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) -> Setpoint {
+    fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
         self.trip(error, 0, Reaction::Ramp, scan, log);
-        match &mut self.motion {
+        let next = match &mut self.motion {
             Motion::Run { plan, elapsed } => {
                 *elapsed = 1;
                 plan.at(1)
             }
             Motion::Follow | Motion::Hold => Setpoint::at_rest(self.setpoint.position),
+        };
+        self.publish(next);
+    }
+
+    /// Whether an endless motion, stopped from its next set-point on, would come to rest outside the software
+    /// limits.
+    fn would_leave(&self) -> bool {
+        match (self.config.software_limits, &self.owner, &self.motion) {
+            (Some(limits), Some(owner), Motion::Run { plan, elapsed })
+                if matches!(owner.work, Work::Velocity { .. }) =>
+            {
+                self.would_stop_outside(limits, &plan.at(*elapsed))
+            }
+            _ => false,
         }
     }
 
+    /// Whether a ramp to rest from `next` on would end outside `min` to `max` (u), on the side it moves to.
     #[inline(never)]
-    /// Whether an endless motion, stopped from `next` on, would come to rest outside the software limits.
-    fn would_leave(&self, next: &Setpoint) -> bool {
-        let (Some((min, max)), Some(owner)) = (self.config.software_limits, &self.owner) else {
-            return false;
-        };
-        if !matches!(owner.work, Work::Velocity { .. }) {
-            return false;
-        }
+    fn would_stop_outside(&self, (min, max): (f64, f64), next: &Setpoint) -> bool {
         let rest = match self
             .planner
             .ramp_to(next, 0.0, &self.stop_limits(), &self.in_force)
