@@ -128,7 +128,7 @@ impl GridPlan {
     /// From [`GridPlan::scans`] on it is rest on the target, to the bit; only at order 4 the snap of the
     /// last segment shows at the last scan itself. The position never leaves the way from start to target
     /// and never steps back.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, scan: u64) -> Setpoint {
         let scans = u64::from(self.scans);
         if scan < scans {
