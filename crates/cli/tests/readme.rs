@@ -16,11 +16,18 @@ fn readme() -> String {
 fn blocks(language: &str) -> Vec<String> {
     let text = readme();
     let fence = format!("```{language}\n");
-    text.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap().to_string()).collect()
+    text.split(&fence)
+        .skip(1)
+        .map(|rest| rest.split("```").next().unwrap().to_string())
+        .collect()
 }
 
 fn standstill(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_standstill")).current_dir(folder).args(arguments).output().unwrap()
+    Command::new(env!("CARGO_BIN_EXE_standstill"))
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap()
 }
 
 /// A fresh folder with the README's script in it, changed by `edit`.
@@ -41,10 +48,15 @@ fn the_script_prints_what_stands_under_it() {
 
 #[test]
 fn the_mistake_is_reported_as_shown() {
-    let folder = folder_with_script("readme_mistake", |script| script.replacen("Execute", "Exceute", 1));
+    let folder = folder_with_script("readme_mistake", |script| {
+        script.replacen("Execute", "Exceute", 1)
+    });
     let output = standstill(&folder, &["run", "there.scan.json"]);
     assert_eq!(output.status.code(), Some(3));
-    assert_eq!(String::from_utf8(output.stderr).unwrap().trim(), blocks("text")[1].trim());
+    assert_eq!(
+        String::from_utf8(output.stderr).unwrap().trim(),
+        blocks("text")[1].trim()
+    );
 }
 
 #[test]

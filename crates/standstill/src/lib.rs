@@ -59,8 +59,8 @@ pub mod prelude {
         Standard, StartState,
     };
     pub use standstill_blocks::administrative::{
-        mc_power::McPower, mc_read_actual_position::McReadActualPosition, mc_read_axis_error::McReadAxisError,
-        mc_read_status::McReadStatus, mc_reset::McReset,
+        mc_power::McPower, mc_read_actual_position::McReadActualPosition,
+        mc_read_axis_error::McReadAxisError, mc_read_status::McReadStatus, mc_reset::McReset,
     };
     pub use standstill_blocks::homing::mc_home::McHome;
     pub use standstill_blocks::single_axis::{
