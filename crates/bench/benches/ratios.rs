@@ -108,7 +108,7 @@ fn trapezoid_sample() -> impl FnMut() -> f64 {
     move || {
         time(scans, || {
             for scan in 0..scans {
-                black_box(black_box(&plan).at(black_box(scan as f64 * CYCLE)));
+                black_box(&black_box(&plan).at(black_box(scan as f64 * CYCLE)));
             }
         })
     }
@@ -120,7 +120,7 @@ fn scan_in_motion() -> impl FnMut() -> f64 {
         let mut axis = started.clone();
         let took = time(scans, || {
             for _ in 0..scans {
-                black_box(black_box(&mut axis).scan());
+                black_box(&black_box(&mut axis).scan());
             }
         });
         assert!(axis.to_target.outputs.active);
@@ -134,7 +134,7 @@ fn executor_scan_in_motion() -> impl FnMut() -> f64 {
         let mut rig = started.clone();
         let took = time(scans, || {
             for _ in 0..scans {
-                assert!(black_box(black_box(&mut rig).scan()).is_ok());
+                assert!(black_box(&black_box(&mut rig).scan()).is_ok());
             }
         });
         assert!(rig.program.to_target.outputs.active);
@@ -148,7 +148,7 @@ fn grid_sample() -> impl FnMut() -> f64 {
     move || {
         time(scans, || {
             for scan in 0..scans {
-                black_box(black_box(&plan).at(black_box(scan)));
+                black_box(&black_box(&plan).at(black_box(scan)));
             }
         })
     }
@@ -167,7 +167,7 @@ fn grid_plan() -> impl FnMut() -> f64 {
             } in black_box(&moves)
             {
                 let plan = GridPlan::new(Method::Overlapped, *start, *target, limits, *cycle);
-                assert!(black_box(plan).is_ok());
+                assert!(black_box(&plan).is_ok());
             }
         })
     }
@@ -186,7 +186,7 @@ fn ramp_sample() -> impl FnMut() -> f64 {
     move || {
         time(scans, || {
             for scan in 0..scans {
-                black_box(black_box(&plan).at(black_box(scan)));
+                black_box(&black_box(&plan).at(black_box(scan)));
             }
         })
     }
@@ -198,7 +198,7 @@ fn ramp_plan() -> impl FnMut() -> f64 {
         time(starts.len() as u64, || {
             for start in black_box(&starts) {
                 let plan = RampPlan::new(start, 0.0, &LIMITS, &LIMITS, CYCLE);
-                assert!(black_box(plan).is_ok());
+                assert!(black_box(&plan).is_ok());
             }
         })
     }

@@ -42,11 +42,25 @@ impl<P: Planner> Axis<P> {
                 // A drive that counts increments needs a scaling; take one increment as one unit.
                 (DrivePosition::Increments(increments), None) => increments as f64,
             };
+            // In most scans nothing but the position changes.
+            if self.is_steady(feedback) {
+                return;
+            }
             self.follow_power(feedback, scan, log);
         }
         self.finish_reset();
     }
 
+    /// Whether the axis is in operation and stays so, with nothing to react to.
+    fn is_steady(&self, feedback: &DriveFeedback) -> bool {
+        self.power.on
+            && feedback.enabled
+            && feedback.fault.is_none()
+            && self.reset.is_none()
+            && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop)
+    }
+
+    #[inline(never)]
     fn follow_power(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
         let was_on = self.power.on;
         self.power.on = feedback.enabled;

@@ -140,7 +140,7 @@ impl GridPlan {
     /// From [`GridPlan::scans`] on it is rest on the target, to the bit; only at order 4 the snap of the
     /// last segment shows at the last scan itself. The position never leaves the way from start to target
     /// and never steps back.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, scan: u64) -> Setpoint {
         let scans = u64::from(self.scans);
         if scan < scans {
@@ -228,7 +228,7 @@ impl GridPlan {
 
     /// The state at constant velocity, `left` scans before the end: the sums in closed form (docs/planner.md,
     /// eq. 21a). Most scans of a long move are such ones.
-    #[inline]
+    #[inline(always)]
     fn cruise_at(&self, scan: i64, left: i64) -> Setpoint {
         let [a, b, c, _] = self.boxes.map(i64::from);
         let (half_factorial, factorial, product) = match self.order {
