@@ -121,7 +121,7 @@ impl Plan for StandardPlan {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn at(&self, scan: u64) -> Setpoint {
         match self {
             Self::Grid(grid) => grid.at(scan),

@@ -31,6 +31,7 @@ pub(super) struct Reset {
 
 impl<P: Planner> Axis<P> {
     /// Latches the drive's feedback of this scan and lets the state follow it. Called before any block.
+    #[inline]
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
         self.feedback = *feedback;
         if feedback.comms == Comms::Lost {
@@ -98,6 +99,7 @@ impl<P: Planner> Axis<P> {
 
     /// MC_Power: power is wanted or not. With `false` all commands are aborted in this call and the axis
     /// goes to Disabled the configured way (V9a).
+    #[inline]
     pub fn set_power(&mut self, wanted: bool, source: Source, log: &mut Log) {
         self.power.wanted = wanted;
         if wanted {

@@ -12,6 +12,7 @@ impl<P: Planner> Axis<P> {
     ///
     /// Cost: one evaluation of the plan; at a hand-over at most one plan per waiting command; with software
     /// limits one ramp plan per scan of an endless motion.
+    #[inline]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
         match &mut self.motion {
             Motion::Follow => self.publish(Setpoint::at_rest(self.actual)),
