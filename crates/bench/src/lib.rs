@@ -12,4 +12,4 @@ mod trapezoid;
 
 pub use one_axis::{CYCLE, Executed, LIMITS, OneAxis, Program, TARGET};
 pub use random::{Move, Random};
-pub use trapezoid::{Sample, Trapezoid};
+pub use trapezoid::{Sample, Trapezoid, trapezoid};
