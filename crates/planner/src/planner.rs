@@ -1,6 +1,6 @@
 //! The seam between an axis and the maths: what an axis may ask of any planner.
 
-use crate::{Excess, GridPlan, Limits, PlanError, RampPlan, Setpoint};
+use crate::{Excess, GridPlan, Limits, OnlinePlan, PlanError, RampPlan, Setpoint};
 
 /// Plans moves for an axis.
 ///
@@ -55,7 +55,7 @@ pub trait Plan: Copy + core::fmt::Debug {
 }
 
 /// The planner of the product: the shortest grid plan of the overlapped family from rest, a ramp for
-/// velocities, and from motion a brake to rest followed by a grid plan.
+/// velocities, and from motion an online plan.
 #[derive(Clone, Copy, Debug)]
 pub struct Standard {
     cycle: f64,
@@ -63,14 +63,21 @@ pub struct Standard {
 
 /// A plan of [`Standard`].
 #[derive(Clone, Copy, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "without a heap a plan is as large as the largest"
+)]
 pub enum StandardPlan {
     /// From rest to rest, every switch on the grid.
     Grid(GridPlan),
     /// To a velocity.
     Ramp(RampPlan),
-    /// A brake to rest, then from rest to rest.
-    BrakeThenGrid(RampPlan, GridPlan),
+    /// From motion to rest.
+    Online(OnlinePlan),
 }
+
+/// A plan is copied about by value, once a command.
+const _: () = assert!(size_of::<StandardPlan>() <= 1536);
 
 impl Standard {
     /// A planner for the sample time `cycle` (s).
@@ -94,10 +101,7 @@ impl Planner for Standard {
             return GridPlan::new(Overlapped, start.position, target, limits, self.cycle)
                 .map(StandardPlan::Grid);
         }
-        let brake = RampPlan::new(start, 0.0, limits, before, self.cycle)?;
-        let rest = brake.at(u64::from(brake.scans())).position;
-        let grid = GridPlan::new(Overlapped, rest, target, limits, self.cycle)?;
-        Ok(StandardPlan::BrakeThenGrid(brake, grid))
+        OnlinePlan::new(start, target, limits, before, self.cycle).map(StandardPlan::Online)
     }
 
     fn ramp_to(
@@ -116,8 +120,7 @@ impl Plan for StandardPlan {
         match self {
             Self::Grid(grid) => grid.scans(),
             Self::Ramp(ramp) => ramp.scans(),
-            // Both counts are below 2^31, so the sum fits.
-            Self::BrakeThenGrid(brake, grid) => brake.scans() + grid.scans(),
+            Self::Online(plan) => plan.scans(),
         }
     }
 
@@ -126,21 +129,15 @@ impl Plan for StandardPlan {
         match self {
             Self::Grid(grid) => grid.at(scan),
             Self::Ramp(ramp) => ramp.at(scan),
-            Self::BrakeThenGrid(brake, grid) => {
-                let braking = u64::from(brake.scans());
-                if scan <= braking {
-                    brake.at(scan)
-                } else {
-                    grid.at(scan - braking)
-                }
-            }
+            Self::Online(plan) => plan.at(scan),
         }
     }
 
     fn excess(&self) -> Option<Excess> {
         match self {
             Self::Grid(_) => None,
-            Self::Ramp(ramp) | Self::BrakeThenGrid(ramp, _) => ramp.excess(),
+            Self::Ramp(ramp) => ramp.excess(),
+            Self::Online(plan) => plan.excess(),
         }
     }
 }

@@ -159,7 +159,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
             instance: RUNTIME,
         };
         for axis in &mut self.axes {
-            axis.set_power(false, source, &mut self.log);
+            axis.switch_off(source, &mut self.log);
         }
     }
 

@@ -259,7 +259,7 @@ fn an_undefined_enum_number_is_traced_as_its_number_and_refused_with_a_note() {
     let note = &outcome.trace.notes()[0];
     assert_eq!(
         (note.subject.as_str(), note.text.as_str()),
-        ("m", "refused: 110 BufferModeInvalid, BufferMode 77.0")
+        ("m", "refused: 110 BufferModeInvalid, BufferMode 77")
     );
 }
 

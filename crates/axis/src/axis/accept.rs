@@ -11,6 +11,9 @@ use crate::{
 };
 use standstill_planner::{Excess, Field, Limits, Plan, PlanError, Planner};
 
+/// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
+const ROUNDING: f64 = 1e-9;
+
 /// When an admitted command starts.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Way {
@@ -103,7 +106,7 @@ impl<P: Planner> Axis<P> {
             AxisState::Standstill if buffered && !self.queue.is_empty() => self.wait(),
             AxisState::Standstill => Ok(Way::Now),
             AxisState::Homing if stop || (home && !buffered) => Ok(Way::Now),
-            AxisState::Homing if buffered => self.wait(),
+            AxisState::Homing if buffered && !stop => self.wait(),
             AxisState::Homing => refuse(ErrorId::InHoming),
             // The same instance may stop again with other values (V7a).
             AxisState::Stopping
@@ -111,7 +114,7 @@ impl<P: Planner> Axis<P> {
             {
                 Ok(Way::Now)
             }
-            AxisState::Stopping if buffered && !stop => self.wait(),
+            AxisState::Stopping if buffered && !stop && !home => self.wait(),
             AxisState::Stopping => refuse(ErrorId::InStopping),
             AxisState::DiscreteMotion | AxisState::ContinuousMotion | AxisState::SynchronizedMotion => {
                 if home && (!buffered || self.predecessor_is_endless()) {
@@ -159,6 +162,16 @@ impl<P: Planner> Axis<P> {
                     ));
                 }
                 let position = self.finite("Position", position, source, log)?;
+                self.allowed(position).map_err(|error| {
+                    self.refuse(
+                        "Position",
+                        position,
+                        self.broken_software_limit(position),
+                        error,
+                        source,
+                        log,
+                    )
+                })?;
                 if self.config.needs_homed && !self.homed {
                     return Err(self.refuse("Position", position, f64::NAN, ErrorId::NotHomed, source, log));
                 }
@@ -267,6 +280,10 @@ impl<P: Planner> Axis<P> {
         match planned {
             Ok(plan) => Ok(Motion::Run { plan, elapsed: 0 }),
             Err(PlanError::TooLong { .. }) => Err(ErrorId::MoveTooLong),
+            // Distance over cycle^n does not fit into a number: longer than anything countable.
+            Err(PlanError::InvalidInput {
+                field: Field::Cycle, ..
+            }) => Err(ErrorId::MoveTooLong),
             Err(PlanError::InvalidInput {
                 field: Field::Target, ..
             }) => Err(ErrorId::PositionInvalid),
@@ -306,6 +323,20 @@ impl<P: Planner> Axis<P> {
         self.refuse(pin, value, limit, error, source, log)
     }
 
+    /// The software limit `target` is beyond (u).
+    fn broken_software_limit(&self, target: f64) -> f64 {
+        match self.config.software_limits {
+            Some((min, max)) => {
+                if target > max {
+                    max
+                } else {
+                    min
+                }
+            }
+            None => f64::NAN,
+        }
+    }
+
     /// Where a positioning command ends (u).
     fn target(&self, entry: &Entry) -> f64 {
         match entry.work {
@@ -315,8 +346,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// What of an excess over a command's limits is beyond those of the axis as well. A faster motion that
-    /// a slower command takes over from is no excess.
+    /// What of an excess over a command's limits is beyond those of the axis as well, rounding apart. A faster
+    /// motion that a slower command takes over from is no excess.
     pub(super) fn beyond_axis(&self, excess: Excess, limits: &Limits) -> Option<Excess> {
         let axis = &self.config.limits;
         let beyond = |excess: f64, axis: f64, limit: f64| {
@@ -326,7 +357,7 @@ impl<P: Planner> Axis<P> {
             } else {
                 excess
             };
-            if left > 0.0 { left } else { 0.0 }
+            if left > axis * ROUNDING { left } else { 0.0 }
         };
         let beyond = Excess {
             velocity: beyond(excess.velocity, axis.velocity, limits.velocity),

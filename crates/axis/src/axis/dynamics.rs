@@ -100,15 +100,7 @@ impl<P: Planner> Axis<P> {
             return Err(self.refuse("Velocity", value, f64::NAN, ErrorId::VelocityInvalid, source, log));
         }
         let limit = self.config.limits.velocity;
-        let size = self.within(
-            "Velocity",
-            value.abs(),
-            limit,
-            ErrorId::VelocityAboveLimit,
-            source,
-            log,
-        )?;
-        Ok(if value < 0.0 { -size } else { size })
+        self.within("Velocity", value, limit, ErrorId::VelocityAboveLimit, source, log)
     }
 
     /// Limits of a ramp nobody commanded: power-off, ErrorStop.
@@ -139,6 +131,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// `value` if its magnitude is within `limit`, else what the axis is set to do about it.
     fn within(
         &self,
         pin: &'static str,
@@ -148,9 +141,10 @@ impl<P: Planner> Axis<P> {
         source: Source,
         log: &mut Log,
     ) -> Result<f64, ErrorId> {
-        if value <= limit {
+        if value.abs() <= limit {
             return Ok(value);
         }
+        let limit = if value < 0.0 { -limit } else { limit };
         match self.config.above_limit {
             AboveLimit::Clamp => {
                 self.record(Event::Clamped { pin, value, limit }, source, log);

@@ -48,6 +48,10 @@ struct Power {
     going_off: bool,
     /// Power was lost: it does not come back before a reset or a new rising Enable.
     tripped: bool,
+    /// What the last MC_Power of this scan asked for, and which instance.
+    asked: Option<(bool, InstanceId)>,
+    /// The instance that spoke last in the scan before.
+    decider: Option<InstanceId>,
 }
 
 /// What an axis will do next, see [`Axis::outlook`]; for searches over all reachable states.
@@ -169,6 +173,8 @@ impl<P: Planner> Axis<P> {
                 on: powered,
                 going_off: false,
                 tripped: false,
+                asked: None,
+                decider: None,
             },
             error: ErrorId::None,
             error_code: 0,

@@ -99,8 +99,39 @@ impl<P: Planner> Axis<P> {
 
     /// MC_Power: power is wanted or not. With `false` all commands are aborted in this call and the axis
     /// goes to Disabled the configured way (V9a).
+    ///
+    /// Should several instances speak in one scan, the last call decides (V9b): whoever decided in the scan
+    /// before is obeyed at once, others at the end of the scan if nobody spoke after them.
     #[inline]
     pub fn set_power(&mut self, wanted: bool, source: Source, log: &mut Log) {
+        self.power.asked = Some((wanted, source.instance));
+        if self
+            .power
+            .decider
+            .is_none_or(|decider| decider == source.instance)
+        {
+            self.power.decider = Some(source.instance);
+            self.switch(wanted, source, log);
+        }
+    }
+
+    /// Switches the axis off whatever MC_Power says: the runtime stops.
+    pub fn switch_off(&mut self, source: Source, log: &mut Log) {
+        self.power.asked = None;
+        self.switch(false, source, log);
+    }
+
+    /// The end of a scan's calls: the last MC_Power decides.
+    pub(super) fn apply_power(&mut self, scan: u64, log: &mut Log) {
+        if let Some((wanted, instance)) = self.power.asked.take()
+            && self.power.decider != Some(instance)
+        {
+            self.power.decider = Some(instance);
+            self.switch(wanted, Source { scan, instance }, log);
+        }
+    }
+
+    fn switch(&mut self, wanted: bool, source: Source, log: &mut Log) {
         self.power.wanted = wanted;
         if wanted {
             return;
@@ -204,6 +235,7 @@ impl<P: Planner> Axis<P> {
 
     #[cold]
     fn try_reset(&mut self) {
+        let reached = self.goal_reached();
         let Some(reset) = &mut self.reset else { return };
         let id = reset.id;
         if self.state == AxisState::ErrorStop {
@@ -214,7 +246,7 @@ impl<P: Planner> Axis<P> {
                 self.fates.record(id, Fate::Failed(ErrorId::CauseStillPresent));
                 return;
             }
-            let moving = matches!(self.motion, Motion::Run { .. });
+            let moving = matches!(self.motion, Motion::Run { .. }) && !reached;
             let unwanted = self.power.on && !self.power.wanted;
             if moving || unwanted || self.feedback.fault.is_some() {
                 return;

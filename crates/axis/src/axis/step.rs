@@ -11,9 +11,15 @@ impl<P: Planner> Axis<P> {
     /// Computes the set-point for the end of scan `scan`, then decides completion and hand-over.
     ///
     /// Cost: one evaluation of the plan; at a hand-over at most one plan per waiting command; with software
-    /// limits one ramp plan per scan of an endless motion.
+    /// limits one ramp plan per scan of an endless motion or a stop.
     #[inline]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
+        self.apply_power(scan, log);
+        if self.owner.is_none() && self.goal_reached() {
+            // A ramp nobody commanded ended in the scan before; until then power stays on, so that the drive
+            // gets the last set-point.
+            self.motion = Motion::Hold;
+        }
         match &mut self.motion {
             Motion::Follow => self.publish(Setpoint::at_rest(self.actual)),
             Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
@@ -57,40 +63,52 @@ impl<P: Planner> Axis<P> {
         self.publish(next);
     }
 
-    /// Whether an endless motion, stopped from its next set-point on, would come to rest outside the software
-    /// limits.
+    /// Whether this is the last scan in which the stop dynamics can keep a motion that would leave the
+    /// software limits inside them.
+    #[inline]
     fn would_leave(&self) -> bool {
-        match (self.config.software_limits, &self.owner, &self.motion) {
-            (Some(limits), Some(owner), Motion::Run { plan, elapsed })
-                if matches!(owner.work, Work::Velocity { .. }) =>
-            {
-                self.would_stop_outside(limits, &plan.at(*elapsed))
+        match (self.config.software_limits, &self.motion) {
+            (Some(limits), Motion::Run { plan, elapsed }) => {
+                self.would_leave_from(&plan.at(*elapsed), limits)
             }
             _ => false,
         }
     }
 
-    /// Whether a ramp to rest from `next` on would end outside `min` to `max` (u), on the side it moves to.
+    /// The same for the next set-point and limits `min` and `max` (u).
     #[inline(never)]
-    fn would_stop_outside(&self, (min, max): (f64, f64), next: &Setpoint) -> bool {
-        let rest = match self
-            .planner
-            .ramp_to(next, 0.0, &self.stop_limits(), &self.in_force)
-        {
-            Ok(ramp) => ramp.at(u64::from(ramp.scans())).position,
-            Err(_) => next.position,
+    fn would_leave_from(&self, next: &Setpoint, (min, max): (f64, f64)) -> bool {
+        let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
+        let leaving = match self.owner.as_ref().map(|owner| &owner.work) {
+            Some(Work::Velocity { .. }) => true,
+            Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan()),
+            // Targets were checked when the command was taken.
+            Some(Work::Position(_) | Work::Distance(_) | Work::Home(_)) | None => false,
         };
-        (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min)
+        leaving
+            && leaves(
+                match self
+                    .planner
+                    .ramp_to(next, 0.0, &self.stop_limits(), &self.in_force)
+                {
+                    Ok(ramp) => ramp.at(u64::from(ramp.scans())).position,
+                    Err(_) => next.position,
+                },
+            )
+    }
+
+    /// Where the running plan has its goal (u).
+    fn end_of_plan(&self) -> f64 {
+        match &self.motion {
+            Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
+            Motion::Follow | Motion::Hold => self.setpoint.position,
+        }
     }
 
     /// Completion and hand-over.
     fn settle(&mut self, scan: u64, log: &mut Log) {
         let reached = self.goal_reached();
         let Some(owner) = &self.owner else {
-            if reached && matches!(self.motion, Motion::Run { .. }) {
-                // A ramp nobody commanded has ended.
-                self.motion = Motion::Hold;
-            }
             if self.state == AxisState::Standstill && !self.queue.is_empty() {
                 // MC_Stop released the axis in this scan (note 6).
                 self.hand_over(scan, log);

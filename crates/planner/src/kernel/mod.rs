@@ -16,18 +16,20 @@ mod scale;
 mod second;
 mod spans;
 mod third;
+mod zero;
 
 pub use root::{MAX_STEPS, falling_root};
 pub use scale::Scale;
 pub use second::second;
 pub use spans::{Span, Spans};
 pub use third::{Bounds, Profile, THIRD_SPANS, third};
+pub use zero::{Point, zero};
 
 /// How far outside a bound a state still counts as on it, relative to the bound.
 pub const ON_LIMIT: f64 = 1e-9;
 
 /// Gaps smaller than this, relative to what was added up to get them, are rounding: nothing moves for them.
-const NOISE: f64 = 16.0 * f64::EPSILON;
+pub(crate) const NOISE: f64 = 16.0 * f64::EPSILON;
 
 /// A pair of bounds as magnitudes: the value stays in `-minus ..= plus`. Infinite means no bound.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,5 +1,6 @@
 //! Units in which the bound on the highest derivative is 1.
 
+use super::Spans;
 use crate::math::sqrt;
 
 /// A change of units: time by a power of two, which is exact, and lengths so that the input bound is 1.
@@ -13,6 +14,12 @@ pub struct Scale {
 }
 
 impl Scale {
+    /// The user's own units, whose input bounds may differ by sign (order 2).
+    pub(crate) const NONE: Self = Self {
+        time: 1.0,
+        input: 1.0,
+    };
+
     /// Units for the input bound `input` and the bound `rate` of the derivative one below (`levels` 1) or
     /// two below (`levels` 2) it.
     pub fn new(rate: f64, input: f64, levels: u32) -> Self {
@@ -24,10 +31,10 @@ impl Scale {
         }
     }
 
-    /// `value`, `levels` (at most 3) integrations above the input, in the units of the kernel.
+    /// `value`, `levels` (at most 4) integrations above the input, in the units of the kernel.
     pub fn inward(&self, value: f64, levels: u32) -> f64 {
         let mut scaled = value / self.input;
-        for _ in 0..levels.min(3) {
+        for _ in 0..levels.min(4) {
             scaled /= self.time;
         }
         scaled
@@ -36,6 +43,13 @@ impl Scale {
     /// A duration of the kernel in seconds.
     pub const fn seconds(&self, duration: f64) -> f64 {
         duration * self.time
+    }
+
+    /// Spans as (seconds, input in the user's unit).
+    pub(crate) fn outward<const N: usize>(&self, spans: &Spans<N>) -> impl Iterator<Item = (f64, f64)> {
+        spans
+            .iter()
+            .map(|span| (self.seconds(span.duration), self.input(span.input)))
     }
 
     /// An input of the kernel in the user's unit.

@@ -62,6 +62,17 @@ impl<const N: usize> Spans<N> {
         self.list.iter().take(self.len)
     }
 
+    /// The spans in order of time, each in `parts` of the same length.
+    pub fn split(&self, parts: usize) -> impl Iterator<Item = Span> {
+        self.iter().flat_map(move |span| {
+            let part = Span {
+                duration: span.duration / parts as f64,
+                ..*span
+            };
+            core::iter::repeat_n(part, parts)
+        })
+    }
+
     /// Number of spans.
     pub const fn len(&self) -> usize {
         self.len

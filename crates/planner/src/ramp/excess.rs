@@ -29,7 +29,7 @@ pub struct Peaks {
 }
 
 /// The largest magnitudes along `path`, which ends at `goal` (R20).
-pub(super) fn peaks(path: &Path, goal: f64) -> Peaks {
+pub(crate) fn peaks<const N: usize>(path: &Path<N>, goal: f64) -> Peaks {
     let mut peaks = Peaks {
         velocity: goal.abs(),
         ..Peaks::default()
@@ -49,9 +49,17 @@ pub(super) fn peaks(path: &Path, goal: f64) -> Peaks {
     peaks
 }
 
-/// By how much `path`, a ramp to `goal` that starts in the direction `heading` (1 or -1), exceeds `limits`;
-/// `None` if by no more than rounding and [`ON_LIMIT`].
-pub(super) fn excess(path: &Path, goal: f64, heading: f64, limits: &Limits) -> Option<Excess> {
+/// By how much `path`, which ends with the velocity `goal`, exceeds `limits`; `None` if by no more than
+/// rounding and [`ON_LIMIT`].
+///
+/// With a `heading` (1 or -1) the path is a ramp that starts in that direction, and a stop that turns back
+/// exceeds too; without one the path may turn as it likes.
+pub(crate) fn excess<const N: usize>(
+    path: &Path<N>,
+    goal: f64,
+    heading: Option<f64>,
+    limits: &Limits,
+) -> Option<Excess> {
     let mut excess = Excess::default();
     let scale = if limits.velocity.is_finite() {
         limits.velocity
@@ -62,7 +70,10 @@ pub(super) fn excess(path: &Path, goal: f64, heading: f64, limits: &Limits) -> O
     path.extremes(small, |state, passes_zero| {
         let velocity = state.velocity;
         let outside = velocity.abs() - limits.velocity;
-        let reversed = if goal == 0.0 { -heading * velocity } else { 0.0 };
+        let reversed = match heading {
+            Some(heading) if goal == 0.0 => -heading * velocity,
+            _ => 0.0,
+        };
         excess.velocity = excess.velocity.max(outside).max(reversed);
 
         // With the motion it raises the speed, against it it lowers it. Where the velocity is nothing but

@@ -113,6 +113,11 @@ pub(super) fn lead_in(state: State, goal: f64, (low, high): (f64, f64), bounds: 
 }
 
 impl Lead {
+    /// Goes on until acceleration and jerk are inside other `bounds` too.
+    pub(super) fn enter(&mut self, bounds: &Box4) {
+        self.add(&enter(self.state, bounds), 0, bounds.jerk);
+    }
+
     fn add<const N: usize>(&mut self, spans: &Spans<N>, steps: u32, jerk: f64) {
         if !spans.is_empty() {
             self.spans.extend(spans);
@@ -143,8 +148,8 @@ const ENTER_SPANS: usize = 2 * RULE_SPANS;
 /// Most spans of [`hasten`]: a push of three and a hold, then [`enter`].
 const HASTEN_SPANS: usize = 4 + ENTER_SPANS;
 
-/// Most spans of [`lead_in`]: [`hasten`], or [`enter`] and [`relieve`].
-pub(super) const LEAD_SPANS: usize = HASTEN_SPANS;
+/// Most spans of a lead: [`hasten`], or [`enter`] and [`relieve`]; then perhaps one rule to other bounds.
+pub(super) const LEAD_SPANS: usize = HASTEN_SPANS + RULE_SPANS;
 
 /// Each round settles acceleration, jerk or the acceleration to come; no later one undoes an earlier.
 const ENTER_ROUNDS: usize = 3;
@@ -271,7 +276,7 @@ fn hasten(state: State, limit: f64, goal: f64, low: f64, bounds: &Box4) -> (Span
 }
 
 /// The velocity once acceleration and jerk are zero as soon as can be.
-fn arrested(state: State, jerk: f64) -> f64 {
+pub(super) fn arrested(state: State, jerk: f64) -> f64 {
     state
         .after_all(&second(state.a, state.j, 0.0, Sides::both(jerk)))
         .v

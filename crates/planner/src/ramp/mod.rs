@@ -4,18 +4,20 @@
 //! maths of one transfer is in [`kernel`](crate::kernel). What does not: positions to reach. Equations (R1)
 //! and on, and the definition of a viable state, are in `docs/planner-ramps.md`.
 
-mod excess;
+pub(crate) mod excess;
 mod inside;
-mod path;
+pub(crate) mod path;
 mod slope;
-mod solve;
+pub(crate) mod solve;
 
 pub use excess::{Excess, Peaks};
 
-use crate::kernel::ON_LIMIT;
-use crate::{Field, Limits, Order, PlanError, Setpoint};
+use crate::{Field, Limits, PlanError, Setpoint};
 use path::Path;
-use solve::{Problem, Solution};
+use solve::{Course, Ramp, Ramps, heading};
+
+/// Most pieces of a plan.
+const MAX_PIECES: usize = 17;
 
 /// Largest number of scans of a plan.
 const MAX_SCANS: f64 = 2_147_483_647.0;
@@ -32,7 +34,7 @@ pub struct RampPlan {
     cycle: f64,
     scans: u32,
     steps: u32,
-    path: Path,
+    path: Path<MAX_PIECES>,
     excess: Option<Excess>,
 }
 
@@ -79,19 +81,17 @@ impl RampPlan {
     ) -> Result<Self, PlanError> {
         check(start, velocity, limits, before, cycle)?;
         let order = limits.order();
-        let heading = heading(start, velocity, limits);
-        let solution = Problem {
-            start: mirrored(start, heading),
-            goal: heading * velocity,
-            limits,
-            wider: &wider(limits, before),
-        };
-        let Solution { spans, steps, viable } = match order {
-            Order::Two => solution.second_order(),
-            Order::Three => solution.third_order(),
-            Order::Four => solution.fourth_order(),
-        };
-        let inputs = spans.iter().map(|span| (span.duration, heading * span.input));
+        let heading = heading(start, velocity, limits.velocity, order);
+        let ramps = Ramps::new(limits, &wider(limits, before));
+        let Ramp {
+            spans, steps, viable, ..
+        } = ramps.ramp(
+            &ramps.state_inward(start),
+            ramps.inward(velocity, 1),
+            heading,
+            Course::Kept,
+        );
+        let inputs = ramps.scale().outward(&spans);
         let path = Path::lay(order, start, inputs, velocity);
         Ok(Self {
             start: *start,
@@ -106,7 +106,7 @@ impl RampPlan {
             excess: if viable {
                 None
             } else {
-                excess::excess(&path, velocity, heading, limits)
+                excess::excess(&path, velocity, Some(heading), limits)
             },
             path,
         })
@@ -180,7 +180,7 @@ impl RampPlan {
     }
 }
 
-fn check(
+pub(crate) fn check(
     start: &Setpoint,
     velocity: f64,
     limits: &Limits,
@@ -211,42 +211,8 @@ fn check(
     Ok(())
 }
 
-/// The direction the motion has, 1 or -1: the sign of the velocity, or if that is nothing but rounding, of
-/// the first derivative that moves it.
-fn heading(start: &Setpoint, goal: f64, limits: &Limits) -> f64 {
-    let order = limits.order();
-    let small = if limits.velocity.is_finite() {
-        ON_LIMIT * limits.velocity
-    } else {
-        0.0
-    };
-    let decisive = [
-        (start.velocity, small),
-        (
-            start.acceleration,
-            if order >= Order::Three { 0.0 } else { f64::INFINITY },
-        ),
-        (start.jerk, if order >= Order::Four { 0.0 } else { f64::INFINITY }),
-        (goal, 0.0),
-    ];
-    decisive
-        .iter()
-        .find(|(value, threshold)| value.abs() > *threshold)
-        .map_or(1.0, |(value, _)| if *value < 0.0 { -1.0 } else { 1.0 })
-}
-
-fn mirrored(start: &Setpoint, heading: f64) -> Setpoint {
-    Setpoint {
-        position: 0.0,
-        velocity: heading * start.velocity,
-        acceleration: heading * start.acceleration,
-        jerk: heading * start.jerk,
-        snap: 0.0,
-    }
-}
-
 /// The larger one of each finite pair; an infinite old bound says nothing, the new one stays.
-fn wider(limits: &Limits, before: &Limits) -> Limits {
+pub(crate) fn wider(limits: &Limits, before: &Limits) -> Limits {
     let larger = |new: f64, old: f64| {
         if old.is_finite() && old > new { old } else { new }
     };
@@ -260,7 +226,7 @@ fn wider(limits: &Limits, before: &Limits) -> Limits {
 }
 
 /// The least whole number of cycles that covers `duration`, but for [`GRID_SLACK`]; none if it is too large.
-fn scans(duration: f64, cycle: f64) -> Option<u32> {
+pub(crate) fn scans(duration: f64, cycle: f64) -> Option<u32> {
     let exact = duration / cycle;
     let needed = exact * (1.0 - GRID_SLACK);
     if !(needed <= MAX_SCANS) {

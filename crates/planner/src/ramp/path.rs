@@ -1,37 +1,33 @@
-//! A ramp as a list of polynomial pieces, its values and its extremes.
+//! A motion as a list of polynomial pieces, its values and its extremes.
 
-use super::inside::LEAD_SPANS;
-use crate::kernel::{THIRD_SPANS, falling_root};
+use crate::kernel::falling_root;
 use crate::math::sqrt;
 use crate::{Order, Setpoint};
-
-/// Most pieces of a ramp: getting inside the limits, then a third-order profile.
-pub(super) const MAX_PIECES: usize = LEAD_SPANS + THIRD_SPANS;
 
 /// What a jerk of zero may be off by, relative to the largest one before.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// A stretch of constant snap (order 4), jerk (3) or acceleration (2).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Piece {
+pub(crate) struct Piece {
     /// When it ends, from the start of the plan (s).
     end: f64,
     /// The state at `anchor`.
     state: Setpoint,
 }
 
-/// Pieces that follow each other from a start state.
+/// At most `N` pieces that follow each other from a start state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Path {
-    pieces: [Piece; MAX_PIECES],
+pub(crate) struct Path<const N: usize> {
+    pieces: [Piece; N],
     len: usize,
     order: Order,
 }
 
-impl Path {
-    pub(super) fn new(order: Order) -> Self {
+impl<const N: usize> Path<N> {
+    fn new(order: Order) -> Self {
         Self {
-            pieces: [Piece::default(); MAX_PIECES],
+            pieces: [Piece::default(); N],
             len: 0,
             order,
         }
@@ -41,23 +37,32 @@ impl Path {
     ///
     /// The last piece is stored by the state at its end, so that it runs into the end velocity from one
     /// side, without a rounding error that would pass it.
-    pub(super) fn lay(
+    pub(crate) fn lay(
         order: Order,
         start: &Setpoint,
         spans: impl Iterator<Item = (f64, f64)>,
         velocity: f64,
     ) -> Self {
-        let mut path = Self::new(order);
-        let mut state = *start;
-        let mut time = 0.0;
-        let mut largest_jerk: f64 = 0.0;
-        for (duration, input) in spans {
-            state = with_input(&state, order, input);
-            // What rounding left of a jerk that is held at zero would be integrated over a long hold.
-            largest_jerk = largest_jerk.max(state.jerk.abs());
-            if input == 0.0 && state.jerk.abs() <= ROUNDING * largest_jerk {
-                state.jerk = 0.0;
+        let mut path = Self::follow(order, start, spans);
+        if let Some(last) = path.last_mut() {
+            last.state.velocity = velocity;
+            if order >= Order::Three {
+                last.state.acceleration = 0.0;
             }
+            if order == Order::Four {
+                last.state.jerk = 0.0;
+            }
+        }
+        path
+    }
+
+    /// Lays `spans` from `start` on to wherever they end; what does not fit in is left out.
+    pub(crate) fn follow(order: Order, start: &Setpoint, spans: impl Iterator<Item = (f64, f64)>) -> Self {
+        let mut path = Self::new(order);
+        let mut way = Way::new(order, start);
+        let mut time = 0.0;
+        for (duration, input) in spans {
+            let state = way.begin(input);
             let end = time + duration;
             // A span too short to move the clock moves nothing else either.
             if end > time
@@ -67,35 +72,28 @@ impl Path {
                 path.len += 1;
                 time = end;
             }
-            state = moved(&state, duration);
+            way.go(duration);
         }
-        if let Some(last) = path.len.checked_sub(1).and_then(|i| path.pieces.get_mut(i)) {
+        if let Some(last) = path.last_mut() {
             last.state = Setpoint {
-                position: state.position,
-                velocity,
-                acceleration: if order == Order::Two {
-                    last.state.acceleration
-                } else {
-                    0.0
-                },
-                jerk: if order == Order::Three {
-                    last.state.jerk
-                } else {
-                    0.0
-                },
                 snap: last.state.snap,
+                ..way.state
             };
         }
         path
     }
 
+    fn last_mut(&mut self) -> Option<&mut Piece> {
+        self.len.checked_sub(1).and_then(|i| self.pieces.get_mut(i))
+    }
+
     /// When the last piece ends (s).
-    pub(super) fn duration(&self) -> f64 {
+    pub(crate) fn duration(&self) -> f64 {
         self.last().map_or(0.0, |piece| piece.end)
     }
 
     /// Position at the end of the last piece.
-    pub(super) fn end_position(&self) -> Option<f64> {
+    pub(crate) fn end_position(&self) -> Option<f64> {
         self.last().map(|piece| piece.state.position)
     }
 
@@ -104,7 +102,7 @@ impl Path {
     }
 
     /// The state at `time` (s) after the start; at the boundary of two pieces that of the earlier one.
-    pub(super) fn at(&self, time: f64) -> Option<Setpoint> {
+    pub(crate) fn at(&self, time: f64) -> Option<Setpoint> {
         let mut begin = 0.0;
         for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
             if time <= piece.end {
@@ -121,7 +119,7 @@ impl Path {
     }
 
     /// Every piece with its bounds in time, and the state at its start.
-    pub(super) fn stretches(&self) -> impl Iterator<Item = (Stretch, Setpoint)> {
+    pub(crate) fn stretches(&self) -> impl Iterator<Item = (Stretch, Setpoint)> {
         let mut begin = 0.0;
         self.pieces
             .iter()
@@ -145,7 +143,7 @@ impl Path {
     ///
     /// `see` is also shown the states at which the velocity passes zero, from beyond `small` to beyond it
     /// on the other side, and told so, because the bounds of acceleration change there.
-    pub(super) fn extremes(&self, small: f64, mut see: impl FnMut(&Setpoint, bool)) {
+    pub(crate) fn extremes(&self, small: f64, mut see: impl FnMut(&Setpoint, bool)) {
         for (stretch, first) in self.stretches() {
             let length = stretch.end - stretch.begin;
             let state = |time: f64| moved(&stretch.state, stretch.begin + time - stretch.anchor);
@@ -173,17 +171,51 @@ impl Path {
         }
     }
 
-    pub(super) const fn order(&self) -> Order {
+    pub(crate) const fn order(&self) -> Order {
         self.order
     }
 }
 
+/// A state that follows spans one after the other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    pub(crate) state: Setpoint,
+    order: Order,
+    largest_jerk: f64,
+}
+
+impl Way {
+    pub(crate) const fn new(order: Order, start: &Setpoint) -> Self {
+        Self {
+            state: *start,
+            order,
+            largest_jerk: 0.0,
+        }
+    }
+
+    /// The state at the start of a span in which the highest derivative is `input`.
+    pub(crate) fn begin(&mut self, input: f64) -> Setpoint {
+        self.state = with_input(&self.state, self.order, input);
+        // What rounding left of a jerk that is held at zero would be integrated over a long hold.
+        self.largest_jerk = self.largest_jerk.max(self.state.jerk.abs());
+        if input == 0.0 && self.state.jerk.abs() <= ROUNDING * self.largest_jerk {
+            self.state.jerk = 0.0;
+        }
+        self.state
+    }
+
+    /// Follows the span begun for `duration`.
+    pub(crate) fn go(&mut self, duration: f64) {
+        self.state = moved(&self.state, duration);
+    }
+}
+
 /// A piece as it lies in time.
-pub(super) struct Stretch {
+pub(crate) struct Stretch {
     /// Start (s).
-    pub(super) begin: f64,
+    pub(crate) begin: f64,
     /// End (s).
-    pub(super) end: f64,
+    pub(crate) end: f64,
     /// The instant `state` belongs to (s).
     anchor: f64,
     state: Setpoint,
@@ -211,7 +243,7 @@ fn with_input(state: &Setpoint, order: Order, input: f64) -> Setpoint {
 }
 
 /// The state `t` seconds later at constant snap (R21).
-pub(super) fn moved(state: &Setpoint, t: f64) -> Setpoint {
+pub(crate) fn moved(state: &Setpoint, t: f64) -> Setpoint {
     let Setpoint {
         position: p,
         velocity: v,
@@ -229,7 +261,7 @@ pub(super) fn moved(state: &Setpoint, t: f64) -> Setpoint {
 }
 
 /// The zeros of `a + j t + s t^2/2`, in the form that loses no digits; NaN or infinite where there is none.
-pub(super) fn zeros(a: f64, j: f64, s: f64) -> [f64; 2] {
+pub(crate) fn zeros(a: f64, j: f64, s: f64) -> [f64; 2] {
     let root = sqrt(j * j - 2.0 * a * s);
     let sum = if j >= 0.0 { j + root } else { j - root };
     [-2.0 * a / sum, -sum / s]

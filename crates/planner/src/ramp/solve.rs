@@ -1,161 +1,290 @@
-//! The spans of a ramp at each order, mirrored so that the start velocity is not negative.
+//! The spans of a ramp at each order, in the kernel's units.
 
-use super::inside::{self, Box4, State};
-use super::path::MAX_PIECES;
+use super::inside::{self, Box4, LEAD_SPANS, State};
 use super::slope::{Box3, Slope};
-use crate::kernel::{Bounds, ON_LIMIT, Scale, Sides, Spans, second, third};
-use crate::{Limits, Setpoint};
+use crate::kernel::{Bounds, ON_LIMIT, Scale, Sides, Spans, THIRD_SPANS, second, third};
+use crate::{Limits, Order, Setpoint};
 
-/// A ramp to find: everything mirrored so that the motion starts forwards.
+/// Most spans of a ramp: getting inside the limits, then a third-order profile.
+pub(crate) const RAMP_SPANS: usize = LEAD_SPANS + THIRD_SPANS;
+
+/// What a ramp may do with the sign of the velocity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Course {
+    /// Keep it wherever possible: a stop is not to turn back.
+    Kept,
+    /// Anything: the ramp is part of a move to a position.
+    Free,
+}
+
+/// The limits in the kernel's units, shared by all ramps under them.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Problem<'a> {
-    /// Start state; its velocity is not negative, or only by rounding.
-    pub(super) start: Setpoint,
-    /// Velocity to reach (u/s).
-    pub(super) goal: f64,
-    /// Limits to keep.
-    pub(super) limits: &'a Limits,
-    /// The larger of old and new limits, for as long as the start state is outside.
-    pub(super) wider: &'a Limits,
+pub(crate) struct Ramps {
+    order: Order,
+    scale: Scale,
+    velocity: f64,
+    acceleration: f64,
+    deceleration: f64,
+    jerk: f64,
+    before: Before,
 }
 
-/// Spans of (seconds, highest derivative), and the root steps it took.
-pub(super) struct Solution {
-    pub(super) spans: Spans<MAX_PIECES>,
-    pub(super) steps: u32,
+/// What holds, in the kernel's units, for as long as the start state is outside the limits.
+#[derive(Clone, Copy, Debug)]
+struct Before {
+    deceleration: f64,
+    jerk: f64,
+    /// The highest derivative, as a multiple of its new bound.
+    input: f64,
+}
+
+/// One ramp.
+pub(crate) struct Ramp {
+    /// Durations and inputs in the kernel's units.
+    pub(crate) spans: Spans<RAMP_SPANS>,
+    /// How many of the spans bring the start inside the limits.
+    pub(crate) lead: usize,
+    /// Root steps it took.
+    pub(crate) steps: u32,
     /// Whether the start was inside and viable and the ramp keeps its direction, so that it exceeds nothing.
-    pub(super) viable: bool,
+    pub(crate) viable: bool,
 }
 
-impl Problem<'_> {
-    /// The acceleration bounds the ramp itself uses (R11).
+impl Ramps {
+    /// Ramps under `limits`; until a start state is inside them under `wider`, the larger of old and new.
+    pub(crate) fn new(limits: &Limits, wider: &Limits) -> Self {
+        let order = limits.order();
+        let fastest = limits.acceleration.max(limits.deceleration);
+        let (scale, input) = match order {
+            Order::Two => (Scale::NONE, 1.0),
+            Order::Three => (Scale::new(fastest, limits.jerk, 1), wider.jerk / limits.jerk),
+            Order::Four => (Scale::new(fastest, limits.snap, 2), wider.snap / limits.snap),
+        };
+        let inward = |value, derivative| scale.inward(value, levels(order, derivative));
+        Self {
+            order,
+            scale,
+            velocity: inward(limits.velocity, 1),
+            acceleration: inward(limits.acceleration, 2),
+            deceleration: inward(limits.deceleration, 2),
+            jerk: inward(limits.jerk, 3),
+            before: Before {
+                deceleration: inward(wider.deceleration, 2),
+                jerk: inward(wider.jerk, 3),
+                input,
+            },
+        }
+    }
+
+    /// The order of the ramps.
+    pub(crate) const fn order(&self) -> Order {
+        self.order
+    }
+
+    /// The units of the kernel.
+    pub(crate) const fn scale(&self) -> &Scale {
+        &self.scale
+    }
+
+    /// The velocity bound in the kernel's units.
+    pub(crate) const fn velocity(&self) -> f64 {
+        self.velocity
+    }
+
+    /// A derivative of the position, 0 the position itself, in the kernel's units.
+    pub(crate) fn inward(&self, value: f64, derivative: u32) -> f64 {
+        self.scale.inward(value, levels(self.order, derivative))
+    }
+
+    /// A state in the kernel's units; the derivatives that may jump at this order play no part.
+    pub(crate) fn state_inward(&self, state: &Setpoint) -> Setpoint {
+        Setpoint {
+            position: self.inward(state.position, 0),
+            velocity: self.inward(state.velocity, 1),
+            acceleration: self.inward(state.acceleration, 2),
+            jerk: self.inward(state.jerk, 3),
+            snap: 0.0,
+        }
+    }
+
+    /// The ramp from `start` to the velocity `goal`, both in the kernel's units.
+    ///
+    /// `heading` is the direction of the motion ([`heading`]), 1 or -1.
+    pub(crate) fn ramp(&self, start: &Setpoint, goal: f64, heading: f64, course: Course) -> Ramp {
+        let state = State {
+            v: heading * start.velocity,
+            a: heading * start.acceleration,
+            j: heading * start.jerk,
+        };
+        let goal = heading * goal;
+        let mut ramp = match self.order {
+            Order::Two => self.second_order(state.v, goal),
+            Order::Three => self.third_order(state, goal, course),
+            Order::Four => self.fourth_order(state, goal, course),
+        };
+        if heading < 0.0 {
+            ramp.spans = ramp.spans.mirrored();
+        }
+        ramp
+    }
+
+    /// The velocity `start` comes to once acceleration and jerk are zero as soon as can be.
+    pub(crate) fn arrested(&self, start: &Setpoint) -> f64 {
+        let &Setpoint {
+            velocity: v,
+            acceleration: a,
+            jerk: j,
+            ..
+        } = start;
+        match self.order {
+            Order::Two => v,
+            Order::Three => Slope { v, a }.rest(),
+            Order::Four => inside::arrested(State { v, a, j }, self.jerk),
+        }
+    }
+
+    /// The acceleration bounds a ramp itself uses (R11), for a start that moves forwards.
     ///
     /// Forwards, what is above zero raises the speed and what is below lowers it. Where the velocity
     /// changes its sign on the way both do both, so the lower bound of the two holds on that side; `dips`
     /// says that it goes below zero on its way to a goal that is not.
-    fn sides(&self, dips: bool) -> Sides {
-        let lower = self.limits.lower_acceleration();
-        let reverses = self.goal < 0.0;
+    fn sides(&self, goal: f64, dips: bool, course: Course) -> Sides {
+        let lower = self.acceleration.min(self.deceleration);
+        let reverses = goal < 0.0;
         Sides {
-            minus: if reverses { lower } else { self.limits.deceleration },
-            plus: if reverses || dips {
+            minus: if reverses { lower } else { self.deceleration },
+            plus: if dips && goal == 0.0 && course == Course::Free {
+                // What is above zero ends the way back, and only that (O5).
+                self.deceleration
+            } else if reverses || dips {
                 lower
             } else {
-                self.limits.acceleration
+                self.acceleration
             },
         }
     }
 
     /// Order 2: one straight line, or two if the velocity has to come inside its limit first (R12).
-    pub(super) fn second_order(&self) -> Solution {
+    fn second_order(&self, velocity: f64, goal: f64) -> Ramp {
         let mut spans = Spans::new();
-        let sides = self.sides(false);
-        let mut velocity = self.start.velocity;
-        let limit = self.limits.velocity;
+        let sides = self.sides(goal, false, Course::Kept);
+        let limit = self.velocity;
         let viable = velocity <= limit && velocity >= 0.0;
+        let mut velocity = velocity;
         if velocity > limit * (1.0 + ON_LIMIT) {
-            let fast = self.wider.deceleration;
+            let fast = self.before.deceleration;
             spans.push((velocity - limit) / fast, -fast);
             velocity = limit;
         }
-        let change = self.goal - velocity;
+        let lead = spans.len();
+        let change = goal - velocity;
         if change > 0.0 {
             spans.push(change / sides.plus, sides.plus);
         } else {
             spans.push(-change / sides.minus, -sides.minus);
         }
-        Solution {
+        Ramp {
             spans,
+            lead,
             steps: 0,
             viable,
         }
     }
 
     /// Order 3: `(velocity, acceleration)` to `(goal, 0)` (R3).
-    pub(super) fn third_order(&self) -> Solution {
-        let limits = self.limits;
-        let scale = Scale::new(limits.acceleration.max(limits.deceleration), limits.jerk, 1);
+    fn third_order(&self, start: State, goal: f64, course: Course) -> Ramp {
         let start = Slope {
-            v: scale.inward(self.start.velocity, 2),
-            a: scale.inward(self.start.acceleration, 1),
+            v: start.v,
+            a: start.a,
         };
-        let goal = scale.inward(self.goal, 2);
-        let limit = scale.inward(limits.velocity, 2);
         let bounds = Box3 {
-            up: scale.inward(limits.acceleration, 1),
-            down: scale.inward(limits.deceleration, 1),
-            brake_before: scale.inward(self.wider.deceleration, 1),
-            jerk_before: self.wider.jerk / limits.jerk,
+            up: self.acceleration,
+            down: self.deceleration,
+            brake_before: self.before.deceleration,
+            jerk_before: self.before.input,
         };
-        let (lead, steps) = start.lead_in(goal, limit, &bounds);
-        let viable = lead.is_empty() && goal >= 0.0 && start.is_viable(limit);
+        let (lead, steps) = start.lead_in(goal, self.velocity, &bounds);
+        let viable = lead.is_empty() && goal >= 0.0 && start.is_viable(self.velocity);
         let state = start.after_all(&lead);
         let dips = goal >= 0.0 && state.rest() < 0.0;
-        let sides = scaled(self.sides(dips), &scale, 1);
         let mut spans = Spans::new();
         spans.extend(&lead);
-        spans.extend(&second(state.v, state.a, goal, sides));
-        Solution {
-            spans: in_seconds(&spans, &scale),
+        spans.extend(&second(state.v, state.a, goal, self.sides(goal, dips, course)));
+        Ramp {
+            spans,
+            lead: lead.len(),
             steps,
             viable,
         }
     }
 
     /// Order 4: `(velocity, acceleration, jerk)` to `(goal, 0, 0)` (R4 to R10).
-    pub(super) fn fourth_order(&self) -> Solution {
-        let limits = self.limits;
-        let scale = Scale::new(limits.acceleration.max(limits.deceleration), limits.snap, 2);
-        let state = State {
-            v: scale.inward(self.start.velocity, 3),
-            a: scale.inward(self.start.acceleration, 2),
-            j: scale.inward(self.start.jerk, 1),
-        };
-        let goal = scale.inward(self.goal, 3);
-        let limit = scale.inward(limits.velocity, 3);
-        let jerk = scale.inward(limits.jerk, 1);
-        let as_given = Sides {
-            minus: limits.deceleration,
-            plus: limits.acceleration,
-        };
+    fn fourth_order(&self, start: State, goal: f64, course: Course) -> Ramp {
+        let may_turn = goal < 0.0 || course == Course::Free;
         let bounds = Box4 {
-            a: scaled(as_given, &scale, 2),
-            brake_before: scale.inward(self.wider.deceleration, 2),
-            jerk,
-            jerk_before: scale.inward(self.wider.jerk, 1),
-            snap_before: self.wider.snap / limits.snap,
+            a: Sides {
+                minus: self.deceleration,
+                plus: self.acceleration,
+            },
+            brake_before: self.before.deceleration,
+            jerk: self.jerk,
+            jerk_before: self.before.jerk,
+            snap_before: self.before.input,
         };
         let own = |dips| Bounds {
-            v: scaled(self.sides(dips), &scale, 2),
-            a: Sides::both(jerk),
+            v: self.sides(goal, dips, course),
+            a: Sides::both(self.jerk),
         };
-        let low = if goal < 0.0 { -limit } else { 0.0 };
-        let lead = inside::lead_in(state, goal, (low, limit), &bounds, &own(true));
+        let low = if may_turn { -self.velocity } else { 0.0 };
+        let mut lead = inside::lead_in(start, goal, (low, self.velocity), &bounds, &own(true));
+        let inside = lead.spans.len();
+        if goal < 0.0 && course == Course::Free {
+            // What only slows the motion down has to be inside before the velocity passes zero (O5).
+            lead.enter(&Box4 {
+                a: own(false).v,
+                brake_before: own(false).v.minus,
+                jerk_before: self.jerk,
+                snap_before: 1.0,
+                ..bounds
+            });
+        }
         let dips = goal >= 0.0 && (lead.state.v < 0.0 || lead.rest < 0.0);
         let State { v, a, j } = lead.state;
         let profile = third(v, a, j, goal, &own(dips));
         let mut spans = Spans::new();
         spans.extend(&lead.spans);
         spans.extend(&profile.spans);
-        Solution {
-            spans: in_seconds(&spans, &scale),
+        Ramp {
+            spans,
+            lead: inside,
             steps: lead.steps.max(profile.steps),
             viable: lead.viable && goal >= 0.0,
         }
     }
 }
 
-fn scaled(sides: Sides, scale: &Scale, levels: u32) -> Sides {
-    Sides {
-        minus: scale.inward(sides.minus, levels),
-        plus: scale.inward(sides.plus, levels),
-    }
+/// How many integrations the derivative lies above the input.
+const fn levels(order: Order, derivative: u32) -> u32 {
+    (order.degree() as u32).saturating_sub(derivative)
 }
 
-fn in_seconds(spans: &Spans<MAX_PIECES>, scale: &Scale) -> Spans<MAX_PIECES> {
-    let mut seconds = Spans::new();
-    for span in spans.iter() {
-        seconds.push(scale.seconds(span.duration), scale.input(span.input));
-    }
-    seconds
+/// The direction a motion has, 1 or -1: the sign of the velocity, or if that is nothing but rounding beside
+/// its bound `velocity`, of the first derivative that moves it.
+pub(crate) fn heading(start: &Setpoint, goal: f64, velocity: f64, order: Order) -> f64 {
+    let small = if velocity.is_finite() {
+        ON_LIMIT * velocity
+    } else {
+        0.0
+    };
+    let unless_it_jumps = |least| if order >= least { 0.0 } else { f64::INFINITY };
+    let decisive = [
+        (start.velocity, small),
+        (start.acceleration, unless_it_jumps(Order::Three)),
+        (start.jerk, unless_it_jumps(Order::Four)),
+        (goal, 0.0),
+    ];
+    decisive
+        .iter()
+        .find(|(value, threshold)| value.abs() > *threshold)
+        .map_or(1.0, |(value, _)| if *value < 0.0 { -1.0 } else { 1.0 })
 }

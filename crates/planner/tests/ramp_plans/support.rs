@@ -1,6 +1,6 @@
 //! Random numbers, random problems, and an integrator that shares no code with the planner.
 
-use standstill_planner::{Limits, Order, RampPlan, Setpoint};
+use standstill_planner::{Limits, OnlinePlan, Order, Peaks, RampPlan, Segment, Setpoint};
 
 /// splitmix64.
 pub struct Random(pub u64);
@@ -75,6 +75,30 @@ pub fn limits(random: &mut Random, order: Order) -> Limits {
 
 pub const ORDERS: [Order; 3] = [Order::Two, Order::Three, Order::Four];
 
+/// A plan as its segments.
+pub trait Segmented: std::fmt::Debug {
+    fn list(&self) -> Vec<Segment>;
+    fn largest(&self) -> Peaks;
+}
+
+impl Segmented for RampPlan {
+    fn list(&self) -> Vec<Segment> {
+        self.segments().collect()
+    }
+    fn largest(&self) -> Peaks {
+        self.peaks()
+    }
+}
+
+impl Segmented for OnlinePlan {
+    fn list(&self) -> Vec<Segment> {
+        self.segments().collect()
+    }
+    fn largest(&self) -> Peaks {
+        self.peaks()
+    }
+}
+
 /// What happened along a plan, as [`integrate`] saw it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seen {
@@ -91,7 +115,7 @@ pub struct Seen {
 
 /// Follows the highest derivative of each segment from `start` by many small Taylor steps, and finds the
 /// extremes between them by bisection on the sign of the derivative.
-pub fn integrate(start: &Setpoint, plan: &RampPlan, order: Order) -> Seen {
+pub fn integrate(start: &Setpoint, plan: &impl Segmented, order: Order) -> Seen {
     let (mut p, mut v, mut a, mut j) = (start.position, start.velocity, start.acceleration, start.jerk);
     let mut seen = Seen {
         v_max: v,
@@ -99,9 +123,9 @@ pub fn integrate(start: &Setpoint, plan: &RampPlan, order: Order) -> Seen {
         ..Seen::default()
     };
     const STEPS: u32 = 16;
-    let peaks = plan.peaks();
+    let peaks = plan.largest();
     let fastest = peaks.velocity.max(v.abs());
-    for segment in plan.segments() {
+    for segment in plan.list() {
         assert!(segment.duration > 0.0, "a segment of no length");
         let s = segment.snap;
         // What may not jump continues, to what a clock that has run for a while resolves; from here on the

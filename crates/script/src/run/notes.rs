@@ -80,7 +80,10 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
             let number = error.number();
             let value = match pin {
                 "" => String::new(),
-                pin if value.is_nan() => format!(", {pin}"),
+                // Numbers of an enumeration.
+                "BufferMode" | "Direction" => format!(", {pin} {value}"),
+                // A BOOL: its name says it.
+                "ContinuousUpdate" => format!(", {pin}"),
                 pin => format!(", {pin} {}", shortest(value)),
             };
             let limit = if limit.is_nan() {
@@ -132,6 +135,7 @@ fn excess_text(excess: &Excess) -> String {
 /// Everything a plan is made of, to the bit.
 fn plan_text(plan: &StandardPlan) -> String {
     match plan {
+        StandardPlan::Grid(grid) if grid.scans() == 0 => format!("from {}", shortest(grid.start())),
         StandardPlan::Grid(grid) => {
             let boxes: Vec<_> = grid.boxes().iter().map(u32::to_string).collect();
             let derivative = match grid.order() {
@@ -151,10 +155,12 @@ fn plan_text(plan: &StandardPlan) -> String {
                 .map(|piece| [piece.duration, piece.acceleration, piece.jerk, piece.snap])
                 .collect(),
         ),
-        StandardPlan::BrakeThenGrid(brake, grid) => {
-            let brake = plan_text(&StandardPlan::Ramp(*brake));
-            let grid = plan_text(&StandardPlan::Grid(*grid));
-            format!("brake {brake}; then {grid}")
+        StandardPlan::Online(plan) => {
+            let pieces = plan
+                .segments()
+                .map(|piece| [piece.duration, piece.acceleration, piece.jerk, piece.snap])
+                .collect();
+            format!("{} {}", plan.rung().name(), ramp_text(pieces))
         }
     }
 }

@@ -1,0 +1,221 @@
+//! The ladder: each candidate is verified against the true limits before it is taken.
+
+use super::search::{Candidate, Search, follow};
+use super::{MAX_PIECES, grid_from};
+use crate::grid::GridPlan;
+use crate::kernel::{NOISE, ON_LIMIT, Spans};
+use crate::ramp::excess::{self, Excess};
+use crate::ramp::path::Path;
+use crate::ramp::scans;
+use crate::ramp::solve::{RAMP_SPANS, Ramps};
+use crate::{Field, Limits, PlanError, Setpoint};
+
+/// The way a plan was found, best first. A plan of a later rung is longer, not less exact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rung {
+    /// Push towards a velocity bound, then the fastest stop.
+    PushThenStop,
+    /// A ramp to a peak velocity and one from it.
+    TwoPhase,
+    /// Acceleration and jerk to zero, then push and stop.
+    Arrest,
+    /// To rest, then on from there: on the grid, or, with an end velocity, push and ramp.
+    Brake,
+}
+
+impl Rung {
+    /// All rungs, in the order they are tried.
+    pub const ALL: [Self; 4] = [Self::PushThenStop, Self::TwoPhase, Self::Arrest, Self::Brake];
+
+    /// Name for traces and command lines.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::PushThenStop => "push-then-stop",
+            Self::TwoPhase => "two-phase",
+            Self::Arrest => "arrest",
+            Self::Brake => "brake",
+        }
+    }
+}
+
+/// A grid plan after the brake.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tail {
+    pub(super) grid: GridPlan,
+    /// The scan it begins with.
+    pub(super) begin: u32,
+}
+
+/// A plan as found.
+pub(super) struct Found {
+    pub(super) rung: Rung,
+    pub(super) solves: u32,
+    pub(super) steps: u32,
+    pub(super) path: Path<MAX_PIECES>,
+    pub(super) residual: f64,
+    pub(super) tail: Option<Tail>,
+    pub(super) excess: Option<Excess>,
+}
+
+/// A problem, its search, and what verifies a candidate.
+struct Climb<'a> {
+    search: Search<'a>,
+    ramps: &'a Ramps,
+    /// Start in the kernel's units, at position 0.
+    inward: Setpoint,
+    start: Setpoint,
+    distance: f64,
+    end_velocity: f64,
+    limits: &'a Limits,
+    /// What can't be avoided, once it had to be known.
+    unavoidable: Option<Excess>,
+}
+
+/// The first candidate from rung `first` on that keeps the limits and arrives (O8).
+pub(super) fn climb(
+    first: Rung,
+    start: &Setpoint,
+    target: f64,
+    end_velocity: f64,
+    limits: &Limits,
+    wider: &Limits,
+    cycle: f64,
+) -> Result<Found, PlanError> {
+    let ramps = Ramps::new(limits, wider);
+    let origin = Setpoint {
+        position: 0.0,
+        ..*start
+    };
+    let distance = target - start.position;
+    let resolution = NOISE * ramps.inward(start.position.abs() + target.abs(), 0);
+    let mut climb = Climb {
+        search: Search::new(
+            &ramps,
+            ramps.inward(distance, 0),
+            ramps.inward(end_velocity, 1),
+            resolution,
+        ),
+        ramps: &ramps,
+        inward: ramps.state_inward(&origin),
+        start: origin,
+        distance,
+        end_velocity,
+        limits,
+        unavoidable: None,
+    };
+    for rung in Rung::ALL.into_iter().filter(|rung| *rung >= first) {
+        let from = climb.inward;
+        let candidate = match rung {
+            Rung::PushThenStop => climb.search.push_then_stop(&from),
+            Rung::TwoPhase => climb.search.two_phase(&from),
+            Rung::Arrest => climb.search.arrest_then_push(&from),
+            Rung::Brake if end_velocity != 0.0 => climb.search.rest_then_push(&from),
+            Rung::Brake => return climb.brake_to_grid(start.position, target, cycle),
+        };
+        if let Some(found) = climb.verified(rung, &candidate) {
+            return Ok(found);
+        }
+    }
+    Err(PlanError::TooLong {
+        field: Field::Target,
+        value: target,
+    })
+}
+
+impl Climb<'_> {
+    /// The plan of `candidate` if it arrives and exceeds no more than what can't be avoided.
+    fn verified(&mut self, rung: Rung, candidate: &Candidate) -> Option<Found> {
+        if candidate.len() > MAX_PIECES {
+            return None;
+        }
+        let path: Path<MAX_PIECES> = Path::lay(
+            self.ramps.order(),
+            &self.start,
+            self.ramps.scale().outward(candidate),
+            self.end_velocity,
+        );
+        let end = follow(self.ramps.order(), &self.inward, candidate);
+        let residual = self.distance - path.end_position().unwrap_or(0.0);
+        let way = self.limits.velocity.max(self.start.velocity.abs()) * path.duration();
+        let arrives = residual.abs() <= ON_LIMIT * way + NOISE * self.distance.abs()
+            && (end.velocity - self.ramps.inward(self.end_velocity, 1)).abs()
+                <= ON_LIMIT * self.ramps.velocity();
+        if !arrives {
+            return None;
+        }
+        let excess = excess::excess(&path, self.end_velocity, None, self.limits);
+        if let Some(excess) = excess
+            && !self.is_unavoidable(&excess)
+        {
+            return None;
+        }
+        Some(Found {
+            rung,
+            solves: self.search.solves(),
+            steps: self.search.steps(),
+            path,
+            residual,
+            tail: None,
+            excess,
+        })
+    }
+
+    /// Whether a stop at once, or getting inside the limits as soon as can be, exceeds the limits as much.
+    fn is_unavoidable(&mut self, excess: &Excess) -> bool {
+        let known = self.unavoidable.unwrap_or_else(|| self.least_excess());
+        self.unavoidable = Some(known);
+        let within = |value: f64, least: f64| value <= least * (1.0 + ON_LIMIT);
+        within(excess.velocity, known.velocity)
+            && within(excess.acceleration, known.acceleration)
+            && within(excess.jerk, known.jerk)
+    }
+
+    fn least_excess(&self) -> Excess {
+        let stop = self.search.whole_ramp(&self.inward, 0.0);
+        let bound = self.ramps.velocity();
+        let back = if self.start.velocity < 0.0 { bound } else { -bound };
+        let turn = self.search.whole_ramp(&self.inward, back);
+        let one = self.excess_of(&stop.spans, stop.spans.len());
+        let other = self.excess_of(&turn.spans, turn.lead);
+        Excess {
+            velocity: one.velocity.max(other.velocity),
+            acceleration: one.acceleration.max(other.acceleration),
+            jerk: one.jerk.max(other.jerk),
+        }
+    }
+
+    /// The excess of the first `count` of `spans`.
+    fn excess_of(&self, spans: &Spans<RAMP_SPANS>, count: usize) -> Excess {
+        let spans = self.ramps.scale().outward(spans).take(count);
+        let path = Path::<MAX_PIECES>::follow(self.ramps.order(), &self.start, spans);
+        excess::excess(&path, 0.0, None, self.limits).unwrap_or_default()
+    }
+
+    /// To rest, and with the next scan a grid plan: what can't fail for want of accuracy.
+    fn brake_to_grid(&mut self, origin: f64, target: f64, cycle: f64) -> Result<Found, PlanError> {
+        let stop = self.search.ramp(&self.inward, 0.0);
+        let path: Path<MAX_PIECES> = Path::lay(
+            self.ramps.order(),
+            &self.start,
+            self.ramps.scale().outward(&stop),
+            0.0,
+        );
+        let rest = origin + path.end_position().unwrap_or(0.0);
+        let begin = scans(path.duration(), cycle).ok_or(PlanError::TooLong {
+            field: Field::Target,
+            value: target,
+        })?;
+        Ok(Found {
+            rung: Rung::Brake,
+            solves: self.search.solves(),
+            steps: self.search.steps(),
+            excess: excess::excess(&path, 0.0, None, self.limits),
+            residual: 0.0,
+            tail: Some(Tail {
+                grid: grid_from(rest, target, self.limits, cycle)?,
+                begin,
+            }),
+            path,
+        })
+    }
+}

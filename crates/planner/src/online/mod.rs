@@ -1,0 +1,296 @@
+//! From any moving state to a position.
+//!
+//! What stands here: the plan, and the ladder of ways to find one, each verified before it is taken. The
+//! ramps it is made of are those of [`ramp`](crate::ramp), their maths that of [`kernel`](crate::kernel).
+//! What does not: which move an axis makes next. Equations (O1) and on are in `docs/planner-online.md`.
+
+mod ladder;
+mod search;
+
+pub use ladder::Rung;
+
+use crate::grid::GridPlan;
+use crate::ramp::excess::{self, Excess, Peaks};
+use crate::ramp::path::Path;
+use crate::ramp::{self, Segment};
+use crate::{Field, Limits, PlanError, Setpoint};
+use ladder::{Found, Tail};
+
+/// Most pieces of a plan.
+pub(crate) const MAX_PIECES: usize = 24;
+
+/// A plan from any state to a position, at rest there or with an end velocity: at most 24 pieces of
+/// constant snap (order 4), jerk (3) or acceleration (2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnlinePlan {
+    start: Setpoint,
+    target: f64,
+    end_velocity: f64,
+    cycle: f64,
+    scans: u32,
+    rung: Rung,
+    solves: u32,
+    steps: u32,
+    /// Positions count from the start.
+    path: Path<MAX_PIECES>,
+    /// What the rounding of the path leaves to the target; it is spread over the whole plan (O9).
+    residual: f64,
+    tail: Option<Tail>,
+    excess: Option<Excess>,
+}
+
+impl OnlinePlan {
+    /// Plans from `start` to rest at `target` (u) in the least time this planner knows, with sample time
+    /// `cycle` (s).
+    ///
+    /// The order is that of `limits` ([`Limits::order`]). At order 3 the start's jerk plays no part, at
+    /// order 2 nor does its acceleration: they may jump. Acceleration is bounded by `limits.acceleration`
+    /// while the speed grows and by `limits.deceleration` while it falls; in a ramp whose velocity changes
+    /// sign the lower of the two holds (R11, O5).
+    ///
+    /// A start outside `limits` is brought inside first, in least time, under the larger ones of `limits`
+    /// and `before`; an infinite bound in `before` counts as that of `limits`. What is exceeded on the way
+    /// is told by [`OnlinePlan::excess`].
+    ///
+    /// Bounded work: at most a few hundred ramps, in practice about 12 ([`OnlinePlan::solves`]).
+    ///
+    /// # Errors
+    /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, a start or target that is
+    /// not finite or too far from each other, a bound that is not positive, and an infinite velocity,
+    /// acceleration or deceleration; [`PlanError::TooLong`] for more than 2^31 - 1 scans.
+    pub fn new(
+        start: &Setpoint,
+        target: f64,
+        limits: &Limits,
+        before: &Limits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
+        Self::with(Rung::PushThenStop, start, target, 0.0, limits, before, cycle)
+    }
+
+    /// As [`OnlinePlan::new`], but the plan passes `target` with `end_velocity` (u/s) and keeps it: the
+    /// first instant it can be there with that velocity and no acceleration or jerk.
+    ///
+    /// # Errors
+    /// As [`OnlinePlan::new`], and [`PlanError::InvalidInput`] for an `end_velocity` beyond the limit.
+    pub fn passing(
+        start: &Setpoint,
+        target: f64,
+        end_velocity: f64,
+        limits: &Limits,
+        before: &Limits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
+        Self::with(
+            Rung::PushThenStop,
+            start,
+            target,
+            end_velocity,
+            limits,
+            before,
+            cycle,
+        )
+    }
+
+    /// As [`OnlinePlan::passing`], with the ladder entered at `first`: to compare its rungs, and to test
+    /// those that are hardly ever needed.
+    ///
+    /// # Errors
+    /// As [`OnlinePlan::passing`].
+    pub fn with(
+        first: Rung,
+        start: &Setpoint,
+        target: f64,
+        end_velocity: f64,
+        limits: &Limits,
+        before: &Limits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
+        check(start, target, end_velocity, limits, before, cycle)?;
+        let wider = ramp::wider(limits, before);
+        let Found {
+            rung,
+            solves,
+            steps,
+            path,
+            residual,
+            tail,
+            excess,
+        } = ladder::climb(first, start, target, end_velocity, limits, &wider, cycle)?;
+        let too_long = PlanError::TooLong {
+            field: Field::Target,
+            value: target,
+        };
+        let moving = ramp::scans(path.duration(), cycle).ok_or(too_long)?;
+        // Both counts are below 2^31, so the sum fits.
+        let scans = moving + tail.map_or(0, |tail| tail.grid.scans());
+        Ok(Self {
+            start: *start,
+            target,
+            end_velocity,
+            cycle,
+            scans,
+            rung,
+            solves,
+            steps,
+            path,
+            residual,
+            tail,
+            excess,
+        })
+    }
+
+    /// Number of scans until the target; 0 if the start is there.
+    pub const fn scans(&self) -> u32 {
+        self.scans
+    }
+
+    /// The set-point `scan` cycles after the start, evaluated in closed form from the piece it lies in.
+    ///
+    /// `scan` 0 is the start; from [`OnlinePlan::scans`] on it is the goal: at rest exactly on the target,
+    /// or moving on with exactly the end velocity. Between them the highest derivative is the one in force
+    /// just before the instant. At most 24 comparisons.
+    pub fn at(&self, scan: u64) -> Setpoint {
+        if scan >= u64::from(self.scans) {
+            return self.beyond(scan);
+        }
+        if scan == 0 {
+            return self.start;
+        }
+        if let Some(Tail { grid, begin }) = &self.tail
+            && scan >= u64::from(*begin)
+        {
+            return grid.at(scan - u64::from(*begin));
+        }
+        let time = scan as f64 * self.cycle;
+        match self.path.at(time) {
+            Some(state) => Setpoint {
+                position: self.start.position
+                    + (state.position + self.residual * (time / self.path.duration())),
+                ..state
+            },
+            None => self.beyond(scan),
+        }
+    }
+
+    /// The state at a scan from the end of the plan on.
+    fn beyond(&self, scan: u64) -> Setpoint {
+        if self.end_velocity == 0.0 {
+            return Setpoint::at_rest(self.target);
+        }
+        let since = scan as f64 * self.cycle - self.duration();
+        Setpoint {
+            velocity: self.end_velocity,
+            ..Setpoint::at_rest(self.target + self.end_velocity * since)
+        }
+    }
+
+    /// By how much the start state forced the plan out of its limits, if it did by more than 1e-9 of them.
+    pub const fn excess(&self) -> Option<Excess> {
+        self.excess
+    }
+
+    /// Time until the target (s), not rounded to scans but where a grid plan ends it.
+    pub fn duration(&self) -> f64 {
+        match &self.tail {
+            Some(tail) => f64::from(tail.begin) * self.cycle + tail.grid.duration(),
+            None => self.path.duration(),
+        }
+    }
+
+    /// Position at the end (u).
+    pub const fn target(&self) -> f64 {
+        self.target
+    }
+
+    /// Velocity at the end (u/s).
+    pub const fn end_velocity(&self) -> f64 {
+        self.end_velocity
+    }
+
+    /// The rung of the ladder the plan is from.
+    pub const fn rung(&self) -> Rung {
+        self.rung
+    }
+
+    /// Ramps solved to find the plan, on all rungs tried.
+    pub const fn solves(&self) -> u32 {
+        self.solves
+    }
+
+    /// Most steps one root took, at most [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS).
+    pub const fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    /// The stretches of constant highest derivative, in order of time; none of no length.
+    pub fn segments(&self) -> impl Iterator<Item = Segment> {
+        let path = self.path.stretches().map(|(stretch, first)| Segment {
+            duration: stretch.end - stretch.begin,
+            velocity: first.velocity,
+            acceleration: first.acceleration,
+            jerk: first.jerk,
+            snap: first.snap,
+        });
+        // The grid plan begins with a scan.
+        let wait = self.tail.map_or(0.0, |tail| {
+            f64::from(tail.begin) * self.cycle - self.path.duration()
+        });
+        let wait = Segment {
+            duration: wait,
+            velocity: 0.0,
+            acceleration: 0.0,
+            jerk: 0.0,
+            snap: 0.0,
+        };
+        let wait = (wait.duration > 0.0).then_some(wait);
+        let grid = self.tail.into_iter().flat_map(|tail| {
+            tail.grid.segments().map(|segment| Segment {
+                duration: segment.duration,
+                velocity: segment.velocity,
+                acceleration: segment.acceleration,
+                jerk: segment.jerk,
+                snap: segment.snap,
+            })
+        });
+        path.chain(wait).chain(grid)
+    }
+
+    /// The largest magnitudes of the continuous plan, in closed form.
+    pub fn peaks(&self) -> Peaks {
+        let peaks = excess::peaks(&self.path, self.end_velocity);
+        let Some(grid) = self.tail.map(|tail| tail.grid.peaks()) else {
+            return peaks;
+        };
+        Peaks {
+            velocity: peaks.velocity.max(grid.velocity),
+            acceleration: peaks.acceleration.max(grid.acceleration),
+            jerk: peaks.jerk.max(grid.jerk.unwrap_or(f64::INFINITY)),
+            snap: peaks.snap.max(grid.snap.unwrap_or(f64::INFINITY)),
+        }
+    }
+}
+
+fn check(
+    start: &Setpoint,
+    target: f64,
+    end_velocity: f64,
+    limits: &Limits,
+    before: &Limits,
+    cycle: f64,
+) -> Result<(), PlanError> {
+    let invalid = |field, value| Err(PlanError::InvalidInput { field, value });
+    ramp::check(start, end_velocity, limits, before, cycle)?;
+    if !limits.velocity.is_finite() {
+        return invalid(Field::LimitVelocity, limits.velocity);
+    }
+    if !(target - start.position).is_finite() {
+        return invalid(Field::Target, target);
+    }
+    Ok(())
+}
+
+/// A grid plan from rest, for the last rung.
+fn grid_from(rest: f64, target: f64, limits: &Limits, cycle: f64) -> Result<GridPlan, PlanError> {
+    GridPlan::new(crate::Method::Overlapped, rest, target, limits, cycle)
+}

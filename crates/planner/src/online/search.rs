@@ -1,0 +1,222 @@
+//! The candidates of the ladder: push then stop, by way of a peak velocity, from steady velocity.
+//!
+//! Everything is in the kernel's units, with positions counted from the start.
+
+use core::cell::Cell;
+
+use crate::kernel::{NOISE, Point, Spans, zero};
+use crate::ramp::path::Way;
+use crate::ramp::solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
+use crate::{Order, Setpoint};
+
+/// Most spans of a candidate: a ramp before it, a push, a cruise and a stop.
+pub(super) const CANDIDATE_SPANS: usize = 3 * RAMP_SPANS + 1;
+
+/// In how many parts a span of the push is looked at for the first crossing of a move that does not end at
+/// rest; one that does has no second crossing in a span (O4).
+const PARTS: usize = 8;
+
+/// Spans of a whole move.
+pub(super) type Candidate = Spans<CANDIDATE_SPANS>;
+
+/// A move to find.
+pub(super) struct Search<'a> {
+    ramps: &'a Ramps,
+    target: f64,
+    end_velocity: f64,
+    /// What the positions of start and target may be off by.
+    resolution: f64,
+    /// Ramps solved so far.
+    solves: Cell<u32>,
+    /// Most steps one root took.
+    steps: Cell<u32>,
+}
+
+/// The last ramp of a move, from some state.
+struct Stop {
+    spans: Spans<RAMP_SPANS>,
+    /// By how much it ends beyond the target.
+    beyond: f64,
+    /// What of that may be rounding.
+    noise: f64,
+}
+
+impl Stop {
+    /// How far it ends beyond the target in the direction `side`, for the argument `at` of a root.
+    fn ahead(&self, at: f64, side: f64) -> Point {
+        Point {
+            at,
+            value: side * self.beyond,
+            noise: self.noise,
+        }
+    }
+}
+
+impl<'a> Search<'a> {
+    /// A search for moves of `target`, which end with `end_velocity`; positions are off by `resolution`.
+    pub(super) const fn new(ramps: &'a Ramps, target: f64, end_velocity: f64, resolution: f64) -> Self {
+        Self {
+            ramps,
+            target,
+            end_velocity,
+            resolution,
+            solves: Cell::new(0),
+            steps: Cell::new(0),
+        }
+    }
+
+    /// Ramps solved so far.
+    pub(super) const fn solves(&self) -> u32 {
+        self.solves.get()
+    }
+
+    /// Most steps one root took.
+    pub(super) const fn steps(&self) -> u32 {
+        self.steps.get()
+    }
+
+    /// Push towards a velocity bound, then the fastest stop, which begins where it ends on the target (O2).
+    pub(super) fn push_then_stop(&self, start: &Setpoint) -> Candidate {
+        let mut spans = Spans::new();
+        let stop = self.stop(start);
+        if stop.beyond.abs() <= stop.noise.max(self.resolution) {
+            spans.extend(&stop.spans);
+            return spans;
+        }
+        let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
+        let top = side * self.ramps.velocity();
+        let push = self.ramp(start, top);
+        let mut way = Way::new(self.ramps.order(), start);
+        let mut from = stop.ahead(0.0, side);
+        let parts = if self.end_velocity == 0.0 { 1 } else { PARTS };
+        for span in push.split(parts) {
+            way.begin(span.input);
+            let after = |time: f64| {
+                let mut way = way;
+                way.go(time);
+                way.state
+            };
+            let ahead = |time: f64| self.stop(&after(time)).ahead(time, side);
+            let to = ahead(span.duration);
+            if to.value >= 0.0 {
+                let switch = self.zero(Point { at: 0.0, ..from }, to, ahead);
+                spans.push(switch.at, span.input);
+                spans.extend(&self.stop(&after(switch.at)).spans);
+                return spans;
+            }
+            spans.push(span.duration, span.input);
+            way.go(span.duration);
+            from = to;
+        }
+        let state = steady(&way.state, top);
+        let stop = self.stop(&state);
+        self.cruise(&mut spans, -stop.ahead(0.0, side).value);
+        spans.extend(&stop.spans);
+        spans
+    }
+
+    /// A ramp to a peak velocity and one from it, with a cruise between them if it is the bound (O6).
+    pub(super) fn two_phase(&self, start: &Setpoint) -> Candidate {
+        let mut spans = Spans::new();
+        let stop = self.stop(start);
+        let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
+        let top = side * self.ramps.velocity();
+        let through = |peak: f64| {
+            let ramp = self.ramp(start, peak);
+            let state = steady(&follow(self.ramps.order(), start, &ramp), peak);
+            (ramp, self.stop(&state))
+        };
+        let at = |peak: f64| {
+            let (_, stop) = through(peak);
+            stop.ahead(peak, side)
+        };
+        let highest = at(top);
+        let lowest = stop.ahead(self.end_velocity, side);
+        let peak = if highest.value > 0.0 {
+            self.zero(lowest, highest, at)
+        } else {
+            highest
+        };
+        let (ramp, stop) = through(peak.at);
+        spans.extend(&ramp);
+        if peak.at == top {
+            self.cruise(&mut spans, -peak.value);
+        }
+        spans.extend(&stop.spans);
+        spans
+    }
+
+    /// Acceleration and jerk to zero as soon as can be, then push and stop (O7).
+    pub(super) fn arrest_then_push(&self, start: &Setpoint) -> Candidate {
+        let bound = self.ramps.velocity();
+        let velocity = self.ramps.arrested(start).max(-bound).min(bound);
+        self.ramp_then_push(start, velocity)
+    }
+
+    /// To rest, then push and stop.
+    pub(super) fn rest_then_push(&self, start: &Setpoint) -> Candidate {
+        self.ramp_then_push(start, 0.0)
+    }
+
+    fn ramp_then_push(&self, start: &Setpoint, velocity: f64) -> Candidate {
+        let ramp = self.ramp(start, velocity);
+        let state = steady(&follow(self.ramps.order(), start, &ramp), velocity);
+        let mut spans = Spans::new();
+        spans.extend(&ramp);
+        spans.extend(&self.push_then_stop(&state));
+        spans
+    }
+
+    /// The ramp from `start` to `velocity`, as a part of a move.
+    pub(super) fn ramp(&self, start: &Setpoint, velocity: f64) -> Spans<RAMP_SPANS> {
+        self.whole_ramp(start, velocity).spans
+    }
+
+    /// As [`Search::ramp`], with what is known of it.
+    pub(super) fn whole_ramp(&self, start: &Setpoint, velocity: f64) -> Ramp {
+        self.solves.set(self.solves.get() + 1);
+        let heading = heading(start, velocity, self.ramps.velocity(), self.ramps.order());
+        self.ramps.ramp(start, velocity, heading, Course::Free)
+    }
+
+    /// The ramp from `start` to the end velocity.
+    fn stop(&self, start: &Setpoint) -> Stop {
+        let spans = self.ramp(start, self.end_velocity);
+        let end = follow(self.ramps.order(), start, &spans);
+        let added_up = start.position.abs() + self.target.abs() + spans.duration() * start.velocity.abs();
+        Stop {
+            beyond: end.position - self.target,
+            noise: 0.25 * NOISE * added_up,
+            spans,
+        }
+    }
+
+    fn zero(&self, low: Point, high: Point, function: impl Fn(f64) -> Point) -> Point {
+        let (point, steps) = zero(low, high, function);
+        self.steps.set(self.steps.get().max(steps));
+        point
+    }
+
+    /// Appends what is left at the velocity bound.
+    fn cruise(&self, spans: &mut Candidate, left: f64) {
+        spans.push(left.max(0.0) / self.ramps.velocity(), 0.0);
+    }
+}
+
+/// `state` with a velocity that is to stay.
+fn steady(state: &Setpoint, velocity: f64) -> Setpoint {
+    Setpoint {
+        velocity,
+        ..Setpoint::at_rest(state.position)
+    }
+}
+
+/// The end of `spans` from `start`.
+pub(super) fn follow<const N: usize>(order: Order, start: &Setpoint, spans: &Spans<N>) -> Setpoint {
+    let mut way = Way::new(order, start);
+    for span in spans.iter() {
+        way.begin(span.input);
+        way.go(span.duration);
+    }
+    way.state
+}

@@ -1,0 +1,168 @@
+//! Chained replans: from rest, again and again to a random target at a random instant.
+
+use super::support::{self, ORDERS, Random, Seen, integrate};
+use standstill_planner::kernel::MAX_STEPS;
+use standstill_planner::{Limits, OnlinePlan, Order, Rung, Setpoint};
+
+/// What a run of chains saw at worst.
+#[derive(Debug, Default)]
+struct Worst {
+    /// Distance from the target where the integrated segments end, relative to the way.
+    miss: f64,
+    /// Excess over any limit, relative to it.
+    excess: f64,
+    steps: u32,
+    solves: u32,
+    pieces: usize,
+    rungs: [u32; 4],
+    outside: u32,
+}
+
+/// By how much the integrator saw velocity, acceleration, jerk and snap above their limits, relative to them.
+fn relative_excess(seen: &Seen, limits: &Limits, order: Order) -> [f64; 4] {
+    let over = |value: f64, bound: f64| value / bound - 1.0;
+    let bounded =
+        |least: Order, value: f64, bound: f64| if order >= least { over(value, bound) } else { -1.0 };
+    [
+        over(seen.v_max.max(-seen.v_min), limits.velocity),
+        over(seen.speeding, limits.acceleration).max(over(seen.slowing, limits.deceleration)),
+        bounded(Order::Three, seen.jerk, limits.jerk),
+        bounded(Order::Four, seen.snap, limits.snap),
+    ]
+}
+
+/// Chains of 20 replans; `change` draws the limits of a replan from those of the chain.
+fn chains(seed: u64, count: u32, equal: bool, change: impl Fn(&mut Random, &Limits) -> Limits) -> Worst {
+    let mut random = Random(seed);
+    let mut worst = Worst::default();
+    for chain in 0..count {
+        let order = ORDERS[chain as usize % 3];
+        let mut limits = support::limits(&mut random, order);
+        if equal {
+            limits.deceleration = limits.acceleration;
+        }
+        let time = limits.velocity / limits.acceleration;
+        let cycle = time * random.log(0.001, 0.3);
+        let way = limits.velocity * time;
+        let mut start = Setpoint::at_rest(way * random.between(-3.0, 3.0));
+        let mut before = limits;
+        for link in 0..20 {
+            let now = change(&mut random, &limits);
+            let target = match random.below(8) {
+                0 => start.position,
+                1 => start.position + way * random.log(1e-9, 1e-3),
+                2 => start.position - way * random.log(1e-9, 1e-3),
+                3 => way * random.between(-30.0, 30.0),
+                _ => way * random.between(-3.0, 3.0),
+            };
+            let context =
+                || format!("chain {chain} link {link}: {start:?} -> {target:?} {now:?} {before:?} {cycle}");
+            let plan = OnlinePlan::new(&start, target, &now, &before, cycle)
+                .unwrap_or_else(|error| panic!("{error} {}", context()));
+            let origin = Setpoint {
+                position: 0.0,
+                ..start
+            };
+            let seen = integrate(&origin, &plan, order);
+            let end = plan.at(u64::from(plan.scans()));
+            assert_eq!(end, Setpoint::at_rest(target));
+            assert!((f64::from(plan.scans()) - plan.duration() / cycle).abs() <= 1.0);
+            let travelled = plan.peaks().velocity * plan.duration();
+            // What the positions themselves resolve is no miss.
+            let resolved = 32.0 * f64::EPSILON * (start.position.abs() + target.abs());
+            let distance = target - start.position;
+            let miss =
+                ((seen.end.position - distance).abs() - resolved).max(0.0) / travelled.max(f64::MIN_POSITIVE);
+            assert!(miss <= 1e-9, "miss {miss:e} {} {plan:?}", context());
+            worst.miss = worst.miss.max(miss);
+            worst.steps = worst.steps.max(plan.steps());
+            worst.solves = worst.solves.max(plan.solves());
+            worst.pieces = worst.pieces.max(plan.segments().count());
+            worst.rungs[plan.rung() as usize] += 1;
+            if plan.rung() != Rung::PushThenStop && std::env::var("SHOW").is_ok() {
+                println!("{:?} {}", plan.rung(), context());
+            }
+            let truth = relative_excess(&seen, &now, order);
+            let said = plan.excess().unwrap_or_default();
+            let told = [
+                (said.velocity / now.velocity, truth[0]),
+                (said.acceleration, truth[1]),
+                (said.jerk / now.jerk, truth[2]),
+            ];
+            for (said, truth) in told {
+                if said == 0.0 {
+                    assert!(
+                        truth <= 1e-9,
+                        "excess {truth:e} untold: {} {seen:?} {plan:?}",
+                        context()
+                    );
+                    worst.excess = worst.excess.max(truth);
+                }
+            }
+            // Snap never needs to exceed the larger of the two bounds.
+            let snap = seen.snap / now.snap.max(before.snap) - 1.0;
+            assert!(snap <= 1e-9, "snap {snap:e} {} {plan:?}", context());
+            worst.outside += u32::from(plan.excess().is_some());
+            before = now;
+            start = plan.at(random.below(u64::from(plan.scans()) + 2));
+        }
+    }
+    assert!(worst.steps < MAX_STEPS);
+    worst
+}
+
+fn same(_: &mut Random, limits: &Limits) -> Limits {
+    *limits
+}
+
+#[test]
+fn chains_under_constant_limits_meet_every_target_within_the_limits() {
+    let worst = chains(1, 250, true, same);
+    println!("{worst:?}");
+    assert_eq!(worst.outside, 0);
+}
+
+#[test]
+fn chains_with_a_deceleration_of_its_own_meet_every_target_within_the_limits() {
+    let worst = chains(2, 250, false, same);
+    println!("{worst:?}");
+    assert_eq!(worst.outside, 0);
+}
+
+/// The velocity limit alone is overridden at every replan.
+fn overridden(random: &mut Random, limits: &Limits) -> Limits {
+    Limits {
+        velocity: limits.velocity * random.between(0.2, 1.0),
+        ..*limits
+    }
+}
+
+/// Any limit may change at every replan.
+fn all_changed(random: &mut Random, limits: &Limits) -> Limits {
+    let mut factor = || {
+        if random.below(2) == 0 {
+            1.0
+        } else {
+            random.between(0.4, 1.0)
+        }
+    };
+    Limits {
+        velocity: limits.velocity * factor(),
+        acceleration: limits.acceleration * factor(),
+        deceleration: limits.deceleration * factor(),
+        jerk: limits.jerk * factor(),
+        snap: limits.snap * factor(),
+    }
+}
+
+#[test]
+fn chains_with_velocity_overrides_meet_every_target() {
+    let worst = chains(3, 250, true, overridden);
+    println!("{worst:?}");
+}
+
+#[test]
+fn chains_with_changing_limits_meet_every_target() {
+    let worst = chains(4, 250, false, all_changed);
+    println!("{worst:?}");
+}

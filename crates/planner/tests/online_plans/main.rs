@@ -1,0 +1,6 @@
+//! Plans from any moving state to a position: fewest scans, limits kept, targets met.
+
+mod chains;
+mod scans;
+#[path = "../ramp_plans/support.rs"]
+mod support;
