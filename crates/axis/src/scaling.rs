@@ -61,6 +61,7 @@ impl Scaling {
     ///
     /// The product is split into whole units and a fraction so that positions up to 2^53 u keep every bit
     /// of their whole part.
+    #[inline(never)]
     pub fn to_increments(&self, position: f64) -> i64 {
         let position = if self.invert {
             self.offset - position
@@ -80,6 +81,7 @@ impl Scaling {
     }
 
     /// The position (u) of `increments`.
+    #[inline(never)]
     pub fn to_units(&self, increments: i64) -> f64 {
         let scaled = i128::from(increments) * i128::from(self.units.get());
         let ratio = i128::from(self.increments.get());

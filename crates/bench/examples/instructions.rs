@@ -19,7 +19,7 @@ const PLANS: u64 = 1000;
 /// What is counted runs below this function.
 #[inline(never)]
 fn one_operation<T>(run: impl FnOnce() -> T) {
-    black_box(run());
+    black_box(&run());
 }
 
 /// A name, and what runs the operation and gives how often it did.

@@ -2,8 +2,8 @@
 //!
 //! The measures themselves are `benches/ratios.rs` (time, against the yardstick in the same run),
 //! `examples/instructions.rs` (instructions, under valgrind), `examples/worst_plan.rs` (search steps),
-//! `examples/panic_probe.rs` (reachable panics) and `tests/` (heap use, long runs). Commands and figures are
-//! in `docs/performance.md`.
+//! `panic-probe` (reachable panics) and `tests/` (heap use, long runs). Commands and figures are in
+//! `docs/performance.md`.
 #![forbid(unsafe_code)]
 
 mod one_axis;
@@ -12,4 +12,4 @@ mod trapezoid;
 
 pub use one_axis::{CYCLE, Executed, LIMITS, OneAxis, Program, TARGET};
 pub use random::{Move, Random};
-pub use trapezoid::{Sample, Trapezoid};
+pub use trapezoid::{Sample, Trapezoid, trapezoid};

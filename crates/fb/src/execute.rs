@@ -105,16 +105,9 @@ impl ExecuteCore {
     ) -> Phase {
         let rising = execute && !self.executed;
         self.executed = execute;
-        if rising {
-            let held = self.command.map(|(_, id)| id);
-            match issue(context, held) {
-                Ok(command) => self.command = Some(command),
-                Err(id) => {
-                    self.command = None;
-                    self.phase = Phase::Failed(id);
-                    return self.phase;
-                }
-            }
+        if rising && let Err(id) = self.start(context, issue) {
+            self.phase = Phase::Failed(id);
+            return self.phase;
         }
         let phase = match self.command {
             Some((axis, id)) => {
@@ -133,5 +126,17 @@ impl ExecuteCore {
         };
         self.phase = phase;
         phase
+    }
+
+    // Apart, so that what a call at an edge keeps in registers does not burden all the others.
+    #[inline(never)]
+    fn start<P: Planner>(
+        &mut self,
+        context: &mut Context<'_, P>,
+        issue: impl FnOnce(&mut Context<'_, P>, Option<CommandId>) -> Result<(AxisId, CommandId), ErrorId>,
+    ) -> Result<(), ErrorId> {
+        let held = self.command.take().map(|(_, id)| id);
+        self.command = Some(issue(context, held)?);
+        Ok(())
     }
 }

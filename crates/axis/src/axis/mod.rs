@@ -249,7 +249,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// What became of command `id`. Bounded by the queue and the fates kept.
-    #[inline(always)]
+    #[inline]
     pub fn fate(&self, id: CommandId) -> Fate {
         if let Some(owner) = &self.owner
             && owner.id == id
@@ -307,7 +307,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The drive's command for this scan.
-    #[inline(always)]
+    #[inline]
     pub fn drive_command(&mut self) -> DriveCommand {
         DriveCommand {
             request: self.drive_request(),

@@ -31,7 +31,7 @@ pub(super) struct Reset {
 
 impl<P: Planner> Axis<P> {
     /// Latches the drive's feedback of this scan and lets the state follow it. Called before any block.
-    #[inline(always)]
+    #[inline]
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
         self.feedback = *feedback;
         if feedback.comms == Comms::Lost {
@@ -43,11 +43,25 @@ impl<P: Planner> Axis<P> {
                 // A drive that counts increments needs a scaling; take one increment as one unit.
                 (DrivePosition::Increments(increments), None) => increments as f64,
             };
+            // In most scans nothing but the position changes.
+            if self.is_steady(feedback) {
+                return;
+            }
             self.follow_power(feedback, scan, log);
         }
         self.finish_reset();
     }
 
+    /// Whether the axis is in operation and stays so, with nothing to react to.
+    fn is_steady(&self, feedback: &DriveFeedback) -> bool {
+        self.power.on
+            && feedback.enabled
+            && feedback.fault.is_none()
+            && self.reset.is_none()
+            && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop)
+    }
+
+    #[inline(never)]
     fn follow_power(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
         let was_on = self.power.on;
         self.power.on = feedback.enabled;
@@ -88,6 +102,7 @@ impl<P: Planner> Axis<P> {
     ///
     /// Should several instances speak in one scan, the last call decides (V9b): whoever decided in the scan
     /// before is obeyed at once, others at the end of the scan if nobody spoke after them.
+    #[inline]
     pub fn set_power(&mut self, wanted: bool, source: Source, log: &mut Log) {
         self.power.asked = Some((wanted, source.instance));
         if self

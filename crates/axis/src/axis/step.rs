@@ -12,7 +12,7 @@ impl<P: Planner> Axis<P> {
     ///
     /// Cost: one evaluation of the plan; at a hand-over at most one plan per waiting command; with software
     /// limits one ramp plan per scan of an endless motion or a stop.
-    #[inline(always)]
+    #[inline]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
         self.apply_power(scan, log);
         if self.owner.is_none() && self.goal_reached() {
@@ -20,67 +20,70 @@ impl<P: Planner> Axis<P> {
             // gets the last set-point.
             self.motion = Motion::Hold;
         }
-        self.setpoint = match &mut self.motion {
-            Motion::Follow => Setpoint::at_rest(self.actual),
-            Motion::Hold => Setpoint::at_rest(self.setpoint.position),
-            // By reference: a plan is large to copy in every scan.
+        match &mut self.motion {
+            Motion::Follow => self.publish(Setpoint::at_rest(self.actual)),
+            Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
             Motion::Run { plan, elapsed } => {
                 *elapsed = elapsed.saturating_add(1);
                 let next = plan.at(*elapsed);
-                match self.forbids(next) {
-                    None => next,
-                    Some(error) => self.fail(error, scan, log),
+                if !next.is_finite() {
+                    self.fail(ErrorId::SetpointBroken, scan, log);
+                } else if self.would_leave() {
+                    self.fail(ErrorId::SoftwareLimitReached, scan, log);
+                } else {
+                    self.publish(next);
                 }
             }
-        };
-        if self.setpoint.velocity != 0.0 {
-            self.last_direction = if self.setpoint.velocity < 0.0 { -1.0 } else { 1.0 };
         }
         self.settle(scan, log);
         self.finish_reset();
     }
 
-    /// Why the set-point `next` must not be published, if it must not.
-    ///
-    /// It takes a copy so that the caller's need not stand in memory.
-    #[inline]
-    fn forbids(&self, next: Setpoint) -> Option<ErrorId> {
-        if !next.is_finite() {
-            Some(ErrorId::SetpointBroken)
-        } else if self.config.software_limits.is_some() && self.would_leave(&next) {
-            Some(ErrorId::SoftwareLimitReached)
-        } else {
-            None
+    // Inlined, so that a set-point goes from registers to its place and is not copied through memory, which
+    // takes longer than computing it.
+    #[inline(always)]
+    fn publish(&mut self, next: Setpoint) {
+        self.setpoint = next;
+        if next.velocity != 0.0 {
+            self.last_direction = if next.velocity < 0.0 { -1.0 } else { 1.0 };
         }
     }
 
+    /// Enters ErrorStop and publishes the first set-point of the ramp, which starts at the last one published.
     #[cold]
-    /// Enters ErrorStop and gives the set-point of this scan: the first of the ramp, which starts at the last
-    /// set-point published.
-    fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) -> Setpoint {
+    fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
         self.trip(error, 0, Reaction::Ramp, scan, log);
-        match &mut self.motion {
+        let next = match &mut self.motion {
             Motion::Run { plan, elapsed } => {
                 *elapsed = 1;
                 plan.at(1)
             }
             Motion::Follow | Motion::Hold => Setpoint::at_rest(self.setpoint.position),
-        }
+        };
+        self.publish(next);
     }
 
     /// Whether this is the last scan in which the stop dynamics can keep a motion that would leave the
     /// software limits inside them.
+    #[inline]
+    fn would_leave(&self) -> bool {
+        match (self.config.software_limits, &self.motion) {
+            (Some(limits), Motion::Run { plan, elapsed }) => {
+                self.would_leave_from(&plan.at(*elapsed), limits)
+            }
+            _ => false,
+        }
+    }
+
+    /// The same for the next set-point and limits `min` and `max` (u).
     #[inline(never)]
-    fn would_leave(&self, next: &Setpoint) -> bool {
-        let (Some((min, max)), Some(owner)) = (self.config.software_limits, &self.owner) else {
-            return false;
-        };
+    fn would_leave_from(&self, next: &Setpoint, (min, max): (f64, f64)) -> bool {
         let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
-        let leaving = match owner.work {
-            Work::Velocity { .. } => true,
-            Work::Halt | Work::Stop => leaves(self.end_of_plan()),
+        let leaving = match self.owner.as_ref().map(|owner| &owner.work) {
+            Some(Work::Velocity { .. }) => true,
+            Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan()),
             // Targets were checked when the command was taken.
-            Work::Position(_) | Work::Distance(_) | Work::Home(_) => false,
+            Some(Work::Position(_) | Work::Distance(_) | Work::Home(_)) | None => false,
         };
         leaving
             && leaves(

@@ -23,6 +23,8 @@ pub struct GridPlan {
     method: Method,
     /// Whether the position sums need more than 64 bits.
     pub(super) wide: bool,
+    /// How far from both ends the velocity is constant (scans); more than any plan has if it never is.
+    pub(super) cruise_after: u32,
 }
 
 /// A plan is copied about by value, so it stays small.
@@ -89,6 +91,7 @@ impl GridPlan {
             order: limits.order(),
             method,
             wide: false,
+            cruise_after: u32::MAX,
         };
         if distance == 0.0 {
             return Ok((plan, Work::default()));
@@ -108,6 +111,7 @@ impl GridPlan {
             Order::Two => [n3, n4, 0, 0],
         };
         (plan.scale, plan.wide) = profile::scale(plan.order, plan.product(), distance, cycle);
+        plan.cruise_after = profile::cruise_after(plan.order, plan.boxes, plan.wide);
         Ok((plan, work))
     }
 

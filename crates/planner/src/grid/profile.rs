@@ -82,6 +82,18 @@ impl Iterator for Segments {
     }
 }
 
+/// How far from both ends the velocity is constant (scans): the sum of all boxes but the longest. Out of reach
+/// if the sums need more than 64 bits.
+pub(super) fn cruise_after(order: Order, boxes: [u32; 4], wide: bool) -> u32 {
+    let [a, b, c, _] = boxes;
+    match order {
+        _ if wide => u32::MAX,
+        Order::Four => a + b + c,
+        Order::Three => a + b,
+        Order::Two => a,
+    }
+}
+
 /// The factors of the derivatives, and whether the position sums need more than 64 bits
 /// (docs/planner.md, eq. 25).
 pub(super) fn scale(order: Order, product: u128, distance: f64, cycle: f64) -> ([f64; 5], bool) {
@@ -132,7 +144,12 @@ impl GridPlan {
     pub fn at(&self, scan: u64) -> Setpoint {
         let scans = u64::from(self.scans);
         if scan < scans {
-            return self.state(scan as i64, Side::Before);
+            let left = scans - scan;
+            return if scan.min(left) > u64::from(self.cruise_after) {
+                self.cruise_at(scan as i64, left as i64)
+            } else {
+                self.state(scan as i64, Side::Before)
+            };
         }
         let mut end = Setpoint::at_rest(self.target);
         if scan == scans {
@@ -209,8 +226,31 @@ impl GridPlan {
         [0, a, b, a + b, c, a + c, b + c, (a + b + c).min(d)]
     }
 
-    /// The state at `scan` <= N, with the values of one side where a derivative jumps.
+    /// The state at constant velocity, `left` scans before the end: the sums in closed form (docs/planner.md,
+    /// eq. 21a). Most scans of a long move are such ones.
     #[inline(always)]
+    fn cruise_at(&self, scan: i64, left: i64) -> Setpoint {
+        let [a, b, c, _] = self.boxes.map(i64::from);
+        let (half_factorial, factorial, product) = match self.order {
+            Order::Four => (12, 6, a * b * c),
+            Order::Three => (3, 2, a * b),
+            Order::Two => (1, 1, a),
+        };
+        let [f0, f1, ..] = self.scale;
+        let way =
+            |near: i64| (half_factorial * product * (2 * near - i64::from(self.cruise_after))) as f64 * f0;
+        Setpoint {
+            position: if scan > left {
+                self.target - way(left)
+            } else {
+                self.start + way(scan)
+            },
+            velocity: (factorial * product) as f64 * f1 + 0.0,
+            ..Setpoint::default()
+        }
+    }
+
+    /// The state at `scan` <= N, with the values of one side where a derivative jumps.
     fn state(&self, scan: i64, side: Side) -> Setpoint {
         // Each half is computed from its own end: half the terms, and exact at both ends.
         let twice_left = 2 * scan - i64::from(self.scans);
@@ -297,9 +337,6 @@ fn derivatives<T, const M: usize>(instants: &[i64; 8], near: i64, through: i64) 
 where
     Wrapping<T>: Whole + Add<Output = Wrapping<T>> + Mul<Output = Wrapping<T>>,
 {
-    if let Some(cruise) = cruise::<T, M>(instants, near, through) {
-        return cruise;
-    }
     let mut sums = [Wrapping::<T>::of(0); 5];
     for (instant, sign) in instants.iter().zip(SIGNS).take(M) {
         // They ascend, so the rest has not been passed either.
@@ -323,35 +360,11 @@ where
     }
 }
 
-/// The same where all instants have passed and the velocity is constant, in closed form (docs/planner.md,
-/// eq. 21a); most scans of a long move are such ones.
-#[inline]
-fn cruise<T, const M: usize>(instants: &[i64; 8], near: i64, through: i64) -> Option<[f64; 5]>
-where
-    Wrapping<T>: Whole + Mul<Output = Wrapping<T>>,
-{
-    let [_, a, b, a_b, c, ..] = *instants;
-    // The boxes of the way up to the velocity: what they span and their product; m!/2 and (m-1)!.
-    let (span, factors, half_factorial, factorial) = match M {
-        8 => (a_b + c, [a, b, c], 12, 6),
-        4 => (a_b, [a, b, 1], 3, 2),
-        _ => (a, [a, 1, 1], 1, 1),
-    };
-    if through <= span {
-        return None;
-    }
-    let [f1, f2, f3] = factors.map(Wrapping::<T>::of);
-    let product = f1 * f2 * f3;
-    let position = Wrapping::<T>::of(half_factorial * (2 * near - span)) * product;
-    let velocity = Wrapping::<T>::of(factorial) * product;
-    Some([position.to_f64(), velocity.to_f64(), 0.0, 0.0, 0.0])
-}
-
 #[cfg(test)]
 mod tests {
     use crate::{GridPlan, Limits, Method};
 
-    /// The same bits come out of sums in 64 and in 128 bits.
+    /// The same bits come out of sums in 64 and in 128 bits, and of the closed form at constant velocity.
     #[test]
     fn wide_and_narrow_sums_agree() {
         let bounds = Limits {
@@ -372,6 +385,7 @@ mod tests {
                 assert!(!narrow.wide);
                 let mut wide = narrow;
                 wide.wide = true;
+                wide.cruise_after = u32::MAX;
                 for scan in 0..=u64::from(narrow.scans()) {
                     assert_eq!(narrow.at(scan), wide.at(scan));
                 }
