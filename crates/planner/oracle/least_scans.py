@@ -105,8 +105,32 @@ def states(case, count):
     return np.array(path) * unit
 
 
+def is_viable(case):
+    """Whether acceleration and jerk can be brought to zero inside the bounds, between the scans too."""
+    V, A, J, S = (case[key] for key in "VAJS")
+    v, a, j = case["v0"], case["a0"], case["j0"]
+    coming = a + j * abs(j) / (2 * S)
+    # Towards zero from where the jerk itself can be ended; the jerk falls, is held at its bound, and rises.
+    side = -1 if coming > 0 else 1
+    lowest = min(J, max(0.0, S * -side * a + j * j / 2) ** 0.5)
+    fall, rise = max(0.0, (lowest - side * j) / S), lowest / S
+    hold = max(0.0, (-side * a - (lowest**2 - j * j / 2) / S) / lowest) if lowest else 0.0
+    values = [(v, a)]
+    for time, snap in ((fall, side * S), (hold, 0.0), (rise, -side * S)):
+        for _ in range(50):
+            h = time / 50
+            v += h * (a + h * (j / 2 + h * snap / 6))
+            a += h * (j + h * snap / 2)
+            j += h * snap
+            values.append((v, a))
+    return all(abs(v) <= V and abs(a) <= A for v, a in values)
+
+
 def draw(rng, passing):
-    """Bounds that each take some scans to reach, a start at rest or in the middle of another move."""
+    """Bounds that each take some scans to reach, a start at rest or in the middle of another move.
+
+    The other move keeps 85 % of the bounds, because at the scans alone is not between them.
+    """
     ts = rng.choice([0.0005, 0.001, 0.002, 0.005])
     snap = 10 ** rng.uniform(1, 7)
     jerk = snap * ts * 10 ** rng.uniform(0, 1)
@@ -117,19 +141,19 @@ def draw(rng, passing):
     way = velocity * ts * rng.uniform(5, 60)
     if not passing and rng.random() < 0.25:
         return {**case, "chain": "euler", "target": way * rng.choice([-1, 1]) * rng.uniform(0.01, 1)}
-    case["target"] = way * rng.choice([-1, 1])
-    count = least(case)
+    other = {**case, **{key: 0.85 * case[key] for key in "VAJS"}, "target": way * rng.choice([-1, 1])}
+    count = least(other)
     if count is None:
         return None
     # A few scans more than the least leave the move room to be none of the fastest.
-    path = states(case, count + rng.choice([0, 0, 3, 10]))
+    path = states(other, count + rng.choice([0, 0, 3, 10]))
     if path is None:
         return None
     x, v, a, j = (float(value) for value in path[rng.randrange(1, len(path) - 1)])
     case |= {"x0": x, "v0": v, "a0": a, "j0": j, "target": x + way * rng.uniform(-1, 1)}
     if passing:
         case["ve"] = velocity * rng.uniform(-1, 1)
-    return case
+    return case if is_viable(case) else None
 
 
 def main():

@@ -77,7 +77,7 @@ pub enum StandardPlan {
 }
 
 /// A plan is copied about by value, once a command.
-const _: () = assert!(size_of::<StandardPlan>() <= 1536);
+const _: () = assert!(size_of::<StandardPlan>() <= 1728);
 
 impl Standard {
     /// A planner for the sample time `cycle` (s).

@@ -201,10 +201,12 @@ impl Climb<'_> {
             0.0,
         );
         let rest = origin + path.end_position().unwrap_or(0.0);
-        let begin = scans(path.duration(), cycle).ok_or(PlanError::TooLong {
+        // Inputs are checked, so a grid plan is refused only for lengths and times beyond numbers.
+        let too_long = PlanError::TooLong {
             field: Field::Target,
             value: target,
-        })?;
+        };
+        let begin = scans(path.duration(), cycle).ok_or(too_long)?;
         Ok(Found {
             rung: Rung::Brake,
             solves: self.search.solves(),
@@ -212,7 +214,7 @@ impl Climb<'_> {
             excess: excess::excess(&path, 0.0, None, self.limits),
             residual: 0.0,
             tail: Some(Tail {
-                grid: grid_from(rest, target, self.limits, cycle)?,
+                grid: grid_from(rest, target, self.limits, cycle).map_err(|_| too_long)?,
                 begin,
             }),
             path,

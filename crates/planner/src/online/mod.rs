@@ -17,9 +17,9 @@ use crate::{Field, Limits, PlanError, Setpoint};
 use ladder::{Found, Tail};
 
 /// Most pieces of a plan.
-pub(crate) const MAX_PIECES: usize = 24;
+pub(crate) const MAX_PIECES: usize = 30;
 
-/// A plan from any state to a position, at rest there or with an end velocity: at most 24 pieces of
+/// A plan from any state to a position, at rest there or with an end velocity: at most 30 pieces of
 /// constant snap (order 4), jerk (3) or acceleration (2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OnlinePlan {
@@ -149,7 +149,7 @@ impl OnlinePlan {
     ///
     /// `scan` 0 is the start; from [`OnlinePlan::scans`] on it is the goal: at rest exactly on the target,
     /// or moving on with exactly the end velocity. Between them the highest derivative is the one in force
-    /// just before the instant. At most 24 comparisons.
+    /// just before the instant. At most 30 comparisons.
     pub fn at(&self, scan: u64) -> Setpoint {
         if scan >= u64::from(self.scans) {
             return self.beyond(scan);

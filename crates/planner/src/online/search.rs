@@ -214,9 +214,6 @@ fn steady(state: &Setpoint, velocity: f64) -> Setpoint {
 /// The end of `spans` from `start`.
 pub(super) fn follow<const N: usize>(order: Order, start: &Setpoint, spans: &Spans<N>) -> Setpoint {
     let mut way = Way::new(order, start);
-    for span in spans.iter() {
-        way.begin(span.input);
-        way.go(span.duration);
-    }
+    way.follow(spans);
     way.state
 }

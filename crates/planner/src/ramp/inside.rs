@@ -113,11 +113,6 @@ pub(super) fn lead_in(state: State, goal: f64, (low, high): (f64, f64), bounds: 
 }
 
 impl Lead {
-    /// Goes on until acceleration and jerk are inside other `bounds` too.
-    pub(super) fn enter(&mut self, bounds: &Box4) {
-        self.add(&enter(self.state, bounds), 0, bounds.jerk);
-    }
-
     fn add<const N: usize>(&mut self, spans: &Spans<N>, steps: u32, jerk: f64) {
         if !spans.is_empty() {
             self.spans.extend(spans);
@@ -148,14 +143,14 @@ const ENTER_SPANS: usize = 2 * RULE_SPANS;
 /// Most spans of [`hasten`]: a push of three and a hold, then [`enter`].
 const HASTEN_SPANS: usize = 4 + ENTER_SPANS;
 
-/// Most spans of a lead: [`hasten`], or [`enter`] and [`relieve`]; then perhaps one rule to other bounds.
-pub(super) const LEAD_SPANS: usize = HASTEN_SPANS + RULE_SPANS;
+/// Most spans of [`lead_in`]: [`hasten`], or [`enter`] and [`relieve`].
+pub(super) const LEAD_SPANS: usize = HASTEN_SPANS;
 
 /// Each round settles acceleration, jerk or the acceleration to come; no later one undoes an earlier.
 const ENTER_ROUNDS: usize = 3;
 
 /// The spans that bring acceleration and jerk inside in least time (R13 to R16); none if they are inside.
-fn enter(state: State, bounds: &Box4) -> Spans<ENTER_SPANS> {
+pub(super) fn enter(state: State, bounds: &Box4) -> Spans<ENTER_SPANS> {
     let mut all = Spans::new();
     let mut state = state;
     for _ in 0..ENTER_ROUNDS {

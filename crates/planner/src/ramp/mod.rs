@@ -9,6 +9,7 @@ mod inside;
 pub(crate) mod path;
 mod slope;
 pub(crate) mod solve;
+mod turn;
 
 pub use excess::{Excess, Peaks};
 

@@ -1,6 +1,6 @@
 //! A motion as a list of polynomial pieces, its values and its extremes.
 
-use crate::kernel::falling_root;
+use crate::kernel::{Spans, falling_root};
 use crate::math::sqrt;
 use crate::{Order, Setpoint};
 
@@ -202,6 +202,14 @@ impl Way {
             self.state.jerk = 0.0;
         }
         self.state
+    }
+
+    /// Follows all of `spans`.
+    pub(crate) fn follow<const N: usize>(&mut self, spans: &Spans<N>) {
+        for span in spans.iter() {
+            self.begin(span.input);
+            self.go(span.duration);
+        }
     }
 
     /// Follows the span begun for `duration`.

@@ -2,11 +2,12 @@
 
 use super::inside::{self, Box4, LEAD_SPANS, State};
 use super::slope::{Box3, Slope};
-use crate::kernel::{Bounds, ON_LIMIT, Scale, Sides, Spans, THIRD_SPANS, second, third};
+use super::turn::TURN_SPANS;
+use crate::kernel::{Bounds, ON_LIMIT, Scale, Sides, Spans, second, third};
 use crate::{Limits, Order, Setpoint};
 
-/// Most spans of a ramp: getting inside the limits, then a third-order profile.
-pub(crate) const RAMP_SPANS: usize = LEAD_SPANS + THIRD_SPANS;
+/// Most spans of a ramp: getting inside the limits, then a ramp that may turn.
+pub(crate) const RAMP_SPANS: usize = LEAD_SPANS + TURN_SPANS;
 
 /// What a ramp may do with the sign of the velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,6 +92,21 @@ impl Ramps {
         self.velocity
     }
 
+    /// The acceleration bound in the kernel's units.
+    pub(super) const fn acceleration(&self) -> f64 {
+        self.acceleration
+    }
+
+    /// The deceleration bound in the kernel's units.
+    pub(super) const fn deceleration(&self) -> f64 {
+        self.deceleration
+    }
+
+    /// The jerk bound in the kernel's units.
+    pub(super) const fn jerk(&self) -> f64 {
+        self.jerk
+    }
+
     /// A derivative of the position, 0 the position itself, in the kernel's units.
     pub(crate) fn inward(&self, value: f64, derivative: u32) -> f64 {
         self.scale.inward(value, levels(self.order, derivative))
@@ -118,7 +134,7 @@ impl Ramps {
         };
         let goal = heading * goal;
         let mut ramp = match self.order {
-            Order::Two => self.second_order(state.v, goal),
+            Order::Two => self.second_order(state.v, goal, course),
             Order::Three => self.third_order(state, goal, course),
             Order::Four => self.fourth_order(state, goal, course),
         };
@@ -143,20 +159,22 @@ impl Ramps {
         }
     }
 
+    /// Whether a ramp that changes its direction has different bounds on both sides of zero.
+    fn splits(&self, course: Course) -> bool {
+        course == Course::Free && self.acceleration != self.deceleration
+    }
+
     /// The acceleration bounds a ramp itself uses (R11), for a start that moves forwards.
     ///
     /// Forwards, what is above zero raises the speed and what is below lowers it. Where the velocity
     /// changes its sign on the way both do both, so the lower bound of the two holds on that side; `dips`
     /// says that it goes below zero on its way to a goal that is not.
-    fn sides(&self, goal: f64, dips: bool, course: Course) -> Sides {
+    fn sides(&self, goal: f64, dips: bool) -> Sides {
         let lower = self.acceleration.min(self.deceleration);
         let reverses = goal < 0.0;
         Sides {
             minus: if reverses { lower } else { self.deceleration },
-            plus: if dips && goal == 0.0 && course == Course::Free {
-                // What is above zero ends the way back, and only that (O5).
-                self.deceleration
-            } else if reverses || dips {
+            plus: if reverses || dips {
                 lower
             } else {
                 self.acceleration
@@ -165,9 +183,9 @@ impl Ramps {
     }
 
     /// Order 2: one straight line, or two if the velocity has to come inside its limit first (R12).
-    fn second_order(&self, velocity: f64, goal: f64) -> Ramp {
+    fn second_order(&self, velocity: f64, goal: f64, course: Course) -> Ramp {
         let mut spans = Spans::new();
-        let sides = self.sides(goal, false, Course::Kept);
+        let sides = self.sides(goal, false);
         let limit = self.velocity;
         let viable = velocity <= limit && velocity >= 0.0;
         let mut velocity = velocity;
@@ -178,7 +196,9 @@ impl Ramps {
         }
         let lead = spans.len();
         let change = goal - velocity;
-        if change > 0.0 {
+        if goal < 0.0 && self.splits(course) {
+            spans.extend(&self.turning(&setpoint(velocity, 0.0, 0.0), goal).0);
+        } else if change > 0.0 {
             spans.push(change / sides.plus, sides.plus);
         } else {
             spans.push(-change / sides.minus, -sides.minus);
@@ -203,13 +223,19 @@ impl Ramps {
             brake_before: self.before.deceleration,
             jerk_before: self.before.input,
         };
-        let (lead, steps) = start.lead_in(goal, self.velocity, &bounds);
+        let (lead, mut steps) = start.lead_in(goal, self.velocity, &bounds);
         let viable = lead.is_empty() && goal >= 0.0 && start.is_viable(self.velocity);
         let state = start.after_all(&lead);
         let dips = goal >= 0.0 && state.rest() < 0.0;
         let mut spans = Spans::new();
         spans.extend(&lead);
-        spans.extend(&second(state.v, state.a, goal, self.sides(goal, dips, course)));
+        if self.splits(course) && (dips || goal < 0.0) {
+            let (turning, more) = self.turning(&setpoint(state.v, state.a, 0.0), goal);
+            spans.extend(&turning);
+            steps = steps.max(more);
+        } else {
+            spans.extend(&second(state.v, state.a, goal, self.sides(goal, dips)));
+        }
         Ramp {
             spans,
             lead: lead.len(),
@@ -232,34 +258,39 @@ impl Ramps {
             snap_before: self.before.input,
         };
         let own = |dips| Bounds {
-            v: self.sides(goal, dips, course),
+            v: self.sides(goal, dips),
             a: Sides::both(self.jerk),
         };
         let low = if may_turn { -self.velocity } else { 0.0 };
-        let mut lead = inside::lead_in(start, goal, (low, self.velocity), &bounds, &own(true));
-        let inside = lead.spans.len();
-        if goal < 0.0 && course == Course::Free {
-            // What only slows the motion down has to be inside before the velocity passes zero (O5).
-            lead.enter(&Box4 {
-                a: own(false).v,
-                brake_before: own(false).v.minus,
-                jerk_before: self.jerk,
-                snap_before: 1.0,
-                ..bounds
-            });
-        }
+        let lead = inside::lead_in(start, goal, (low, self.velocity), &bounds, &own(true));
         let dips = goal >= 0.0 && (lead.state.v < 0.0 || lead.rest < 0.0);
         let State { v, a, j } = lead.state;
-        let profile = third(v, a, j, goal, &own(dips));
         let mut spans = Spans::new();
         spans.extend(&lead.spans);
-        spans.extend(&profile.spans);
+        let steps = if self.splits(course) && (dips || goal < 0.0) {
+            let (turning, steps) = self.turning(&setpoint(v, a, j), goal);
+            spans.extend(&turning);
+            steps
+        } else {
+            let profile = third(v, a, j, goal, &own(dips));
+            spans.extend(&profile.spans);
+            profile.steps
+        };
         Ramp {
             spans,
-            lead: inside,
-            steps: lead.steps.max(profile.steps),
+            lead: lead.spans.len(),
+            steps: lead.steps.max(steps),
             viable: lead.viable && goal >= 0.0,
         }
+    }
+}
+
+fn setpoint(velocity: f64, acceleration: f64, jerk: f64) -> Setpoint {
+    Setpoint {
+        velocity,
+        acceleration,
+        jerk,
+        ..Setpoint::default()
     }
 }
 

@@ -79,9 +79,6 @@ fn chains(seed: u64, count: u32, equal: bool, change: impl Fn(&mut Random, &Limi
             worst.solves = worst.solves.max(plan.solves());
             worst.pieces = worst.pieces.max(plan.segments().count());
             worst.rungs[plan.rung() as usize] += 1;
-            if plan.rung() != Rung::PushThenStop && std::env::var("SHOW").is_ok() {
-                println!("{:?} {}", plan.rung(), context());
-            }
             let truth = relative_excess(&seen, &now, order);
             let said = plan.excess().unwrap_or_default();
             let told = [
@@ -165,4 +162,63 @@ fn chains_with_velocity_overrides_meet_every_target() {
 fn chains_with_changing_limits_meet_every_target() {
     let worst = chains(4, 250, false, all_changed);
     println!("{worst:?}");
+}
+
+/// `cargo test --release -p standstill-planner --features std --test online_plans -- --ignored --nocapture`
+#[test]
+#[ignore = "some minutes in release"]
+fn a_million_replans_of_each_kind() {
+    println!("constant {:?}", chains(11, 50_000, true, same));
+    println!("own deceleration {:?}", chains(12, 50_000, false, same));
+    println!("velocity override {:?}", chains(13, 50_000, true, overridden));
+    println!("changing {:?}", chains(14, 50_000, false, all_changed));
+}
+
+/// As above: the time of one plan, at every order.
+#[test]
+#[ignore = "timing"]
+fn nanoseconds() {
+    for order in ORDERS {
+        let mut random = Random(91);
+        let mut problems = Vec::new();
+        let (mut solves, mut most) = (0, 0);
+        for _ in 0..1000 {
+            let mut limits = support::limits(&mut random, order);
+            limits.deceleration = limits.acceleration;
+            let time = limits.velocity / limits.acceleration;
+            let way = limits.velocity * time;
+            let cycle = 0.01 * time;
+            let first = OnlinePlan::new(
+                &Setpoint::default(),
+                way * random.between(-3.0, 3.0),
+                &limits,
+                &limits,
+                cycle,
+            )
+            .expect("a plan");
+            let start = first.at(random.below(u64::from(first.scans()) + 1));
+            problems.push((start, way * random.between(-3.0, 3.0), limits, cycle));
+        }
+        let mut times = Vec::new();
+        for _ in 0..20 {
+            for (start, target, limits, cycle) in &problems {
+                let begin = std::time::Instant::now();
+                let plan = OnlinePlan::new(start, *target, limits, limits, *cycle);
+                times.push(begin.elapsed().as_nanos());
+                let plan = plan.expect("a plan");
+                solves += plan.solves();
+                most = most.max(plan.solves());
+            }
+        }
+        times.sort_unstable();
+        let at = |share: f64| times[(share * (times.len() - 1) as f64) as usize];
+        println!(
+            "{order:?}: median {} ns, p99 {} ns, p99.9 {} ns; ramps solved {:.1} on average, {most} at most",
+            at(0.5),
+            at(0.99),
+            at(0.999),
+            f64::from(solves) / times.len() as f64
+        );
+    }
+    println!("a plan is {} bytes", size_of::<OnlinePlan>());
 }

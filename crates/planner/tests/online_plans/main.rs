@@ -2,5 +2,6 @@
 
 mod chains;
 mod scans;
+mod shape;
 #[path = "../ramp_plans/support.rs"]
 mod support;

@@ -10,6 +10,7 @@ struct Case {
     limits: Limits,
     start: Setpoint,
     target: f64,
+    end_velocity: f64,
     least: u32,
 }
 
@@ -36,6 +37,7 @@ fn cases(text: &str) -> Vec<Case> {
                     snap: 0.0,
                 },
                 target: number("target"),
+                end_velocity: case["ve"].as_f64().unwrap_or(0.0),
                 least: case["n_star"].as_u64().expect("n_star") as u32,
             }
         })
@@ -44,7 +46,15 @@ fn cases(text: &str) -> Vec<Case> {
 
 impl Case {
     fn online(&self) -> OnlinePlan {
-        OnlinePlan::new(&self.start, self.target, &self.limits, &self.limits, self.cycle).expect("a plan")
+        OnlinePlan::passing(
+            &self.start,
+            self.target,
+            self.end_velocity,
+            &self.limits,
+            &self.limits,
+            self.cycle,
+        )
+        .expect("a plan")
     }
 }
 
@@ -79,6 +89,17 @@ fn check(text: &str) {
 }
 
 #[test]
-fn the_given_cases_need_at_most_one_scan_more_than_the_least() {
+fn the_reference_cases_need_at_most_one_scan_more_than_the_least() {
     check(include_str!("../data/min-scans.json"));
+}
+
+#[test]
+fn random_cases_need_at_most_one_scan_more_than_the_least() {
+    check(include_str!("../data/least-scans-a.json"));
+    check(include_str!("../data/least-scans-b.json"));
+}
+
+#[test]
+fn passing_a_position_needs_at_most_one_scan_more_than_the_least() {
+    check(include_str!("../data/least-scans-passing.json"));
 }

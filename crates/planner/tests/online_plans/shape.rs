@@ -1,0 +1,450 @@
+//! What holds for single plans: units, continuity, rungs, special targets, refusals.
+
+use super::support::{self, ORDERS, Random, integrate};
+use standstill_planner::{Limits, OnlinePlan, Order, PlanError, Rung, Setpoint};
+
+fn plan(start: &Setpoint, target: f64, limits: &Limits, cycle: f64) -> OnlinePlan {
+    OnlinePlan::new(start, target, limits, limits, cycle).expect("a plan")
+}
+
+/// Limits, a cycle that suits them, and a state in the middle of some move under them.
+fn moving(random: &mut Random, order: Order) -> (Limits, f64, Setpoint) {
+    let limits = support::limits(random, order);
+    let time = limits.velocity / limits.acceleration;
+    let cycle = 0.02 * time;
+    let way = limits.velocity * time;
+    let mut start = Setpoint::at_rest(way * random.between(-1.0, 1.0));
+    for _ in 0..2 {
+        let before = plan(&start, way * random.between(-3.0, 3.0), &limits, cycle);
+        start = before.at(random.below(u64::from(before.scans()) + 1));
+    }
+    (limits, cycle, start)
+}
+
+fn scaled(limits: &Limits, length: f64, time: f64) -> Limits {
+    let per = |n: usize| (0..n).fold(length, |unit, _| unit / time);
+    Limits {
+        velocity: limits.velocity * per(1),
+        acceleration: limits.acceleration * per(2),
+        deceleration: limits.deceleration * per(2),
+        jerk: limits.jerk * per(3),
+        snap: limits.snap * per(4),
+    }
+}
+
+fn scaled_state(state: &Setpoint, length: f64, time: f64) -> Setpoint {
+    let per = |n: usize| (0..n).fold(length, |unit, _| unit / time);
+    Setpoint {
+        position: state.position * per(0),
+        velocity: state.velocity * per(1),
+        acceleration: state.acceleration * per(2),
+        jerk: state.jerk * per(3),
+        snap: state.snap * per(4),
+    }
+}
+
+/// By a million either way, which is no power of two: the same scans. By powers of two: the same bits.
+#[test]
+fn other_units_change_no_scan() {
+    let mut random = Random(61);
+    for case in 0..3000 {
+        let (limits, cycle, start) = moving(&mut random, ORDERS[case % 3]);
+        let target = start.position + limits.velocity * cycle * random.between(-300.0, 300.0);
+        let reference = plan(&start, target, &limits, cycle);
+        for (length, time) in [(1e6, 1.0), (1e-6, 1.0), (1.0, 1e6), (1.0, 1e-6)] {
+            let other = plan(
+                &scaled_state(&start, length, time),
+                target * length,
+                &scaled(&limits, length, time),
+                cycle * time,
+            );
+            assert_eq!(
+                other.scans(),
+                reference.scans(),
+                "case {case} {length} {time} {start:?} -> {target:?} {limits:?} {cycle}"
+            );
+            assert_eq!(other.rung(), reference.rung());
+        }
+        let (length, time) = (1_048_576.0, 1.0 / 8192.0);
+        let other = plan(
+            &scaled_state(&start, length, time),
+            target * length,
+            &scaled(&limits, length, time),
+            cycle * time,
+        );
+        for scan in 0..=u64::from(reference.scans()) {
+            assert_eq!(
+                other.at(scan),
+                scaled_state(&reference.at(scan), length, time),
+                "case {case} scan {scan}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_mirrored_move_is_the_mirror_image() {
+    let mut random = Random(63);
+    for case in 0..3000 {
+        let (limits, cycle, start) = moving(&mut random, ORDERS[case % 3]);
+        let target = start.position + limits.velocity * cycle * random.between(-300.0, 300.0);
+        let one = plan(&start, target, &limits, cycle);
+        let other = plan(&scaled_state(&start, -1.0, 1.0), -target, &limits, cycle);
+        for scan in 0..=u64::from(one.scans()) {
+            assert_eq!(one.at(scan), scaled_state(&other.at(scan), -1.0, 1.0));
+        }
+    }
+}
+
+/// States on a limit, and an outward ulp or 1e-12 of the limit further: the plan changes by no more than
+/// the change is worth.
+#[test]
+fn a_nudge_outwards_on_a_limit_changes_nothing() {
+    let mut random = Random(65);
+    let mut worst: f64 = 0.0;
+    for case in 0..2000 {
+        let order = ORDERS[1 + case % 2];
+        let mut limits = support::limits(&mut random, order);
+        limits.jerk = limits.jerk.min(1e6 * limits.acceleration);
+        let Limits {
+            velocity: v,
+            acceleration: a,
+            jerk: j,
+            snap: s,
+            ..
+        } = limits;
+        let time = v / a;
+        // What the acceleration takes to end, in time and velocity.
+        let room = if order == Order::Four {
+            (2.0 * a / s).sqrt().max(j / s + a / j) * a
+        } else {
+            0.5 * a * a / j
+        };
+        let state = |velocity: f64, acceleration: f64, jerk: f64| Setpoint {
+            velocity,
+            acceleration,
+            jerk,
+            ..Setpoint::default()
+        };
+        for nudge in [f64::EPSILON, 1e-12] {
+            let out = 1.0 + nudge;
+            let mut pairs = vec![
+                (state(v, 0.0, 0.0), state(v * out, 0.0, 0.0)),
+                (state(v, 0.0, 0.0), state(v, a * nudge, 0.0)),
+                (state(v, 0.0, 0.0), state(v, 0.0, j * nudge)),
+            ];
+            if room < v {
+                pairs.extend([
+                    (state(v - room, a, 0.0), state(v - room, a * out, 0.0)),
+                    (state(v - room, a, 0.0), state(v - room, a, j * nudge)),
+                    (state(0.0, a, 0.0), state(0.0, a, 1e-17 * j)),
+                    (
+                        state(-v + room, -limits.deceleration.min(a), 0.0),
+                        state(-v + room, -limits.deceleration.min(a) * out, 0.0),
+                    ),
+                ]);
+            }
+            for (there, beyond) in pairs {
+                let target = v * time * random.between(-4.0, 4.0);
+                let (one, other) = (
+                    plan(&there, target, &limits, 0.01 * time),
+                    plan(&beyond, target, &limits, 0.01 * time),
+                );
+                let change = (one.duration() - other.duration()).abs() / one.duration();
+                assert!(
+                    change <= 1e-6,
+                    "{change:e} {there:?} {beyond:?} -> {target} {limits:?}\n{one:?}\n{other:?}"
+                );
+                worst = worst.max(change);
+                assert_eq!(one.rung(), other.rung());
+            }
+        }
+    }
+    println!("largest relative change of duration {worst:e}");
+}
+
+/// The end velocity of 0 is no special case: nearly 0 takes nearly as long.
+#[test]
+fn passing_nearly_at_rest_is_nearly_stopping() {
+    let mut random = Random(67);
+    let mut worst: f64 = 0.0;
+    for case in 0..2000 {
+        let (limits, cycle, start) = moving(&mut random, ORDERS[case % 3]);
+        let target = start.position + limits.velocity * cycle * random.between(-300.0, 300.0);
+        let stop = plan(&start, target, &limits, cycle);
+        let pass = OnlinePlan::passing(&start, target, 1e-12 * limits.velocity, &limits, &limits, cycle)
+            .expect("a plan");
+        let change = (pass.duration() - stop.duration()).abs() / stop.duration().max(cycle);
+        if change > 1e-3 {
+            println!("BAD {change} {start:?} {target:?} {limits:?} {cycle}");
+        }
+        worst = worst.max(change);
+    }
+    println!("largest relative change of duration {worst:e}");
+    assert!(worst <= 1e-3, "{worst:e}");
+}
+
+/// A plan taken up again from any of its own states, to the same target, goes on as it did.
+#[test]
+fn a_move_planned_again_continues_itself() {
+    let mut random = Random(69);
+    let mut worst: f64 = 0.0;
+    for case in 0..6000 {
+        let (limits, cycle, start) = moving(&mut random, ORDERS[case % 3]);
+        let target = start.position + limits.velocity * cycle * random.between(-300.0, 300.0);
+        let whole = plan(&start, target, &limits, cycle);
+        let scan = random.below(u64::from(whole.scans()) + 1);
+        let rest = plan(&whole.at(scan), target, &limits, cycle);
+        let left = (whole.duration() - scan as f64 * cycle).max(0.0);
+        let change = (rest.duration() - left) / whole.duration().max(cycle);
+        assert!(change <= 1e-3, "case {case} scan {scan}: {change:e} {limits:?}");
+        worst = worst.max(change);
+    }
+    println!("largest relative change of duration {worst:e}");
+}
+
+/// Every rung by itself keeps the limits and arrives, and none is shorter than the first.
+#[test]
+fn every_rung_arrives() {
+    let mut random = Random(71);
+    let (mut longer, mut later) = ([1.0f64; 4], 0);
+    for case in 0..4000 {
+        let order = ORDERS[case % 3];
+        let (limits, cycle, start) = moving(&mut random, order);
+        let target = start.position + limits.velocity * cycle * random.between(-300.0, 300.0);
+        let end_velocity = if case % 2 == 0 {
+            0.0
+        } else {
+            limits.velocity * random.between(-1.0, 1.0)
+        };
+        let best =
+            OnlinePlan::passing(&start, target, end_velocity, &limits, &limits, cycle).expect("a plan");
+        // With an end velocity on the other side of zero the first rung may have no exact switch.
+        assert!(best.rung() == Rung::PushThenStop || end_velocity != 0.0);
+        later += u32::from(best.rung() != Rung::PushThenStop);
+        for rung in Rung::ALL {
+            let plan = OnlinePlan::with(rung, &start, target, end_velocity, &limits, &limits, cycle)
+                .unwrap_or_else(|error| {
+                    panic!("{error} {rung:?} {start:?} {target} {end_velocity} {limits:?} {cycle}")
+                });
+            assert!(plan.rung() >= rung, "{rung:?}");
+            assert_eq!(plan.excess(), None, "{rung:?} {plan:?}");
+            let ratio = plan.duration() / best.duration();
+            // With an end velocity a longer way may take less time.
+            assert!(
+                ratio >= 1.0 - 1e-9 || end_velocity != 0.0,
+                "{rung:?} {ratio} {limits:?} {start:?} {target}"
+            );
+            longer[plan.rung() as usize] = longer[plan.rung() as usize].max(ratio);
+            let origin = Setpoint {
+                position: 0.0,
+                ..start
+            };
+            let seen = integrate(&origin, &plan, order);
+            let miss = seen.end.position - (target - start.position);
+            let resolved = 32.0 * f64::EPSILON * (start.position.abs() + target.abs());
+            assert!(
+                miss.abs() <= resolved + 1e-9 * limits.velocity * plan.duration(),
+                "{rung:?} {miss:e} {plan:?}"
+            );
+            assert!(
+                seen.v_max.max(-seen.v_min) <= limits.velocity * (1.0 + 1e-9)
+                    && seen.speeding <= limits.acceleration * (1.0 + 1e-9)
+                    && seen.slowing <= limits.deceleration * (1.0 + 1e-9)
+                    && (order < Order::Three || seen.jerk <= limits.jerk * (1.0 + 1e-9))
+                    && (order < Order::Four || seen.snap <= limits.snap * (1.0 + 1e-9)),
+                "{rung:?} {seen:?} {limits:?} {plan:?}"
+            );
+            // The set-points between are those of the segments: no jump from one to the next.
+            let mut last = plan.at(0);
+            for scan in 1..=u64::from(plan.scans()) + 2 {
+                let now = plan.at(scan);
+                let step = (now.position - last.position).abs();
+                assert!(
+                    step <= limits.velocity * cycle * (1.0 + 1e-9) + resolved,
+                    "{rung:?} scan {scan} {plan:?}"
+                );
+                last = now;
+            }
+            if end_velocity == 0.0 {
+                assert_eq!(last, Setpoint::at_rest(target));
+            } else {
+                assert_eq!(
+                    (last.velocity, last.acceleration, last.jerk),
+                    (end_velocity, 0.0, 0.0)
+                );
+            }
+        }
+    }
+    println!(
+        "longest beside push-then-stop, by rung: {longer:?}; {later} of 2000 that pass need a later rung"
+    );
+    assert!(later <= 4);
+}
+
+const SERVO: Limits = Limits {
+    velocity: 1.0,
+    acceleration: 10.0,
+    deceleration: 10.0,
+    jerk: 400.0,
+    snap: 20_000.0,
+};
+
+#[test]
+fn special_targets() {
+    let rest = Setpoint::at_rest(0.3);
+    // There already.
+    let none = plan(&rest, 0.3, &SERVO, 1e-3);
+    assert_eq!(
+        (none.scans(), none.duration(), none.segments().count()),
+        (0, 0.0, 0)
+    );
+    assert_eq!(none.at(0), rest);
+    assert_eq!(none.at(7), rest);
+    let cruising = Setpoint {
+        velocity: 1.0,
+        ..rest
+    };
+    // Inside the braking distance: past the target and back, and sooner than by way of a full stop.
+    let near = plan(&cruising, 0.301, &SERVO, 1e-3);
+    assert!((0..=u64::from(near.scans())).any(|scan| near.at(scan).velocity < 0.0));
+    assert!(
+        near.duration()
+            < OnlinePlan::with(Rung::Brake, &cruising, 0.301, 0.0, &SERVO, &SERVO, 1e-3)
+                .expect("a plan")
+                .duration()
+    );
+    // Behind, and where it is: the same.
+    for target in [0.3, -2.0] {
+        let back = plan(&cruising, target, &SERVO, 1e-3);
+        assert_eq!(back.at(u64::from(back.scans())), Setpoint::at_rest(target));
+        assert_eq!(back.excess(), None);
+    }
+    // Exactly where the fastest stop ends: that stop.
+    let stop = standstill_planner::RampPlan::new(&cruising, 0.0, &SERVO, &SERVO, 1e-3).expect("a plan");
+    let there = plan(&cruising, stop.end_position(), &SERVO, 1e-3);
+    assert_eq!(there.scans(), stop.scans());
+    // Far ahead: no slower than cruising.
+    let far = plan(&cruising, 10.3, &SERVO, 1e-3);
+    assert!(far.duration() < 10.0 + 2.0 * stop.duration());
+    // Rest to rest it is at least as fast as the grid.
+    let grid =
+        standstill_planner::GridPlan::new(standstill_planner::Method::Overlapped, 0.3, 0.9, &SERVO, 1e-3)
+            .expect("a plan");
+    assert!(plan(&rest, 0.9, &SERVO, 1e-3).scans() <= grid.scans());
+}
+
+/// Too fast for a lowered limit: inside it as soon as the old limits allow, told, and on to the target.
+#[test]
+fn over_a_lowered_velocity_limit() {
+    let cruising = Setpoint {
+        velocity: 1.0,
+        ..Setpoint::default()
+    };
+    let lowered = Limits {
+        velocity: 0.4,
+        ..SERVO
+    };
+    for target in [5.0, 0.01, 0.0, -5.0] {
+        let plan = OnlinePlan::new(&cruising, target, &lowered, &SERVO, 1e-3).expect("a plan");
+        let excess = plan.excess().expect("told");
+        assert!((excess.velocity - 0.6).abs() <= 1e-12);
+        assert_eq!((excess.acceleration, excess.jerk), (0.0, 0.0));
+        assert_eq!(plan.rung(), Rung::PushThenStop);
+        // From 1 to 0.4 u/s with A = 10, J = 400, S = 20000: 0.105 s.
+        let inside = (0..u64::from(plan.scans()))
+            .position(|scan| plan.at(scan).velocity <= 0.4 * (1.0 + 1e-9))
+            .expect("inside");
+        assert!(inside <= 106, "{inside}");
+        assert!(
+            (inside as u64..u64::from(plan.scans()))
+                .all(|scan| plan.at(scan).velocity.abs() <= 0.4 * (1.0 + 1e-9))
+        );
+    }
+}
+
+#[test]
+fn unusable_inputs_are_refused_by_name() {
+    let rest = Setpoint::at_rest(0.0);
+    let name = |start: Setpoint, target: f64, end_velocity: f64, limits: Limits, cycle: f64| {
+        match OnlinePlan::passing(&start, target, end_velocity, &limits, &Limits::NONE, cycle) {
+            Err(PlanError::InvalidInput { field, .. }) => field.name(),
+            Err(PlanError::TooLong { .. }) => "too long",
+            other => panic!("{other:?}"),
+        }
+    };
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let start = Setpoint { jerk: bad, ..rest };
+        assert_eq!(name(start, 1.0, 0.0, SERVO, 1e-3), "jerk");
+        assert_eq!(name(rest, bad, 0.0, SERVO, 1e-3), "target");
+        assert_eq!(name(rest, 1.0, bad, SERVO, 1e-3), "end_velocity");
+        assert_eq!(name(rest, 1.0, 0.0, SERVO, bad), "Ts");
+        let limits = Limits {
+            velocity: bad,
+            ..SERVO
+        };
+        assert_eq!(name(rest, 1.0, 0.0, limits, 1e-3), "limits.velocity");
+    }
+    assert_eq!(name(rest, 1.0, 1.0001, SERVO, 1e-3), "end_velocity");
+    assert_eq!(name(rest, 1e300, 0.0, SERVO, 1e-3), "too long");
+    assert_eq!(name(Setpoint::at_rest(-1e308), 1e308, 0.0, SERVO, 1e-3), "target");
+}
+
+/// Bounds of any size against each other: a plan or a refusal, and a plan ends exactly.
+#[test]
+fn absurd_inputs_end_in_a_plan_or_a_refusal() {
+    let mut random = Random(73);
+    let (mut planned, mut refused, mut rungs) = (0, 0, [0; 4]);
+    for case in 0..20_000 {
+        let size = |random: &mut Random| random.log(1e-40, 1e40);
+        let signed = |random: &mut Random| match random.below(4) {
+            0 => 0.0,
+            1 => -random.log(1e-40, 1e40),
+            _ => random.log(1e-40, 1e40),
+        };
+        let bound = |random: &mut Random| {
+            if random.below(4) == 0 {
+                f64::INFINITY
+            } else {
+                random.log(1e-40, 1e40)
+            }
+        };
+        let limits = Limits {
+            velocity: size(&mut random),
+            acceleration: size(&mut random),
+            deceleration: size(&mut random),
+            jerk: bound(&mut random),
+            snap: bound(&mut random),
+        };
+        let before = Limits {
+            jerk: bound(&mut random),
+            snap: bound(&mut random),
+            deceleration: bound(&mut random),
+            ..limits
+        };
+        let start = Setpoint {
+            position: signed(&mut random),
+            velocity: signed(&mut random),
+            acceleration: signed(&mut random),
+            jerk: signed(&mut random),
+            snap: 0.0,
+        };
+        let target = signed(&mut random);
+        match OnlinePlan::new(&start, target, &limits, &before, size(&mut random)) {
+            Ok(plan) => {
+                planned += 1;
+                rungs[plan.rung() as usize] += 1;
+                assert_eq!(
+                    plan.at(u64::from(plan.scans())),
+                    Setpoint::at_rest(target),
+                    "case {case}"
+                );
+                assert!(plan.duration() >= 0.0);
+            }
+            Err(PlanError::TooLong { .. }) => refused += 1,
+            Err(error) => panic!("case {case}: {error}"),
+        }
+    }
+    println!("planned {planned} refused {refused} rungs {rungs:?}");
+    assert!(planned > 1000);
+}
