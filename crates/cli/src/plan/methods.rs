@@ -3,6 +3,7 @@
 
 use crate::json::number;
 use crate::plan::fields::{Fields, Problem};
+use crate::plan::papers;
 use crate::plan::refusal::{Code, Refusal};
 use standstill_planner::grid::{Counts, Method, Peaks};
 use standstill_planner::{Field, GridPlan, Limits, Order, PlanError, Segment, Setpoint};
@@ -37,17 +38,17 @@ const METHODS: [&MethodInfo; 9] = [
     &MethodInfo {
         name: "s-curve",
         fields: &[],
-        plan: None,
+        plan: Some(papers::s_curve),
     },
     &MethodInfo {
         name: "timed",
         fields: &["duration", "gamma", "phi"],
-        plan: None,
+        plan: Some(papers::timed),
     },
     &MethodInfo {
         name: "trapezoid",
         fields: &["duration"],
-        plan: None,
+        plan: Some(papers::trapezoid),
     },
     &MethodInfo {
         name: "short-path",
@@ -90,6 +91,10 @@ pub struct Planned {
     pub boxes: Option<Vec<u32>>,
     /// Lengths of the published segments (scans), if the method has them.
     pub counts: Option<Counts>,
+    /// Which of its cases the method found, if it has some.
+    pub case: Option<&'static str>,
+    /// The velocity at the target (u/s), of methods that may change the one asked for.
+    pub end_velocity: Option<f64>,
     /// What is published last.
     pub end: Setpoint,
 }
@@ -154,12 +159,20 @@ fn check_extra_field(fields: &Fields<'_>, name: &str, method: &MethodInfo) -> Re
     Err(Refusal::of_field(code, fields, name, message))
 }
 
+/// Refuses a start or an end that moves.
+pub fn check_rest(fields: &Fields<'_>, problem: &Problem) -> Result<(), Refusal> {
+    match problem.first_motion() {
+        None => Ok(()),
+        Some((field, _)) => {
+            let message = format!("`{}` must be 0: this method goes from rest to rest", field.name());
+            Err(fields.invalid(field.name(), message).nearest(Some(number(0.0))))
+        }
+    }
+}
+
 /// Rest to rest on the sample grid.
 fn grid(fields: &Fields<'_>, problem: &Problem, method: Method) -> Result<Planned, Refusal> {
-    if let Some((field, _)) = problem.first_motion() {
-        let message = format!("`{}` must be 0: this method goes from rest to rest", field.name());
-        return Err(fields.invalid(field.name(), message).nearest(Some(number(0.0))));
-    }
+    check_rest(fields, problem)?;
     let cycle = fields.required("Ts")?;
     let target = fields.required("target")?;
     let limits = problem.limits;
@@ -176,6 +189,8 @@ fn grid(fields: &Fields<'_>, problem: &Problem, method: Method) -> Result<Planne
         peak: plan.peaks(),
         boxes: symmetric.then(|| boxes(&plan)),
         counts: (method != Method::Overlapped).then(|| counts(&plan)),
+        case: None,
+        end_velocity: None,
         end: plan.at(plan.scans().into()),
     })
 }

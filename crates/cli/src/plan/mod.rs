@@ -2,6 +2,7 @@
 
 mod fields;
 mod methods;
+mod papers;
 mod refusal;
 mod reply;
 

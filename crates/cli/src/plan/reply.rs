@@ -16,6 +16,8 @@ pub fn line(id: &str, method: &str, planned: &Planned) -> String {
         .with("peak", peak(&planned.peak))
         .with_some("boxes", planned.boxes.as_deref().map(boxes))
         .with_some("counts", planned.counts.as_ref().map(counts))
+        .with_some("case", planned.case.map(string))
+        .with_some("end_velocity", planned.end_velocity.map(number))
         .with("end", end(&planned.end))
         .text()
 }

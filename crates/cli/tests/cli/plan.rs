@@ -17,17 +17,26 @@ fn answers(lines: &str) -> Vec<Value> {
 
 #[test]
 fn lines_are_answered_letter_by_letter_as_before() {
-    let lines = include_str!("plan.jsonl");
+    insta::assert_snapshot!(asked_and_answered(include_str!("plan.jsonl")));
+}
+
+#[test]
+fn the_papers_methods_answer_letter_by_letter_as_before() {
+    insta::assert_snapshot!(asked_and_answered(include_str!("papers.jsonl")));
+}
+
+/// Each line and its answer; at least one of them is refused.
+fn asked_and_answered(lines: &str) -> String {
     let ended = fed(&["plan"], lines.as_bytes());
     let asked: Vec<_> = lines.lines().filter(|line| !line.trim().is_empty()).collect();
     let answered: Vec<_> = ended.out.lines().collect();
     assert_eq!(asked.len(), answered.len());
     let pairs = asked.iter().zip(answered);
-    let text: String = pairs
+    let text = pairs
         .map(|(asked, answered)| format!("> {asked}\n{answered}\n\n"))
         .collect();
-    insta::assert_snapshot!(text);
     assert_eq!((ended.status, ended.err.as_str()), (1, ""));
+    text
 }
 
 #[test]

@@ -1,0 +1,140 @@
+//! The methods of the papers: lines in their fields, plans in the terms of the answer.
+
+use crate::plan::fields::{Fields, Problem};
+use crate::plan::methods::{Planned, check_rest};
+use crate::plan::refusal::{Code, Refusal};
+use standstill_planner::grid;
+use standstill_planner::papers::{Profile, SCurve, Timed, Trapezoid};
+use standstill_planner::{Field, Limits, PlanError};
+
+/// What a method of order 3 needs.
+const ORDER_THREE: [Field; 3] = [Field::LimitVelocity, Field::LimitAcceleration, Field::LimitJerk];
+
+/// `s-curve`: rest to rest in least time at order 3.
+pub fn s_curve(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> {
+    check_rest(fields, problem)?;
+    let cycle = cycle(fields)?;
+    let target = fields.required("target")?;
+    check_limits(fields, &problem.limits, &ORDER_THREE, &[Field::LimitSnap])?;
+    let plan = SCurve::new(problem.start.position, target, &problem.limits)
+        .map_err(|error| Refusal::of_plan_error(fields, error))?;
+    Ok(Planned {
+        case: Some(plan.case().name()),
+        ..planned(fields, plan.profile(), cycle)?
+    })
+}
+
+/// `timed`: rest to rest in a given time at order 3.
+pub fn timed(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> {
+    check_rest(fields, problem)?;
+    let cycle = cycle(fields)?;
+    let target = fields.required("target")?;
+    let [duration, gamma, phi] = [
+        fields.required("duration")?,
+        fields.required("gamma")?,
+        fields.required("phi")?,
+    ];
+    check_limits(fields, &problem.limits, &[], &[Field::LimitSnap])?;
+    let start = problem.start.position;
+    let plan = Timed::new(start, target, duration, gamma, phi, &problem.limits)
+        .map_err(|error| Refusal::of_plan_error(fields, error))?;
+    planned(fields, plan.profile(), cycle)
+}
+
+/// `trapezoid`: rest to rest at order 2, in least time or in a given one.
+pub fn trapezoid(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> {
+    check_rest(fields, problem)?;
+    let cycle = cycle(fields)?;
+    let target = fields.required("target")?;
+    let duration = fields.number("duration")?;
+    let needed = [Field::LimitVelocity, Field::LimitAcceleration];
+    // In a given time the acceleration results.
+    let needed = if duration.is_some() { &needed[..1] } else { &needed };
+    check_limits(
+        fields,
+        &problem.limits,
+        needed,
+        &[Field::LimitJerk, Field::LimitSnap],
+    )?;
+    let start = problem.start.position;
+    let plan = match duration {
+        None => Trapezoid::new(start, target, &problem.limits),
+        Some(duration) => Trapezoid::timed(start, target, duration, &problem.limits),
+    };
+    let plan = plan.map_err(|error| match error {
+        PlanError::InvalidInput {
+            field: Field::Duration,
+            value,
+        } if value > 0.0 => {
+            let message = "at `limits.velocity` alone the way takes as long or longer".to_owned();
+            fields.invalid("duration", message)
+        }
+        other => Refusal::of_plan_error(fields, other),
+    })?;
+    planned(fields, plan.profile(), cycle)
+}
+
+/// The sample time, which the papers' planners do without.
+fn cycle(fields: &Fields<'_>) -> Result<f64, Refusal> {
+    let cycle = fields.required("Ts")?;
+    if cycle > 0.0 {
+        Ok(cycle)
+    } else {
+        Err(fields.invalid("Ts", format!("Ts is {cycle:?}: it must be positive")))
+    }
+}
+
+/// Refuses a line that lacks a limit of `needed`, or has one of `unkept`, which its method cannot keep.
+fn check_limits(
+    fields: &Fields<'_>,
+    limits: &Limits,
+    needed: &[Field],
+    unkept: &[Field],
+) -> Result<(), Refusal> {
+    let bounds = [
+        (Field::LimitVelocity, limits.velocity),
+        (Field::LimitAcceleration, limits.acceleration),
+        (Field::LimitJerk, limits.jerk),
+        (Field::LimitSnap, limits.snap),
+    ];
+    for (field, bound) in bounds {
+        let name = field.name();
+        let message = if bound.is_infinite() && needed.contains(&field) {
+            format!("`{name}` is missing: this method needs it")
+        } else if bound.is_finite() && unkept.contains(&field) {
+            format!("this method cannot keep `{name}`: leave it out")
+        } else {
+            continue;
+        };
+        return Err(fields.invalid(name, message));
+    }
+    Ok(())
+}
+
+/// A profile in the terms of the answer.
+fn planned(fields: &Fields<'_>, profile: &Profile, cycle: f64) -> Result<Planned, Refusal> {
+    let peaks = profile.peaks();
+    let bounded = |value: f64| value.is_finite().then_some(value);
+    Ok(Planned {
+        duration: profile.duration(),
+        scans: profile.scans(cycle).ok_or_else(|| {
+            let message = format!(
+                "the move takes {:?} s, more than 2147483647 scans",
+                profile.duration()
+            );
+            Refusal::of_field(Code::TooLong, fields, "Ts", message)
+        })?,
+        segments: profile.segments().collect(),
+        peak: grid::Peaks {
+            velocity: peaks.velocity,
+            acceleration: peaks.acceleration,
+            jerk: bounded(peaks.jerk),
+            snap: bounded(peaks.snap),
+        },
+        boxes: None,
+        counts: None,
+        case: None,
+        end_velocity: None,
+        end: profile.end(),
+    })
+}
