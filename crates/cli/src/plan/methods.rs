@@ -53,7 +53,7 @@ const METHODS: [&MethodInfo; 9] = [
     &MethodInfo {
         name: "short-path",
         fields: &["policy"],
-        plan: None,
+        plan: Some(papers::short_path),
     },
     &MethodInfo {
         name: "tracking",

@@ -1,10 +1,12 @@
 //! The methods of the papers: lines in their fields, plans in the terms of the answer.
 
+use crate::json::{number, string};
 use crate::plan::fields::{Fields, Problem};
 use crate::plan::methods::{Planned, check_rest};
 use crate::plan::refusal::{Code, Refusal};
+use crate::suggest::nearest;
 use standstill_planner::grid;
-use standstill_planner::papers::{Profile, SCurve, Timed, Trapezoid};
+use standstill_planner::papers::{Profile, SCurve, ShortPath, ShortPathPolicy, Timed, Trapezoid};
 use standstill_planner::{Field, Limits, PlanError};
 
 /// What a method of order 3 needs.
@@ -72,6 +74,56 @@ pub fn trapezoid(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refu
         other => Refusal::of_plan_error(fields, other),
     })?;
     planned(fields, plan.profile(), cycle)
+}
+
+/// `short-path`: from one velocity to another at order 3.
+pub fn short_path(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> {
+    let Problem {
+        start,
+        end_velocity,
+        limits,
+    } = problem;
+    let accelerations = [
+        (Field::Acceleration, start.acceleration),
+        (Field::Jerk, start.jerk),
+    ];
+    for (field, value) in accelerations {
+        if value != 0.0 {
+            let message = format!("`{}` must be 0: this method starts at a velocity", field.name());
+            return Err(fields.invalid(field.name(), message).nearest(Some(number(0.0))));
+        }
+    }
+    let cycle = cycle(fields)?;
+    let target = fields.required("target")?;
+    let policy = policy(fields)?;
+    check_limits(fields, limits, &ORDER_THREE, &[Field::LimitSnap])?;
+    let plan = ShortPath::new(
+        start.position,
+        start.velocity,
+        target,
+        *end_velocity,
+        limits,
+        policy,
+    )
+    .map_err(|error| Refusal::of_plan_error(fields, error))?;
+    Ok(Planned {
+        case: Some(plan.kind().name()),
+        end_velocity: Some(plan.end_velocity()),
+        ..planned(fields, plan.profile(), cycle)?
+    })
+}
+
+/// What `short-path` does where the end velocity is out of reach.
+fn policy(fields: &Fields<'_>) -> Result<ShortPathPolicy, Refusal> {
+    match fields.string("policy")?.as_deref() {
+        None | Some("nearest") => Ok(ShortPathPolicy::Nearest),
+        Some("paper") => Ok(ShortPathPolicy::Paper),
+        Some(other) => {
+            let near = nearest(other, ["paper", "nearest"].into_iter()).map(string);
+            let message = "there are the policies `paper` and `nearest`".to_owned();
+            Err(fields.invalid("policy", message).nearest(near))
+        }
+    }
 }
 
 /// The sample time, which the papers' planners do without.

@@ -14,10 +14,12 @@
 
 mod profile;
 mod s_curve;
+mod short_path;
 mod timed;
 
 pub use profile::{MAX_SEGMENTS, Profile, Times};
 pub use s_curve::{SCurve, SCurveCase, Stepper};
+pub use short_path::{ShortPath, ShortPathPolicy, ShortPathType};
 pub use timed::{Timed, Trapezoid};
 
 use crate::{Field, Limits, PlanError};

@@ -2,5 +2,6 @@
 
 mod published;
 mod s_curve;
+mod short_path;
 mod support;
 mod timed;

@@ -1,6 +1,8 @@
 //! Rest to rest: limits, landing, least time, symmetry, scaling, and the second view.
 
-use crate::support::{Random, bounds, case, case_bounds, integrated, keeps_its_word, number, numbers};
+use crate::support::{
+    Random, bounds, case, case_bounds, cube_root, integrated, keeps_its_word, number, numbers,
+};
 use standstill_planner::papers::{SCurve, SCurveCase, Stepper};
 use standstill_planner::{Field, Limits, PlanError};
 use std::collections::BTreeSet;
@@ -42,7 +44,7 @@ fn no_other_shape_is_faster() {
                 let a = gamma * (1.0 - gamma) * (1.0 - phi);
                 let needed = (s / ((1.0 - gamma) * limits.velocity))
                     .max((s / (a * limits.acceleration)).sqrt())
-                    .max((s / (a * gamma * phi * limits.jerk)).cbrt());
+                    .max(cube_root(s / (a * gamma * phi * limits.jerk)));
                 assert!(duration <= needed * (1.0 + 1e-12));
             }
         }

@@ -154,6 +154,11 @@ pub fn same_profile(case: &Value, expected: &Value, profile: &Profile, start: St
     }
 }
 
+/// Cube root of a positive number by Newton's steps from far away: a math library's bits differ.
+pub fn cube_root(x: f64) -> f64 {
+    (0..200).fold(x.max(1.0), |root, _| (2.0 * root + x / (root * root)) / 3.0)
+}
+
 /// The generator splitmix64: small, seeded, the same everywhere.
 pub struct Random(pub u64);
 
@@ -171,9 +176,13 @@ impl Random {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Log-uniform.
+    /// Log-uniform, without a math library: each of the ever smaller factors is in or out.
     pub fn log(&mut self, low: f64, high: f64) -> f64 {
-        (low.ln() + self.unit() * (high / low).ln()).exp()
+        let mut factor = high / low;
+        (0..40).fold(low, |x, _| {
+            factor = factor.sqrt();
+            if self.bits() & 1 == 1 { x * factor } else { x }
+        })
     }
 
     /// -1 or 1.
