@@ -179,6 +179,12 @@ impl<'a> Fields<'a> {
         read.map_err(|_| self.invalid(field, format!("`{field}` must be a string")))
     }
 
+    /// A list of pairs of finite numbers, if the field is there.
+    pub fn pairs(&self, field: &str) -> Result<Option<Vec<(f64, f64)>>, Refusal> {
+        let read = self.text(field).map(serde_json::from_str).transpose();
+        read.map_err(|_| self.invalid(field, format!("`{field}` must be a list of pairs of numbers")))
+    }
+
     /// A bound of `limits`; `absent` if it is null or not there.
     fn limit(&self, field: &str, absent: f64) -> Result<f64, Refusal> {
         if self.text(field) == Some("null") {

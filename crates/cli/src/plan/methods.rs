@@ -6,7 +6,7 @@ use crate::plan::fields::{Fields, Problem};
 use crate::plan::papers;
 use crate::plan::refusal::{Code, Refusal};
 use standstill_planner::grid::{Counts, Method, Peaks};
-use standstill_planner::{Field, GridPlan, Limits, Order, PlanError, Segment, Setpoint};
+use standstill_planner::{Excess, Field, GridPlan, Limits, Order, PlanError, Segment, Setpoint};
 
 /// A method of `standstill plan`.
 #[derive(Debug)]
@@ -58,7 +58,7 @@ const METHODS: [&MethodInfo; 9] = [
     &MethodInfo {
         name: "tracking",
         fields: &["targets"],
-        plan: None,
+        plan: Some(papers::tracking),
     },
 ];
 
@@ -95,6 +95,8 @@ pub struct Planned {
     pub case: Option<&'static str>,
     /// The velocity at the target (u/s), of methods that may change the one asked for.
     pub end_velocity: Option<f64>,
+    /// By how much the start state forces the plan out of its limits, if it does.
+    pub unavoidable: Option<Excess>,
     /// What is published last.
     pub end: Setpoint,
 }
@@ -191,6 +193,7 @@ fn grid(fields: &Fields<'_>, problem: &Problem, method: Method) -> Result<Planne
         counts: (method != Method::Overlapped).then(|| counts(&plan)),
         case: None,
         end_velocity: None,
+        unavoidable: None,
         end: plan.at(plan.scans().into()),
     })
 }

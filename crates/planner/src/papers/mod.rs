@@ -16,16 +16,24 @@ mod profile;
 mod s_curve;
 mod short_path;
 mod timed;
+mod tracking;
 
 pub use profile::{MAX_SEGMENTS, Profile, Times};
 pub use s_curve::{SCurve, SCurveCase, Stepper};
 pub use short_path::{ShortPath, ShortPathPolicy, ShortPathType};
 pub use timed::{Timed, Trapezoid};
+pub use tracking::{Tracking, peaks};
 
 use crate::{Field, Limits, PlanError};
 
 /// What a request may miss the least duration by, relative to it, and still have it.
 const SLACK: f64 = 1e-12;
+
+/// The least count of scans of `cycle` (s) that covers `duration` (s), but for 1e-9 of it; none if that is
+/// more than 2^31 - 1.
+pub fn scans(duration: f64, cycle: f64) -> Option<u32> {
+    crate::ramp::scans(duration, cycle)
+}
 
 /// The signed way (u) from `start` to `target`.
 fn distance(start: f64, target: f64) -> Result<f64, PlanError> {

@@ -1,7 +1,7 @@
 //! A profile as a short list of polynomial pieces.
 
-use super::invalid;
-use crate::ramp::scans;
+use super::{invalid, peaks, scans};
+use crate::ramp::path::moved;
 use crate::{Field, Order, Peaks, PlanError, Segment, Setpoint};
 
 /// Most segments of a profile here: three to speed up, a cruise, three to slow down.
@@ -148,8 +148,7 @@ impl Profile {
         self.order
     }
 
-    /// The least count of scans of `cycle` (s) that covers the duration, but for 1e-9 of it; none if that
-    /// is more than 2^31 - 1.
+    /// The duration in scans of `cycle` (s), as [`scans`] counts them.
     pub fn scans(&self, cycle: f64) -> Option<u32> {
         scans(self.duration(), cycle)
     }
@@ -211,30 +210,14 @@ impl Profile {
         })
     }
 
-    /// The largest magnitudes of the move, in closed form: velocity has its extremes where segments meet
-    /// and where acceleration passes zero, acceleration where segments meet.
+    /// The largest magnitudes of the move, in closed form.
     pub fn peaks(&self) -> Peaks {
-        let mut peaks = Peaks {
-            velocity: self.start.velocity.abs().max(self.end.velocity.abs()),
-            acceleration: 0.0,
-            jerk: 0.0,
-            snap: f64::INFINITY,
-        };
-        for piece in self.pieces.iter().take(self.len) {
-            let length = piece.duration;
-            let zero = -piece.first.acceleration / piece.first.jerk;
-            let inside = if zero > 0.0 && zero < length { zero } else { 0.0 };
-            for time in [0.0, inside, length] {
-                let state = moved(&piece.first, time);
-                peaks.velocity = peaks.velocity.max(state.velocity.abs());
-                peaks.acceleration = peaks.acceleration.max(state.acceleration.abs());
-            }
-            peaks.jerk = peaks.jerk.max(piece.first.jerk.abs());
+        let peaks = peaks(self.order, self.segments());
+        Peaks {
+            // A move of no length has no segments.
+            velocity: peaks.velocity.max(self.end.velocity.abs()),
+            ..peaks
         }
-        if self.order == Order::Two {
-            peaks.jerk = f64::INFINITY;
-        }
-        peaks
     }
 }
 
@@ -260,22 +243,5 @@ fn with_input(state: &Setpoint, order: Order, input: f64) -> Setpoint {
             jerk: input,
             ..*state
         },
-    }
-}
-
-/// The state `t` seconds later at constant jerk.
-pub(super) fn moved(state: &Setpoint, t: f64) -> Setpoint {
-    let Setpoint {
-        position: p,
-        velocity: v,
-        acceleration: a,
-        jerk: j,
-        ..
-    } = *state;
-    Setpoint {
-        position: p + t * (v + t * (a / 2.0 + t * (j / 6.0))),
-        velocity: v + t * (a + t * (j / 2.0)),
-        acceleration: a + t * j,
-        ..*state
     }
 }

@@ -3,9 +3,10 @@
 //! Blejan and Blejan, "S-curve motion profile", Hidraulica 4/2020: six cases and their formulas, with the
 //! corrections of `docs/papers.md`.
 
-use super::profile::{Times, moved};
+use super::profile::Times;
 use super::{Profile, check_limits, distance};
 use crate::math::{rough_cbrt, sqrt};
+use crate::ramp::path::moved;
 use crate::{Field, Limits, Order, PlanError, Setpoint};
 
 /// Which bounds a move reaches.

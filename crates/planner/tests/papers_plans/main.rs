@@ -5,3 +5,4 @@ mod s_curve;
 mod short_path;
 mod support;
 mod timed;
+mod tracking;
