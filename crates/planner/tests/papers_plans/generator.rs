@@ -136,7 +136,8 @@ impl<T: Clock> Generator<T> {
     }
 }
 
-fn sequential(distance: f64, limits: [f64; 4], cycle: f64) -> GridPlan {
+/// The sequential plan from rest at 0, with bounds on velocity, acceleration, jerk and snap.
+pub fn sequential(distance: f64, limits: [f64; 4], cycle: f64) -> GridPlan {
     let [velocity, acceleration, jerk, snap] = limits;
     let limits = Limits {
         velocity,
@@ -149,7 +150,7 @@ fn sequential(distance: f64, limits: [f64; 4], cycle: f64) -> GridPlan {
 }
 
 /// The first sample at which the generator leaves the plan, if it does before the plan ends.
-fn first_difference<T: Clock>(plan: &GridPlan) -> Option<u64> {
+pub fn first_difference<T: Clock>(plan: &GridPlan) -> Option<u64> {
     let mut generator = Generator::<T>::new(plan.cycle());
     let edge = 3;
     for k in 0..edge + 2 {
@@ -220,7 +221,7 @@ fn a_second_start_goes_on_from_where_the_first_ended() {
     }
 }
 
-/// The clock adds up cycles: in 32 bits it is half a sample off, and the profile wrong, after some 10 s.
+/// The clock adds up cycles: in 32 bits it is half a sample off, and the profile wrong, within 30 s.
 /// Counting samples in whole numbers, as the plan does, never is.
 #[test]
 fn a_clock_of_32_bits_goes_wrong_in_a_long_move() {

@@ -1,5 +1,6 @@
 //! The papers' systems, against what they publish and from outside.
 
+mod docs;
 mod generator;
 mod published;
 mod s_curve;
