@@ -13,8 +13,6 @@ pub enum Code {
     TooLong,
     /// The goal cannot be reached on the way given.
     Unreachable,
-    /// A method or field this version does not have.
-    Unsupported,
 }
 
 impl Code {
@@ -23,7 +21,6 @@ impl Code {
             Self::InvalidInput => "invalid_input",
             Self::TooLong => "too_long",
             Self::Unreachable => "unreachable",
-            Self::Unsupported => "unsupported",
         }
     }
 }

@@ -19,6 +19,7 @@ pub fn line(id: &str, method: &str, planned: &Planned) -> String {
         .with_some("counts", planned.counts.as_ref().map(counts))
         .with_some("case", planned.case.map(string))
         .with_some("end_velocity", planned.end_velocity.map(number))
+        .with_some("rung", planned.rung.map(string))
         .with("end", end(&planned.end))
         .text()
 }

@@ -86,6 +86,74 @@ fn reference_moves_are_planned_as_computed_elsewhere() {
 }
 
 #[test]
+fn published_cases_are_planned_as_computed_elsewhere() {
+    let vectors = include_str!("../../../planner/tests/data/planner3-published.json");
+    let vectors: Value = serde_json::from_str(vectors).expect("JSON");
+    let mut seen = 0;
+    for case in vectors["cases"].as_array().expect("a list") {
+        let (input, expected) = (&case["input"], &case["expected"]);
+        let limits = serde_json::json!({
+            "velocity": input.get("V").or(input.get("v_cf")),
+            "acceleration": input["A"],
+            "jerk": input["J"],
+        });
+        let line = match case["algorithm"].as_str().expect("a name") {
+            "blejan" | "zhang_static" => serde_json::json!({
+                "target": input.get("s").or(input.get("d")), "limits": limits, "method": "s-curve",
+            }),
+            "garcia" => serde_json::json!({
+                "target": input["theta"], "duration": input["T"], "gamma": input["gamma"],
+                "phi": input["phi"], "method": "timed",
+            }),
+            "bui" => serde_json::json!({
+                "target": input["s"], "velocity": input["v_s"], "end_velocity": input["v_e"],
+                "policy": input["policy"], "limits": limits, "method": "short-path",
+            }),
+            "general" => serde_json::json!({
+                "target": input["target"], "velocity": input["start"][1], "acceleration": input["start"][2],
+                "end_velocity": input["v_f"], "limits": limits, "method": "online",
+            }),
+            "zhang_moving" => serde_json::json!({
+                "targets": input["retarget"], "limits": limits, "method": "tracking",
+            }),
+            _ => continue,
+        };
+        seen += 1;
+        let mut line = line;
+        // Whole seconds, because the targets move on them.
+        line["Ts"] = Value::from(1.0);
+        let answer = &answers(&line.to_string())[0];
+        let duration = expected
+            .pointer("/profile/T")
+            .or(expected.get("end_time"))
+            .and_then(Value::as_f64)
+            .expect("a duration");
+        let ours = answer["duration"].as_f64().unwrap_or_else(|| panic!("{answer}"));
+        assert!((ours - duration).abs() <= 1e-9 * duration, "{answer}");
+        assert_eq!(
+            answer["scans"],
+            (duration * (1.0 - 1e-9)).ceil() as u64,
+            "{answer}"
+        );
+        let parts = answer["segments"].as_array().expect("a list").iter();
+        let sum: f64 = parts
+            .map(|part| part["duration"].as_f64().expect("a number"))
+            .sum();
+        assert!((sum - duration).abs() <= 1e-9 * duration, "{answer}");
+        let case_is = |name: &Value| *name == answer["case"];
+        let any = expected["case_any_of"].as_array();
+        let named = any.is_none_or(|names| names.iter().any(case_is));
+        assert!(named && expected.get("type").is_none_or(case_is), "{answer}");
+        if let Some(reached) = expected["v_e_reached"].as_f64() {
+            let ours = answer["end_velocity"].as_f64().expect("a number");
+            assert!((ours - reached).abs() <= 1e-10 * reached, "{answer}");
+            assert_eq!(answer["end"]["velocity"], answer["end_velocity"]);
+        }
+    }
+    assert_eq!(seen, 52);
+}
+
+#[test]
 fn segments_lead_from_the_start_to_the_target() {
     let line =
         r#"{"Ts":0.001,"target":0.35,"limits":{"velocity":1.2,"acceleration":15,"jerk":400,"snap":21000}}"#;

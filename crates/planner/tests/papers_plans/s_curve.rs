@@ -1,7 +1,7 @@
 //! Rest to rest: limits, landing, least time, symmetry, scaling, and the second view.
 
 use crate::support::{
-    Random, bounds, case, case_bounds, cube_root, integrated, keeps_its_word, number, numbers,
+    Random, bounds, case, case_bounds, cube_root, integrated, keeps_its_word, number, numbers, rounds,
 };
 use standstill_planner::papers::{SCurve, SCurveCase, Stepper};
 use standstill_planner::{Field, Limits, PlanError};
@@ -15,7 +15,7 @@ fn plan(start: f64, target: f64, limits: &Limits) -> SCurve {
 fn every_case_lands_and_keeps_its_limits() {
     let mut random = Random(0x5C01);
     let mut seen = BTreeSet::new();
-    for _ in 0..4000 {
+    for _ in 0..rounds(4000) {
         let limits = random.bounds();
         let start = random.sign() * random.log(1e-3, 1e3);
         let way = random.sign() * limits.velocity * random.log(1e-6, 1e3);

@@ -1,13 +1,13 @@
 //! Moves in a given time: limits, landing, the least duration, and the bridge to the least-time profile.
 
-use crate::support::{Random, bounds, keeps_its_word};
+use crate::support::{Random, bounds, keeps_its_word, rounds};
 use standstill_planner::papers::{SCurve, Timed, Trapezoid};
 use standstill_planner::{Field, Limits, Order, PlanError};
 
 #[test]
 fn timed_moves_land_in_their_time() {
     let mut random = Random(0x71ED);
-    for _ in 0..2000 {
+    for _ in 0..rounds(2000) {
         let (gamma, phi) = (0.5 * (1.0 - random.unit()), 0.5 * (1.0 - random.unit()));
         let duration = random.log(1e-3, 1e3);
         let start = random.sign() * random.log(1e-3, 1e3);
@@ -36,7 +36,7 @@ fn timed_moves_land_in_their_time() {
 #[test]
 fn a_duration_below_the_least_is_refused_with_the_least() {
     let mut random = Random(0x71EE);
-    for _ in 0..1000 {
+    for _ in 0..rounds(1000) {
         let limits = random.bounds();
         let (gamma, phi) = (0.5 * (1.0 - random.unit()), 0.5 * (1.0 - random.unit()));
         let way = random.sign() * limits.velocity * random.log(1e-4, 1e2);
@@ -180,7 +180,7 @@ fn trapezoids_land_within_their_limits() {
 fn a_timed_trapezoid_keeps_its_plateau_or_says_what_would_do() {
     let mut random = Random(0x71F1);
     let mut kinds = [0; 3];
-    for _ in 0..3000 {
+    for _ in 0..rounds(3000) {
         let mut limits = trapezoid(random.log(0.1, 10.0), f64::INFINITY, f64::INFINITY);
         if random.unit() < 0.7 {
             limits.acceleration = limits.velocity * random.log(0.1, 10.0);

@@ -1,6 +1,6 @@
 //! Targets that move: nothing jumps, limits are kept, and the end is exactly the last target.
 
-use crate::support::{Random, bounds};
+use crate::support::{Random, bounds, rounds};
 use standstill_planner::papers::{Tracking, peaks};
 use standstill_planner::{Limits, Order, Setpoint};
 
@@ -55,7 +55,7 @@ fn chase(random: &mut Random, limits: &Limits) -> (Vec<Setpoint>, Tracking, f64)
 fn a_chase_keeps_its_limits_and_ends_on_the_last_target() {
     let mut random = Random(0x7AC1);
     for order in [Order::Two, Order::Three, Order::Four] {
-        for _ in 0..60 {
+        for _ in 0..rounds(60) {
             let limits = limits_of(&mut random, order);
             let (seen, tracking, target) = chase(&mut random, &limits);
             assert_eq!(tracking.now(), Setpoint::at_rest(target), "{limits:?}");
