@@ -232,7 +232,10 @@ pub struct Times {
     pub velocity: f64,
 }
 
+/// `state` with `input` as the derivative that `order` holds constant.
 fn with_input(state: &Setpoint, order: Order, input: f64) -> Setpoint {
+    // Adding 0.0 takes the sign off zero.
+    let input = input + 0.0;
     match order {
         Order::Two => Setpoint {
             acceleration: input,

@@ -142,7 +142,8 @@ impl ShortPath {
             kind: shape.kind,
             peak: sign * shape.peak,
             steps: shape.steps,
-            profile: Profile::lay(Order::Three, &first, spans, target, sign * shape.end)?,
+            // Adding 0.0 takes the sign off zero.
+            profile: Profile::lay(Order::Three, &first, spans, target, sign * shape.end + 0.0)?,
         })
     }
 
@@ -189,9 +190,8 @@ fn speed(field: Field, value: f64, sign: f64, limits: &Limits) -> Result<f64, Pl
     if !speed.is_finite() {
         return Err(invalid(field, value));
     }
-    let nearest = speed.clamp(0.0, limits.velocity);
+    let nearest = speed.max(0.0).min(limits.velocity);
     if nearest == speed {
-        // Adding 0.0 takes the sign off zero.
         return Ok(speed + 0.0);
     }
     Err(PlanError::OutOfRange {

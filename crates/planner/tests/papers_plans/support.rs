@@ -159,9 +159,9 @@ pub fn cube_root(x: f64) -> f64 {
     (0..200).fold(x.max(1.0), |root, _| (2.0 * root + x / (root * root)) / 3.0)
 }
 
-/// How many random cases: `count` in a plain test run, `STANDSTILL_SOAK` times as many if that is set.
+/// How many random cases: `count` in a plain test run, `STANDSTILL_SOAK_FACTOR` times as many if that is set.
 pub fn rounds(count: u64) -> u64 {
-    let factor = std::env::var("STANDSTILL_SOAK")
+    let factor = std::env::var("STANDSTILL_SOAK_FACTOR")
         .ok()
         .and_then(|text| text.parse().ok());
     count * factor.unwrap_or(1)
