@@ -1,7 +1,7 @@
 //! Rest to rest in least time under bounds on velocity, acceleration and jerk.
 //!
-//! Blejan and Blejan, "S-curve motion profile", Hidraulica 4/2020: six cases and their formulas, with the
-//! corrections of `docs/papers.md`.
+//! Blejan and Blejan, "Mathematics for real-time S-curve profile generator", Hidraulica 4/2020: six cases and
+//! their formulas, with the corrections of `docs/papers.md`.
 
 use super::profile::Times;
 use super::{Profile, check_limits, distance};
