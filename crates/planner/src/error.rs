@@ -30,6 +30,12 @@ pub enum Field {
     LimitJerk,
     /// Snap bound (u/s^4).
     LimitSnap,
+    /// Prescribed duration of a move (s).
+    Duration,
+    /// Share of the duration in which a timed move speeds up.
+    Gamma,
+    /// Share of the acceleration in which a timed move's jerk acts.
+    Phi,
 }
 
 impl Field {
@@ -48,6 +54,9 @@ impl Field {
             Self::LimitDeceleration => "limits.deceleration",
             Self::LimitJerk => "limits.jerk",
             Self::LimitSnap => "limits.snap",
+            Self::Duration => "duration",
+            Self::Gamma => "gamma",
+            Self::Phi => "phi",
         }
     }
 }
@@ -79,11 +88,39 @@ pub enum PlanError {
     },
     /// No bound is given, so the move would take no time.
     Unbounded,
+    /// A value that does not fit the rest of the request, where another one would.
+    OutOfRange {
+        /// The input.
+        field: Field,
+        /// Its value.
+        value: f64,
+        /// The nearest value that fits.
+        nearest: f64,
+    },
+    /// The goal cannot be reached on the way given.
+    Unreachable {
+        /// The input that is out of reach.
+        field: Field,
+        /// Its value.
+        value: f64,
+        /// The nearest value within reach.
+        nearest: f64,
+    },
 }
 
 impl fmt::Display for PlanError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
+            Self::InvalidInput {
+                field: field @ (Field::Gamma | Field::Phi),
+                value,
+            } => {
+                write!(
+                    f,
+                    "{} is {value:?}: it must be above 0 and at most 0.5",
+                    field.name()
+                )
+            }
             Self::InvalidInput { field, value } => {
                 write!(
                     f,
@@ -104,6 +141,26 @@ impl fmt::Display for PlanError {
                 )
             }
             Self::Unbounded => write!(f, "no limit is given: give at least one"),
+            Self::OutOfRange {
+                field,
+                value,
+                nearest,
+            } => {
+                write!(
+                    f,
+                    "{} is {value:?}: the nearest that fits is {nearest:?}",
+                    field.name()
+                )
+            }
+            Self::Unreachable {
+                field,
+                value,
+                nearest,
+            } => write!(
+                f,
+                "{} = {value:?} cannot be reached on this way: the nearest within reach is {nearest:?}",
+                field.name()
+            ),
         }
     }
 }

@@ -19,6 +19,7 @@ pub mod kernel;
 mod limits;
 pub mod math;
 pub mod online;
+pub mod papers;
 mod planner;
 pub mod ramp;
 mod setpoint;

@@ -173,6 +173,18 @@ impl<'a> Fields<'a> {
             .ok_or_else(|| self.invalid(field, format!("`{field}` is missing")))
     }
 
+    /// A string, if the field is there.
+    pub fn string(&self, field: &str) -> Result<Option<String>, Refusal> {
+        let read = self.text(field).map(serde_json::from_str).transpose();
+        read.map_err(|_| self.invalid(field, format!("`{field}` must be a string")))
+    }
+
+    /// A list of pairs of finite numbers, if the field is there.
+    pub fn pairs(&self, field: &str) -> Result<Option<Vec<(f64, f64)>>, Refusal> {
+        let read = self.text(field).map(serde_json::from_str).transpose();
+        read.map_err(|_| self.invalid(field, format!("`{field}` must be a list of pairs of numbers")))
+    }
+
     /// A bound of `limits`; `absent` if it is null or not there.
     fn limit(&self, field: &str, absent: f64) -> Result<f64, Refusal> {
         if self.text(field) == Some("null") {
@@ -206,11 +218,8 @@ impl<'a> Fields<'a> {
 
     /// The method the line names, if it names one.
     pub fn method(&self) -> Result<Option<&'static MethodInfo>, Refusal> {
-        let Some(text) = self.members.get("method") else {
+        let Some(name) = self.string("method")? else {
             return Ok(None);
-        };
-        let Ok(name) = serde_json::from_str::<String>(text) else {
-            return Err(self.invalid("method", "`method` must be a string".to_owned()));
         };
         if let Some(found) = methods::find(&name) {
             return Ok(Some(found));

@@ -1,11 +1,12 @@
 //! The table of methods. A method that is built later gets its function here, and its own fields if it has
 //! some; everything else follows from the table.
 
-use crate::json::number;
 use crate::plan::fields::{Fields, Problem};
-use crate::plan::refusal::{Code, Refusal};
+use crate::plan::grid::grid;
+use crate::plan::refusal::Refusal;
+use crate::plan::{online, papers};
 use standstill_planner::grid::{Counts, Method, Peaks};
-use standstill_planner::{Field, GridPlan, Limits, Order, PlanError, Segment, Setpoint};
+use standstill_planner::{Excess, Segment, Setpoint};
 
 /// A method of `standstill plan`.
 #[derive(Debug)]
@@ -14,8 +15,8 @@ pub struct MethodInfo {
     pub name: &'static str,
     /// The fields it takes besides those that all take.
     fields: &'static [&'static str],
-    /// What plans; none if it is not built yet.
-    plan: Option<PlanFn>,
+    /// What plans.
+    plan: PlanFn,
 }
 
 type PlanFn = fn(&Fields<'_>, &Problem) -> Result<Planned, Refusal>;
@@ -25,39 +26,39 @@ const METHODS: [&MethodInfo; 9] = [
     &MethodInfo {
         name: "sequential",
         fields: &[],
-        plan: Some(|fields, problem| grid(fields, problem, Method::Sequential)),
+        plan: |fields, problem| grid(fields, problem, Method::Sequential),
     },
     &MethodInfo {
         name: "grid",
         fields: &[],
-        plan: Some(|fields, problem| grid(fields, problem, Method::Grid)),
+        plan: |fields, problem| grid(fields, problem, Method::Grid),
     },
     OVERLAPPED,
     ONLINE,
     &MethodInfo {
         name: "s-curve",
         fields: &[],
-        plan: None,
+        plan: papers::s_curve,
     },
     &MethodInfo {
         name: "timed",
         fields: &["duration", "gamma", "phi"],
-        plan: None,
+        plan: papers::timed,
     },
     &MethodInfo {
         name: "trapezoid",
         fields: &["duration"],
-        plan: None,
+        plan: papers::trapezoid,
     },
     &MethodInfo {
         name: "short-path",
         fields: &["policy"],
-        plan: None,
+        plan: papers::short_path,
     },
     &MethodInfo {
         name: "tracking",
         fields: &["targets"],
-        plan: None,
+        plan: online::tracking,
     },
 ];
 
@@ -65,14 +66,14 @@ const METHODS: [&MethodInfo; 9] = [
 const OVERLAPPED: &MethodInfo = &MethodInfo {
     name: "overlapped",
     fields: &[],
-    plan: Some(|fields, problem| grid(fields, problem, Method::Overlapped)),
+    plan: |fields, problem| grid(fields, problem, Method::Overlapped),
 };
 
 /// The default for everything else.
 const ONLINE: &MethodInfo = &MethodInfo {
     name: "online",
     fields: &[],
-    plan: None,
+    plan: online::online,
 };
 
 /// A plan in the terms of the answer.
@@ -90,8 +91,35 @@ pub struct Planned {
     pub boxes: Option<Vec<u32>>,
     /// Lengths of the published segments (scans), if the method has them.
     pub counts: Option<Counts>,
+    /// Which of its cases the method found, if it has some.
+    pub case: Option<&'static str>,
+    /// The velocity at the target (u/s), of methods that may change the one asked for.
+    pub end_velocity: Option<f64>,
+    /// By how much the start state forces the plan out of its limits, if it does.
+    pub unavoidable: Option<Excess>,
+    /// The rung of the ladder an online plan is from.
+    pub rung: Option<&'static str>,
     /// What is published last.
     pub end: Setpoint,
+}
+
+impl Planned {
+    /// A plan without what only some methods tell.
+    pub const fn new(duration: f64, scans: u32, segments: Vec<Segment>, peak: Peaks, end: Setpoint) -> Self {
+        Self {
+            duration,
+            scans,
+            segments,
+            peak,
+            boxes: None,
+            counts: None,
+            case: None,
+            end_velocity: None,
+            unavoidable: None,
+            rung: None,
+            end,
+        }
+    }
 }
 
 /// The method called `name`.
@@ -114,28 +142,16 @@ pub fn extra_fields() -> impl Iterator<Item = &'static str> + Clone {
 /// Plans what a line asks for; gives the name of the method as well.
 pub fn plan(fields: &Fields<'_>) -> Result<(&'static str, Planned), Refusal> {
     let problem = fields.problem()?;
-    let chosen = fields.method()?;
-    let motion = problem.first_motion();
-    let method = chosen.unwrap_or(if motion.is_some() { ONLINE } else { OVERLAPPED });
-    let Some(plan) = method.plan else {
-        let name = method.name;
-        // Without a method on the line it is the motion that asks for one.
-        let (field, message) = match motion.filter(|_| chosen.is_none()) {
-            Some((field, _)) => {
-                let field = field.name();
-                (
-                    field,
-                    format!("`{field}` other than 0 takes method `{name}`, which is not built yet"),
-                )
-            }
-            None => ("method", format!("method `{name}` is not built yet")),
-        };
-        return Err(Refusal::of_field(Code::Unsupported, fields, field, message));
+    let default = if problem.first_motion().is_some() {
+        ONLINE
+    } else {
+        OVERLAPPED
     };
+    let method = fields.method()?.unwrap_or(default);
     for name in fields.names() {
         check_extra_field(fields, name, method)?;
     }
-    Ok((method.name, plan(fields, &problem)?))
+    Ok((method.name, (method.plan)(fields, &problem)?))
 }
 
 /// Refuses a field that only other methods take.
@@ -147,112 +163,11 @@ fn check_extra_field(fields: &Fields<'_>, name: &str, method: &MethodInfo) -> Re
     if takers.is_empty() || method.fields.contains(&name) {
         return Ok(());
     }
-    let (code, remark) = if takers.iter().any(|taker| taker.plan.is_some()) {
-        (Code::InvalidInput, "")
-    } else {
-        (Code::Unsupported, ", and not built yet")
-    };
     let takers = takers
         .iter()
         .map(|taker| taker.name)
         .collect::<Vec<_>>()
         .join(", ");
-    let message = format!("`{name}` is a field of {takers}, not of {}{remark}", method.name);
-    Err(Refusal::of_field(code, fields, name, message))
-}
-
-/// Rest to rest on the sample grid.
-fn grid(fields: &Fields<'_>, problem: &Problem, method: Method) -> Result<Planned, Refusal> {
-    if let Some((field, _)) = problem.first_motion() {
-        let message = format!("`{}` must be 0: this method goes from rest to rest", field.name());
-        return Err(fields.invalid(field.name(), message).nearest(Some(number(0.0))));
-    }
-    let cycle = fields.required("Ts")?;
-    let target = fields.required("target")?;
-    let limits = problem.limits;
-    let with = |limits: &Limits| GridPlan::new(method, problem.start.position, target, limits, cycle);
-    let plan = with(&limits).map_err(|error| {
-        let nearest = nearest_limit(error, &limits, |limits| with(limits).is_ok());
-        Refusal::of_plan_error(fields, error).nearest(nearest.map(number))
-    })?;
-    let symmetric = limits.acceleration == limits.deceleration;
-    Ok(Planned {
-        duration: plan.duration(),
-        scans: plan.scans(),
-        segments: plan.segments().map(segment).collect(),
-        peak: plan.peaks(),
-        boxes: symmetric.then(|| boxes(&plan)),
-        counts: (method != Method::Overlapped).then(|| counts(&plan)),
-        end: plan.at(plan.scans().into()),
-    })
-}
-
-fn segment(segment: standstill_planner::grid::Segment) -> Segment {
-    Segment {
-        duration: segment.duration,
-        velocity: segment.velocity,
-        acceleration: segment.acceleration,
-        jerk: segment.jerk,
-        snap: segment.snap,
-    }
-}
-
-/// As many boxes as the order, also of a move of no length, so that readers need no special case.
-fn boxes(plan: &GridPlan) -> Vec<u32> {
-    let mut boxes = plan.boxes().to_vec();
-    boxes.resize(plan.order().degree(), 0);
-    boxes
-}
-
-/// The published counts; all 0 for a move of no length.
-fn counts(plan: &GridPlan) -> Counts {
-    plan.counts().unwrap_or(Counts {
-        nd: (plan.order() == Order::Four).then_some(0),
-        nj: (plan.order() != Order::Two).then_some(0),
-        na: 0,
-        nv: 0,
-    })
-}
-
-/// The least value of the limit a refusal names with which the move can be counted; none if it is not this
-/// limit alone that makes it too long. Bounded: one trial per bit of an `f64`, at most 64.
-fn nearest_limit(error: PlanError, limits: &Limits, works: impl Fn(&Limits) -> bool) -> Option<f64> {
-    let PlanError::TooLong { field, value } = error else {
-        return None;
-    };
-    let works = |bits| with_limit(limits, field, f64::from_bits(bits)).is_some_and(|limits| works(&limits));
-    // Positive floats are ordered as their bits are.
-    let (mut too_low, mut enough) = (value.to_bits(), f64::MAX.to_bits());
-    if !works(enough) {
-        return None;
-    }
-    while enough - too_low > 1 {
-        let middle = too_low + (enough - too_low) / 2;
-        if works(middle) {
-            enough = middle;
-        } else {
-            too_low = middle;
-        }
-    }
-    Some(f64::from_bits(enough))
-}
-
-/// The limits with another value for one of them; none if `field` is no limit.
-fn with_limit(limits: &Limits, field: Field, value: f64) -> Option<Limits> {
-    let mut limits = *limits;
-    match field {
-        Field::LimitVelocity => limits.velocity = value,
-        Field::LimitAcceleration => {
-            // A deceleration that is not given follows.
-            if limits.deceleration == limits.acceleration {
-                limits.deceleration = value;
-            }
-            limits.acceleration = value;
-        }
-        Field::LimitDeceleration => limits.deceleration = value,
-        Field::LimitJerk => limits.jerk = value,
-        Field::LimitSnap => limits.snap = value,
-        _ => return None,
-    }
-    Some(limits)
+    let message = format!("`{name}` is a field of {takers}, not of {}", method.name);
+    Err(fields.invalid(name, message))
 }

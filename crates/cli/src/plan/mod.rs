@@ -1,9 +1,13 @@
 //! `standstill plan`: one JSON object a line in, one a line out.
 
 mod fields;
+mod grid;
 mod methods;
+mod online;
+mod papers;
 mod refusal;
 mod reply;
+mod shared;
 
 use crate::exit::{Exit, Failure};
 use fields::Fields;

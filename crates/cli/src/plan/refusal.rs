@@ -11,8 +11,8 @@ pub enum Code {
     InvalidInput,
     /// The move takes more scans than a plan can count.
     TooLong,
-    /// A method or field this version does not have.
-    Unsupported,
+    /// The goal cannot be reached on the way given.
+    Unreachable,
 }
 
 impl Code {
@@ -20,7 +20,7 @@ impl Code {
         match self {
             Self::InvalidInput => "invalid_input",
             Self::TooLong => "too_long",
-            Self::Unsupported => "unsupported",
+            Self::Unreachable => "unreachable",
         }
     }
 }
@@ -74,17 +74,29 @@ impl Refusal {
 
     /// Of the planner.
     pub fn of_plan_error(fields: &Fields<'_>, error: PlanError) -> Self {
-        let (code, field, value) = match error {
-            PlanError::InvalidInput { field, value } => (Code::InvalidInput, field.name(), Some(value)),
-            PlanError::NotAtRest { field, value } => (Code::InvalidInput, field.name(), Some(value)),
-            PlanError::TooLong { field, value } => (Code::TooLong, field.name(), Some(value)),
-            PlanError::Unbounded => (Code::InvalidInput, "limits", None),
+        let (code, field, value, nearest) = match error {
+            PlanError::InvalidInput { field, value } => (Code::InvalidInput, field.name(), Some(value), None),
+            PlanError::NotAtRest { field, value } => {
+                (Code::InvalidInput, field.name(), Some(value), Some(0.0))
+            }
+            PlanError::TooLong { field, value } => (Code::TooLong, field.name(), Some(value), None),
+            PlanError::Unbounded => (Code::InvalidInput, "limits", None, None),
+            PlanError::OutOfRange {
+                field,
+                value,
+                nearest,
+            } => (Code::InvalidInput, field.name(), Some(value), Some(nearest)),
+            PlanError::Unreachable {
+                field,
+                value,
+                nearest,
+            } => (Code::Unreachable, field.name(), Some(value), Some(nearest)),
             // The planner may learn to refuse for further reasons before this program knows them.
             other => return Self::of_line(other.to_string()),
         };
         let mut refusal = Self::of_field(code, fields, field, error.to_string());
         refusal.value = refusal.value.or(value.map(number));
-        refusal
+        refusal.nearest(nearest.map(number))
     }
 
     /// The line to write; `id` is JSON.

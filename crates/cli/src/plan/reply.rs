@@ -3,7 +3,7 @@
 use crate::json::{Object, list, number, string};
 use crate::plan::methods::Planned;
 use standstill_planner::grid::{Counts, Peaks};
-use standstill_planner::{Segment, Setpoint};
+use standstill_planner::{Excess, Segment, Setpoint};
 
 /// The line to write; `id` is JSON.
 pub fn line(id: &str, method: &str, planned: &Planned) -> String {
@@ -14,8 +14,12 @@ pub fn line(id: &str, method: &str, planned: &Planned) -> String {
         .with("scans", planned.scans.to_string())
         .with("segments", list(planned.segments.iter().map(segment)))
         .with("peak", peak(&planned.peak))
+        .with_some("unavoidable", planned.unavoidable.as_ref().map(unavoidable))
         .with_some("boxes", planned.boxes.as_deref().map(boxes))
         .with_some("counts", planned.counts.as_ref().map(counts))
+        .with_some("case", planned.case.map(string))
+        .with_some("end_velocity", planned.end_velocity.map(number))
+        .with_some("rung", planned.rung.map(string))
         .with("end", end(&planned.end))
         .text()
 }
@@ -37,6 +41,14 @@ fn peak(peak: &Peaks) -> String {
         .with("acceleration", number(peak.acceleration))
         .with("jerk", bounded(peak.jerk))
         .with("snap", bounded(peak.snap))
+        .text()
+}
+
+fn unavoidable(excess: &Excess) -> String {
+    Object::new()
+        .with("velocity", number(excess.velocity))
+        .with("acceleration", number(excess.acceleration))
+        .with("jerk", number(excess.jerk))
         .text()
 }
 

@@ -17,17 +17,26 @@ fn answers(lines: &str) -> Vec<Value> {
 
 #[test]
 fn lines_are_answered_letter_by_letter_as_before() {
-    let lines = include_str!("plan.jsonl");
+    insta::assert_snapshot!(asked_and_answered(include_str!("plan.jsonl")));
+}
+
+#[test]
+fn the_papers_methods_answer_letter_by_letter_as_before() {
+    insta::assert_snapshot!(asked_and_answered(include_str!("papers.jsonl")));
+}
+
+/// Each line and its answer; at least one of them is refused.
+fn asked_and_answered(lines: &str) -> String {
     let ended = fed(&["plan"], lines.as_bytes());
     let asked: Vec<_> = lines.lines().filter(|line| !line.trim().is_empty()).collect();
     let answered: Vec<_> = ended.out.lines().collect();
     assert_eq!(asked.len(), answered.len());
     let pairs = asked.iter().zip(answered);
-    let text: String = pairs
+    let text = pairs
         .map(|(asked, answered)| format!("> {asked}\n{answered}\n\n"))
         .collect();
-    insta::assert_snapshot!(text);
     assert_eq!((ended.status, ended.err.as_str()), (1, ""));
+    text
 }
 
 #[test]
@@ -74,6 +83,74 @@ fn reference_moves_are_planned_as_computed_elsewhere() {
             }
         }
     }
+}
+
+#[test]
+fn published_cases_are_planned_as_computed_elsewhere() {
+    let vectors = include_str!("../../../planner/tests/data/planner3-published.json");
+    let vectors: Value = serde_json::from_str(vectors).expect("JSON");
+    let mut seen = 0;
+    for case in vectors["cases"].as_array().expect("a list") {
+        let (input, expected) = (&case["input"], &case["expected"]);
+        let limits = serde_json::json!({
+            "velocity": input.get("V").or(input.get("v_cf")),
+            "acceleration": input["A"],
+            "jerk": input["J"],
+        });
+        let line = match case["algorithm"].as_str().expect("a name") {
+            "blejan" | "zhang_static" => serde_json::json!({
+                "target": input.get("s").or(input.get("d")), "limits": limits, "method": "s-curve",
+            }),
+            "garcia" => serde_json::json!({
+                "target": input["theta"], "duration": input["T"], "gamma": input["gamma"],
+                "phi": input["phi"], "method": "timed",
+            }),
+            "bui" => serde_json::json!({
+                "target": input["s"], "velocity": input["v_s"], "end_velocity": input["v_e"],
+                "policy": input["policy"], "limits": limits, "method": "short-path",
+            }),
+            "general" => serde_json::json!({
+                "target": input["target"], "velocity": input["start"][1], "acceleration": input["start"][2],
+                "end_velocity": input["v_f"], "limits": limits, "method": "online",
+            }),
+            "zhang_moving" => serde_json::json!({
+                "targets": input["retarget"], "limits": limits, "method": "tracking",
+            }),
+            _ => continue,
+        };
+        seen += 1;
+        let mut line = line;
+        // Whole seconds, because the targets move on them.
+        line["Ts"] = Value::from(1.0);
+        let answer = &answers(&line.to_string())[0];
+        let duration = expected
+            .pointer("/profile/T")
+            .or(expected.get("end_time"))
+            .and_then(Value::as_f64)
+            .expect("a duration");
+        let ours = answer["duration"].as_f64().unwrap_or_else(|| panic!("{answer}"));
+        assert!((ours - duration).abs() <= 1e-9 * duration, "{answer}");
+        assert_eq!(
+            answer["scans"],
+            (duration * (1.0 - 1e-9)).ceil() as u64,
+            "{answer}"
+        );
+        let parts = answer["segments"].as_array().expect("a list").iter();
+        let sum: f64 = parts
+            .map(|part| part["duration"].as_f64().expect("a number"))
+            .sum();
+        assert!((sum - duration).abs() <= 1e-9 * duration, "{answer}");
+        let case_is = |name: &Value| *name == answer["case"];
+        let any = expected["case_any_of"].as_array();
+        let named = any.is_none_or(|names| names.iter().any(case_is));
+        assert!(named && expected.get("type").is_none_or(case_is), "{answer}");
+        if let Some(reached) = expected["v_e_reached"].as_f64() {
+            let ours = answer["end_velocity"].as_f64().expect("a number");
+            assert!((ours - reached).abs() <= 1e-10 * reached, "{answer}");
+            assert_eq!(answer["end"]["velocity"], answer["end_velocity"]);
+        }
+    }
+    assert_eq!(seen, 52);
 }
 
 #[test]

@@ -1,0 +1,98 @@
+//! The methods on the sample grid: `sequential`, `grid` and `overlapped`.
+
+use crate::json::number;
+use crate::plan::fields::{Fields, Problem};
+use crate::plan::methods::Planned;
+use crate::plan::refusal::Refusal;
+use crate::plan::shared::check_rest;
+use standstill_planner::grid::{Counts, Method};
+use standstill_planner::{Field, GridPlan, Limits, Order, PlanError, Segment};
+
+/// Rest to rest on the sample grid.
+pub fn grid(fields: &Fields<'_>, problem: &Problem, method: Method) -> Result<Planned, Refusal> {
+    check_rest(fields, problem)?;
+    let cycle = fields.required("Ts")?;
+    let target = fields.required("target")?;
+    let limits = problem.limits;
+    let with = |limits: &Limits| GridPlan::new(method, problem.start.position, target, limits, cycle);
+    let plan = with(&limits).map_err(|error| {
+        let nearest = nearest_limit(error, &limits, |limits| with(limits).is_ok());
+        Refusal::of_plan_error(fields, error).nearest(nearest.map(number))
+    })?;
+    let symmetric = limits.acceleration == limits.deceleration;
+    let segments = plan.segments().map(segment).collect();
+    let end = plan.at(plan.scans().into());
+    Ok(Planned {
+        boxes: symmetric.then(|| boxes(&plan)),
+        counts: (method != Method::Overlapped).then(|| counts(&plan)),
+        ..Planned::new(plan.duration(), plan.scans(), segments, plan.peaks(), end)
+    })
+}
+
+fn segment(segment: standstill_planner::grid::Segment) -> Segment {
+    Segment {
+        duration: segment.duration,
+        velocity: segment.velocity,
+        acceleration: segment.acceleration,
+        jerk: segment.jerk,
+        snap: segment.snap,
+    }
+}
+
+/// As many boxes as the order, also of a move of no length, so that readers need no special case.
+fn boxes(plan: &GridPlan) -> Vec<u32> {
+    let mut boxes = plan.boxes().to_vec();
+    boxes.resize(plan.order().degree(), 0);
+    boxes
+}
+
+/// The published counts; all 0 for a move of no length.
+fn counts(plan: &GridPlan) -> Counts {
+    plan.counts().unwrap_or(Counts {
+        nd: (plan.order() == Order::Four).then_some(0),
+        nj: (plan.order() != Order::Two).then_some(0),
+        na: 0,
+        nv: 0,
+    })
+}
+
+/// The least value of the limit a refusal names with which the move can be counted; none if it is not this
+/// limit alone that makes it too long. Bounded: one trial per bit of an `f64`, at most 64.
+fn nearest_limit(error: PlanError, limits: &Limits, works: impl Fn(&Limits) -> bool) -> Option<f64> {
+    let PlanError::TooLong { field, value } = error else {
+        return None;
+    };
+    let with = |value| {
+        let mut limits = *limits;
+        let follows = limits.deceleration == limits.acceleration;
+        let bound = match field {
+            Field::LimitVelocity => &mut limits.velocity,
+            // A deceleration that is not given follows.
+            Field::LimitAcceleration if follows => {
+                limits.deceleration = value;
+                &mut limits.acceleration
+            }
+            Field::LimitAcceleration => &mut limits.acceleration,
+            Field::LimitDeceleration => &mut limits.deceleration,
+            Field::LimitJerk => &mut limits.jerk,
+            Field::LimitSnap => &mut limits.snap,
+            _ => return None,
+        };
+        *bound = value;
+        Some(limits)
+    };
+    // Positive floats are ordered as their bits are.
+    let (mut too_low, mut enough) = (value.to_bits(), f64::MAX.to_bits());
+    if !works(&with(f64::MAX)?) {
+        return None;
+    }
+    while enough - too_low > 1 {
+        let middle = too_low + (enough - too_low) / 2;
+        if works(&with(f64::from_bits(middle))?) {
+            enough = middle;
+        } else {
+            too_low = middle;
+        }
+    }
+    Some(f64::from_bits(enough))
+}

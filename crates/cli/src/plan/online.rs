@@ -1,0 +1,130 @@
+//! The methods that start anywhere: `online` and `tracking`.
+
+use crate::json::number;
+use crate::plan::fields::{Fields, Problem};
+use crate::plan::methods::Planned;
+use crate::plan::refusal::Refusal;
+use crate::plan::shared::{bounded, check_limits, cycle, too_long};
+use standstill_planner::papers::{Tracking, peaks, scans};
+use standstill_planner::{Field, OnlinePlan, PlanError, Setpoint};
+
+/// The limits both need.
+const NEEDED: [Field; 2] = [Field::LimitVelocity, Field::LimitAcceleration];
+
+/// `online`: from any state to a position, at rest there or with a velocity.
+pub fn online(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> {
+    let Problem {
+        start,
+        end_velocity,
+        limits,
+    } = problem;
+    let cycle = cycle(fields)?;
+    let target = fields.required("target")?;
+    check_limits(fields, limits, &NEEDED, &[])?;
+    if end_velocity.abs() > limits.velocity {
+        let nearest = limits.velocity.copysign(*end_velocity);
+        let message = "`end_velocity` is above `limits.velocity`".to_owned();
+        return Err(fields
+            .invalid("end_velocity", message)
+            .nearest(Some(number(nearest))));
+    }
+    let plan = OnlinePlan::passing(start, target, *end_velocity, limits, limits, cycle)
+        .map_err(|error| Refusal::of_plan_error(fields, error))?;
+    let end = if *end_velocity == 0.0 {
+        plan.at(plan.scans().into())
+    } else {
+        // Where it is at the first instant with that velocity, not at the scan after it.
+        Setpoint {
+            velocity: *end_velocity,
+            ..Setpoint::at_rest(target)
+        }
+    };
+    let segments = plan.segments().collect();
+    Ok(Planned {
+        unavoidable: plan.excess(),
+        rung: Some(plan.rung().name()),
+        ..Planned::new(
+            plan.duration(),
+            plan.scans(),
+            segments,
+            bounded(&plan.peaks()),
+            end,
+        )
+    })
+}
+
+/// `tracking`: to a target that moves; planned anew whenever it changes.
+pub fn tracking(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> {
+    let limits = &problem.limits;
+    if problem.end_velocity != 0.0 {
+        let message = "`end_velocity` must be 0: this method ends at rest".to_owned();
+        return Err(fields.invalid("end_velocity", message).nearest(Some(number(0.0))));
+    }
+    let cycle = cycle(fields)?;
+    let targets = targets(fields, cycle)?;
+    check_limits(fields, limits, &NEEDED, &[])?;
+    let refuse = |error| match error {
+        PlanError::InvalidInput {
+            field: Field::Target, ..
+        } => fields.invalid("targets", "a target is too far away".to_owned()),
+        other => Refusal::of_plan_error(fields, other),
+    };
+    let mut changes = targets.iter();
+    // The list is not empty, and its first target applies at once.
+    let first = changes.next().map_or(0.0, |(_, target)| *target);
+    let mut tracking = Tracking::new(&problem.start, first, limits, cycle).map_err(refuse)?;
+    let unavoidable = tracking.plan().excess();
+    let mut segments = Vec::new();
+    let (mut began, mut scan) = (0, 0);
+    for &(at, target) in changes {
+        tracking.advance(at - scan);
+        scan = at;
+        let executed: Vec<_> = tracking.executed().collect();
+        if tracking.retarget(target).map_err(refuse)? {
+            segments.extend(executed);
+            began = at;
+        }
+    }
+    segments.extend(tracking.plan().segments());
+    let plan = tracking.plan();
+    let scans = began.checked_add(plan.scans()).ok_or_else(|| too_long(fields))?;
+    let mut peak = peaks(limits.order(), segments.iter().copied());
+    peak.velocity = peak.velocity.max(problem.start.velocity.abs());
+    let duration = f64::from(began) * cycle + plan.duration();
+    let end = plan.at(plan.scans().into());
+    Ok(Planned {
+        unavoidable,
+        ..Planned::new(duration, scans, segments, bounded(&peak), end)
+    })
+}
+
+/// The scans at which targets change, and the targets: pairs of time and position, the first at 0.
+fn targets(fields: &Fields<'_>, cycle: f64) -> Result<Vec<(u32, f64)>, Refusal> {
+    let refuse = |message: &str| fields.invalid("targets", message.to_owned());
+    let Some(pairs) = fields.pairs("targets")? else {
+        return Err(refuse("`targets` is missing: this method needs it"));
+    };
+    let Some(&(first, _)) = pairs.first() else {
+        return Err(refuse("`targets` is empty"));
+    };
+    if first != 0.0 {
+        return Err(refuse("the first of `targets` must be at time 0"));
+    }
+    if pairs.windows(2).any(|pair| pair[1].0 < pair[0].0) {
+        return Err(refuse("the times of `targets` must not fall"));
+    }
+    if let (Some(target), Some((_, last))) = (fields.number("target")?, pairs.last())
+        && target != *last
+    {
+        let message = "`target` is not the last of `targets`: leave it out".to_owned();
+        return Err(fields.invalid("target", message).nearest(Some(number(*last))));
+    }
+    let mut changes = Vec::new();
+    for (time, target) in pairs {
+        let scan = scans(time, cycle).ok_or_else(|| too_long(fields))?;
+        // Of several targets at one scan the last holds.
+        changes.pop_if(|(last, _)| *last == scan);
+        changes.push((scan, target));
+    }
+    Ok(changes)
+}

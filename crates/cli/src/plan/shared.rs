@@ -1,0 +1,71 @@
+//! What several methods check and tell alike.
+
+use crate::json::number;
+use crate::plan::fields::{Fields, Problem};
+use crate::plan::refusal::{Code, Refusal};
+use standstill_planner::{Field, Limits, Peaks, grid};
+
+/// Refuses a start or an end that moves.
+pub fn check_rest(fields: &Fields<'_>, problem: &Problem) -> Result<(), Refusal> {
+    match problem.first_motion() {
+        None => Ok(()),
+        Some((field, _)) => {
+            let message = format!("`{}` must be 0: this method goes from rest to rest", field.name());
+            Err(fields.invalid(field.name(), message).nearest(Some(number(0.0))))
+        }
+    }
+}
+
+/// The sample time.
+pub fn cycle(fields: &Fields<'_>) -> Result<f64, Refusal> {
+    let cycle = fields.required("Ts")?;
+    if cycle > 0.0 {
+        Ok(cycle)
+    } else {
+        Err(fields.invalid("Ts", format!("Ts is {cycle:?}: it must be positive")))
+    }
+}
+
+/// Refuses a line that lacks a limit of `needed`, or has one of `unkept`, which its method cannot keep.
+pub fn check_limits(
+    fields: &Fields<'_>,
+    limits: &Limits,
+    needed: &[Field],
+    unkept: &[Field],
+) -> Result<(), Refusal> {
+    let bounds = [
+        (Field::LimitVelocity, limits.velocity),
+        (Field::LimitAcceleration, limits.acceleration),
+        (Field::LimitJerk, limits.jerk),
+        (Field::LimitSnap, limits.snap),
+    ];
+    for (field, bound) in bounds {
+        let name = field.name();
+        let message = if bound.is_infinite() && needed.contains(&field) {
+            format!("`{name}` is missing: this method needs it")
+        } else if bound.is_finite() && unkept.contains(&field) {
+            format!("this method cannot keep `{name}`: leave it out")
+        } else {
+            continue;
+        };
+        return Err(fields.invalid(name, message));
+    }
+    Ok(())
+}
+
+/// The answer to a move of more scans than a plan counts.
+pub fn too_long(fields: &Fields<'_>) -> Refusal {
+    let message = "the move takes more than 2147483647 scans";
+    Refusal::of_field(Code::TooLong, fields, "Ts", message)
+}
+
+/// Peaks with nothing where the order leaves them unbounded.
+pub fn bounded(peaks: &Peaks) -> grid::Peaks {
+    let bounded = |value: f64| value.is_finite().then_some(value);
+    grid::Peaks {
+        velocity: peaks.velocity,
+        acceleration: peaks.acceleration,
+        jerk: bounded(peaks.jerk),
+        snap: bounded(peaks.snap),
+    }
+}

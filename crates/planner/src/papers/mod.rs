@@ -1,0 +1,74 @@
+//! Profiles as five papers have them, corrected: what each of them plans, by the steps it gives.
+//!
+//! - [`SCurve`]: rest to rest in least time under bounds on velocity, acceleration and jerk
+//!   (Blejan and Blejan 2020).
+//! - [`Timed`], [`Trapezoid`]: rest to rest in a given time (García-Martínez et al. 2019).
+//! - [`ShortPath`]: from one velocity to another along a path of any length (Bui et al. 2021).
+//! - [`Tracking`]: to a target that moves while the axis does (Zhang).
+//!
+//! The fifth, of Pietrusewicz et al. 2019, is [`Method::Sequential`](crate::Method::Sequential) on the grid.
+//! What the papers print wrongly, and every number they publish beside ours, stands in `docs/papers.md`; the
+//! code cites its equations as (P1) and on.
+//!
+//! Everything here is a plain value in continuous time: closed forms, or one bracketed root.
+
+mod profile;
+mod s_curve;
+mod short_path;
+mod timed;
+mod tracking;
+
+pub use profile::{MAX_SEGMENTS, Profile, Times};
+pub use s_curve::{SCurve, SCurveCase, Stepper};
+pub use short_path::{ShortPath, ShortPathPolicy, ShortPathType};
+pub use timed::{Timed, Trapezoid};
+pub use tracking::{Tracking, peaks};
+
+use crate::{Field, Limits, PlanError};
+
+/// What a request may miss the least duration by, relative to it, and still have it.
+const SLACK: f64 = 1e-12;
+
+/// The least count of scans of `cycle` (s) that covers `duration` (s), but for 1e-9 of it; none if that is
+/// more than 2^31 - 1.
+pub fn scans(duration: f64, cycle: f64) -> Option<u32> {
+    crate::ramp::scans(duration, cycle)
+}
+
+/// The signed way (u) from `start` to `target`.
+fn distance(start: f64, target: f64) -> Result<f64, PlanError> {
+    if !start.is_finite() {
+        return Err(invalid(Field::Position, start));
+    }
+    let distance = target - start;
+    // A finite target too far from the start is refused here too.
+    if distance.is_finite() {
+        Ok(distance)
+    } else {
+        Err(invalid(Field::Target, target))
+    }
+}
+
+/// Refuses bounds that a method needs and does not get, and those it could not keep.
+fn check_limits(limits: &Limits, needed: &[Field], unknown: &[Field]) -> Result<(), PlanError> {
+    limits.check()?;
+    let bounds = [
+        (Field::LimitVelocity, limits.velocity),
+        (Field::LimitAcceleration, limits.acceleration),
+        (Field::LimitDeceleration, limits.deceleration),
+        (Field::LimitJerk, limits.jerk),
+        (Field::LimitSnap, limits.snap),
+    ];
+    for (field, value) in bounds {
+        let missing = value.is_infinite() && needed.contains(&field);
+        let too_many = value.is_finite() && unknown.contains(&field);
+        if missing || too_many {
+            return Err(invalid(field, value));
+        }
+    }
+    Ok(())
+}
+
+fn invalid(field: Field, value: f64) -> PlanError {
+    PlanError::InvalidInput { field, value }
+}

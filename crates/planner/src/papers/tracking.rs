@@ -1,0 +1,125 @@
+//! To a target that moves while the axis does.
+//!
+//! Zhang, "An investigation of the implementation of S-curve motion profiling model in robotics
+//! applications": the essay evaluates the profile of the new target on the old clock, so that position and
+//! velocity jump (`docs/papers.md`). Here a new target is planned from the state the axis has, and nothing
+//! jumps.
+
+use crate::ramp::path::{moved, zeros};
+use crate::{Limits, OnlinePlan, Order, Peaks, PlanError, Segment, Setpoint};
+
+/// An axis that follows a target: the running plan and how far it has come.
+///
+/// The order is that of the limits ([`Limits::order`]); what the start and the limits must be, and how each
+/// plan is found, is as in [`OnlinePlan::new`].
+#[derive(Clone, Copy, Debug)]
+pub struct Tracking {
+    limits: Limits,
+    cycle: f64,
+    plan: OnlinePlan,
+    scans: u64,
+}
+
+impl Tracking {
+    /// From `start` to the first `target` (u) with sample time `cycle` (s). As bounded as one plan.
+    ///
+    /// # Errors
+    /// As [`OnlinePlan::new`].
+    pub fn new(start: &Setpoint, target: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
+        Ok(Self {
+            limits: *limits,
+            cycle,
+            plan: OnlinePlan::new(start, target, limits, limits, cycle)?,
+            scans: 0,
+        })
+    }
+
+    /// Takes the target that holds from now on; says whether that made a new plan.
+    ///
+    /// The same target again changes nothing: a plan made anew would end an instant later or earlier by
+    /// rounding.
+    ///
+    /// # Errors
+    /// As [`OnlinePlan::new`]; the old target then still holds.
+    pub fn retarget(&mut self, target: f64) -> Result<bool, PlanError> {
+        if target == self.plan.target() {
+            return Ok(false);
+        }
+        self.plan = OnlinePlan::new(&self.now(), target, &self.limits, &self.limits, self.cycle)?;
+        self.scans = 0;
+        Ok(true)
+    }
+
+    /// Goes on by `scans`, and gives the set-point there.
+    pub fn advance(&mut self, scans: u32) -> Setpoint {
+        self.scans += u64::from(scans);
+        self.now()
+    }
+
+    /// The present set-point.
+    pub fn now(&self) -> Setpoint {
+        self.plan.at(self.scans)
+    }
+
+    /// Whether the axis rests on the target.
+    pub fn is_there(&self) -> bool {
+        self.scans >= u64::from(self.plan.scans())
+    }
+
+    /// The running plan, made when the target last changed.
+    pub const fn plan(&self) -> &OnlinePlan {
+        &self.plan
+    }
+
+    /// What of the running plan has been executed: its segments, cut off now, and the wait at its end.
+    pub fn executed(&self) -> impl Iterator<Item = Segment> {
+        let elapsed = self.scans as f64 * self.cycle;
+        let mut left = elapsed;
+        let moving = self.plan.segments().map_while(move |segment| {
+            let duration = segment.duration.min(left);
+            left -= segment.duration;
+            (duration > 0.0).then_some(Segment { duration, ..segment })
+        });
+        let wait = Segment {
+            duration: elapsed - self.plan.duration(),
+            velocity: 0.0,
+            acceleration: 0.0,
+            jerk: 0.0,
+            snap: 0.0,
+        };
+        moving.chain((wait.duration > 0.0).then_some(wait))
+    }
+}
+
+/// The largest magnitudes along `segments` of `order`, in closed form: at the ends of each, and where jerk
+/// and acceleration pass zero in it. Infinite where the order leaves jumps.
+pub fn peaks(order: Order, segments: impl IntoIterator<Item = Segment>) -> Peaks {
+    let mut peaks = Peaks::default();
+    for segment in segments {
+        let first = Setpoint {
+            position: 0.0,
+            velocity: segment.velocity,
+            acceleration: segment.acceleration,
+            jerk: segment.jerk,
+            snap: segment.snap,
+        };
+        let [early, late] = zeros(first.acceleration, first.jerk, first.snap);
+        let flat = -first.jerk / first.snap;
+        for time in [0.0, flat, early, late, segment.duration] {
+            if time >= 0.0 && time <= segment.duration {
+                let state = moved(&first, time);
+                peaks.velocity = peaks.velocity.max(state.velocity.abs());
+                peaks.acceleration = peaks.acceleration.max(state.acceleration.abs());
+                peaks.jerk = peaks.jerk.max(state.jerk.abs());
+                peaks.snap = peaks.snap.max(state.snap.abs());
+            }
+        }
+    }
+    if order < Order::Four {
+        peaks.snap = f64::INFINITY;
+    }
+    if order < Order::Three {
+        peaks.jerk = f64::INFINITY;
+    }
+    peaks
+}
