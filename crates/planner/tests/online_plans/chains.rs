@@ -2,7 +2,7 @@
 
 use super::support::{self, ORDERS, Random, Seen, integrate};
 use standstill_planner::kernel::MAX_STEPS;
-use standstill_planner::{Limits, OnlinePlan, Order, Rung, Setpoint};
+use standstill_planner::{Limits, OnlinePlan, Order, Setpoint};
 
 /// What a run of chains saw at worst.
 #[derive(Debug, Default)]
