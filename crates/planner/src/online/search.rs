@@ -78,6 +78,14 @@ impl<'a> Search<'a> {
     /// Push towards a velocity bound, then the fastest stop, which begins where it ends on the target (O2).
     pub(super) fn push_then_stop(&self, start: &Setpoint) -> Candidate {
         let mut spans = Spans::new();
+        if let Some(profile) = self.ramps.position_profile(start, self.target)
+            && self.end_velocity == 0.0
+        {
+            self.solves.set(self.solves.get() + 1);
+            self.steps.set(self.steps.get().max(profile.steps));
+            spans.extend(&profile.spans);
+            return spans;
+        }
         let stop = self.stop(start);
         if stop.beyond.abs() <= stop.noise.max(self.resolution) {
             spans.extend(&stop.spans);

@@ -167,8 +167,8 @@ fn chains_with_changing_limits_meet_every_target() {
 /// `cargo test --release -p standstill-planner --features std --test online_plans -- --ignored --nocapture`
 #[test]
 #[ignore = "some minutes in release"]
-fn a_million_replans_of_each_kind() {
-    println!("constant {:?}", chains(11, 50_000, true, same));
+fn millions_of_replans_of_each_kind() {
+    println!("constant {:?}", chains(11, 500_000, true, same));
     println!("own deceleration {:?}", chains(12, 50_000, false, same));
     println!("velocity override {:?}", chains(13, 50_000, true, overridden));
     println!("changing {:?}", chains(14, 50_000, false, all_changed));
