@@ -67,7 +67,10 @@ pub(crate) fn excess<const N: usize>(
         peaks(path, goal).velocity
     };
     let small = ON_LIMIT * scale;
-    path.extremes(small, |state, direction| {
+    // With one bound for both directions nothing changes where the velocity passes zero.
+    let sides_differ = limits.acceleration != limits.deceleration;
+    let noticed = if sides_differ { small } else { f64::INFINITY };
+    path.extremes(noticed, |state, direction| {
         let velocity = state.velocity;
         let outside = velocity.abs() - limits.velocity;
         let reversed = match heading {

@@ -13,8 +13,9 @@ use crate::{Order, Setpoint};
 /// Most spans of a leg: a profile, or a push of three, a hold and a release of three.
 const LEG_SPANS: usize = 7;
 
-/// Most spans of a ramp that turns: once back if it dips, once to zero, and on from there.
-pub(super) const TURN_SPANS: usize = 3 * LEG_SPANS;
+/// Most spans of a ramp that turns: once back if it dips, once to zero, perhaps after coming inside other
+/// bounds, and on from there.
+pub(super) const TURN_SPANS: usize = 3 * LEG_SPANS + 3;
 
 /// A ramp in the making.
 struct Legs {
@@ -101,16 +102,15 @@ impl Ramps {
             leg
         };
         let left = |time: f64| braking(time).way.state.velocity;
-        let late = left(0.0);
-        // On the release already, but for rounding: a later start of it would be none at all.
-        let on = ON_LIMIT * self.velocity();
-        if late < -on {
+        // A state on the release itself is off it by rounding.
+        let room = left(0.0);
+        if room < -ON_LIMIT * self.velocity() {
             return false;
         }
         let mut pushed = begin;
         pushed.follow(&push);
         let longest = push.duration() + pushed.state.velocity.max(0.0) / self.deceleration();
-        let (time, steps) = if late > 0.0 {
+        let (time, steps) = if room > 0.0 {
             falling_root(0.0, longest, left)
         } else {
             (0.0, 0)
