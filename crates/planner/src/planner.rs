@@ -1,6 +1,6 @@
 //! The seam between an axis and the maths: what an axis may ask of any planner.
 
-use crate::{Excess, GridPlan, Limits, OnlinePlan, PlanError, RampPlan, Setpoint};
+use crate::{Excess, GridPlan, Limits, OnlinePlan, PlanError, RampPlan, Rung, Setpoint};
 
 /// Plans moves for an axis.
 ///
@@ -52,6 +52,12 @@ pub trait Plan: Copy + core::fmt::Debug {
 
     /// By how much the start state forced the plan out of its limits, if it did.
     fn excess(&self) -> Option<Excess>;
+
+    /// The rung of the online planner's ladder the plan is from, for hosts that count them; none for plans
+    /// of another kind.
+    fn rung(&self) -> Option<Rung> {
+        None
+    }
 }
 
 /// The planner of the product: the shortest grid plan of the overlapped family from rest, a ramp for
@@ -138,6 +144,13 @@ impl Plan for StandardPlan {
             Self::Grid(_) => None,
             Self::Ramp(ramp) => ramp.excess(),
             Self::Online(plan) => plan.excess(),
+        }
+    }
+
+    fn rung(&self) -> Option<Rung> {
+        match self {
+            Self::Grid(_) | Self::Ramp(_) => None,
+            Self::Online(plan) => Some(plan.rung()),
         }
     }
 }

@@ -99,7 +99,7 @@ impl<const N: usize> Spans<N> {
     /// The spans with every input multiplied by `factor`.
     #[must_use]
     pub fn amplified(mut self, factor: f64) -> Self {
-        for span in &mut self.list {
+        for span in self.list.iter_mut().take(self.len) {
             span.input *= factor;
         }
         self

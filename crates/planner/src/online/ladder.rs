@@ -123,7 +123,8 @@ pub(super) fn climb(
 }
 
 impl Climb<'_> {
-    /// The plan of `candidate` if it arrives and exceeds no more than what can't be avoided.
+    /// The plan of `candidate` if it arrives and, but on the last rung, exceeds no more than what can't be
+    /// avoided.
     fn verified(&mut self, rung: Rung, candidate: &Candidate) -> Option<Found> {
         if candidate.len() > MAX_PIECES {
             return None;
@@ -144,7 +145,9 @@ impl Climb<'_> {
             return None;
         }
         let excess = excess::excess(&path, self.end_velocity, None, self.limits);
+        // There is nothing after the last rung.
         if let Some(excess) = excess
+            && rung < Rung::Brake
             && !self.is_unavoidable(&excess)
         {
             return None;

@@ -13,7 +13,7 @@ use crate::{Order, Setpoint};
 pub(super) const CANDIDATE_SPANS: usize = 3 * RAMP_SPANS + 1;
 
 /// In how many parts a span of the push is looked at for the first crossing of a move that does not end at
-/// rest; one that does has no second crossing in a span (O4).
+/// rest (O4).
 const PARTS: usize = 8;
 
 /// Spans of a whole move.
@@ -78,6 +78,14 @@ impl<'a> Search<'a> {
     /// Push towards a velocity bound, then the fastest stop, which begins where it ends on the target (O2).
     pub(super) fn push_then_stop(&self, start: &Setpoint) -> Candidate {
         let mut spans = Spans::new();
+        if self.end_velocity == 0.0
+            && let Some(profile) = self.ramps.position_profile(start, self.target)
+        {
+            self.solves.set(self.solves.get() + 1);
+            self.steps.set(self.steps.get().max(profile.steps));
+            spans.extend(&profile.spans);
+            return spans;
+        }
         let stop = self.stop(start);
         if stop.beyond.abs() <= stop.noise.max(self.resolution) {
             spans.extend(&stop.spans);

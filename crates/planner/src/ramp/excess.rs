@@ -67,7 +67,10 @@ pub(crate) fn excess<const N: usize>(
         peaks(path, goal).velocity
     };
     let small = ON_LIMIT * scale;
-    path.extremes(small, |state, passes_zero| {
+    // With one bound for both directions nothing changes where the velocity passes zero.
+    let sides_differ = limits.acceleration != limits.deceleration;
+    let noticed = if sides_differ { small } else { f64::INFINITY };
+    path.extremes(noticed, |state, direction| {
         let velocity = state.velocity;
         let outside = velocity.abs() - limits.velocity;
         let reversed = match heading {
@@ -76,16 +79,12 @@ pub(crate) fn excess<const N: usize>(
         };
         excess.velocity = excess.velocity.max(outside).max(reversed);
 
-        // With the motion it raises the speed, against it it lowers it. Where the velocity is nothing but
-        // rounding the rest of the piece tells which.
-        let bound = if passes_zero {
-            limits.lower_acceleration()
-        } else if velocity.abs() <= small {
-            limits.acceleration.max(limits.deceleration)
-        } else if state.acceleration * velocity > 0.0 {
-            limits.acceleration
-        } else {
-            limits.deceleration
+        // With the motion it raises the speed, against it it lowers it.
+        let bound = match direction {
+            None => limits.lower_acceleration(),
+            Some(along) if along.abs() <= small => limits.acceleration.max(limits.deceleration),
+            Some(along) if state.acceleration * along > 0.0 => limits.acceleration,
+            Some(_) => limits.deceleration,
         };
         let over = state.acceleration.abs() - bound;
         excess.acceleration = excess.acceleration.max(beyond(over, bound));

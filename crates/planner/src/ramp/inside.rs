@@ -100,6 +100,10 @@ pub(super) fn lead_in(state: State, goal: f64, (low, high): (f64, f64), bounds: 
         steps: 0,
         viable: false,
     };
+    if is_inside(state, bounds) && is_viable(state, lead.rest, low, high, bounds) {
+        lead.viable = true;
+        return lead;
+    }
     if bounds.is_lowered() && state.v.max(lead.rest) > high * (1.0 + ON_LIMIT) {
         let (spans, steps) = hasten(state, high, goal, low, bounds);
         lead.add(&spans, steps, bounds.jerk);
@@ -108,7 +112,6 @@ pub(super) fn lead_in(state: State, goal: f64, (low, high): (f64, f64), bounds: 
     lead.add(&enter(state, bounds), 0, bounds.jerk);
     let (spans, steps) = relieve(lead.state, lead.rest, low, high, own);
     lead.add(&spans, steps, bounds.jerk);
-    lead.viable = lead.spans.is_empty() && is_viable(state, lead.rest, low, high, bounds);
     lead
 }
 
@@ -121,6 +124,12 @@ impl Lead {
             self.steps = self.steps.max(steps);
         }
     }
+}
+
+/// Whether acceleration and jerk are inside their bounds.
+fn is_inside(state: State, bounds: &Box4) -> bool {
+    let on = 1.0 + ON_LIMIT;
+    state.a <= bounds.a.plus * on && -state.a <= bounds.a.minus * on && state.j.abs() <= bounds.jerk * on
 }
 
 /// Whether the arrest from a state with jerk and acceleration inside keeps acceleration and velocity inside.

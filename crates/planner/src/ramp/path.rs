@@ -7,6 +7,10 @@ use crate::{Order, Setpoint};
 /// What a jerk of zero may be off by, relative to the largest one before.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// What an acceleration that is held at zero may be off by, relative to the largest one before. It is held
+/// either there or at a bound, so nothing else is as small.
+const CRUISING: f64 = 1e-10;
+
 /// A stretch of constant snap (order 4), jerk (3) or acceleration (2).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Piece {
@@ -141,17 +145,23 @@ impl<const N: usize> Path<N> {
     /// The states that hold every extreme of velocity, acceleration and jerk: the ends of each piece, and
     /// inside it the zeros of jerk and acceleration (R20).
     ///
-    /// `see` is also shown the states at which the velocity passes zero, from beyond `small` to beyond it
-    /// on the other side, and told so, because the bounds of acceleration change there.
-    pub(crate) fn extremes(&self, small: f64, mut see: impl FnMut(&Setpoint, bool)) {
+    /// With each comes the velocity that tells its direction: its own, or if that is no more than `small`,
+    /// that of the other end of the piece. `see` is also shown the states at which the velocity passes zero,
+    /// from beyond `small` to beyond it on the other side; those have none, because the bounds of
+    /// acceleration change there.
+    pub(crate) fn extremes(&self, small: f64, mut see: impl FnMut(&Setpoint, Option<f64>)) {
         for (stretch, first) in self.stretches() {
             let length = stretch.end - stretch.begin;
             let state = |time: f64| moved(&stretch.state, stretch.begin + time - stretch.anchor);
             let within = |time: f64| if time > 0.0 && time < length { time } else { length };
-            see(&first, false);
+            let last = state(length).velocity;
+            let or = |velocity: f64, other: f64| if velocity.abs() > small { velocity } else { other };
+            let inside = |state: &Setpoint| Some(or(state.velocity, or(first.velocity, last)));
+            see(&first, Some(or(first.velocity, last)));
             let flat = within(-first.jerk / first.snap);
             if flat < length {
-                see(&state(flat), false);
+                let state = state(flat);
+                see(&state, inside(&state));
             }
             let [early, late] = zeros(first.acceleration, first.jerk, first.snap).map(within);
             let (mut from, mut low) = (0.0, first);
@@ -160,11 +170,11 @@ impl<const N: usize> Path<N> {
                     continue;
                 }
                 let high = state(to);
-                see(&high, false);
+                see(&high, inside(&high));
                 let sign = low.velocity.signum();
                 if sign * low.velocity > small && -sign * high.velocity > small {
                     let (time, _) = falling_root(from, to, |t| sign * state(t).velocity);
-                    see(&state(time), true);
+                    see(&state(time), None);
                 }
                 (from, low) = (to, high);
             }
@@ -181,6 +191,7 @@ impl<const N: usize> Path<N> {
 pub(crate) struct Way {
     pub(crate) state: Setpoint,
     order: Order,
+    largest_acceleration: f64,
     largest_jerk: f64,
 }
 
@@ -189,6 +200,7 @@ impl Way {
         Self {
             state: *start,
             order,
+            largest_acceleration: 0.0,
             largest_jerk: 0.0,
         }
     }
@@ -196,10 +208,17 @@ impl Way {
     /// The state at the start of a span in which the highest derivative is `input`.
     pub(crate) fn begin(&mut self, input: f64) -> Setpoint {
         self.state = with_input(&self.state, self.order, input);
-        // What rounding left of a jerk that is held at zero would be integrated over a long hold.
-        self.largest_jerk = self.largest_jerk.max(self.state.jerk.abs());
-        if input == 0.0 && self.state.jerk.abs() <= ROUNDING * self.largest_jerk {
-            self.state.jerk = 0.0;
+        // What rounding left of a derivative that is held at zero would be integrated over a long hold.
+        let Setpoint {
+            acceleration, jerk, ..
+        } = &mut self.state;
+        self.largest_acceleration = self.largest_acceleration.max(acceleration.abs());
+        self.largest_jerk = self.largest_jerk.max(jerk.abs());
+        if input == 0.0 && jerk.abs() <= ROUNDING * self.largest_jerk {
+            *jerk = 0.0;
+            if acceleration.abs() <= CRUISING * self.largest_acceleration {
+                *acceleration = 0.0;
+            }
         }
         self.state
     }

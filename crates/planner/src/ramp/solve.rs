@@ -3,7 +3,7 @@
 use super::inside::{self, Box4, LEAD_SPANS, State};
 use super::slope::{Box3, Slope};
 use super::turn::TURN_SPANS;
-use crate::kernel::{Bounds, ON_LIMIT, Scale, Sides, Spans, second, third};
+use crate::kernel::{Bounds, ON_LIMIT, Profile, Scale, Sides, Spans, second, third};
 use crate::{Limits, Order, Setpoint};
 
 /// Most spans of a ramp: getting inside the limits, then a ramp that may turn.
@@ -142,6 +142,26 @@ impl Ramps {
             ramp.spans = ramp.spans.mirrored();
         }
         ramp
+    }
+
+    /// The whole move from `start` to rest at `target` where the kernel has it: at order 3 with the same
+    /// bound on acceleration and deceleration, from a viable state inside the limits (O3).
+    pub(crate) fn position_profile(&self, start: &Setpoint, target: f64) -> Option<Profile> {
+        let &Setpoint {
+            position: p,
+            velocity: v,
+            acceleration: a,
+            ..
+        } = start;
+        let bounds = Bounds {
+            v: Sides::both(self.velocity),
+            a: Sides::both(self.acceleration),
+        };
+        let fits = self.order == Order::Three
+            && self.acceleration == self.deceleration
+            && a.abs() <= self.acceleration * (1.0 + ON_LIMIT)
+            && v.abs().max(Slope { v, a }.rest().abs()) <= self.velocity * (1.0 + ON_LIMIT);
+        fits.then(|| third(p, v, a, target, &bounds))
     }
 
     /// The velocity `start` comes to once acceleration and jerk are zero as soon as can be.

@@ -13,13 +13,14 @@ use crate::{Order, Setpoint};
 /// Most spans of a leg: a profile, or a push of three, a hold and a release of three.
 const LEG_SPANS: usize = 7;
 
-/// Most spans of a ramp that turns: once back if it dips, once to zero, and on from there.
-pub(super) const TURN_SPANS: usize = 3 * LEG_SPANS;
+/// Most spans of a ramp that turns: once back if it dips, once to zero, perhaps after coming inside other
+/// bounds, and on from there.
+pub(super) const TURN_SPANS: usize = 3 * LEG_SPANS + 3;
 
 /// A ramp in the making.
 struct Legs {
     spans: Spans<TURN_SPANS>,
-    end: Setpoint,
+    way: Way,
     steps: u32,
 }
 
@@ -27,49 +28,38 @@ impl Ramps {
     /// The spans from `start`, which moves forwards, to `goal`, where the velocity changes its sign on the
     /// way; also the root steps taken.
     pub(super) fn turning(&self, start: &Setpoint, goal: f64) -> (Spans<TURN_SPANS>, u32) {
-        let mut legs = Legs {
-            spans: Spans::new(),
-            end: *start,
-            steps: 0,
-        };
+        let mut legs = Legs::from(Way::new(self.order(), start));
         if goal < 0.0 {
             self.brake_to_zero(&mut legs, goal);
             self.speed_up(&mut legs, goal);
-        } else if self.until_zero(&mut legs, &self.plain(start, goal, self.forward())) {
+        } else if legs.until_zero(&self.plain(start, goal, self.forward())) {
             // It dips below zero: from there it comes back like a motion that starts the other way.
-            let mut back = Legs {
-                spans: Spans::new(),
-                end: mirrored(&legs.end),
-                steps: legs.steps,
-            };
+            let mut back = Legs::from(legs.way);
+            back.way.state = mirrored(&legs.way.state);
             if goal > 0.0 {
                 self.brake_to_zero(&mut back, -goal);
                 self.speed_up(&mut back, -goal);
             } else {
-                let stop = self.plain(&back.end, 0.0, self.forward());
+                let stop = self.plain(&back.way.state, 0.0, self.forward());
                 back.spans.extend(&stop);
             }
             legs.spans.extend(&back.spans.mirrored());
-            legs.steps = back.steps;
+            legs.steps = legs.steps.max(back.steps);
         }
         (legs.spans, legs.steps)
     }
 
     /// The leg to where the velocity passes zero on the way to `goal` < 0.
     fn brake_to_zero(&self, legs: &mut Legs, goal: f64) {
-        let mut direct = Legs {
-            spans: Spans::new(),
-            end: legs.end,
-            steps: 0,
-        };
-        self.until_zero(&mut direct, &self.plain(&legs.end, goal, self.forward()));
-        if self.may_speed_up(&direct.end) {
+        let mut direct = Legs::from(legs.way);
+        direct.until_zero(&self.plain(&legs.way.state, goal, self.forward()));
+        if self.may_speed_up(&direct.way.state) {
             legs.append(&direct);
         } else if !self.release_at_zero(legs) {
             // Too late for that: inside what the other side allows as soon as can be.
             let lower = Sides::both(self.acceleration());
             if self.order() == Order::Four {
-                let state = state(&legs.end);
+                let state = state(&legs.way.state);
                 let lead = inside::enter(
                     state,
                     &Box4 {
@@ -80,10 +70,10 @@ impl Ramps {
                         snap_before: 1.0,
                     },
                 );
-                self.follow(legs, &lead);
+                legs.follow(&lead);
             }
-            let gently = self.plain(&legs.end, goal, lower);
-            self.until_zero(legs, &gently);
+            let gently = self.plain(&legs.way.state, goal, lower);
+            legs.until_zero(&gently);
         }
     }
 
@@ -102,30 +92,25 @@ impl Ramps {
     /// just when the velocity is zero; whether there is one.
     fn release_at_zero(&self, legs: &mut Legs) -> bool {
         let (low, high) = (-self.deceleration(), -self.acceleration());
-        let start = legs.end;
-        let push = self.change(&start, low);
+        let begin = legs.way;
+        let push = self.change(&begin.state, low);
         let braking = |time: f64| {
-            let mut leg = Legs {
-                spans: Spans::new(),
-                end: start,
-                steps: 0,
-            };
-            self.follow(&mut leg, &push.until::<4>(time));
-            let release = self.change(&leg.end, high);
-            self.follow(&mut leg, &release);
+            let mut leg = Legs::from(begin);
+            leg.follow(&push.until::<4>(time));
+            let release = self.change(&leg.way.state, high);
+            leg.follow(&release);
             leg
         };
-        let left = |time: f64| braking(time).end.velocity;
-        let late = left(0.0);
-        // On the release already, but for rounding: a later start of it would be none at all.
-        let on = ON_LIMIT * self.velocity();
-        if late < -on {
+        let left = |time: f64| braking(time).way.state.velocity;
+        // A state on the release itself is off it by rounding.
+        let room = left(0.0);
+        if room < -ON_LIMIT * self.velocity() {
             return false;
         }
-        let mut pushed = Way::new(self.order(), &start);
+        let mut pushed = begin;
         pushed.follow(&push);
         let longest = push.duration() + pushed.state.velocity.max(0.0) / self.deceleration();
-        let (time, steps) = if late > 0.0 {
+        let (time, steps) = if room > 0.0 {
             falling_root(0.0, longest, left)
         } else {
             (0.0, 0)
@@ -133,13 +118,15 @@ impl Ramps {
         legs.append(&braking(time));
         legs.steps = legs.steps.max(steps);
         // What the root leaves of the velocity is rounding.
-        legs.end.velocity = legs.end.velocity.min(0.0);
+        legs.way.state.velocity = legs.way.state.velocity.min(0.0);
         true
     }
 
     /// The leg from zero velocity on to `goal` < 0: a motion that speeds up the other way.
     fn speed_up(&self, legs: &mut Legs, goal: f64) {
-        let speeding = self.plain(&mirrored(&legs.end), -goal, self.forward()).mirrored();
+        let speeding = self
+            .plain(&mirrored(&legs.way.state), -goal, self.forward())
+            .mirrored();
         legs.spans.extend(&speeding);
     }
 
@@ -188,46 +175,51 @@ impl Ramps {
         }
         spans
     }
+}
+
+impl Legs {
+    const fn from(way: Way) -> Self {
+        Self {
+            spans: Spans::new(),
+            way,
+            steps: 0,
+        }
+    }
+
+    fn follow<const N: usize>(&mut self, spans: &Spans<N>) {
+        self.way.follow(spans);
+        self.spans.extend(spans);
+    }
 
     /// Follows `spans` as far as the velocity is not below zero; whether it comes to that.
-    fn until_zero<const N: usize>(&self, legs: &mut Legs, spans: &Spans<N>) -> bool {
+    fn until_zero<const N: usize>(&mut self, spans: &Spans<N>) -> bool {
         for span in spans.iter() {
-            let mut way = Way::new(self.order(), &legs.end);
-            way.begin(span.input);
+            self.way.begin(span.input);
             let after = |time: f64| {
-                let mut way = way;
+                let mut way = self.way;
                 way.go(time);
                 way.state
             };
-            let end = after(span.duration);
-            if end.velocity >= 0.0 {
-                legs.spans.push(span.duration, span.input);
-                legs.end = end;
+            let begin = self.way.state.velocity;
+            if after(span.duration).velocity >= 0.0 {
+                self.spans.push(span.duration, span.input);
+                self.way.go(span.duration);
                 continue;
             }
-            if legs.end.velocity > 0.0 {
+            if begin > 0.0 {
                 let (time, steps) = falling_root(0.0, span.duration, |time| after(time).velocity);
-                legs.spans.push(time, span.input);
-                legs.end = after(time);
-                legs.steps = legs.steps.max(steps);
+                self.spans.push(time, span.input);
+                self.way.go(time);
+                self.steps = self.steps.max(steps);
             }
             return true;
         }
         false
     }
 
-    fn follow<const N: usize>(&self, legs: &mut Legs, spans: &Spans<N>) {
-        let mut way = Way::new(self.order(), &legs.end);
-        way.follow(spans);
-        legs.end = way.state;
-        legs.spans.extend(spans);
-    }
-}
-
-impl Legs {
     fn append(&mut self, other: &Self) {
         self.spans.extend(&other.spans);
-        self.end = other.end;
+        self.way = other.way;
         self.steps = self.steps.max(other.steps);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::support::{self, ORDERS, Random, Seen, integrate};
 use standstill_planner::kernel::MAX_STEPS;
-use standstill_planner::{Limits, OnlinePlan, Order, Rung, Setpoint};
+use standstill_planner::{Limits, OnlinePlan, Order, Setpoint};
 
 /// What a run of chains saw at worst.
 #[derive(Debug, Default)]
@@ -119,6 +119,49 @@ fn chains_under_constant_limits_meet_every_target_within_the_limits() {
     assert_eq!(worst.outside, 0);
 }
 
+/// What an axis publishes, replans and all: each divided difference is inside the limit of its derivative.
+#[test]
+fn published_positions_keep_the_limits() {
+    let mut random = Random(5);
+    for chain in 0..150 {
+        let order = ORDERS[chain % 3];
+        let mut limits = support::limits(&mut random, order);
+        limits.deceleration = limits.acceleration;
+        let time = limits.velocity / limits.acceleration;
+        let cycle = time * random.log(0.01, 0.3);
+        let way = limits.velocity * time;
+        let mut start = Setpoint::at_rest(way * random.between(-1.0, 1.0));
+        // At rest for a while, or the first differences would look before the beginning.
+        let mut published = vec![start.position; 5];
+        for _ in 0..20 {
+            let target = way * random.between(-3.0, 3.0);
+            let plan = OnlinePlan::new(&start, target, &limits, &limits, cycle).expect("a plan");
+            let last = random.below(u64::from(plan.scans()) + 5);
+            published.extend((1..=last).map(|scan| plan.at(scan).position));
+            start = plan.at(last);
+        }
+        let farthest = published.iter().fold(0.0f64, |most, p| most.max(p.abs()));
+        let mut differences = published;
+        let mut divisor = 1.0;
+        for (bound, needed) in [
+            (limits.velocity, Order::Two),
+            (limits.acceleration, Order::Two),
+            (limits.jerk, Order::Three),
+            (limits.snap, Order::Four),
+        ] {
+            differences = differences.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            divisor *= cycle;
+            let largest = differences.iter().fold(0.0f64, |most, d| most.max(d.abs())) / divisor;
+            // The weights of the fourth difference add up to 16, each position is off by up to two units.
+            let resolved = 32.0 * f64::EPSILON * farthest / divisor;
+            assert!(
+                order < needed || largest <= bound * (1.0 + 1e-9) + resolved,
+                "chain {chain}: {largest} {bound} {resolved:e} {limits:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn chains_with_a_deceleration_of_its_own_meet_every_target_within_the_limits() {
     let worst = chains(2, 250, false, same);
@@ -167,8 +210,8 @@ fn chains_with_changing_limits_meet_every_target() {
 /// `cargo test --release -p standstill-planner --features std --test online_plans -- --ignored --nocapture`
 #[test]
 #[ignore = "some minutes in release"]
-fn a_million_replans_of_each_kind() {
-    println!("constant {:?}", chains(11, 50_000, true, same));
+fn millions_of_replans_of_each_kind() {
+    println!("constant {:?}", chains(11, 500_000, true, same));
     println!("own deceleration {:?}", chains(12, 50_000, false, same));
     println!("velocity override {:?}", chains(13, 50_000, true, overridden));
     println!("changing {:?}", chains(14, 50_000, false, all_changed));

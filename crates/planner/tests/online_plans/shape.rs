@@ -282,6 +282,55 @@ fn every_rung_arrives() {
     assert!(later <= 4);
 }
 
+/// Limits that change at every replan, and end velocities: always a plan, and it passes the target.
+#[test]
+fn passing_under_changing_limits_always_has_a_plan() {
+    let mut random = Random(75);
+    let mut rungs = [0; 4];
+    for case in 0..300 {
+        let order = ORDERS[case % 3];
+        let limits = support::limits(&mut random, order);
+        let time = limits.velocity / limits.acceleration;
+        let cycle = 0.02 * time;
+        let (mut start, mut before) = (Setpoint::default(), limits);
+        for link in 0..20 {
+            let mut factor = || random.between(0.3, 1.0);
+            let now = Limits {
+                velocity: limits.velocity * factor(),
+                acceleration: limits.acceleration * factor(),
+                deceleration: limits.deceleration * factor(),
+                jerk: limits.jerk * factor(),
+                snap: limits.snap * factor(),
+            };
+            let target = limits.velocity * time * random.between(-3.0, 3.0);
+            let end_velocity = now.velocity * random.between(-1.0, 1.0);
+            let plan = OnlinePlan::passing(&start, target, end_velocity, &now, &before, cycle)
+                .unwrap_or_else(|error| panic!("case {case} link {link}: {error}"));
+            rungs[plan.rung() as usize] += 1;
+            let origin = Setpoint {
+                position: 0.0,
+                ..start
+            };
+            let seen = integrate(&origin, &plan, order);
+            let miss = (seen.end.position - (target - start.position)).abs();
+            let resolved = 32.0 * f64::EPSILON * (start.position.abs() + target.abs());
+            assert!(
+                miss <= resolved + 1e-9 * plan.peaks().velocity * plan.duration(),
+                "{miss:e} {plan:?}"
+            );
+            let end = u64::from(plan.scans());
+            let after = plan.at(end + 3);
+            assert_eq!(
+                (after.velocity, after.acceleration, after.jerk),
+                (end_velocity, 0.0, 0.0)
+            );
+            before = now;
+            start = plan.at(random.below(end + 2));
+        }
+    }
+    println!("rungs {rungs:?}");
+}
+
 const SERVO: Limits = Limits {
     velocity: 1.0,
     acceleration: 10.0,
