@@ -6,7 +6,8 @@
 //! gives the same bits.
 //!
 //! Lengths are in the user's unit `u`, times in seconds. The derivations with numbered equations are in
-//! `docs/planner.md`; the code cites their numbers.
+//! `docs/planner.md` (rest to rest), `docs/planner-ramps.md` (to a velocity) and `docs/planner-online.md`
+//! (from motion to a position); the code cites their numbers.
 #![no_std]
 #![forbid(unsafe_code)]
 

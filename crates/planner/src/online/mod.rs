@@ -8,6 +8,7 @@ mod ladder;
 mod search;
 
 pub use ladder::Rung;
+pub use search::MAX_SOLVES;
 
 use crate::grid::GridPlan;
 use crate::ramp::excess::{self, Excess, Peaks};
@@ -52,7 +53,8 @@ impl OnlinePlan {
     /// and `before`; an infinite bound in `before` counts as that of `limits`. What is exceeded on the way
     /// is told by [`OnlinePlan::excess`].
     ///
-    /// Bounded work: at most a few hundred ramps, in practice about 12 ([`OnlinePlan::solves`]).
+    /// Bounded work: at most [`MAX_SOLVES`] ramps, in practice about 11 ([`OnlinePlan::solves`]), each with at
+    /// most three roots of [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
     ///
     /// # Errors
     /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, a start or target that is
@@ -213,7 +215,7 @@ impl OnlinePlan {
         self.rung
     }
 
-    /// Ramps solved to find the plan, on all rungs tried.
+    /// Ramps solved to find the plan, on all rungs tried; at most [`MAX_SOLVES`].
     pub const fn solves(&self) -> u32 {
         self.solves
     }

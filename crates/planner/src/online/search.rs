@@ -4,7 +4,7 @@
 
 use core::cell::Cell;
 
-use crate::kernel::{NOISE, Point, Spans, zero};
+use crate::kernel::{MAX_STEPS, NOISE, Point, Spans, zero};
 use crate::ramp::path::Way;
 use crate::ramp::solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
 use crate::{Order, Setpoint};
@@ -15,6 +15,13 @@ pub(super) const CANDIDATE_SPANS: usize = 3 * RAMP_SPANS + 1;
 /// In how many parts a span of the push is looked at for the first crossing of a move that does not end at
 /// rest (O4).
 const PARTS: usize = 8;
+
+/// Most ramps [`Search::push_then_stop`] solves: one per look at the push, one per step of the root, and
+/// those around them.
+const MAX_PUSH_SOLVES: u32 = (PARTS * RAMP_SPANS) as u32 + MAX_STEPS + 6;
+
+/// Most ramps a plan may solve, on all rungs together.
+pub const MAX_SOLVES: u32 = 3 * MAX_PUSH_SOLVES + 2 * (MAX_STEPS + 3) + 5;
 
 /// Spans of a whole move.
 pub(super) type Candidate = Spans<CANDIDATE_SPANS>;

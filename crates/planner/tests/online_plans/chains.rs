@@ -2,6 +2,7 @@
 
 use super::support::{self, ORDERS, Random, Seen, integrate};
 use standstill_planner::kernel::MAX_STEPS;
+use standstill_planner::online::MAX_SOLVES;
 use standstill_planner::{Limits, OnlinePlan, Order, Setpoint};
 
 /// What a run of chains saw at worst.
@@ -104,7 +105,7 @@ fn chains(seed: u64, count: u32, equal: bool, change: impl Fn(&mut Random, &Limi
             start = plan.at(random.below(u64::from(plan.scans()) + 2));
         }
     }
-    assert!(worst.steps < MAX_STEPS);
+    assert!(worst.steps < MAX_STEPS && worst.solves < MAX_SOLVES);
     worst
 }
 
