@@ -42,6 +42,12 @@ pub enum Command {
         /// The lines; standard input if absent or `-`
         file: Option<PathBuf>,
     },
+    /// Try random cases for as long as wanted
+    Soak {
+        /// What to try
+        #[command(subcommand)]
+        what: Soak,
+    },
     /// List the function blocks and their pins
     Blocks {
         /// As JSON
@@ -58,6 +64,26 @@ pub enum Command {
         /// Write nothing; fail if a script would change
         #[arg(long)]
         check: bool,
+    },
+}
+
+/// What `soak` tries.
+#[derive(Debug, Subcommand)]
+pub enum Soak {
+    /// Replan from random moving states, and hold every plan against its limits and its goal
+    ///
+    /// A failing replan is printed as a line of `standstill plan`; the figures at the end are the worst of
+    /// all that hold.
+    Planner {
+        /// All replans follow from it
+        #[arg(long, value_name = "S", default_value_t = 1)]
+        seed: u64,
+        /// How many replans
+        #[arg(long, value_name = "N", default_value_t = 100_000)]
+        count: u64,
+        /// Keep the state of the run in this file, and go on from there if it exists
+        #[arg(long, value_name = "FILE")]
+        resume: Option<PathBuf>,
     },
 }
 

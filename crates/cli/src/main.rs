@@ -12,10 +12,11 @@ mod json;
 mod plan;
 mod progress;
 mod run;
+mod soak;
 mod suggest;
 mod test;
 
-use args::{Arguments, Command};
+use args::{Arguments, Command, Soak};
 use clap::Parser;
 use exit::{Exit, Failure};
 use standstill_script::suite::shown;
@@ -63,6 +64,9 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             plan::plan(&mut BufReader::new(file), &name, out)
         }
         Command::Plan { .. } => plan::plan(&mut standard_input(), "standard input", out),
+        Command::Soak {
+            what: Soak::Planner { seed, count, resume },
+        } => soak::planner(*seed, *count, resume.as_deref(), out),
         Command::Blocks { json: true } => blocks::json(out),
         Command::Blocks { json: false } => blocks::table(out),
         Command::Schema => {

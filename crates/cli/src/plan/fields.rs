@@ -30,6 +30,7 @@ const LIMITS: [&str; 5] = ["velocity", "acceleration", "deceleration", "jerk", "
 pub struct Fields<'a> {
     members: Members<'a>,
     limits: Members<'a>,
+    limits_before: Members<'a>,
 }
 
 /// Start of a move and its limits: what every method reads.
@@ -72,7 +73,8 @@ impl<'a> Fields<'a> {
         };
         Ok(Self {
             members,
-            limits: Members(Vec::new()),
+            limits: Members::default(),
+            limits_before: Members::default(),
         })
     }
 
@@ -88,17 +90,23 @@ impl<'a> Fields<'a> {
             "",
             COMMON.into_iter().chain(methods::extra_fields()),
         )?;
-        let limits = match self.members.get("limits") {
-            None | Some("null") => Members(Vec::new()),
-            Some(text) => serde_json::from_str(text)
-                .map_err(|_| self.invalid("limits", "`limits` must be an object of numbers".to_owned()))?,
-        };
         let opened = Self {
             members: self.members.clone(),
-            limits,
+            limits: self.opened("limits")?,
+            limits_before: self.opened("limits_before")?,
         };
         opened.check_keys(&opened.limits, "limits.", LIMITS.into_iter())?;
+        opened.check_keys(&opened.limits_before, "limits_before.", LIMITS.into_iter())?;
         Ok(opened)
+    }
+
+    /// The members of a field that is an object; none if it is null or not there.
+    fn opened(&self, field: &str) -> Result<Members<'a>, Refusal> {
+        match self.members.get(field) {
+            None | Some("null") => Ok(Members::default()),
+            Some(text) => serde_json::from_str(text)
+                .map_err(|_| self.invalid(field, format!("`{field}` must be an object of numbers"))),
+        }
     }
 
     fn check_keys(
@@ -139,9 +147,10 @@ impl<'a> Fields<'a> {
     }
 
     fn text(&self, field: &str) -> Option<&'a str> {
-        match field.strip_prefix("limits.") {
-            Some(name) => self.limits.get(name),
-            None => self.members.get(field),
+        match field.split_once('.') {
+            Some(("limits", name)) => self.limits.get(name),
+            Some(("limits_before", name)) => self.limits_before.get(name),
+            _ => self.members.get(field),
         }
     }
 
@@ -151,7 +160,7 @@ impl<'a> Fields<'a> {
             return Ok(None);
         };
         if ["\"NaN\"", "\"Infinity\"", "\"-Infinity\""].contains(&text) {
-            let remedy = if field.starts_with("limits.") {
+            let remedy = if field.starts_with("limits") {
                 "; leave it out for no limit"
             } else {
                 ""
@@ -196,7 +205,6 @@ impl<'a> Fields<'a> {
     /// Start state, velocity at the end and limits. Whether they make sense is for the planner to say.
     pub fn problem(&self) -> Result<Problem, Refusal> {
         let state = |field| Ok(self.number(field)?.unwrap_or(0.0));
-        let acceleration = self.limit("limits.acceleration", f64::INFINITY)?;
         Ok(Problem {
             start: Setpoint {
                 position: state("position")?,
@@ -206,13 +214,33 @@ impl<'a> Fields<'a> {
                 snap: 0.0,
             },
             end_velocity: state("end_velocity")?,
-            limits: Limits {
-                velocity: self.limit("limits.velocity", f64::INFINITY)?,
-                acceleration,
-                deceleration: self.limit("limits.deceleration", acceleration)?,
-                jerk: self.limit("limits.jerk", f64::INFINITY)?,
-                snap: self.limit("limits.snap", f64::INFINITY)?,
-            },
+            limits: self.limits("limits", &Limits::NONE)?,
+        })
+    }
+
+    /// The limits the motion so far kept; those that are not given are as in `limits`.
+    pub fn limits_before(&self, limits: &Limits) -> Result<Limits, Refusal> {
+        for name in LIMITS {
+            let field = format!("limits_before.{name}");
+            if !(self.limit(&field, f64::INFINITY)? > 0.0) {
+                return Err(self.invalid(&field, format!("`{field}` must be positive")));
+            }
+        }
+        self.limits("limits_before", limits)
+    }
+
+    /// The limits of an object; those it does not give are as in `absent`.
+    fn limits(&self, object: &str, absent: &Limits) -> Result<Limits, Refusal> {
+        let bound = |name: &str, absent| self.limit(&format!("{object}.{name}"), absent);
+        let acceleration = bound("acceleration", absent.acceleration)?;
+        let given = self.text(&format!("{object}.acceleration")).is_some();
+        let deceleration = if given { acceleration } else { absent.deceleration };
+        Ok(Limits {
+            velocity: bound("velocity", absent.velocity)?,
+            acceleration,
+            deceleration: bound("deceleration", deceleration)?,
+            jerk: bound("jerk", absent.jerk)?,
+            snap: bound("snap", absent.snap)?,
         })
     }
 
@@ -248,7 +276,7 @@ fn cause(error: &serde_json::Error) -> String {
 }
 
 /// The members of an object in the order of the text, duplicates included.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Members<'a>(Vec<(String, &'a RawValue)>);
 
 impl<'a> Members<'a> {

@@ -4,7 +4,7 @@
 use crate::plan::fields::{Fields, Problem};
 use crate::plan::grid::grid;
 use crate::plan::refusal::Refusal;
-use crate::plan::{online, papers};
+use crate::plan::{online, papers, ramp};
 use standstill_planner::grid::{Counts, Method, Peaks};
 use standstill_planner::{Excess, Segment, Setpoint};
 
@@ -22,7 +22,7 @@ pub struct MethodInfo {
 type PlanFn = fn(&Fields<'_>, &Problem) -> Result<Planned, Refusal>;
 
 /// Every method of the interface.
-const METHODS: [&MethodInfo; 9] = [
+const METHODS: [&MethodInfo; 10] = [
     &MethodInfo {
         name: "sequential",
         fields: &[],
@@ -60,6 +60,11 @@ const METHODS: [&MethodInfo; 9] = [
         fields: &["targets"],
         plan: online::tracking,
     },
+    &MethodInfo {
+        name: "ramp",
+        fields: &["limits_before"],
+        plan: ramp::ramp,
+    },
 ];
 
 /// The default from rest to rest.
@@ -72,7 +77,7 @@ const OVERLAPPED: &MethodInfo = &MethodInfo {
 /// The default for everything else.
 const ONLINE: &MethodInfo = &MethodInfo {
     name: "online",
-    fields: &[],
+    fields: &["limits_before"],
     plan: online::online,
 };
 

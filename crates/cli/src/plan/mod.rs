@@ -5,6 +5,7 @@ mod grid;
 mod methods;
 mod online;
 mod papers;
+mod ramp;
 mod refusal;
 mod reply;
 mod shared;

@@ -4,7 +4,7 @@ use crate::json::number;
 use crate::plan::fields::{Fields, Problem};
 use crate::plan::methods::Planned;
 use crate::plan::refusal::Refusal;
-use crate::plan::shared::{bounded, check_limits, cycle, too_long};
+use crate::plan::shared::{bounded, check_end_velocity, check_limits, cycle, too_long};
 use standstill_planner::papers::{Tracking, peaks, scans};
 use standstill_planner::{Field, OnlinePlan, PlanError, Setpoint};
 
@@ -21,14 +21,13 @@ pub fn online(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal
     let cycle = cycle(fields)?;
     let target = fields.required("target")?;
     check_limits(fields, limits, &NEEDED, &[])?;
-    if end_velocity.abs() > limits.velocity {
-        let nearest = limits.velocity.copysign(*end_velocity);
-        let message = "`end_velocity` is above `limits.velocity`".to_owned();
-        return Err(fields
-            .invalid("end_velocity", message)
-            .nearest(Some(number(nearest))));
+    check_end_velocity(fields, problem)?;
+    if (target - start.position) * end_velocity < 0.0 {
+        let message = "`end_velocity` points away from the target".to_owned();
+        return Err(fields.invalid("end_velocity", message).nearest(Some(number(0.0))));
     }
-    let plan = OnlinePlan::passing(start, target, *end_velocity, limits, limits, cycle)
+    let before = fields.limits_before(limits)?;
+    let plan = OnlinePlan::passing(start, target, *end_velocity, limits, &before, cycle)
         .map_err(|error| Refusal::of_plan_error(fields, error))?;
     let end = if *end_velocity == 0.0 {
         plan.at(plan.scans().into())

@@ -53,6 +53,18 @@ pub fn check_limits(
     Ok(())
 }
 
+/// Refuses an end velocity above its limit; the limit is the nearest.
+pub fn check_end_velocity(fields: &Fields<'_>, problem: &Problem) -> Result<(), Refusal> {
+    let (value, limit) = (problem.end_velocity, problem.limits.velocity);
+    // A limit that makes no sense is for the planner to refuse.
+    if limit > 0.0 && value.abs() > limit {
+        let message = "`end_velocity` is above `limits.velocity`".to_owned();
+        let nearest = number(limit.copysign(value));
+        return Err(fields.invalid("end_velocity", message).nearest(Some(nearest)));
+    }
+    Ok(())
+}
+
 /// The answer to a move of more scans than a plan counts.
 pub fn too_long(fields: &Fields<'_>) -> Refusal {
     let message = "the move takes more than 2147483647 scans";

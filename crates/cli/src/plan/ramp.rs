@@ -1,0 +1,36 @@
+//! The method `ramp`: from any state to a constant velocity.
+
+use crate::plan::fields::{Fields, Problem};
+use crate::plan::methods::Planned;
+use crate::plan::refusal::Refusal;
+use crate::plan::shared::{bounded, check_end_velocity, check_limits, cycle};
+use standstill_planner::{Field, RampPlan, Setpoint};
+
+/// From any state to the constant `end_velocity`, wherever that is reached.
+pub fn ramp(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> {
+    let Problem {
+        start,
+        end_velocity,
+        limits,
+    } = problem;
+    let cycle = cycle(fields)?;
+    if fields.names().any(|name| name == "target") {
+        let message = "this method ends at `end_velocity`, wherever that is: leave `target` out".to_owned();
+        return Err(fields.invalid("target", message));
+    }
+    check_limits(fields, limits, &[Field::LimitAcceleration], &[])?;
+    check_end_velocity(fields, problem)?;
+    let before = fields.limits_before(limits)?;
+    let plan = RampPlan::new(start, *end_velocity, limits, &before, cycle)
+        .map_err(|error| Refusal::of_plan_error(fields, error))?;
+    let end = Setpoint {
+        velocity: *end_velocity,
+        ..Setpoint::at_rest(plan.end_position())
+    };
+    let segments = plan.segments().collect();
+    let peak = bounded(&plan.peaks());
+    Ok(Planned {
+        unavoidable: plan.excess(),
+        ..Planned::new(plan.duration(), plan.scans(), segments, peak, end)
+    })
+}

@@ -1,0 +1,378 @@
+//! Random replans that follow each other, and how to write one as a line of `standstill plan`.
+
+use super::random::Random;
+use crate::json::{Object, number, string};
+use standstill_planner::{
+    Excess, GridPlan, Limits, Method, OnlinePlan, Order, Peaks, PlanError, RampPlan, Segment, Setpoint,
+};
+
+/// What a replan is to reach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// Rest at a position, from rest, on the sample grid (u).
+    Grid(f64),
+    /// Rest at a position (u).
+    Position(f64),
+    /// A position (u), passed with a velocity (u/s).
+    Passing(f64, f64),
+    /// A velocity (u/s); 0 is a stop.
+    Velocity(f64),
+}
+
+/// One replan.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// The state the axis has.
+    pub start: Setpoint,
+    /// Where it is to go.
+    pub goal: Goal,
+    /// The limits from now on.
+    pub limits: Limits,
+    /// The limits until now.
+    pub before: Limits,
+    /// Sample time (s).
+    pub cycle: f64,
+    /// Whether the start is known to need no more than `limits`.
+    pub viable: bool,
+}
+
+/// A plan of any kind.
+#[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one exists at a time")]
+pub enum Plan {
+    Grid(GridPlan),
+    Online(OnlinePlan),
+    Ramp(RampPlan),
+}
+
+impl Case {
+    /// Plans it.
+    pub fn plan(&self) -> Result<Plan, PlanError> {
+        let Self {
+            start,
+            limits,
+            before,
+            cycle,
+            ..
+        } = self;
+        match self.goal {
+            Goal::Grid(target) => {
+                GridPlan::new(Method::Overlapped, start.position, target, limits, *cycle).map(Plan::Grid)
+            }
+            Goal::Position(target) => {
+                OnlinePlan::new(start, target, limits, before, *cycle).map(Plan::Online)
+            }
+            Goal::Passing(target, velocity) => {
+                OnlinePlan::passing(start, target, velocity, limits, before, *cycle).map(Plan::Online)
+            }
+            Goal::Velocity(velocity) => {
+                RampPlan::new(start, velocity, limits, before, *cycle).map(Plan::Ramp)
+            }
+        }
+    }
+
+    /// The line of `standstill plan` that plans the same.
+    pub fn line(&self, id: &str) -> String {
+        let (method, target, end_velocity) = match self.goal {
+            Goal::Grid(target) => ("overlapped", Some(target), None),
+            Goal::Position(target) => ("online", Some(target), None),
+            Goal::Passing(target, velocity) => ("online", Some(target), Some(velocity)),
+            Goal::Velocity(velocity) => ("ramp", None, Some(velocity)),
+        };
+        let Setpoint {
+            position,
+            velocity,
+            acceleration,
+            jerk,
+            ..
+        } = self.start;
+        let takes_before = method != "overlapped" && self.before != self.limits;
+        Object::new()
+            .with("id", string(id))
+            .with("method", string(method))
+            .with("Ts", number(self.cycle))
+            .with("position", number(position))
+            .with("velocity", number(velocity))
+            .with("acceleration", number(acceleration))
+            .with("jerk", number(jerk))
+            .with_some("target", target.map(number))
+            .with_some("end_velocity", end_velocity.map(number))
+            .with("limits", object(&self.limits))
+            .with_some("limits_before", takes_before.then(|| object(&self.before)))
+            .text()
+    }
+}
+
+fn object(limits: &Limits) -> String {
+    let bound = |value: f64| value.is_finite().then(|| number(value));
+    Object::new()
+        .with_some("velocity", bound(limits.velocity))
+        .with_some("acceleration", bound(limits.acceleration))
+        .with_some("deceleration", bound(limits.deceleration))
+        .with_some("jerk", bound(limits.jerk))
+        .with_some("snap", bound(limits.snap))
+        .text()
+}
+
+impl Plan {
+    pub fn scans(&self) -> u32 {
+        match self {
+            Self::Grid(plan) => plan.scans(),
+            Self::Online(plan) => plan.scans(),
+            Self::Ramp(plan) => plan.scans(),
+        }
+    }
+
+    pub fn at(&self, scan: u64) -> Setpoint {
+        match self {
+            Self::Grid(plan) => plan.at(scan),
+            Self::Online(plan) => plan.at(scan),
+            Self::Ramp(plan) => plan.at(scan),
+        }
+    }
+
+    pub fn duration(&self) -> f64 {
+        match self {
+            Self::Grid(plan) => plan.duration(),
+            Self::Online(plan) => plan.duration(),
+            Self::Ramp(plan) => plan.duration(),
+        }
+    }
+
+    pub fn excess(&self) -> Option<Excess> {
+        match self {
+            Self::Grid(_) => None,
+            Self::Online(plan) => plan.excess(),
+            Self::Ramp(plan) => plan.excess(),
+        }
+    }
+
+    pub fn peaks(&self) -> Peaks {
+        match self {
+            Self::Grid(plan) => {
+                let peaks = plan.peaks();
+                Peaks {
+                    velocity: peaks.velocity,
+                    acceleration: peaks.acceleration,
+                    jerk: peaks.jerk.unwrap_or(f64::INFINITY),
+                    snap: peaks.snap.unwrap_or(f64::INFINITY),
+                }
+            }
+            Self::Online(plan) => plan.peaks(),
+            Self::Ramp(plan) => plan.peaks(),
+        }
+    }
+
+    pub fn segments(&self) -> Vec<Segment> {
+        match self {
+            Self::Grid(plan) => plan
+                .segments()
+                .map(|segment| Segment {
+                    duration: segment.duration,
+                    velocity: segment.velocity,
+                    acceleration: segment.acceleration,
+                    jerk: segment.jerk,
+                    snap: segment.snap,
+                })
+                .collect(),
+            Self::Online(plan) => plan.segments().collect(),
+            Self::Ramp(plan) => plan.segments().collect(),
+        }
+    }
+}
+
+/// How the limits of a chain change from replan to replan.
+#[derive(Clone, Copy, Debug)]
+enum Change {
+    Never,
+    Velocity,
+    All,
+}
+
+/// A chain of replans: each starts where a random scan of the one before finds the axis.
+#[derive(Debug)]
+pub struct Chain {
+    random: Random,
+    /// The limits all others are a part of.
+    widest: Limits,
+    change: Change,
+    cycle: f64,
+    /// A length the limits make typical (u).
+    way: f64,
+    /// What positions count from (u).
+    origin: f64,
+    start: Setpoint,
+    before: Limits,
+    viable: bool,
+}
+
+impl Chain {
+    /// The chain of this number, at rest at first.
+    pub fn new(seed: u64, number: u64) -> Self {
+        let mut random = Random::new(seed, number);
+        let order = [Order::Two, Order::Three, Order::Four][random.below(3) as usize];
+        let widest = limits(&mut random, order);
+        let change = [Change::Never, Change::Velocity, Change::All][random.below(3) as usize];
+        let time = widest.velocity / widest.acceleration;
+        let way = widest.velocity * time;
+        let origin = if random.one_in(8) {
+            let far = way * random.log_between(1.0, 1e4);
+            random.signed(far)
+        } else {
+            0.0
+        };
+        let mut chain = Self {
+            cycle: time * random.log_between(0.001, 0.3),
+            before: widest,
+            random,
+            widest,
+            change,
+            way,
+            origin,
+            start: Setpoint::default(),
+            viable: true,
+        };
+        chain.rest();
+        chain
+    }
+
+    /// Begins anew at rest, anywhere.
+    pub fn rest(&mut self) {
+        self.start = Setpoint::at_rest(self.position(3.0));
+        self.viable = true;
+    }
+
+    /// Draws the next replan.
+    pub fn next(&mut self) -> Case {
+        let limits = self.limits();
+        // What fits under limits fits under larger ones.
+        let viable = self.start.is_at_rest() || self.viable && contains(&limits, &self.before);
+        let case = Case {
+            start: self.start,
+            goal: self.goal(&limits),
+            limits,
+            before: self.before,
+            cycle: self.cycle,
+            viable,
+        };
+        self.before = limits;
+        case
+    }
+
+    /// Goes on along `plan` to a random scan, its end and what is behind included; gives that scan.
+    ///
+    /// `viable` says whether all of the plan keeps its limits and leads to a constant velocity.
+    pub fn follow(&mut self, plan: &Plan, viable: bool) -> u64 {
+        let scan = self.random.below(u64::from(plan.scans()) + 2);
+        self.start = plan.at(scan);
+        self.viable = viable || scan >= u64::from(plan.scans());
+        scan
+    }
+
+    fn goal(&mut self, limits: &Limits) -> Goal {
+        match self.random.below(8) {
+            0 => Goal::Velocity(0.0),
+            1 | 2 => Goal::Velocity(self.velocity(limits)),
+            3 => {
+                let target = self.target();
+                let velocity = self.velocity(limits).abs();
+                let sense = if target < self.start.position { -1.0 } else { 1.0 };
+                Goal::Passing(target, sense * velocity)
+            }
+            _ => {
+                let target = self.target();
+                // From rest both ways to plan take their turn.
+                if self.start.is_at_rest() && self.random.one_in(2) {
+                    Goal::Grid(target)
+                } else {
+                    Goal::Position(target)
+                }
+            }
+        }
+    }
+
+    /// A goal velocity (u/s), now and then exactly the limit.
+    fn velocity(&mut self, limits: &Limits) -> f64 {
+        let speed = match self.random.below(4) {
+            0 => limits.velocity,
+            1 => limits.velocity * self.random.log_between(1e-6, 1.0),
+            _ => limits.velocity * self.random.between(0.0, 1.0),
+        };
+        self.random.signed(speed)
+    }
+
+    /// A target (u): here, next to here, or anywhere.
+    fn target(&mut self) -> f64 {
+        match self.random.below(8) {
+            0 => self.start.position,
+            1 | 2 => {
+                let step = self.way * self.random.log_between(1e-9, 1e3);
+                self.start.position + self.random.signed(step)
+            }
+            3 => self.position(30.0),
+            _ => self.position(3.0),
+        }
+    }
+
+    /// A position (u) up to so many ways from the origin.
+    fn position(&mut self, ways: f64) -> f64 {
+        self.origin + self.way * self.random.between(-ways, ways)
+    }
+
+    fn limits(&mut self) -> Limits {
+        let mut limits = self.widest;
+        match self.change {
+            Change::Never => {}
+            Change::Velocity => limits.velocity *= self.random.between(0.2, 1.0),
+            Change::All => {
+                let bounds = [
+                    &mut limits.velocity,
+                    &mut limits.acceleration,
+                    &mut limits.deceleration,
+                    &mut limits.jerk,
+                    &mut limits.snap,
+                ];
+                for bound in bounds {
+                    if self.random.one_in(2) {
+                        *bound *= self.random.between(0.4, 1.0);
+                    }
+                }
+            }
+        }
+        limits
+    }
+}
+
+/// Whether no limit of `inner` is above that of `outer`.
+fn contains(outer: &Limits, inner: &Limits) -> bool {
+    inner.velocity <= outer.velocity
+        && inner.acceleration <= outer.acceleration
+        && inner.deceleration <= outer.deceleration
+        && inner.jerk <= outer.jerk
+        && inner.snap <= outer.snap
+}
+
+/// Limits of the proportions servo axes have, in units of length and time a thousand times smaller to a
+/// thousand times larger; at order 4 every eighth set has no jerk limit.
+fn limits(random: &mut Random, order: Order) -> Limits {
+    let velocity = random.log_between(0.01, 10.0);
+    let acceleration = velocity * random.log_between(1.0, 300.0);
+    let deceleration = if random.one_in(3) {
+        acceleration
+    } else {
+        acceleration * random.log_between(0.2, 5.0)
+    };
+    let jerk = acceleration * random.log_between(1.0, 1000.0);
+    let snap = jerk * random.log_between(1.0, 3000.0);
+    let length = random.log_between(1e-3, 1e3);
+    let rate = random.log_between(1e-3, 1e3);
+    let without_jerk = order == Order::Two || order == Order::Four && random.one_in(8);
+    let bound = |value: f64, absent: bool| if absent { f64::INFINITY } else { value };
+    Limits {
+        velocity: velocity * length * rate,
+        acceleration: acceleration * length * rate * rate,
+        deceleration: deceleration * length * rate * rate,
+        jerk: bound(jerk * length * rate * rate * rate, without_jerk),
+        snap: bound(snap * length * rate * rate * rate * rate, order != Order::Four),
+    }
+}

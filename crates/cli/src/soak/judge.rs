@@ -1,0 +1,308 @@
+//! Holds a plan against what is claimed of plans.
+
+use super::cases::{Case, Goal, Plan};
+use super::follow::{Followed, follow, state_at};
+use standstill_planner::{Excess, Order, Setpoint};
+
+/// How far a limit may be exceeded, a target missed, a derivative jump: relative to the limit, to the way at
+/// the velocity limit, to the limit.
+const RELATIVE: f64 = 1e-9;
+
+/// Speeds below this part of the limit have a direction only by rounding.
+const STILL: f64 = 1e-12;
+
+/// What sums of positions resolve, relative to them.
+const RESOLVED: f64 = 32.0 * f64::EPSILON;
+
+/// What was measured on a plan, each relative; what a plan cannot be measured by is 0.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Measured {
+    /// Above the limits of velocity, acceleration, jerk and snap, where nothing forces the plan out of them.
+    pub excess: [f64; 4],
+    /// Above the excess of velocity, acceleration and jerk that the plan tells of.
+    pub untold: [f64; 3],
+    /// Jumps of velocity, acceleration and jerk between segments.
+    pub jumps: [f64; 3],
+    /// From the target to where the segments end.
+    pub miss: f64,
+    /// From a set-point to the segments.
+    pub sample: f64,
+    /// From the peaks the plan tells of to those of the segments.
+    pub peak: f64,
+}
+
+/// Judges `plan`, which at `scan` is left for the next one: what was measured, or what is wrong.
+pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
+    let order = case.limits.order();
+    let segments = plan.segments();
+    if let Some(segment) = segments.iter().find(|segment| !(segment.duration > 0.0)) {
+        return Err(format!("a segment of {:e} s", segment.duration));
+    }
+    let followed = follow(&case.start, &segments, order, STILL * case.limits.velocity);
+    let time = scan as f64 * case.cycle;
+    let scale = Scale::new(case, &followed, time);
+    let taken = state_at(&case.start, &segments, time);
+    let mut measured = Measured {
+        jumps: relative(followed.jumps, [scale.velocity, scale.acceleration, scale.jerk]),
+        miss: miss(case, plan, &followed, &scale)?,
+        sample: scale.difference(case, &plan.at(scan), &taken, order),
+        peak: peak(plan, &followed, &scale, order),
+        ..Measured::default()
+    };
+    limits(case, plan, &followed, &mut measured)?;
+    ends(case, plan, order, &followed, &scale)?;
+    let bounded = [
+        ("velocity jumps", measured.jumps[0]),
+        ("acceleration jumps", measured.jumps[1]),
+        ("jerk jumps", measured.jumps[2]),
+        ("the segments miss the goal", measured.miss),
+        ("a set-point is off its segment", measured.sample),
+        ("a peak is off the segments' own", measured.peak),
+    ];
+    match bounded.into_iter().find(|(_, value)| !(*value <= RELATIVE)) {
+        Some((what, value)) => Err(format!("{what} by {value:e}")),
+        None => Ok(measured),
+    }
+}
+
+/// What differences are relative to.
+struct Scale {
+    /// The longest way in the time looked at (u).
+    way: f64,
+    /// What positions themselves resolve (u).
+    resolved: f64,
+    velocity: f64,
+    acceleration: f64,
+    jerk: f64,
+}
+
+impl Scale {
+    fn new(case: &Case, followed: &Followed, time: f64) -> Self {
+        let target = match case.goal {
+            Goal::Grid(target) | Goal::Position(target) | Goal::Passing(target, _) => target,
+            Goal::Velocity(_) => case.start.position + followed.end.position,
+        };
+        let finite = |bound: f64, seen: f64| if bound.is_finite() { bound.max(seen) } else { seen };
+        Self {
+            way: case.limits.velocity.max(followed.speed()) * followed.duration.max(time),
+            resolved: RESOLVED * (case.start.position.abs() + target.abs()),
+            velocity: case.limits.velocity.max(followed.speed()),
+            acceleration: case
+                .limits
+                .acceleration
+                .min(case.limits.deceleration)
+                .max(followed.acceleration()),
+            jerk: finite(case.limits.jerk, followed.jerk),
+        }
+    }
+
+    /// A difference of positions relative to the way, beyond what positions resolve.
+    fn position(&self, difference: f64) -> f64 {
+        let beyond = difference.abs() - self.resolved;
+        if beyond > 0.0 { beyond / self.way } else { 0.0 }
+    }
+
+    /// The largest difference of a set-point from a state that counts from the start.
+    fn difference(&self, case: &Case, setpoint: &Setpoint, state: &Setpoint, order: Order) -> f64 {
+        let mut most = self
+            .position(setpoint.position - case.start.position - state.position)
+            .max((setpoint.velocity - state.velocity).abs() / self.velocity);
+        // What may jump has two values at a switch.
+        if order >= Order::Three {
+            most = most.max((setpoint.acceleration - state.acceleration).abs() / self.acceleration);
+        }
+        if order == Order::Four {
+            most = most.max((setpoint.jerk - state.jerk).abs() / self.jerk);
+        }
+        most
+    }
+}
+
+fn relative<const N: usize>(values: [f64; N], scales: [f64; N]) -> [f64; N] {
+    let mut relative = values;
+    for (value, scale) in relative.iter_mut().zip(scales) {
+        // Nothing in nothing is nothing.
+        *value = if *value == 0.0 { 0.0 } else { *value / scale };
+    }
+    relative
+}
+
+/// How far from the goal the segments end.
+fn miss(case: &Case, plan: &Plan, followed: &Followed, scale: &Scale) -> Result<f64, String> {
+    let (target, velocity) = match case.goal {
+        Goal::Grid(target) | Goal::Position(target) => (Some(target), 0.0),
+        Goal::Passing(target, velocity) => (Some(target), velocity),
+        Goal::Velocity(velocity) => (None, velocity),
+    };
+    let late = (plan.duration() - followed.duration).abs();
+    if late > RELATIVE * plan.duration() {
+        return Err(format!("the segments last {late:e} s more or less than the plan"));
+    }
+    let position = target.map_or(0.0, |target| {
+        scale.position(followed.end.position - (target - case.start.position))
+    });
+    Ok(position.max((followed.end.velocity - velocity).abs() / scale.velocity))
+}
+
+/// How far the peaks the plan tells of are from those of its segments.
+fn peak(plan: &Plan, followed: &Followed, scale: &Scale, order: Order) -> f64 {
+    let peaks = plan.peaks();
+    let mut most = ((peaks.velocity - followed.speed()).abs() / scale.velocity)
+        .max((peaks.acceleration - followed.acceleration()).abs() / scale.acceleration);
+    if order >= Order::Three {
+        most = most.max((peaks.jerk - followed.jerk).abs() / scale.jerk);
+    }
+    most
+}
+
+/// Holds the extremes against the limits, and against the excess the plan tells of.
+fn limits(case: &Case, plan: &Plan, followed: &Followed, measured: &mut Measured) -> Result<(), String> {
+    let limits = &case.limits;
+    let higher = limits.acceleration.max(limits.deceleration);
+    let over = |value: f64, bound: f64| {
+        if bound.is_finite() {
+            (value - bound).max(0.0)
+        } else {
+            0.0
+        }
+    };
+    let acceleration = [
+        (followed.growing, limits.acceleration),
+        (followed.falling, limits.deceleration),
+        (followed.still, higher),
+    ];
+    let velocity = over(followed.speed(), limits.velocity);
+    let jerk = over(followed.jerk, limits.jerk);
+    let relative_acceleration = acceleration.map(|(value, bound)| over(value, bound) / bound);
+    let excess = [
+        velocity / limits.velocity,
+        relative_acceleration.into_iter().fold(0.0, f64::max),
+        jerk / limits.jerk,
+        over(followed.snap, limits.snap.max(case.before.snap)) / limits.snap,
+    ];
+    let names = ["velocity", "acceleration", "jerk", "snap"];
+    let worst = |values: &[f64]| {
+        let mut exceeded = values.iter().zip(names);
+        exceeded
+            .find(|(value, _)| !(**value <= RELATIVE))
+            .map(|(value, name)| (name, *value))
+    };
+    let told = plan.excess();
+    if told.is_none() || case.viable {
+        if let Some((name, value)) = worst(&excess) {
+            return Err(format!(
+                "{name} exceeds its limit by {value:e}, which nothing forces it to"
+            ));
+        }
+        measured.excess = excess;
+    }
+    let Some(told) = told else {
+        return turns_back(case, followed);
+    };
+    // A stop in the middle of a reversal turns back, which is told of in the same way.
+    let reversal = Excess {
+        velocity: told.velocity,
+        ..Excess::default()
+    };
+    if case.viable && (case.goal != Goal::Velocity(0.0) || told != reversal) {
+        return Err(format!("an excess is told of that is none: {told:?}"));
+    }
+    let accelerations = acceleration.map(|(value, bound)| over(value, bound));
+    let untold = [
+        (velocity, told.velocity, limits.velocity),
+        (
+            accelerations.into_iter().fold(0.0, f64::max),
+            told.acceleration,
+            limits.lower_acceleration(),
+        ),
+        (jerk, told.jerk, limits.jerk),
+    ];
+    let untold = untold.map(|(value, told, bound)| over(value, told) / (bound + told));
+    if let Some((name, value)) = worst(&untold) {
+        return Err(format!("{name} exceeds what is told of by {value:e}"));
+    }
+    measured.untold = untold;
+    if !(excess[3] <= RELATIVE) {
+        return Err(format!("snap exceeds its limit by {:e}", excess[3]));
+    }
+    Ok(())
+}
+
+/// A stop that tells of no excess must keep the direction of motion.
+fn turns_back(case: &Case, followed: &Followed) -> Result<(), String> {
+    let v = case.start.velocity;
+    let slack = RELATIVE * case.limits.velocity;
+    let back = if v > slack {
+        -followed.low
+    } else if v < -slack {
+        followed.high
+    } else {
+        // Standing still the acceleration decides.
+        return Ok(());
+    };
+    if case.goal == Goal::Velocity(0.0) && back > slack {
+        return Err(format!(
+            "a stop turns back with {:e}",
+            back / case.limits.velocity
+        ));
+    }
+    Ok(())
+}
+
+/// The first and the last set-points, to the bit, and the count of scans.
+fn ends(case: &Case, plan: &Plan, order: Order, followed: &Followed, scale: &Scale) -> Result<(), String> {
+    let last = u64::from(plan.scans());
+    let needed = plan.duration() / case.cycle;
+    let scans = f64::from(plan.scans());
+    if !(scans >= needed * (1.0 - 2.0 * RELATIVE) && scans <= needed + 1.0) {
+        return Err(format!("{scans} scans, but {needed:?} cycles"));
+    }
+    if last > 0 && !matches!(plan, Plan::Grid(_)) && plan.at(0) != case.start {
+        return Err(format!("the first set-point is {:?}", plan.at(0)));
+    }
+    for scan in [last, last + 1] {
+        let found = plan.at(scan);
+        // Where it is while it moves on is seen by `Measured::sample`.
+        let expected = match case.goal {
+            Goal::Grid(target) | Goal::Position(target) => Setpoint::at_rest(target),
+            Goal::Passing(_, velocity) | Goal::Velocity(velocity) => Setpoint {
+                velocity,
+                ..Setpoint::at_rest(found.position)
+            },
+        };
+        // On the grid the last switch is at the last scan; what may jump has not done so just before it.
+        let smooth = if scan == last && matches!(plan, Plan::Grid(_)) {
+            without_jumps(&found, order)
+        } else {
+            found
+        };
+        if smooth != expected {
+            return Err(format!("set-point {scan} of {last} is {found:?}"));
+        }
+    }
+    let at_end = [
+        (Order::Three, followed.end.acceleration, scale.acceleration),
+        (Order::Four, followed.end.jerk, scale.jerk),
+    ];
+    for (least, value, bound) in at_end {
+        if order >= least && value.abs() > 10.0 * RELATIVE * bound {
+            return Err(format!("the segments end at {:?}", followed.end));
+        }
+    }
+    Ok(())
+}
+
+/// The state without the derivatives that may jump.
+fn without_jumps(state: &Setpoint, order: Order) -> Setpoint {
+    Setpoint {
+        position: state.position,
+        velocity: state.velocity,
+        acceleration: if order >= Order::Three {
+            state.acceleration
+        } else {
+            0.0
+        },
+        jerk: if order == Order::Four { state.jerk } else { 0.0 },
+        snap: 0.0,
+    }
+}
