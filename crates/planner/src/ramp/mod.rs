@@ -84,13 +84,19 @@ impl RampPlan {
         let order = limits.order();
         let heading = heading(start, velocity, limits.velocity, order);
         let ramps = Ramps::new(limits, &wider(limits, before));
+        // A goal on the other side of zero asks for the turn that a stop must not make.
+        let course = if velocity * heading < 0.0 {
+            Course::Free
+        } else {
+            Course::Kept
+        };
         let Ramp {
             spans, steps, viable, ..
         } = ramps.ramp(
             &ramps.state_inward(start),
             ramps.inward(velocity, 1),
             heading,
-            Course::Kept,
+            course,
         );
         let inputs = ramps.scale().outward(&spans);
         let path = Path::lay(order, start, inputs, velocity);
