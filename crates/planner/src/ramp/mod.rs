@@ -84,7 +84,14 @@ impl RampPlan {
         let order = limits.order();
         let heading = heading(start, velocity, limits.velocity, order);
         let ramps = Ramps::new(limits, &wider(limits, before));
-        let ramp = |course| ramps.ramp(&ramps.state_inward(start), ramps.inward(velocity, 1), heading, course);
+        let ramp = |course| {
+            ramps.ramp(
+                &ramps.state_inward(start),
+                ramps.inward(velocity, 1),
+                heading,
+                course,
+            )
+        };
         // A goal on the other side of zero asks for the turn that a stop must not make (O5). Should a turn have
         // more pieces than a plan holds, which was never seen, the lower bound throughout does (R11).
         let turned = (velocity * heading < 0.0).then(|| ramp(Course::Free));
