@@ -7,7 +7,7 @@ use standstill_planner::Rung;
 use std::fmt;
 
 /// Failing lines that are kept; further ones are only counted.
-const KEPT: usize = 20;
+const KEPT: usize = 10000;
 
 /// Counts, worst figures and failing lines. Adding one to another is the same as having seen all its cases.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
