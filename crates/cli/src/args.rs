@@ -41,6 +41,15 @@ pub enum Command {
     Plan {
         /// The lines; standard input if absent or `-`
         file: Option<PathBuf>,
+        /// Write the set-points of every scan of every plan to this file, as CSV
+        #[arg(long, value_name = "FILE")]
+        samples: Option<PathBuf>,
+    },
+    /// Plan moves with every method, and compare them as CSV
+    ComparePlanners {
+        /// Lines as `plan` takes them, each with an optional `n_star`; standard input if `-`
+        #[arg(value_name = "CASES.jsonl")]
+        cases: PathBuf,
     },
     /// Try random cases for as long as wanted
     Soak {

@@ -14,6 +14,7 @@ mod progress;
 mod run;
 mod soak;
 mod suggest;
+mod table;
 mod test;
 
 use args::{Arguments, Command, Soak};
@@ -58,12 +59,15 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Run(arguments) => run::run(arguments, out),
         Command::Test { paths, accept } => test::test(paths, *accept, out),
         Command::Explain { expected, found } => explain::explain(expected, found, out),
-        Command::Plan { file: Some(path) } if !is_standard(path) => {
-            let name = shown(path);
-            let file = File::open(path).map_err(|error| Failure::io(&name, &error))?;
-            plan::plan(&mut BufReader::new(file), &name, out)
+        Command::Plan { file, samples } => {
+            let file = file.as_deref().unwrap_or(Path::new("-"));
+            with_lines(file, |lines, name| {
+                plan::plan(lines, name, samples.as_deref(), out)
+            })
         }
-        Command::Plan { .. } => plan::plan(&mut standard_input(), "standard input", out),
+        Command::ComparePlanners { cases } => {
+            with_lines(cases, |lines, name| plan::compare(lines, name, out))
+        }
         Command::Soak {
             what: Soak::Planner { seed, count, resume },
         } => soak::planner(*seed, *count, resume.as_deref(), out),
@@ -83,6 +87,19 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
 /// Whether a path stands for standard input.
 fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
+}
+
+/// Calls `command` with the lines of a file, or of standard input, and what stands for it in messages.
+fn with_lines(
+    path: &Path,
+    command: impl FnOnce(&mut dyn BufRead, &str) -> Result<Exit, Failure>,
+) -> Result<Exit, Failure> {
+    if is_standard(path) {
+        return command(&mut standard_input(), "standard input");
+    }
+    let name = shown(path);
+    let file = File::open(path).map_err(|error| Failure::io(&name, &error))?;
+    command(&mut BufReader::new(file), &name)
 }
 
 /// Standard input; tells a person at a terminal that it is waited for.

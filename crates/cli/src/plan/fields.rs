@@ -83,6 +83,13 @@ impl<'a> Fields<'a> {
         self.members.get("id").unwrap_or("null")
     }
 
+    /// Without a field of this name; gives its text, if it is there once.
+    pub fn take(&mut self, name: &str) -> Option<&'a str> {
+        let index = self.members.0.iter().position(|(key, _)| key == name)?;
+        let (_, value) = self.members.0.remove(index);
+        Some(value.get())
+    }
+
     /// Opens `limits` and checks that all keys exist and stand there once.
     pub fn checked(&self) -> Result<Self, Refusal> {
         self.check_keys(

@@ -4,6 +4,7 @@ use crate::json::number;
 use crate::plan::fields::{Fields, Problem};
 use crate::plan::methods::Planned;
 use crate::plan::refusal::Refusal;
+use crate::plan::samples::Setpoints;
 use crate::plan::shared::check_rest;
 use standstill_planner::grid::{Counts, Method};
 use standstill_planner::{Field, GridPlan, Limits, Order, PlanError, Segment};
@@ -25,7 +26,14 @@ pub fn grid(fields: &Fields<'_>, problem: &Problem, method: Method) -> Result<Pl
     Ok(Planned {
         boxes: symmetric.then(|| boxes(&plan)),
         counts: (method != Method::Overlapped).then(|| counts(&plan)),
-        ..Planned::new(plan.duration(), plan.scans(), segments, plan.peaks(), end)
+        ..Planned::new(
+            plan.duration(),
+            plan.scans(),
+            segments,
+            plan.peaks(),
+            end,
+            Setpoints::Grid(plan),
+        )
     })
 }
 

@@ -4,6 +4,7 @@
 use crate::plan::fields::{Fields, Problem};
 use crate::plan::grid::grid;
 use crate::plan::refusal::Refusal;
+use crate::plan::samples::Setpoints;
 use crate::plan::{online, papers, ramp};
 use standstill_planner::grid::{Counts, Method, Peaks};
 use standstill_planner::{Excess, Segment, Setpoint};
@@ -106,11 +107,20 @@ pub struct Planned {
     pub rung: Option<&'static str>,
     /// What is published last.
     pub end: Setpoint,
+    /// What is published in between.
+    pub setpoints: Setpoints,
 }
 
 impl Planned {
     /// A plan without what only some methods tell.
-    pub const fn new(duration: f64, scans: u32, segments: Vec<Segment>, peak: Peaks, end: Setpoint) -> Self {
+    pub const fn new(
+        duration: f64,
+        scans: u32,
+        segments: Vec<Segment>,
+        peak: Peaks,
+        end: Setpoint,
+        setpoints: Setpoints,
+    ) -> Self {
         Self {
             duration,
             scans,
@@ -123,6 +133,7 @@ impl Planned {
             unavoidable: None,
             rung: None,
             end,
+            setpoints,
         }
     }
 }
@@ -144,6 +155,11 @@ pub fn extra_fields() -> impl Iterator<Item = &'static str> + Clone {
         .flat_map(|method| method.fields.iter().copied())
 }
 
+/// All methods.
+pub fn all() -> impl Iterator<Item = &'static MethodInfo> {
+    METHODS.into_iter()
+}
+
 /// Plans what a line asks for; gives the name of the method as well.
 pub fn plan(fields: &Fields<'_>) -> Result<(&'static str, Planned), Refusal> {
     let problem = fields.problem()?;
@@ -153,10 +169,15 @@ pub fn plan(fields: &Fields<'_>) -> Result<(&'static str, Planned), Refusal> {
         OVERLAPPED
     };
     let method = fields.method()?.unwrap_or(default);
+    Ok((method.name, plan_with(fields, &problem, method)?))
+}
+
+/// Plans with a method, whichever the line names.
+pub fn plan_with(fields: &Fields<'_>, problem: &Problem, method: &MethodInfo) -> Result<Planned, Refusal> {
     for name in fields.names() {
         check_extra_field(fields, name, method)?;
     }
-    Ok((method.name, (method.plan)(fields, &problem)?))
+    (method.plan)(fields, problem)
 }
 
 /// Refuses a field that only other methods take.

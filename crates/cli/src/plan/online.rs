@@ -4,6 +4,7 @@ use crate::json::number;
 use crate::plan::fields::{Fields, Problem};
 use crate::plan::methods::Planned;
 use crate::plan::refusal::Refusal;
+use crate::plan::samples::Setpoints;
 use crate::plan::shared::{bounded, check_end_velocity, check_limits, cycle, too_long};
 use standstill_planner::papers::{Tracking, peaks, scans};
 use standstill_planner::{Field, OnlinePlan, PlanError, Setpoint};
@@ -48,6 +49,7 @@ pub fn online(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal
             segments,
             bounded(&plan.peaks()),
             end,
+            Setpoints::Online(vec![(0, plan)]),
         )
     })
 }
@@ -74,6 +76,7 @@ pub fn tracking(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refus
     let mut tracking = Tracking::new(&problem.start, first, limits, cycle).map_err(refuse)?;
     let unavoidable = tracking.plan().excess();
     let mut segments = Vec::new();
+    let mut plans = vec![(0, *tracking.plan())];
     let (mut began, mut scan) = (0, 0);
     for &(at, target) in changes {
         tracking.advance(at - scan);
@@ -82,6 +85,7 @@ pub fn tracking(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refus
         if tracking.retarget(target).map_err(refuse)? {
             segments.extend(executed);
             began = at;
+            plans.push((at, *tracking.plan()));
         }
     }
     segments.extend(tracking.plan().segments());
@@ -93,7 +97,14 @@ pub fn tracking(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refus
     let end = plan.at(plan.scans().into());
     Ok(Planned {
         unavoidable,
-        ..Planned::new(duration, scans, segments, bounded(&peak), end)
+        ..Planned::new(
+            duration,
+            scans,
+            segments,
+            bounded(&peak),
+            end,
+            Setpoints::Online(plans),
+        )
     })
 }
 

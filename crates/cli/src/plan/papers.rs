@@ -4,6 +4,7 @@ use crate::json::{number, string};
 use crate::plan::fields::{Fields, Problem};
 use crate::plan::methods::Planned;
 use crate::plan::refusal::Refusal;
+use crate::plan::samples::Setpoints;
 use crate::plan::shared::{bounded, check_limits, check_rest, cycle, too_long};
 use crate::suggest::nearest;
 use standstill_planner::papers::{Profile, SCurve, ShortPath, ShortPathPolicy, Timed, Trapezoid};
@@ -137,5 +138,6 @@ fn planned(fields: &Fields<'_>, profile: &Profile, cycle: f64) -> Result<Planned
         segments,
         peak,
         profile.end(),
+        Setpoints::Profile(Box::new(*profile), cycle, scans),
     ))
 }

@@ -3,6 +3,7 @@
 use crate::plan::fields::{Fields, Problem};
 use crate::plan::methods::Planned;
 use crate::plan::refusal::Refusal;
+use crate::plan::samples::Setpoints;
 use crate::plan::shared::{bounded, check_end_velocity, check_limits, cycle};
 use standstill_planner::{Field, RampPlan, Setpoint};
 
@@ -31,6 +32,13 @@ pub fn ramp(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> 
     let peak = bounded(&plan.peaks());
     Ok(Planned {
         unavoidable: plan.excess(),
-        ..Planned::new(plan.duration(), plan.scans(), segments, peak, end)
+        ..Planned::new(
+            plan.duration(),
+            plan.scans(),
+            segments,
+            peak,
+            end,
+            Setpoints::Ramp(Box::new(plan)),
+        )
     })
 }

@@ -99,6 +99,11 @@ impl Refusal {
         refusal.nearest(nearest.map(number))
     }
 
+    /// The code as answers write it.
+    pub const fn code(&self) -> &'static str {
+        self.code.name()
+    }
+
     /// The line to write; `id` is JSON.
     pub fn line(&self, id: &str) -> String {
         let null = || "null".to_owned();

@@ -259,14 +259,15 @@ impl Chain {
         case
     }
 
-    /// Goes on along `plan` to a random scan, its end and what is behind included; gives that scan.
-    ///
-    /// `viable` says whether all of the plan keeps its limits and leads to a constant velocity.
-    pub fn follow(&mut self, plan: &Plan, viable: bool) -> u64 {
-        let scan = self.random.below(u64::from(plan.scans()) + 2);
+    /// Draws the scan at which `plan` is left; it may be its end or behind it.
+    pub fn leave(&mut self, plan: &Plan) -> u64 {
+        self.random.below(u64::from(plan.scans()) + 2)
+    }
+
+    /// Goes on from `scan` of `plan`, all of which `keeps` its limits or not.
+    pub fn follow(&mut self, plan: &Plan, scan: u64, keeps: bool) {
         self.start = plan.at(scan);
-        self.viable = viable || scan >= u64::from(plan.scans());
-        scan
+        self.viable = keeps || scan >= u64::from(plan.scans());
     }
 
     fn goal(&mut self, limits: &Limits) -> Goal {

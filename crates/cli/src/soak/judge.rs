@@ -29,6 +29,8 @@ pub struct Measured {
     pub sample: f64,
     /// From the peaks the plan tells of to those of the segments.
     pub peak: f64,
+    /// Whether all of the plan keeps its limits, so that from anywhere on it the rest of it does.
+    pub keeps: bool,
 }
 
 /// Judges `plan`, which at `scan` is left for the next one: what was measured, or what is wrong.
@@ -47,6 +49,7 @@ pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
         miss: miss(case, plan, &followed, &scale)?,
         sample: scale.difference(case, &plan.at(scan), &taken, order),
         peak: peak(plan, &followed, &scale, order),
+        keeps: plan.excess().is_none() && followed.snap <= case.limits.snap * (1.0 + RELATIVE),
         ..Measured::default()
     };
     limits(case, plan, &followed, &mut measured)?;

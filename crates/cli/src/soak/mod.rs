@@ -120,9 +120,9 @@ fn chain(seed: u64, number: u64, links: u64) -> Tally {
     for link in 0..links {
         let case = chain.next();
         let judged = case.plan().map_err(|error| error.to_string()).and_then(|plan| {
-            let viable = plan.excess().is_none();
-            let scan = chain.follow(&plan, viable);
+            let scan = chain.leave(&plan);
             let measured = judge::judge(&case, &plan, scan)?;
+            chain.follow(&plan, scan, measured.keeps);
             Ok((plan, measured))
         });
         match judged {
@@ -134,4 +134,99 @@ fn chain(seed: u64, number: u64, links: u64) -> Tally {
         }
     }
     tally
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cases::{Case, Goal, Plan};
+    use super::*;
+    use crate::plan;
+    use standstill_planner::Limits;
+
+    /// The replans of some chains with their plans, and the scans at which they are left.
+    fn replans(chains: u64) -> Vec<(Case, Plan, u64)> {
+        let mut replans = Vec::new();
+        for number in 0..chains {
+            let mut chain = Chain::new(7, number);
+            for _ in 0..LINKS {
+                let case = chain.next();
+                let plan = case.plan().expect("a plan");
+                let scan = chain.leave(&plan);
+                chain.follow(&plan, scan, false);
+                replans.push((case, plan, scan));
+            }
+        }
+        replans
+    }
+
+    #[test]
+    fn every_replan_is_a_line_that_plans_the_same() {
+        for (case, plan, _) in replans(30) {
+            let line = case.line("x");
+            let mut answer = Vec::new();
+            let exit = plan::plan(&mut line.as_bytes(), "a line", None, &mut answer).expect("an answer");
+            let answer: serde_json::Value = serde_json::from_slice(&answer).expect("JSON");
+            assert_eq!(exit, Exit::Passed, "{line} {answer}");
+            assert_eq!(answer["scans"], plan.scans(), "{line}");
+            assert_eq!(answer["duration"], plan.duration(), "{line}");
+            assert_eq!(
+                answer["segments"].as_array().map(Vec::len),
+                Some(plan.segments().len())
+            );
+        }
+    }
+
+    #[test]
+    fn plans_that_break_a_claim_are_noticed() {
+        let mut noticed = [0; 3];
+        for (case, plan, scan) in replans(30) {
+            if plan.excess().is_some() || plan.segments().is_empty() {
+                continue;
+            }
+            let all = |factor: f64| Limits {
+                velocity: case.limits.velocity * factor,
+                acceleration: case.limits.acceleration * factor,
+                deceleration: case.limits.deceleration * factor,
+                jerk: case.limits.jerk * factor,
+                snap: case.limits.snap * factor,
+            };
+            let slower = Case {
+                limits: all(1.0 - 1e-6),
+                before: all(1.0 - 1e-6),
+                ..case
+            };
+            noticed[0] += u32::from(judge::judge(&slower, &plan, scan).is_err());
+            let way = case.limits.velocity * plan.duration();
+            let elsewhere = match case.goal {
+                Goal::Grid(target) => Goal::Grid(target + 1e-6 * way),
+                Goal::Position(target) => Goal::Position(target + 1e-6 * way),
+                Goal::Passing(target, velocity) => Goal::Passing(target + 1e-6 * way, velocity),
+                Goal::Velocity(velocity) => Goal::Velocity(velocity + 1e-6 * case.limits.velocity),
+            };
+            let missed = Case {
+                goal: elsewhere,
+                ..case
+            };
+            noticed[1] += u32::from(judge::judge(&missed, &plan, scan).is_err());
+            let mut jumping = case;
+            jumping.start.velocity += 1e-6 * case.limits.velocity;
+            noticed[2] += u32::from(judge::judge(&jumping, &plan, scan).is_err());
+        }
+        // Most plans touch some limit; all have one goal and one start.
+        assert!(noticed[0] > 300 && noticed[1] > 400, "{noticed:?}");
+        assert_eq!(noticed[1], noticed[2]);
+    }
+
+    #[test]
+    fn failing_replans_become_lines() {
+        let (case, ..) = replans(1).remove(0);
+        let mut tally = Tally::default();
+        for _ in 0..200 {
+            tally.failed(&case, "chain 0, replan 0: it broke");
+        }
+        let mut sum = Tally::default();
+        sum.add(tally);
+        assert_eq!((sum.failed, sum.lines.len()), (200, 100));
+        assert!(sum.lines[0].starts_with(r#"{"id":"chain 0, replan 0: it broke","method":""#));
+    }
 }

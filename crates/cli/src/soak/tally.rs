@@ -7,7 +7,7 @@ use standstill_planner::Rung;
 use std::fmt;
 
 /// Failing lines that are kept; further ones are only counted.
-const KEPT: usize = 20;
+const KEPT: usize = 100;
 
 /// Counts, worst figures and failing lines. Adding one to another is the same as having seen all its cases.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -58,6 +58,7 @@ impl Tally {
             miss,
             sample,
             peak,
+            keeps: _,
         } = *measured;
         raise(&mut self.excess, excess, f64::max);
         raise(&mut self.untold, untold, f64::max);

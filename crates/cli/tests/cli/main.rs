@@ -1,10 +1,12 @@
 //! The program from outside: what it prints, and how it ends.
 
 mod blocks;
+mod compare;
 mod ends;
 mod fmt;
 mod plan;
 mod run;
+mod soak;
 mod support;
 mod test;
 mod traces;

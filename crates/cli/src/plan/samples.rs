@@ -1,0 +1,100 @@
+//! The set-points of plans, scan by scan.
+
+use crate::exit::Failure;
+use crate::json::number;
+use crate::plan::methods::Planned;
+use crate::table;
+use standstill_planner::papers::Profile;
+use standstill_planner::{GridPlan, OnlinePlan, RampPlan, Setpoint};
+use standstill_script::suite::shown;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+/// The convention first, then the names of the columns.
+const HEADER: &str = "\
+# row n: the plan n*Ts after its start; row 0 is the start; snap (below order 4 the highest limited derivative, too) is the one just before that instant
+id,scan,position,velocity,acceleration,jerk,snap
+";
+
+/// What set-points of a plan are computed from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Setpoints {
+    /// A grid plan.
+    Grid(GridPlan),
+    /// A ramp to a velocity.
+    Ramp(Box<RampPlan>),
+    /// Plans that follow each other, each with the scan it begins with; never empty.
+    Online(Vec<(u32, OnlinePlan)>),
+    /// A profile, its sample time (s) and its scans.
+    Profile(Box<Profile>, f64, u32),
+}
+
+impl Setpoints {
+    /// The set-point `scan` scans after the start.
+    fn at(&self, scan: u32) -> Setpoint {
+        match self {
+            Self::Grid(plan) => plan.at(scan.into()),
+            Self::Ramp(plan) => plan.at(scan.into()),
+            Self::Online(plans) => {
+                let mut begun = plans.iter().rev().filter(|(begin, _)| *begin <= scan);
+                begun
+                    .next()
+                    .map_or_else(Setpoint::default, |(begin, plan)| plan.at((scan - begin).into()))
+            }
+            Self::Profile(profile, _, scans) if scan >= *scans && profile.end().velocity == 0.0 => {
+                profile.end()
+            }
+            Self::Profile(profile, cycle, _) => profile.at(f64::from(scan) * cycle),
+        }
+    }
+}
+
+/// A CSV file of set-points.
+#[derive(Debug)]
+pub struct Samples {
+    /// Stands for the file in messages.
+    name: String,
+    file: BufWriter<File>,
+}
+
+impl Samples {
+    /// Begins the file with its header.
+    pub fn create(path: &Path) -> Result<Self, Failure> {
+        let name = shown(path);
+        let file = File::create(path).map_err(|error| Failure::io(&name, &error))?;
+        let mut samples = Self {
+            name,
+            file: BufWriter::new(file),
+        };
+        samples.checked(|file| file.write_all(HEADER.as_bytes()))?;
+        Ok(samples)
+    }
+
+    /// Adds a plan, one row a scan from its start to its end; `id` is JSON.
+    pub fn add(&mut self, id: &str, planned: &Planned) -> Result<(), Failure> {
+        let id = table::cell_of_json(id);
+        self.checked(|file| {
+            (0..=planned.scans).try_for_each(|scan| {
+                let Setpoint {
+                    position,
+                    velocity,
+                    acceleration,
+                    jerk,
+                    snap,
+                } = planned.setpoints.at(scan);
+                let [p, v, a, j, s] = [position, velocity, acceleration, jerk, snap].map(number);
+                writeln!(file, "{id},{scan},{p},{v},{a},{j},{s}")
+            })
+        })
+    }
+
+    /// Writes what is still held back.
+    pub fn finish(mut self) -> Result<(), Failure> {
+        self.checked(BufWriter::flush)
+    }
+
+    fn checked(&mut self, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<(), Failure> {
+        write(&mut self.file).map_err(|error| Failure::io(&self.name, &error))
+    }
+}
