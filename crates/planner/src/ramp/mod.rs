@@ -18,7 +18,7 @@ use path::Path;
 use solve::{Course, Ramp, Ramps, heading};
 
 /// Most pieces of a plan.
-const MAX_PIECES: usize = 17;
+const MAX_PIECES: usize = 20;
 
 /// Largest number of scans of a plan.
 const MAX_SCANS: f64 = 2_147_483_647.0;
@@ -26,7 +26,7 @@ const MAX_SCANS: f64 = 2_147_483_647.0;
 /// How far `duration / cycle` may lie above a whole number, relative to itself, and still be that number.
 const GRID_SLACK: f64 = 1e-9;
 
-/// A plan from any state to a constant velocity: at most 17 pieces of constant snap (order 4), jerk (3) or
+/// A plan from any state to a constant velocity: at most 20 pieces of constant snap (order 4), jerk (3) or
 /// acceleration (2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RampPlan {
@@ -84,14 +84,22 @@ impl RampPlan {
         let order = limits.order();
         let heading = heading(start, velocity, limits.velocity, order);
         let ramps = Ramps::new(limits, &wider(limits, before));
+        let ramp = |course| {
+            ramps.ramp(
+                &ramps.state_inward(start),
+                ramps.inward(velocity, 1),
+                heading,
+                course,
+            )
+        };
+        // A goal on the other side of zero asks for the turn that a stop must not make (O5). Should a turn have
+        // more pieces than a plan holds, which was never seen, the lower bound throughout does (R11).
+        let turned = (velocity * heading < 0.0).then(|| ramp(Course::Free));
         let Ramp {
             spans, steps, viable, ..
-        } = ramps.ramp(
-            &ramps.state_inward(start),
-            ramps.inward(velocity, 1),
-            heading,
-            Course::Kept,
-        );
+        } = turned
+            .filter(|ramp| ramp.spans.len() <= MAX_PIECES)
+            .unwrap_or_else(|| ramp(Course::Kept));
         let inputs = ramps.scale().outward(&spans);
         let path = Path::lay(order, start, inputs, velocity);
         Ok(Self {
@@ -122,7 +130,7 @@ impl RampPlan {
     ///
     /// `scan` 0 is the start; from [`RampPlan::scans`] on the velocity is exactly the goal, the derivatives
     /// above it are 0, and a position at goal velocity 0 keeps its bits. Between them the highest
-    /// derivative is the one in force just before the instant. At most 17 comparisons.
+    /// derivative is the one in force just before the instant. At most 20 comparisons.
     pub fn at(&self, scan: u64) -> Setpoint {
         let time = scan as f64 * self.cycle;
         let running = if scan >= u64::from(self.scans) {

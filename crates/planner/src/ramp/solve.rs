@@ -296,11 +296,15 @@ impl Ramps {
             spans.extend(&profile.spans);
             profile.steps
         };
+        // Where the acceleration comes to while the jerk goes to zero as fast as it can.
+        let settled = start.a + 0.5 * start.j * start.j.abs();
+        let widened = 1.0 + ON_LIMIT;
+        let held = settled <= self.acceleration * widened && settled >= -self.deceleration * widened;
         Ramp {
             spans,
             lead: lead.spans.len(),
             steps: lead.steps.max(steps),
-            viable: lead.viable && goal >= 0.0,
+            viable: lead.viable && held && goal >= 0.0,
         }
     }
 }
