@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use standstill_planner::Rung;
 use std::fmt;
 
-/// Failing lines that are kept; further ones are only counted.
-const KEPT: usize = 100;
+/// Failing lines that are kept for each kind of goal; further ones are only counted.
+const KEPT: usize = 20;
 
 /// Counts, worst figures and failing lines. Adding one to another is the same as having seen all its cases.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -32,8 +32,8 @@ pub struct Tally {
     peak: f64,
     /// Replans that failed.
     pub failed: u64,
-    /// The first of them, as lines of `standstill plan`.
-    pub lines: Vec<String>,
+    /// The first of them for each kind of goal, as lines of `standstill plan`.
+    lines: [Vec<String>; 5],
 }
 
 impl Tally {
@@ -72,19 +72,14 @@ impl Tally {
     pub fn failed(&mut self, case: &Case, id: &str) {
         self.count(case);
         self.failed += 1;
-        if self.lines.len() < KEPT {
-            self.lines.push(case.line(id));
+        let lines = &mut self.lines[kind(case)];
+        if lines.len() < KEPT {
+            lines.push(case.line(id));
         }
     }
 
     fn count(&mut self, case: &Case) {
-        let goal = match case.goal {
-            Goal::Grid(_) => 0,
-            Goal::Position(_) => 1,
-            Goal::Passing(..) => 2,
-            Goal::Velocity(velocity) => 3 + usize::from(velocity == 0.0),
-        };
-        self.goals[goal] += 1;
+        self.goals[kind(case)] += 1;
         self.moving += u64::from(!case.start.is_at_rest());
         self.viable += u64::from(case.viable);
     }
@@ -105,13 +100,30 @@ impl Tally {
         self.sample = self.sample.max(later.sample);
         self.peak = self.peak.max(later.peak);
         self.failed += later.failed;
-        self.lines.extend(later.lines);
-        self.lines.truncate(KEPT);
+        for (lines, later) in self.lines.iter_mut().zip(later.lines) {
+            lines.extend(later);
+            lines.truncate(KEPT);
+        }
+    }
+
+    /// Failing replans as lines, those of one kind of goal after the other.
+    pub fn lines(&self) -> impl Iterator<Item = &String> {
+        self.lines.iter().flatten()
     }
 
     /// All replans.
     pub fn replans(&self) -> u64 {
         self.goals.iter().sum()
+    }
+}
+
+/// The place of a goal in [`Tally::goals`].
+fn kind(case: &Case) -> usize {
+    match case.goal {
+        Goal::Grid(_) => 0,
+        Goal::Position(_) => 1,
+        Goal::Passing(..) => 2,
+        Goal::Velocity(velocity) => 3 + usize::from(velocity == 0.0),
     }
 }
 
