@@ -65,7 +65,35 @@ pub fn planner(seed: u64, count: u64, resume: Option<&Path>, out: &mut dyn Write
 /// Goes on until so many chains are done, on all processors.
 fn run(state: &mut State, chains: u64, file: Option<&Path>) -> Result<(), Failure> {
     let (seed, first) = (state.seed, state.chains);
+    let mut progress = Progress::new(true);
+    let mut early = BTreeMap::new();
+    let mut saved = Instant::now();
+    let mut take = |begin: u64, tally: Tally| {
+        early.insert(begin, tally);
+        while let Some(tally) = early.remove(&state.chains) {
+            state.chains = batch_end(state.chains, chains);
+            state.tally.add(tally);
+        }
+        let (done, failed) = (state.chains * LINKS, state.tally.failed);
+        progress.show(|| format!("{done} of {} replans, {failed} failed", chains * LINKS));
+        if let Some(path) = file
+            && saved.elapsed() >= SAVE_EVERY
+        {
+            state.write(path)?;
+            saved = Instant::now();
+        }
+        Ok(())
+    };
     let workers = thread::available_parallelism().map_or(1, |count| count.get());
+    // Not every system has threads.
+    if workers == 1 {
+        let mut begin = first;
+        while begin < chains {
+            take(begin, batch(seed, begin, chains))?;
+            begin = batch_end(begin, chains);
+        }
+        return Ok(());
+    }
     let next = AtomicU64::new(first);
     let (send, receive) = mpsc::channel();
     thread::scope(|scope| {
@@ -74,40 +102,29 @@ fn run(state: &mut State, chains: u64, file: Option<&Path>) -> Result<(), Failur
             scope.spawn(move || {
                 loop {
                     let begin = next.fetch_add(BATCH, Ordering::Relaxed);
-                    let end = chains.min(begin.saturating_add(BATCH));
                     // Nobody listens any more once something went wrong.
-                    if begin >= chains || send.send((begin, end, batch(seed, begin..end))).is_err() {
+                    if begin >= chains || send.send((begin, batch(seed, begin, chains))).is_err() {
                         return;
                     }
                 }
             });
         }
         drop(send);
-        let mut progress = Progress::new(true);
-        let mut early = BTreeMap::new();
-        let mut saved = Instant::now();
-        for (begin, end, tally) in receive {
-            early.insert(begin, (end, tally));
-            while let Some((end, tally)) = early.remove(&state.chains) {
-                state.chains = end;
-                state.tally.add(tally);
-            }
-            let (done, failed) = (state.chains * LINKS, state.tally.failed);
-            progress.show(|| format!("{done} of {} replans, {failed} failed", chains * LINKS));
-            if let Some(path) = file
-                && saved.elapsed() >= SAVE_EVERY
-            {
-                state.write(path)?;
-                saved = Instant::now();
-            }
-        }
-        Ok(())
+        receive
+            .into_iter()
+            .try_for_each(|(begin, tally)| take(begin, tally))
     })
 }
 
-fn batch(seed: u64, chains: std::ops::Range<u64>) -> Tally {
+/// Where the batch that begins with this chain ends.
+fn batch_end(begin: u64, chains: u64) -> u64 {
+    chains.min(begin.saturating_add(BATCH))
+}
+
+/// The batch that begins with this chain.
+fn batch(seed: u64, begin: u64, chains: u64) -> Tally {
     let mut tally = Tally::default();
-    for number in chains {
+    for number in begin..batch_end(begin, chains) {
         tally.add(chain(seed, number, LINKS));
     }
     tally
