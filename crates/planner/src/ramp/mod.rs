@@ -84,24 +84,31 @@ impl RampPlan {
         let order = limits.order();
         let heading = heading(start, velocity, limits.velocity, order);
         let ramps = Ramps::new(limits, &wider(limits, before));
-        let ramp = |course| {
-            ramps.ramp(
+        let proposed = |course| {
+            let Ramp {
+                spans, steps, viable, ..
+            } = ramps.ramp(
                 &ramps.state_inward(start),
                 ramps.inward(velocity, 1),
                 heading,
                 course,
-            )
+            );
+            let fits = spans.len() <= MAX_PIECES;
+            let path = Path::lay(order, start, ramps.scale().outward(&spans), velocity);
+            // A ramp from a viable state exceeds nothing, which the tests see and this need not look for.
+            let excess = if viable {
+                None
+            } else {
+                excess::excess(&path, velocity, Some(heading), limits)
+            };
+            (path, steps, excess, fits)
         };
         // A goal on the other side of zero asks for the turn that a stop must not make (O5). Should a turn have
-        // more pieces than a plan holds, which was never seen, the lower bound throughout does (R11).
-        let turned = (velocity * heading < 0.0).then(|| ramp(Course::Free));
-        let Ramp {
-            spans, steps, viable, ..
-        } = turned
-            .filter(|ramp| ramp.spans.len() <= MAX_PIECES)
-            .unwrap_or_else(|| ramp(Course::Kept));
-        let inputs = ramps.scale().outward(&spans);
-        let path = Path::lay(order, start, inputs, velocity);
+        // more pieces than a plan holds, or exceed the velocity, the lower bound throughout does (R11).
+        let turned = (velocity * heading < 0.0).then(|| proposed(Course::Free));
+        let (path, steps, excess, _) = turned
+            .filter(|(_, _, excess, fits)| *fits && excess.is_none_or(|excess| excess.velocity == 0.0))
+            .unwrap_or_else(|| proposed(Course::Kept));
         Ok(Self {
             start: *start,
             goal: velocity,
@@ -111,12 +118,7 @@ impl RampPlan {
                 value: velocity,
             })?,
             steps,
-            // A ramp from a viable state exceeds nothing, which the tests see and this need not look for.
-            excess: if viable {
-                None
-            } else {
-                excess::excess(&path, velocity, Some(heading), limits)
-            },
+            excess,
             path,
         })
     }
