@@ -114,3 +114,28 @@ fn the_present_position_can_be_passed_with_another_velocity() {
     let there = pass(limits.velocity);
     assert_eq!((there.scans(), there.duration()), (0, 0.0));
 }
+
+/// A last span too short to move the clock: what it would have done does not rub off on the one before it.
+#[test]
+fn a_span_too_short_for_the_clock_leaves_no_trace() {
+    for (jerk, snap) in [
+        (f64::INFINITY, f64::INFINITY),
+        (1e15, f64::INFINITY),
+        (1e15, 1e21),
+    ] {
+        let limits = Limits {
+            velocity: 95450.50494123837,
+            acceleration: 2024861011.1706011,
+            deceleration: 6591331420.376002,
+            jerk,
+            snap,
+        };
+        let start = Setpoint::at_rest(6.3);
+        // One unit in the last place below the limit.
+        let end_velocity = f64::from_bits(limits.velocity.to_bits() - 1);
+        let plan = OnlinePlan::passing(&start, 134.98, end_velocity, &limits, &limits, 1e-5).expect("a plan");
+        assert_eq!((plan.rung(), plan.excess()), (Rung::PushThenStop, None));
+        let last = plan.segments().last().expect("a segment");
+        assert_eq!((last.acceleration, last.jerk, last.snap), (0.0, 0.0, 0.0));
+    }
+}

@@ -1,7 +1,9 @@
 //! Holds a plan against what is claimed of plans.
 
-use super::cases::{Case, Goal, Plan};
-use super::follow::{Followed, follow, state_at};
+use crate::cases::{Case, Goal, Plan};
+use crate::follow::{Followed, follow, state_at};
+use standstill_planner::kernel::MAX_STEPS;
+use standstill_planner::online::MAX_SOLVES;
 use standstill_planner::{Excess, Order, Setpoint};
 
 /// How far a limit may be exceeded, a target missed, a derivative jump: relative to the limit, to the way at
@@ -40,6 +42,9 @@ pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
     if let Some(segment) = segments.iter().find(|segment| !(segment.duration > 0.0)) {
         return Err(format!("a segment of {:e} s", segment.duration));
     }
+    if let Some(what) = cut_short(plan) {
+        return Err(what);
+    }
     let followed = follow(&case.start, &segments, order, STILL * case.limits.velocity);
     let time = scan as f64 * case.cycle;
     let scale = Scale::new(case, &followed, time);
@@ -66,6 +71,17 @@ pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
         Some((what, value)) => Err(format!("{what} by {value:e}")),
         None => Ok(measured),
     }
+}
+
+/// A search that ran into its cap.
+fn cut_short(plan: &Plan) -> Option<String> {
+    let (solves, steps) = match plan {
+        Plan::Grid(_) => (0, 0),
+        Plan::Online(plan) => (plan.solves(), plan.steps()),
+        Plan::Ramp(plan) => (0, plan.steps()),
+    };
+    let cut = solves >= MAX_SOLVES || steps >= MAX_STEPS;
+    cut.then(|| format!("{solves} ramps solved, {steps} steps of a root"))
 }
 
 /// What differences are relative to.
