@@ -10,8 +10,9 @@ use standstill_planner::{Excess, Order, Setpoint};
 /// the velocity limit, to the limit.
 const RELATIVE: f64 = 1e-9;
 
-/// Speeds below this part of the limit have a direction only by rounding.
-const STILL: f64 = 1e-12;
+/// Speeds up to this part of the limit count as none: the derivatives tell the direction
+/// (docs/planner-ramps.md, section 4), and either bound of the acceleration may hold.
+const STILL: f64 = 1e-9;
 
 /// What sums of positions resolve, relative to them.
 const RESOLVED: f64 = 32.0 * f64::EPSILON;
@@ -226,17 +227,15 @@ fn limits(case: &Case, plan: &Plan, followed: &Followed, measured: &mut Measured
     if case.viable && (case.goal != Goal::Velocity(0.0) || told != reversal) {
         return Err(format!("an excess is told of that is none: {told:?}"));
     }
-    let accelerations = acceleration.map(|(value, bound)| over(value, bound));
+    let beyond = |value: f64, bound: f64, told: f64| over(over(value, bound), told) / (bound + told);
     let untold = [
-        (velocity, told.velocity, limits.velocity),
-        (
-            accelerations.into_iter().fold(0.0, f64::max),
-            told.acceleration,
-            limits.lower_acceleration(),
-        ),
-        (jerk, told.jerk, limits.jerk),
+        beyond(followed.speed(), limits.velocity, told.velocity),
+        acceleration
+            .map(|(value, bound)| beyond(value, bound, told.acceleration))
+            .into_iter()
+            .fold(0.0, f64::max),
+        beyond(followed.jerk, limits.jerk, told.jerk),
     ];
-    let untold = untold.map(|(value, told, bound)| over(value, told) / (bound + told));
     if let Some((name, value)) = worst(&untold) {
         return Err(format!("{name} exceeds what is told of by {value:e}"));
     }

@@ -19,7 +19,7 @@ pub enum Rung {
     TwoPhase,
     /// Acceleration and jerk to zero, then push and stop.
     Arrest,
-    /// To rest, then on from there: on the grid, or, with an end velocity, push and ramp.
+    /// To rest, then on from there: on the grid, or, with an end velocity, two ramps and a cruise.
     Brake,
 }
 
@@ -109,7 +109,7 @@ pub(super) fn climb(
             Rung::PushThenStop => climb.search.push_then_stop(&from),
             Rung::TwoPhase => climb.search.two_phase(&from),
             Rung::Arrest => climb.search.arrest_then_push(&from),
-            Rung::Brake if end_velocity != 0.0 => climb.search.rest_then_push(&from),
+            Rung::Brake if end_velocity != 0.0 => climb.search.rest_then_run_up(&from),
             Rung::Brake => return climb.brake_to_grid(start.position, target, cycle),
         };
         if let Some(found) = climb.verified(rung, &candidate) {

@@ -139,3 +139,31 @@ fn a_span_too_short_for_the_clock_leaves_no_trace() {
         assert_eq!((last.acceleration, last.jerk, last.snap), (0.0, 0.0, 0.0));
     }
 }
+
+/// Where the first rungs have a root that no number is near enough to: a target as good as where the turn to
+/// nearly the opposite velocity ends.
+#[test]
+fn a_root_between_two_numbers_is_no_refusal() {
+    let limits = Limits {
+        velocity: 4826061.544148344,
+        acceleration: 709697782968.1647,
+        deceleration: 709697782968.1647,
+        jerk: 7.096969063479478e17,
+        snap: 1.1752384962276695e24,
+    };
+    let start = Setpoint {
+        velocity: limits.velocity,
+        ..Setpoint::at_rest(22.713484468049487)
+    };
+    let plan = OnlinePlan::passing(
+        &start,
+        22.71348443522261,
+        -4826061.267729214,
+        &limits,
+        &limits,
+        6.8e-7,
+    )
+    .expect("a plan");
+    assert_eq!(plan.excess(), None);
+    assert!(plan.duration() < 1e-3, "{plan:?}");
+}
