@@ -20,6 +20,11 @@ impl<P: Planner> Axis<P> {
             // gets the last set-point.
             self.motion = Motion::Hold;
         }
+        if self.layer.is_some() {
+            self.advance_both(scan, log);
+            self.finish_reset();
+            return;
+        }
         match &mut self.motion {
             Motion::Follow => self.publish(Setpoint::at_rest(self.actual)),
             Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
@@ -42,7 +47,7 @@ impl<P: Planner> Axis<P> {
     // Inlined, so that a set-point goes from registers to its place and is not copied through memory, which
     // takes longer than computing it.
     #[inline(always)]
-    fn publish(&mut self, next: Setpoint) {
+    pub(super) fn publish(&mut self, next: Setpoint) {
         self.setpoint = next;
         if next.velocity != 0.0 {
             self.last_direction = if next.velocity < 0.0 { -1.0 } else { 1.0 };
@@ -51,7 +56,7 @@ impl<P: Planner> Axis<P> {
 
     /// Enters ErrorStop and publishes the first set-point of the ramp, which starts at the last one published.
     #[cold]
-    fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
+    pub(super) fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
         self.trip(error, 0, Reaction::Ramp, scan, log);
         let next = match &mut self.motion {
             Motion::Run { plan, elapsed } => {
@@ -77,11 +82,11 @@ impl<P: Planner> Axis<P> {
 
     /// The same for the next set-point and limits `min` and `max` (u).
     #[inline(never)]
-    fn would_leave_from(&self, next: &Setpoint, (min, max): (f64, f64)) -> bool {
+    pub(super) fn would_leave_from(&self, next: &Setpoint, (min, max): (f64, f64)) -> bool {
         let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
         let leaving = match self.owner.as_ref().map(|owner| &owner.work) {
             Some(Work::Velocity { .. }) => true,
-            Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan()),
+            Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan() + self.superimposed_left()),
             // Targets were checked when the command was taken.
             Some(Work::Position(_) | Work::Distance(_) | Work::Home(_)) | None => false,
         };
@@ -106,7 +111,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Completion and hand-over.
-    fn settle(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn settle(&mut self, scan: u64, log: &mut Log) {
         let reached = self.goal_reached();
         let Some(owner) = &self.owner else {
             if self.state == AxisState::Standstill && !self.queue.is_empty() {
@@ -144,17 +149,23 @@ impl<P: Planner> Axis<P> {
     fn complete(&mut self, scan: u64, log: &mut Log) {
         self.motion = Motion::Hold;
         self.end_owner(Fate::Done);
-        self.enter(AxisEvent::MotionDone);
+        // The motion is not over while something is superimposed (V14).
+        if !self.is_superimposing() {
+            self.enter(AxisEvent::MotionDone);
+        }
         self.hand_over(scan, log);
     }
 
     /// The next waiting command that can be planned becomes the owner; those that cannot fail (R79). An
     /// endless owner stays if there is none.
     #[inline(never)]
-    fn hand_over(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn hand_over(&mut self, scan: u64, log: &mut Log) {
         for _ in 0..QUEUE_MAX {
+            if self.queue.first().is_some_and(|next| self.waits_for_rest(next)) {
+                return;
+            }
             let Some(next) = self.queue.pop() else { return };
-            match self.plan_for(&next) {
+            match self.plan_next(&next) {
                 Ok(motion) => {
                     self.end_owner(Fate::Aborted);
                     self.begin(next, motion, scan, log);
