@@ -114,8 +114,10 @@ impl<P: Planner> Axis<P> {
     pub(super) fn settle(&mut self, scan: u64, log: &mut Log) {
         let reached = self.goal_reached();
         let Some(owner) = &self.owner else {
-            if self.state == AxisState::Standstill && !self.queue.is_empty() {
-                // MC_Stop released the axis in this scan (note 6).
+            if matches!(self.state, AxisState::Standstill | AxisState::DiscreteMotion)
+                && !self.queue.is_empty()
+            {
+                // MC_Stop released the axis in this scan (note 6), or a command waits for a superimposed motion.
                 self.hand_over(scan, log);
             }
             return;
@@ -161,12 +163,17 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     pub(super) fn hand_over(&mut self, scan: u64, log: &mut Log) {
         for _ in 0..QUEUE_MAX {
-            if self.queue.first().is_some_and(|next| self.waits_for_rest(next)) {
+            let Some(next) = self.queue.first().copied() else {
+                return;
+            };
+            let planned = self.plan_next(&next);
+            if let Ok(None) = planned {
                 return;
             }
-            let Some(next) = self.queue.pop() else { return };
-            match self.plan_next(&next) {
-                Ok(motion) => {
+            self.queue.pop();
+            match planned {
+                Ok(None) => {}
+                Ok(Some(motion)) => {
                     self.end_owner(Fate::Aborted);
                     self.begin(next, motion, scan, log);
                     return;

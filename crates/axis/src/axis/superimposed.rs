@@ -9,7 +9,7 @@
 
 mod plan;
 
-use super::queue::{Entry, Work};
+use super::queue::Work;
 use super::{Axis, Motion, Source};
 use crate::{AxisEvent, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, Log, Superimpose};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -40,6 +40,8 @@ pub(super) struct Added {
     limits: Limits,
     /// The motion added is this command's; else it waits for room and the one before it comes to its end.
     planned: bool,
+    /// That motion is slower than asked for.
+    lowered: bool,
 }
 
 /// The second motion and what it lies on.
@@ -56,7 +58,7 @@ pub(super) struct Layer<Plan> {
     /// Limits of that motion.
     in_force: Limits,
     command: Option<Added>,
-    /// Scan of the owner's plan from which on a command that waits may find room.
+    /// Scan of the owner's plan from which on a command that waits or was lowered may find more room.
     retry: u64,
 }
 
@@ -157,6 +159,7 @@ impl<P: Planner> Axis<P> {
             },
             limits,
             planned: false,
+            lowered: false,
         };
         let proposed = self
             .propose(&layer, &command)
@@ -191,6 +194,7 @@ impl<P: Planner> Axis<P> {
             adds: Adds::Halt,
             limits,
             planned: !layer.moves(),
+            lowered: false,
         };
         let proposed = if layer.moves() {
             self.propose(&layer, &command).map_err(|error| {
@@ -346,7 +350,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Completion of what is superimposed, and a new attempt of a command that waits.
+    /// Completion of what is superimposed, and a new attempt of a command that waits or was lowered.
     fn settle_superimposed(&mut self, scan: u64, log: &mut Log) {
         let Some(layer) = &mut self.layer else { return };
         let reached = match &layer.motion {
@@ -382,11 +386,6 @@ impl<P: Planner> Axis<P> {
         if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
             self.hand_over(scan, log);
         }
-    }
-
-    /// Whether `next` must wait until nothing is superimposed any more: MC_Home names a position at rest.
-    pub(super) fn waits_for_rest(&self, next: &Entry) -> bool {
-        matches!(next.work, Work::Home(_)) && self.is_superimposing()
     }
 
     /// For [`crate::Outlook`]: the command, the scans its motion has left as for the owner, whether it waits

@@ -2,7 +2,7 @@
 
 use super::{Added, Adds, Layer};
 use crate::axis::accept::refusal;
-use crate::axis::queue::Entry;
+use crate::axis::queue::{Entry, Work};
 use crate::axis::{Axis, Motion, Source};
 use crate::{Dynamics, ErrorId, Event, Log};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -13,8 +13,13 @@ pub(super) const PROPOSALS: usize = 7;
 /// From the fourth on the motion asked for is tried this much slower: the same path in longer time.
 const SLOWER: [f64; PROPOSALS - 3] = [0.75, 0.5, 0.25, 0.125];
 
-/// A motion that fits, and its limits.
-type Proposed<Plan> = Option<(Plan, Limits)>;
+/// A motion that fits.
+pub(super) struct Proposal<Plan> {
+    plan: Plan,
+    limits: Limits,
+    /// It is not the one asked for.
+    lowered: bool,
+}
 
 fn min(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
@@ -110,7 +115,7 @@ impl<P: Planner> Axis<P> {
         &self,
         layer: &Layer<P::Plan>,
         command: &Added,
-    ) -> Result<Proposed<P::Plan>, ErrorId> {
+    ) -> Result<Option<Proposal<P::Plan>>, ErrorId> {
         let axis = &self.config.limits;
         let base = self.rest_of_base();
         let room = Room {
@@ -131,9 +136,18 @@ impl<P: Planner> Axis<P> {
             };
             match planned {
                 Ok(plan) => {
+                    // Alone it exceeds the axis limits only where it takes over from a motion in a way that
+                    // its own limits are too low for. That motion may go on instead.
+                    let motion = Motion::Run { plan, elapsed: 0 };
                     let range = self.range(layer.taken);
-                    if base.is_none_or(|rest| self.planner.fits(rest, (&plan, 0), axis, range)) {
-                        return Ok(Some((plan, limits)));
+                    let fits = !self.exceeds(&motion, &limits)
+                        && base.is_none_or(|rest| self.planner.fits(rest, (&plan, 0), axis, range));
+                    if fits {
+                        return Ok(Some(Proposal {
+                            plan,
+                            limits,
+                            lowered: index > 0,
+                        }));
                     }
                 }
                 Err(error) if index == 0 => return Err(refusal(error)),
@@ -144,39 +158,50 @@ impl<P: Planner> Axis<P> {
         Ok(None)
     }
 
-    /// Sets the layer's command in motion as proposed, or lets it wait.
-    pub(super) fn add(&mut self, proposed: Proposed<P::Plan>, scan: u64, log: &mut Log) {
+    /// Sets the layer's command in motion as proposed, or lets it wait; what moves already is left as it is if
+    /// the proposal is not faster.
+    pub(super) fn add(&mut self, proposed: Option<Proposal<P::Plan>>, scan: u64, log: &mut Log) {
         let next_switch = self
             .rest_of_base()
             .map(|rest| (self.planner.next_switch(rest), rest.1));
         let Some(layer) = &mut self.layer else { return };
         let Some(command) = &mut layer.command else { return };
-        match proposed {
-            Some((plan, limits)) => {
+        let first = layer.retry == 0;
+        layer.retry = match next_switch {
+            Some((switch, now)) if switch > now => switch,
+            // Nothing changes until the owner does.
+            _ => u64::MAX,
+        };
+        let left = match &layer.motion {
+            Motion::Run { plan, elapsed } if command.planned => {
+                u64::from(plan.scans()).saturating_sub(*elapsed)
+            }
+            Motion::Run { .. } | Motion::Hold | Motion::Follow => u64::MAX,
+        };
+        match proposed.filter(|proposal| u64::from(proposal.plan.scans()) < left) {
+            Some(Proposal {
+                plan,
+                limits,
+                lowered,
+            }) => {
                 command.planned = true;
+                command.lowered = lowered;
                 let command = *command;
                 layer.in_force = limits;
                 layer.motion = Motion::Run { plan, elapsed: 0 };
-                let scans = plan.scans();
                 self.record_lowered(&command, &limits, scan, log);
+                let scans = plan.scans();
                 let distance = match command.adds {
                     Adds::Distance { distance, .. } => Some(distance),
                     Adds::Halt => None,
                 };
                 self.record_as(&command, Event::Superimposed { distance, scans }, scan, log);
             }
-            None => {
-                let first = layer.retry == 0;
-                layer.retry = match next_switch {
-                    Some((switch, now)) if switch > now => switch,
-                    // Nothing changes until the owner does.
-                    _ => u64::MAX,
-                };
+            None if first && !command.planned => {
                 let command = *command;
-                if first {
-                    self.record_as(&command, Event::RoomAwaited, scan, log);
-                }
+                self.record_as(&command, Event::RoomAwaited, scan, log);
             }
+            None => {}
         }
     }
 
@@ -197,7 +222,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A command that waits is tried again when the owner's motion has changed.
+    /// A command that waits or was lowered is tried again when the owner's motion has changed.
     pub(super) fn try_again(&mut self, scan: u64, log: &mut Log) {
         let Some(layer) = &self.layer else { return };
         let Some(command) = &layer.command else { return };
@@ -205,10 +230,10 @@ impl<P: Planner> Axis<P> {
             Motion::Run { elapsed, .. } => *elapsed >= layer.retry,
             Motion::Hold | Motion::Follow => true,
         };
-        if command.planned || !due {
+        if (command.planned && !command.lowered) || !due {
             return;
         }
-        // What the planner took once it takes again; if not, the command waits on.
+        // What the planner took once it takes again; if not, everything stays as it is.
         let proposed = self.propose(layer, command).unwrap_or(None);
         self.add(proposed, scan, log);
     }
@@ -231,15 +256,27 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Plans a waiting command that becomes the owner, on top of which a superimposed motion may go on.
+    /// Plans a waiting command that becomes the owner, on top of which a superimposed motion may go on;
+    /// `Ok(None)` if it must wait for that motion.
     ///
     /// It starts at the real set position. If what is added leaves room for it, it starts with the velocity
     /// its predecessor alone has. If not, the velocity of what is added passes to it, and what is left of the
     /// added distance starts again from rest when there is room.
-    pub(in crate::axis) fn plan_next(&mut self, entry: &Entry) -> Result<Motion<P::Plan>, ErrorId> {
-        let Some(mut layer) = self.layer else {
-            return self.plan_for(entry);
-        };
+    pub(in crate::axis) fn plan_next(&mut self, entry: &Entry) -> Result<Option<Motion<P::Plan>>, ErrorId> {
+        match self.layer {
+            None => self.plan_for(entry).map(Some),
+            // MC_Home names a position at rest.
+            Some(_) if matches!(entry.work, Work::Home(_)) && self.is_superimposing() => Ok(None),
+            Some(layer) => self.plan_under(layer, entry),
+        }
+    }
+
+    #[inline(never)]
+    fn plan_under(
+        &mut self,
+        mut layer: Layer<P::Plan>,
+        entry: &Entry,
+    ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
         let start = Setpoint {
             position: self.setpoint.position,
             ..layer.base
@@ -259,17 +296,32 @@ impl<P: Planner> Axis<P> {
             let (axis, range) = (&self.config.limits, self.range(taken));
             if !self.planner.fits((plan, 0), (added, *elapsed), axis, range) {
                 motion = self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))?;
+                if self.exceeds(&motion, &entry.limits) {
+                    // It cannot take this velocity over either; soon there is less of it.
+                    return Ok(None);
+                }
                 layer.base = self.setpoint;
                 layer.motion = Motion::Hold;
                 layer.added = Setpoint::at_rest(taken);
                 if let Some(command) = &mut layer.command {
                     command.planned = command.adds == Adds::Halt;
+                    command.lowered = false;
                 }
             }
         }
         layer.taken = taken;
         layer.retry = 0;
         self.layer = Some(layer);
-        Ok(motion)
+        Ok(Some(motion))
+    }
+
+    /// Whether a plan within `limits` must exceed those of the axis.
+    fn exceeds(&self, motion: &Motion<P::Plan>, limits: &Limits) -> bool {
+        let Motion::Run { plan, .. } = motion else {
+            return false;
+        };
+        plan.excess()
+            .and_then(|excess| self.beyond_axis(excess, limits))
+            .is_some()
     }
 }
