@@ -45,28 +45,33 @@ impl Block for McPower {
     type Inputs = Inputs;
     type Outputs = Outputs;
 
+    #[inline]
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let barred = inputs.enable && !(inputs.enable_positive && inputs.enable_negative);
-        let refused = if barred {
-            ErrorId::DirectionEnableUnsupported
-        } else {
-            ErrorId::None
-        };
-        match context.axis(inputs.axis) {
-            Ok((axis, log, source)) => {
-                axis.set_power(inputs.enable && !barred, source, log);
-                Outputs {
-                    status: axis.is_powered(),
-                    valid: inputs.enable && !barred,
-                    error: barred,
-                    error_id: refused,
-                }
+        let (axis, log, source) = match context.axis(inputs.axis) {
+            Ok(found) => found,
+            Err(id) => {
+                return Outputs {
+                    error: inputs.enable,
+                    error_id: if inputs.enable { id } else { ErrorId::None },
+                    ..Outputs::default()
+                };
             }
-            Err(id) => Outputs {
-                error: inputs.enable,
-                error_id: if inputs.enable { id } else { ErrorId::None },
-                ..Outputs::default()
-            },
+        };
+        if inputs.enable && !(inputs.enable_positive && inputs.enable_negative) {
+            axis.set_power(false, source, log);
+            return Outputs {
+                status: axis.is_powered(),
+                valid: false,
+                error: true,
+                error_id: ErrorId::DirectionEnableUnsupported,
+            };
+        }
+        axis.set_power(inputs.enable, source, log);
+        Outputs {
+            status: axis.is_powered(),
+            valid: inputs.enable,
+            error: false,
+            error_id: ErrorId::None,
         }
     }
 }

@@ -92,6 +92,17 @@ impl Standard {
     }
 }
 
+impl StandardPlan {
+    #[inline(never)]
+    fn at_along_path(&self, scan: u64) -> Setpoint {
+        match self {
+            Self::Grid(grid) => grid.at(scan),
+            Self::Ramp(ramp) => ramp.at(scan),
+            Self::Online(plan) => plan.at(scan),
+        }
+    }
+}
+
 impl Planner for Standard {
     type Plan = StandardPlan;
 
@@ -130,12 +141,12 @@ impl Plan for StandardPlan {
         }
     }
 
+    // The most frequent kind in line with the axis, the others by a call.
     #[inline(always)]
     fn at(&self, scan: u64) -> Setpoint {
         match self {
             Self::Grid(grid) => grid.at(scan),
-            Self::Ramp(ramp) => ramp.at(scan),
-            Self::Online(plan) => plan.at(scan),
+            Self::Ramp(_) | Self::Online(_) => self.at_along_path(scan),
         }
     }
 

@@ -36,11 +36,46 @@ impl Setpoint {
     }
 
     /// Whether all five values are finite.
+    #[inline]
     pub fn is_finite(&self) -> bool {
+        // One look at the sum instead of five: infinity and NaN stay in it. Of finite values only huge ones have
+        // a sum that is not finite.
+        let rates = self.acceleration + self.jerk + self.snap;
+        (self.position + self.velocity + rates).is_finite() || Self::is_each_finite(*self)
+    }
+
+    // By value, so that a set-point need not be in memory to be checked.
+    #[cold]
+    #[inline(never)]
+    fn is_each_finite(self) -> bool {
         self.position.is_finite()
             && self.velocity.is_finite()
             && self.acceleration.is_finite()
             && self.jerk.is_finite()
             && self.snap.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Setpoint;
+
+    #[test]
+    fn finite_is_what_each_value_is_whatever_their_sum() {
+        let of = |values: [f64; 5]| {
+            let [position, velocity, acceleration, jerk, snap] = values;
+            Setpoint { position, velocity, acceleration, jerk, snap }
+        };
+        assert!(of([f64::MAX; 5]).is_finite());
+        assert!(of([f64::MIN; 5]).is_finite());
+        for broken in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for place in 0..5 {
+                for others in [0.0, 1.0, -f64::MAX, -broken] {
+                    let mut values = [others; 5];
+                    values[place] = broken;
+                    assert!(!of(values).is_finite(), "{values:?}");
+                }
+            }
+        }
     }
 }

@@ -20,22 +20,36 @@ impl<P: Planner> Axis<P> {
             // gets the last set-point.
             self.motion = Motion::Hold;
         }
-        match &mut self.motion {
-            Motion::Follow => self.publish(Setpoint::at_rest(self.actual)),
-            Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
-            Motion::Run { plan, elapsed } => {
-                *elapsed = elapsed.saturating_add(1);
+        let reached = match &mut self.motion {
+            Motion::Follow => {
+                self.publish(Setpoint::at_rest(self.actual));
+                false
+            }
+            Motion::Hold => {
+                self.publish(Setpoint::at_rest(self.setpoint.position));
+                true
+            }
+            Motion::Run { plan, elapsed, scans } => {
+                // Wraps after 10^8 years of 1 ms scans.
+                *elapsed = elapsed.wrapping_add(1);
+                let reached = *elapsed >= *scans;
                 let next = plan.at(*elapsed);
                 if !next.is_finite() {
                     self.fail(ErrorId::SetpointBroken, scan, log);
+                    false
                 } else if self.would_leave() {
                     self.fail(ErrorId::SoftwareLimitReached, scan, log);
+                    false
                 } else {
                     self.publish(next);
+                    reached
                 }
             }
+        };
+        // Short of a goal nothing completes and nothing is handed over.
+        if reached {
+            self.settle(scan, log);
         }
-        self.settle(scan, log);
         self.finish_reset();
     }
 
@@ -45,7 +59,7 @@ impl<P: Planner> Axis<P> {
     fn publish(&mut self, next: Setpoint) {
         self.setpoint = next;
         if next.velocity != 0.0 {
-            self.last_direction = if next.velocity < 0.0 { -1.0 } else { 1.0 };
+            self.last_velocity = next.velocity;
         }
     }
 
@@ -54,7 +68,7 @@ impl<P: Planner> Axis<P> {
     fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
         self.trip(error, 0, Reaction::Ramp, scan, log);
         let next = match &mut self.motion {
-            Motion::Run { plan, elapsed } => {
+            Motion::Run { plan, elapsed, .. } => {
                 *elapsed = 1;
                 plan.at(1)
             }
@@ -67,17 +81,19 @@ impl<P: Planner> Axis<P> {
     /// software limits inside them.
     #[inline]
     fn would_leave(&self) -> bool {
-        match (self.config.software_limits, &self.motion) {
-            (Some(limits), Motion::Run { plan, elapsed }) => {
-                self.would_leave_from(&plan.at(*elapsed), limits)
-            }
-            _ => false,
+        match self.config.software_limits {
+            Some(limits) => self.would_leave_within(limits),
+            None => false,
         }
     }
 
-    /// The same for the next set-point and limits `min` and `max` (u).
+    /// The same for limits `min` and `max` (u).
     #[inline(never)]
-    fn would_leave_from(&self, next: &Setpoint, (min, max): (f64, f64)) -> bool {
+    fn would_leave_within(&self, (min, max): (f64, f64)) -> bool {
+        let Motion::Run { plan, elapsed, .. } = &self.motion else {
+            return false;
+        };
+        let next = &plan.at(*elapsed);
         let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
         let leaving = match self.owner.as_ref().map(|owner| &owner.work) {
             Some(Work::Velocity { .. }) => true,
@@ -105,9 +121,9 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Completion and hand-over.
+    /// Completion and hand-over, at the goal.
+    #[inline(never)]
     fn settle(&mut self, scan: u64, log: &mut Log) {
-        let reached = self.goal_reached();
         let Some(owner) = &self.owner else {
             if self.state == AxisState::Standstill && !self.queue.is_empty() {
                 // MC_Stop released the axis in this scan (note 6).
@@ -116,26 +132,25 @@ impl<P: Planner> Axis<P> {
             return;
         };
         match owner.work {
-            Work::Position(_) | Work::Distance(_) | Work::Halt if reached => self.complete(scan, log),
+            Work::Position(_) | Work::Distance(_) | Work::Halt => self.complete(scan, log),
             Work::Home(position) => {
                 self.setpoint = Setpoint::at_rest(position);
                 self.rename = Some(position);
                 self.homed = true;
                 self.complete(scan, log);
             }
-            Work::Stop if reached && owner.held => {
+            Work::Stop if owner.held => {
                 self.motion = Motion::Hold;
                 self.stop_held = true;
             }
-            Work::Stop if reached => {
+            Work::Stop => {
                 self.motion = Motion::Hold;
                 self.end_owner(Fate::Done);
                 self.enter(AxisEvent::StopReleased);
                 self.hand_over(scan, log);
             }
             // An endless motion gives way when it has reached its velocity.
-            Work::Velocity { .. } if reached => self.hand_over(scan, log),
-            Work::Position(_) | Work::Distance(_) | Work::Halt | Work::Stop | Work::Velocity { .. } => {}
+            Work::Velocity { .. } => self.hand_over(scan, log),
         }
     }
 
