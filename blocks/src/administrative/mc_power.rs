@@ -45,7 +45,7 @@ impl Block for McPower {
     type Inputs = Inputs;
     type Outputs = Outputs;
 
-    #[inline]
+    #[inline(always)]
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let (axis, log, source) = match context.axis(inputs.axis) {
             Ok(found) => found,
@@ -61,17 +61,16 @@ impl Block for McPower {
             axis.set_power(false, source, log);
             return Outputs {
                 status: axis.is_powered(),
-                valid: false,
                 error: true,
                 error_id: ErrorId::DirectionEnableUnsupported,
+                ..Outputs::default()
             };
         }
         axis.set_power(inputs.enable, source, log);
         Outputs {
             status: axis.is_powered(),
             valid: inputs.enable,
-            error: false,
-            error_id: ErrorId::None,
+            ..Outputs::default()
         }
     }
 }

@@ -65,7 +65,7 @@ impl Block for McMoveAbsolute {
     type Inputs = Inputs;
     type Outputs = Outputs;
 
-    #[inline]
+    #[inline(always)]
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self.core.scan(inputs.execute, context, |context, replaces| {
             let (axis, log, source) = context.axis(inputs.axis)?;

@@ -93,13 +93,21 @@ impl Standard {
 }
 
 impl StandardPlan {
+    // As plain numbers: a set-point that comes back in memory would keep all others there too.
     #[inline(never)]
-    fn at_along_path(&self, scan: u64) -> Setpoint {
-        match self {
+    fn numbers_at(&self, scan: u64) -> [f64; 5] {
+        let Setpoint {
+            position,
+            velocity,
+            acceleration,
+            jerk,
+            snap,
+        } = match self {
             Self::Grid(grid) => grid.at(scan),
             Self::Ramp(ramp) => ramp.at(scan),
             Self::Online(plan) => plan.at(scan),
-        }
+        };
+        [position, velocity, acceleration, jerk, snap]
     }
 }
 
@@ -146,7 +154,16 @@ impl Plan for StandardPlan {
     fn at(&self, scan: u64) -> Setpoint {
         match self {
             Self::Grid(grid) => grid.at(scan),
-            Self::Ramp(_) | Self::Online(_) => self.at_along_path(scan),
+            Self::Ramp(_) | Self::Online(_) => {
+                let [position, velocity, acceleration, jerk, snap] = self.numbers_at(scan);
+                Setpoint {
+                    position,
+                    velocity,
+                    acceleration,
+                    jerk,
+                    snap,
+                }
+            }
         }
     }
 

@@ -40,8 +40,7 @@ impl Setpoint {
     pub fn is_finite(&self) -> bool {
         // One look at the sum instead of five: infinity and NaN stay in it. Of finite values only huge ones have
         // a sum that is not finite.
-        let rates = self.acceleration + self.jerk + self.snap;
-        (self.position + self.velocity + rates).is_finite() || Self::is_each_finite(*self)
+        (self.position + self.velocity + self.acceleration + self.jerk + self.snap).is_finite() || Self::is_each_finite(*self)
     }
 
     // By value, so that a set-point need not be in memory to be checked.

@@ -275,6 +275,12 @@ impl<P: Planner> Axis<P> {
                 }
             };
         }
+        self.fate_of_other(id)
+    }
+
+    /// What became of a command that is not the owner.
+    #[inline(never)]
+    fn fate_of_other(&self, id: CommandId) -> Fate {
         if self.queue.contains(id) || self.reset.as_ref().is_some_and(|reset| reset.id == id) {
             return Fate::Waiting;
         }

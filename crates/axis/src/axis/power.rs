@@ -121,16 +121,15 @@ impl<P: Planner> Axis<P> {
     /// before is obeyed at once, others at the end of the scan if nobody spoke after them.
     #[inline]
     pub fn set_power(&mut self, wanted: bool, source: Source, log: &mut Log) {
-        if self
-            .power
-            .decider
-            .is_some_and(|decider| decider != source.instance)
-        {
-            self.power.overruled = Some((wanted, source.instance));
-            return;
+        match self.power.decider {
+            Some(decider) if decider != source.instance => {
+                self.power.overruled = Some((wanted, source.instance));
+                return;
+            }
+            Some(_) => {}
+            None => self.power.decider = Some(source.instance),
         }
         self.power.overruled = None;
-        self.power.decider = Some(source.instance);
         self.switch(wanted, source, log);
     }
 

@@ -173,8 +173,9 @@ impl GridPlan {
         let scans = u64::from(self.scans);
         if scan < scans {
             let left = scans - scan;
-            return if scan.min(left) > u64::from(self.cruise.after) {
-                self.cruise_at(scan as i64, left as i64)
+            let near = scan.min(left);
+            return if near > u64::from(self.cruise.after) {
+                self.cruise_at(near as i64, near < scan)
             } else {
                 self.state(scan as i64, Side::Before)
             };
@@ -254,17 +255,17 @@ impl GridPlan {
         [0, a, b, a + b, c, a + c, b + c, (a + b + c).min(d)]
     }
 
-    /// The state at constant velocity, `left` scans before the end (docs/planner.md, eq. 21a).
+    /// The state at constant velocity, `near` scans from the start or, mirrored, from the end (docs/planner.md,
+    /// eq. 21a).
     #[inline(always)]
-    fn cruise_at(&self, scan: i64, left: i64) -> Setpoint {
+    fn cruise_at(&self, near: i64, mirrored: bool) -> Setpoint {
         let [f0, ..] = self.scale;
-        let way =
-            |near: i64| (self.cruise.half_step * (2 * near - i64::from(self.cruise.after))) as f64 * f0;
+        let way = (self.cruise.half_step * (2 * near - i64::from(self.cruise.after))) as f64 * f0;
         Setpoint {
-            position: if scan > left {
-                self.target - way(left)
+            position: if mirrored {
+                self.target - way
             } else {
-                self.start + way(scan)
+                self.start + way
             },
             velocity: self.cruise.velocity,
             ..Setpoint::default()
@@ -272,6 +273,7 @@ impl GridPlan {
     }
 
     /// The state at `scan` <= N, with the values of one side where a derivative jumps.
+    #[inline]
     fn state(&self, scan: i64, side: Side) -> Setpoint {
         // Each half is computed from its own end: half the terms, and exact at both ends.
         let twice_left = 2 * scan - i64::from(self.scans);
@@ -286,17 +288,8 @@ impl GridPlan {
         };
         // Time runs backwards from the far end, so the sides swap there.
         let through = near + i64::from((side == Side::After) != mirrored);
-        let instants = self.early_instants();
-        let derivatives = match (self.order, self.wide) {
-            (Order::Four, false) => derivatives::<i64, 8>(&instants, near, through),
-            (Order::Four, true) => derivatives::<i128, 8>(&instants, near, through),
-            (Order::Three, false) => derivatives::<i64, 4>(&instants, near, through),
-            (Order::Three, true) => derivatives::<i128, 4>(&instants, near, through),
-            // Two boxes of less than 2^31 scans in all: the sums fit 64 bits always.
-            (Order::Two, _) => derivatives::<i64, 2>(&instants, near, through),
-        };
+        let [d0, d1, d2, d3, d4] = self.derivatives(near, through);
         let [f0, f1, f2, f3, f4] = self.scale;
-        let [d0, d1, d2, d3, d4] = derivatives;
         // Adding 0 turns -0 into 0.
         if mirrored {
             Setpoint {
@@ -314,6 +307,20 @@ impl GridPlan {
                 jerk: d3 * f3 + 0.0,
                 snap: d4 * f4 + 0.0,
             }
+        }
+    }
+
+    /// The derivatives 0 to 4 at `near` scans from an end, before scaling.
+    #[inline(never)]
+    fn derivatives(&self, near: i64, through: i64) -> [f64; 5] {
+        let instants = self.early_instants();
+        match (self.order, self.wide) {
+            (Order::Four, false) => derivatives::<i64, 8>(&instants, near, through),
+            (Order::Four, true) => derivatives::<i128, 8>(&instants, near, through),
+            (Order::Three, false) => derivatives::<i64, 4>(&instants, near, through),
+            (Order::Three, true) => derivatives::<i128, 4>(&instants, near, through),
+            // Two boxes of less than 2^31 scans in all: the sums fit 64 bits always.
+            (Order::Two, _) => derivatives::<i64, 2>(&instants, near, through),
         }
     }
 }
