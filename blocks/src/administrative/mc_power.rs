@@ -45,26 +45,17 @@ impl Block for McPower {
     type Inputs = Inputs;
     type Outputs = Outputs;
 
+    // Called in every scan: in line, the outputs of the usual case are one constant.
     #[inline(always)]
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let (axis, log, source) = match context.axis(inputs.axis) {
             Ok(found) => found,
-            Err(id) => {
-                return Outputs {
-                    error: inputs.enable,
-                    error_id: if inputs.enable { id } else { ErrorId::None },
-                    ..Outputs::default()
-                };
-            }
+            Err(id) if inputs.enable => return refused(false, id),
+            Err(_) => return Outputs::default(),
         };
         if inputs.enable && !(inputs.enable_positive && inputs.enable_negative) {
             axis.set_power(false, source, log);
-            return Outputs {
-                status: axis.is_powered(),
-                error: true,
-                error_id: ErrorId::DirectionEnableUnsupported,
-                ..Outputs::default()
-            };
+            return refused(axis.is_powered(), ErrorId::DirectionEnableUnsupported);
         }
         axis.set_power(inputs.enable, source, log);
         Outputs {
@@ -72,5 +63,14 @@ impl Block for McPower {
             valid: inputs.enable,
             ..Outputs::default()
         }
+    }
+}
+
+fn refused(status: bool, error_id: ErrorId) -> Outputs {
+    Outputs {
+        status,
+        error: true,
+        error_id,
+        ..Outputs::default()
     }
 }

@@ -93,21 +93,14 @@ impl Standard {
 }
 
 impl StandardPlan {
-    // As plain numbers: a set-point that comes back in memory would keep all others there too.
     #[inline(never)]
     fn numbers_at(&self, scan: u64) -> [f64; 5] {
-        let Setpoint {
-            position,
-            velocity,
-            acceleration,
-            jerk,
-            snap,
-        } = match self {
+        let setpoint = match self {
             Self::Grid(grid) => grid.at(scan),
             Self::Ramp(ramp) => ramp.at(scan),
             Self::Online(plan) => plan.at(scan),
         };
-        [position, velocity, acceleration, jerk, snap]
+        setpoint.numbers()
     }
 }
 
@@ -154,16 +147,7 @@ impl Plan for StandardPlan {
     fn at(&self, scan: u64) -> Setpoint {
         match self {
             Self::Grid(grid) => grid.at(scan),
-            Self::Ramp(_) | Self::Online(_) => {
-                let [position, velocity, acceleration, jerk, snap] = self.numbers_at(scan);
-                Setpoint {
-                    position,
-                    velocity,
-                    acceleration,
-                    jerk,
-                    snap,
-                }
-            }
+            Self::Ramp(_) | Self::Online(_) => Setpoint::of(self.numbers_at(scan)),
         }
     }
 

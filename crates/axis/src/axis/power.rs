@@ -57,11 +57,18 @@ impl<P: Planner> Axis<P> {
     /// The actual position (u).
     #[inline]
     fn position_of(&self, feedback: &DriveFeedback) -> f64 {
-        match (feedback.position, self.config.scaling) {
-            (DrivePosition::Increments(increments), Some(scaling)) => scaling.to_units(increments),
-            (DrivePosition::Units(units), _) => units,
+        match feedback.position {
+            DrivePosition::Units(units) => units,
+            DrivePosition::Increments(increments) => self.position_at_increment(increments),
+        }
+    }
+
+    #[inline(never)]
+    fn position_at_increment(&self, increments: i64) -> f64 {
+        match self.config.scaling {
+            Some(scaling) => scaling.to_units(increments),
             // A drive that counts increments needs a scaling; take one increment as one unit.
-            (DrivePosition::Increments(increments), None) => increments as f64,
+            None => increments as f64,
         }
     }
 
@@ -142,8 +149,15 @@ impl<P: Planner> Axis<P> {
     /// The end of a scan's calls: the last MC_Power decides.
     #[inline]
     pub(super) fn apply_power(&mut self, scan: u64, log: &mut Log) {
-        if let Some((wanted, instance)) = self.power.overruled {
-            self.power.overruled = None;
+        if self.power.overruled.is_some() {
+            self.change_decider(scan, log);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn change_decider(&mut self, scan: u64, log: &mut Log) {
+        if let Some((wanted, instance)) = self.power.overruled.take() {
             self.power.decider = Some(instance);
             self.switch(wanted, Source { scan, instance }, log);
         }
@@ -287,11 +301,15 @@ impl<P: Planner> Axis<P> {
         self.fates.record(id, Fate::Done);
     }
 
+    #[cold]
+    fn is_resetting_drive(&self) -> bool {
+        self.state == AxisState::ErrorStop && self.power.fault.is_some()
+    }
+
     /// What is asked of the power stage in this scan.
     pub(super) fn drive_request(&self) -> DriveRequest {
         let ramping = matches!(self.motion, Motion::Run { .. });
-        let resetting = self.reset.is_some() && self.state == AxisState::ErrorStop;
-        if resetting && self.power.fault.is_some() {
+        if self.reset.is_some() && self.is_resetting_drive() {
             DriveRequest::FaultReset
         } else if ramping && self.power.on {
             DriveRequest::Enable

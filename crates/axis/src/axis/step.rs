@@ -15,42 +15,52 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
         self.apply_power(scan, log);
+        // Short of the goal a plan needs a step and nothing else.
+        if let Motion::Run { elapsed, scans, .. } = &self.motion
+            && elapsed.wrapping_add(1) < *scans
+        {
+            self.step_along_plan(scan, log);
+        } else {
+            self.step_at_goal(scan, log);
+        }
+        self.finish_reset();
+    }
+
+    /// The next set-point of the plan, if it may be published.
+    // Inlined for the same reason as `publish`.
+    #[inline(always)]
+    fn step_along_plan(&mut self, scan: u64, log: &mut Log) {
+        let Motion::Run { plan, elapsed, .. } = &mut self.motion else {
+            return;
+        };
+        // Scans of 1 ms wrap after 10^8 years.
+        *elapsed = elapsed.wrapping_add(1);
+        let next = plan.at(*elapsed);
+        if !next.is_finite() {
+            self.fail(ErrorId::SetpointBroken, scan, log);
+        } else if self.would_leave() {
+            self.fail(ErrorId::SoftwareLimitReached, scan, log);
+        } else {
+            self.publish(next);
+        }
+    }
+
+    /// The step of an axis that is at its goal, or will be after it, or is not in operation.
+    #[inline(never)]
+    fn step_at_goal(&mut self, scan: u64, log: &mut Log) {
         if self.owner.is_none() && self.goal_reached() {
             // A ramp nobody commanded ended in the scan before; until then power stays on, so that the drive
             // gets the last set-point.
             self.motion = Motion::Hold;
         }
-        let reached = match &mut self.motion {
-            Motion::Follow => {
-                self.publish(Setpoint::at_rest(self.actual));
-                false
-            }
-            Motion::Hold => {
-                self.publish(Setpoint::at_rest(self.setpoint.position));
-                true
-            }
-            Motion::Run { plan, elapsed, scans } => {
-                // Wraps after 10^8 years of 1 ms scans.
-                *elapsed = elapsed.wrapping_add(1);
-                let reached = *elapsed >= *scans;
-                let next = plan.at(*elapsed);
-                if !next.is_finite() {
-                    self.fail(ErrorId::SetpointBroken, scan, log);
-                    false
-                } else if self.would_leave() {
-                    self.fail(ErrorId::SoftwareLimitReached, scan, log);
-                    false
-                } else {
-                    self.publish(next);
-                    reached
-                }
-            }
-        };
-        // Short of a goal nothing completes and nothing is handed over.
-        if reached {
+        match &mut self.motion {
+            Motion::Follow => self.publish(Setpoint::at_rest(self.actual)),
+            Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
+            Motion::Run { .. } => self.step_along_plan(scan, log),
+        }
+        if self.goal_reached() {
             self.settle(scan, log);
         }
-        self.finish_reset();
     }
 
     // Inlined, so that a set-point goes from registers to its place and is not copied through memory, which
@@ -122,7 +132,6 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Completion and hand-over, at the goal.
-    #[inline(never)]
     fn settle(&mut self, scan: u64, log: &mut Log) {
         let Some(owner) = &self.owner else {
             if self.state == AxisState::Standstill && !self.queue.is_empty() {

@@ -1,8 +1,8 @@
 //! The plan value and how it is made.
 
 use super::problem::{Boxes, LONGEST, Problem};
-use super::search::{self, Family, Work};
 use super::profile::{self, Cruise};
+use super::search::{self, Family, Work};
 use super::{Method, sequential};
 use crate::{Field, Limits, Order, PlanError};
 
