@@ -290,7 +290,7 @@ impl<P: Planner> Axis<P> {
             }
             Work::Velocity { velocity, along } => {
                 let velocity = if along {
-                    velocity * self.last_direction
+                    velocity * self.last_velocity.signum()
                 } else {
                     velocity
                 };
@@ -300,7 +300,7 @@ impl<P: Planner> Axis<P> {
             Work::Home(_) => return Ok(Motion::Hold),
         };
         match planned {
-            Ok(plan) => Ok(Motion::Run { plan, elapsed: 0 }),
+            Ok(plan) => Ok(Motion::along(plan)),
             Err(error) => Err(refusal(error)),
         }
     }

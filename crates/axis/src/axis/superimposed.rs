@@ -320,12 +320,12 @@ impl<P: Planner> Axis<P> {
         layer.base = match &mut self.motion {
             Motion::Follow => Setpoint::at_rest(self.actual),
             Motion::Hold => Setpoint::at_rest(layer.base.position),
-            Motion::Run { plan, elapsed } => {
+            Motion::Run { plan, elapsed, .. } => {
                 *elapsed = elapsed.saturating_add(1);
                 plan.at(*elapsed)
             }
         };
-        if let Motion::Run { plan, elapsed } = &mut layer.motion {
+        if let Motion::Run { plan, elapsed, .. } = &mut layer.motion {
             *elapsed = elapsed.saturating_add(1);
             layer.added = plan.at(*elapsed);
         }
@@ -337,7 +337,9 @@ impl<P: Planner> Axis<P> {
         } else {
             self.publish(next);
         }
-        self.settle(scan, log);
+        if self.goal_reached() {
+            self.settle(scan, log);
+        }
         self.settle_superimposed(scan, log);
     }
 
@@ -354,7 +356,7 @@ impl<P: Planner> Axis<P> {
     fn settle_superimposed(&mut self, scan: u64, log: &mut Log) {
         let Some(layer) = &mut self.layer else { return };
         let reached = match &layer.motion {
-            Motion::Run { plan, elapsed } => *elapsed >= u64::from(plan.scans()),
+            Motion::Run { elapsed, scans, .. } => elapsed >= scans,
             Motion::Hold | Motion::Follow => true,
         };
         if reached {

@@ -94,7 +94,7 @@ impl<P: Planner> Axis<P> {
     /// The owner's plan as far as it is not over.
     fn rest_of_base(&self) -> Option<(&P::Plan, u64)> {
         match &self.motion {
-            Motion::Run { plan, elapsed } => Some((plan, *elapsed)),
+            Motion::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
             Motion::Hold | Motion::Follow => None,
         }
     }
@@ -138,7 +138,7 @@ impl<P: Planner> Axis<P> {
                 Ok(plan) => {
                     // Alone it exceeds the axis limits only where it takes over from a motion in a way that
                     // its own limits are too low for. That motion may go on instead.
-                    let motion = Motion::Run { plan, elapsed: 0 };
+                    let motion = Motion::along(plan);
                     let range = self.range(layer.taken);
                     let fits = !self.exceeds(&motion, &limits)
                         && base.is_none_or(|rest| self.planner.fits(rest, (&plan, 0), axis, range));
@@ -173,9 +173,7 @@ impl<P: Planner> Axis<P> {
             _ => u64::MAX,
         };
         let left = match &layer.motion {
-            Motion::Run { plan, elapsed } if command.planned => {
-                u64::from(plan.scans()).saturating_sub(*elapsed)
-            }
+            Motion::Run { elapsed, scans, .. } if command.planned => scans.saturating_sub(*elapsed),
             Motion::Run { .. } | Motion::Hold | Motion::Follow => u64::MAX,
         };
         match proposed.filter(|proposal| u64::from(proposal.plan.scans()) < left) {
@@ -188,7 +186,7 @@ impl<P: Planner> Axis<P> {
                 command.lowered = lowered;
                 let command = *command;
                 layer.in_force = limits;
-                layer.motion = Motion::Run { plan, elapsed: 0 };
+                layer.motion = Motion::along(plan);
                 self.record_lowered(&command, &limits, scan, log);
                 let scans = plan.scans();
                 let distance = match command.adds {
@@ -292,7 +290,13 @@ impl<P: Planner> Axis<P> {
             self.allowed(plan.at(u64::from(plan.scans())).position + layer.left())?;
         }
         layer.base = start;
-        if let (Motion::Run { plan, .. }, Motion::Run { plan: added, elapsed }) = (&motion, &layer.motion) {
+        if let (
+            Motion::Run { plan, .. },
+            Motion::Run {
+                plan: added, elapsed, ..
+            },
+        ) = (&motion, &layer.motion)
+        {
             let (axis, range) = (&self.config.limits, self.range(taken));
             if !self.planner.fits((plan, 0), (added, *elapsed), axis, range) {
                 motion = self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))?;
