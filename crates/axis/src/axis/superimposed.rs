@@ -402,6 +402,12 @@ impl<P: Planner> Axis<P> {
                 (command.id, kind, command.planned)
             }),
             scans_left: layer.motion.scans_left().unwrap_or(0),
+            tried_in: match (&layer.command, &self.motion) {
+                (Some(command), Motion::Run { elapsed, .. }) if !command.planned || command.lowered => {
+                    u32::try_from(layer.retry.saturating_sub(*elapsed)).unwrap_or(u32::MAX)
+                }
+                _ => 0,
+            },
             base: (layer.base.position.to_bits(), layer.base.velocity.to_bits()),
             added: (layer.added.position.to_bits(), layer.left().to_bits()),
         })
