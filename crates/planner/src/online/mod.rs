@@ -246,15 +246,10 @@ impl OnlinePlan {
             snap: 0.0,
         };
         let wait = (wait.duration > 0.0).then_some(wait);
-        let grid = self.tail.into_iter().flat_map(|tail| {
-            tail.grid.segments().map(|segment| Segment {
-                duration: segment.duration,
-                velocity: segment.velocity,
-                acceleration: segment.acceleration,
-                jerk: segment.jerk,
-                snap: segment.snap,
-            })
-        });
+        let grid = self
+            .tail
+            .into_iter()
+            .flat_map(|tail| tail.grid.segments().map(Segment::from));
         path.chain(wait).chain(grid)
     }
 
