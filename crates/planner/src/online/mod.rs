@@ -54,7 +54,7 @@ impl OnlinePlan {
     /// is told by [`OnlinePlan::excess`].
     ///
     /// Bounded work: at most [`MAX_SOLVES`] ramps, in practice about 11 ([`OnlinePlan::solves`]), each with at
-    /// most three roots of [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
+    /// most seven roots of [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
     ///
     /// # Errors
     /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, a start or target that is

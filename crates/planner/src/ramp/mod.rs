@@ -78,8 +78,8 @@ impl RampPlan {
     /// and `before`; an infinite bound in `before` counts as that of `limits`. What is exceeded on the way
     /// is the least possible and told by [`RampPlan::excess`].
     ///
-    /// Bounded work: closed forms and at most one root of
-    /// [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
+    /// Bounded work: two ramps of closed forms and at most seven roots of
+    /// [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps; most have none or one.
     ///
     /// # Errors
     /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, a start or velocity that
