@@ -1,8 +1,10 @@
 //! Every block the runtime knows, by its IEC name.
 
 use crate::administrative::{
-    mc_power::McPower, mc_read_actual_position::McReadActualPosition, mc_read_axis_error::McReadAxisError,
-    mc_read_status::McReadStatus, mc_reset::McReset,
+    mc_power::McPower, mc_read_actual_position::McReadActualPosition,
+    mc_read_actual_velocity::McReadActualVelocity, mc_read_axis_error::McReadAxisError,
+    mc_read_axis_info::McReadAxisInfo, mc_read_motion_state::McReadMotionState, mc_read_status::McReadStatus,
+    mc_reset::McReset,
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
@@ -56,7 +58,8 @@ macro_rules! registry {
 }
 
 registry! {
-    McPower McReset McReadStatus McReadActualPosition McReadAxisError
+    McPower McReset McReadStatus McReadMotionState McReadAxisInfo McReadAxisError
+    McReadActualPosition McReadActualVelocity
     McHome
     McStop McHalt McMoveAbsolute McMoveRelative McMoveVelocity
     RTrig FTrig Sr Rs Ctu Ctd Ctud Ton Tof Tp

@@ -26,6 +26,10 @@ impl Count {
 impl Planner for Countdown {
     type Plan = Count;
 
+    fn cycle(&self) -> f64 {
+        1.0
+    }
+
     fn move_to(&self, start: &Setpoint, target: f64, _: &Limits, _: &Limits) -> Result<Count, PlanError> {
         Ok(Count::to(start, Setpoint::at_rest(target)))
     }

@@ -1,12 +1,14 @@
 //! One axis: what it knows and what others may ask.
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
-//! on commands, [`step`] moves and hands over, [`power`] reacts to feedback, power, faults and resets.
+//! on commands, [`step`] moves and hands over, [`power`] reacts to feedback, power, faults and resets,
+//! [`reading`] answers what reading blocks ask.
 
 mod accept;
 mod dynamics;
 mod power;
 mod queue;
+mod reading;
 mod step;
 
 use crate::fate::Fates;
@@ -15,6 +17,7 @@ use crate::{
     DrivePosition, ErrorId, Event, Fate, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
 };
 use queue::{Entry, Queue, Work};
+pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
 
 /// Who gives a command and when; goes into the records.
@@ -111,6 +114,7 @@ pub struct Axis<P: Planner = Standard> {
     state: AxisState,
     setpoint: Setpoint,
     actual: f64,
+    past: reading::Past,
     feedback: DriveFeedback,
     motion: Motion<P::Plan>,
     /// Limits of the present motion, for whoever takes over from it.
@@ -147,6 +151,7 @@ impl<P: Planner> Axis<P> {
             fault: None,
             position: position_at_drive(&config, config.position),
             comms: crate::Comms::Ok,
+            signals: crate::DriveSignals::default(),
         };
         Ok(Self {
             id,
@@ -159,6 +164,7 @@ impl<P: Planner> Axis<P> {
             },
             setpoint: Setpoint::at_rest(config.position),
             actual: config.position,
+            past: reading::Past::new(config.position),
             feedback,
             motion: if powered { Motion::Hold } else { Motion::Follow },
             in_force: config.limits,

@@ -35,14 +35,16 @@ impl<P: Planner> Axis<P> {
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
         self.feedback = *feedback;
         if feedback.comms == Comms::Lost {
+            self.latch_nothing();
             self.trip(ErrorId::CommunicationLost, 0, Reaction::Ramp, scan, log);
         } else {
-            self.actual = match (feedback.position, self.config.scaling) {
+            let position = match (feedback.position, self.config.scaling) {
                 (DrivePosition::Increments(increments), Some(scaling)) => scaling.to_units(increments),
                 (DrivePosition::Units(units), _) => units,
                 // A drive that counts increments needs a scaling; take one increment as one unit.
                 (DrivePosition::Increments(increments), None) => increments as f64,
             };
+            self.latch(position);
             // In most scans nothing but the position changes.
             if self.is_steady(feedback) {
                 return;
