@@ -187,6 +187,7 @@ impl ErrorId {
 mod tests {
     use super::*;
 
+    /// Covers: V27, R73
     #[test]
     fn numbers_rise_and_every_error_says_what_to_do() {
         for pair in ErrorId::ALL.windows(2) {

@@ -144,7 +144,7 @@ mod tests {
         NoAxis,
     }
 
-    /// Covers: R52, R53, R54, R55, R56, R57, R58, R59, T39
+    /// Covers: R52, R53, R54, R55, R56, R57, R58, R59, T39e, T39f
     #[test]
     fn every_sequence_of_five_calls_shows_what_the_last_ones_demand() {
         use Input::{Disabled, Fine, NoAxis, Stale};

@@ -6,8 +6,10 @@
 
 mod blocks;
 mod error_ids;
+mod requirements;
 mod states;
 
+pub use requirements::Requirements;
 use std::path::{Path, PathBuf};
 
 /// A generated file: its path below the repository root and its text.
@@ -24,6 +26,7 @@ pub fn generated() -> Vec<Generated> {
     let mut files = blocks::pages();
     files.push(error_ids::page());
     files.extend(states::pages());
+    files.extend(Requirements::read().pages());
     files
 }
 
