@@ -268,7 +268,7 @@ impl<P: Planner> Axis<P> {
             }
             Work::Velocity { velocity, along } => {
                 let velocity = if along {
-                    velocity * self.last_direction
+                    velocity * self.last_velocity.signum()
                 } else {
                     velocity
                 };
@@ -278,7 +278,7 @@ impl<P: Planner> Axis<P> {
             Work::Home(_) => return Ok(Motion::Hold),
         };
         match planned {
-            Ok(plan) => Ok(Motion::Run { plan, elapsed: 0 }),
+            Ok(plan) => Ok(Motion::along(plan)),
             Err(PlanError::TooLong { .. }) => Err(ErrorId::MoveTooLong),
             // Distance over cycle^n does not fit into a number: longer than anything countable.
             Err(PlanError::InvalidInput {

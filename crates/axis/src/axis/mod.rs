@@ -13,8 +13,8 @@ mod step;
 
 use crate::fate::Fates;
 use crate::{
-    AxisConfig, AxisEvent, AxisId, AxisState, CommandId, ConfigError, DriveCommand, DriveFeedback,
-    DrivePosition, ErrorId, Event, Fate, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
+    AxisConfig, AxisEvent, AxisId, AxisState, CommandId, Comms, ConfigError, DriveCommand, DrivePosition,
+    DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
 };
 use queue::{Entry, Queue, Work};
 pub use reading::{MotionState, Pace, Way};
@@ -36,8 +36,19 @@ enum Motion<Plan> {
     Follow,
     /// It stays where it is.
     Hold,
-    /// A plan, so many scans after its start.
-    Run { plan: Plan, elapsed: u64 },
+    /// A plan, so many scans after its start, and the scans it has: asked for several times in every scan.
+    Run { plan: Plan, elapsed: u64, scans: u64 },
+}
+
+impl<P: Plan> Motion<P> {
+    /// Along `plan`, from its start.
+    fn along(plan: P) -> Self {
+        Self::Run {
+            plan,
+            elapsed: 0,
+            scans: u64::from(plan.scans()),
+        }
+    }
 }
 
 /// What is known of the power stage.
@@ -51,10 +62,16 @@ struct Power {
     going_off: bool,
     /// Power was lost: it does not come back before a reset or a new rising Enable.
     tripped: bool,
-    /// What the last MC_Power of this scan asked for, and which instance.
-    asked: Option<(bool, InstanceId)>,
+    /// What the last MC_Power of this scan asked for, and which instance, unless that is the decider.
+    overruled: Option<(bool, InstanceId)>,
     /// The instance that spoke last in the scan before.
     decider: Option<InstanceId>,
+    /// Power for the stage is available, as last told.
+    voltage: bool,
+    /// The fault last told; only in ErrorStop.
+    fault: Option<Fault>,
+    /// State of the communication; lost only in ErrorStop.
+    comms: Comms,
 }
 
 /// What an axis will do next, see [`Axis::outlook`]; for searches over all reachable states.
@@ -115,12 +132,13 @@ pub struct Axis<P: Planner = Standard> {
     setpoint: Setpoint,
     actual: f64,
     past: reading::Past,
-    feedback: DriveFeedback,
+    /// What the drive reported last beside its position.
+    signals: DriveSignals,
     motion: Motion<P::Plan>,
     /// Limits of the present motion, for whoever takes over from it.
     in_force: Limits,
-    /// Sign of the last velocity that was not zero (mcCurrentDirection).
-    last_direction: f64,
+    /// The last velocity that was not zero (u/s): its sign is mcCurrentDirection.
+    last_velocity: f64,
     owner: Option<Entry>,
     /// The owner is MC_Stop, stands, and is held by its Execute.
     stop_held: bool,
@@ -145,14 +163,6 @@ impl<P: Planner> Axis<P> {
     pub fn new(id: AxisId, config: AxisConfig, planner: P) -> Result<Self, ConfigError> {
         config.check()?;
         let powered = config.start == StartState::Standstill;
-        let feedback = DriveFeedback {
-            enabled: powered,
-            voltage: true,
-            fault: None,
-            position: position_at_drive(&config, config.position),
-            comms: crate::Comms::Ok,
-            signals: crate::DriveSignals::default(),
-        };
         Ok(Self {
             id,
             config,
@@ -165,10 +175,10 @@ impl<P: Planner> Axis<P> {
             setpoint: Setpoint::at_rest(config.position),
             actual: config.position,
             past: reading::Past::new(config.position),
-            feedback,
+            signals: DriveSignals::default(),
             motion: if powered { Motion::Hold } else { Motion::Follow },
             in_force: config.limits,
-            last_direction: 1.0,
+            last_velocity: 1.0,
             owner: None,
             stop_held: false,
             queue: Queue::default(),
@@ -179,8 +189,11 @@ impl<P: Planner> Axis<P> {
                 on: powered,
                 going_off: false,
                 tripped: false,
-                asked: None,
+                overruled: None,
                 decider: None,
+                voltage: true,
+                fault: None,
+                comms: Comms::Ok,
             },
             error: ErrorId::None,
             error_code: 0,
@@ -239,7 +252,7 @@ impl<P: Planner> Axis<P> {
     /// The plan in progress and the scans since its start.
     pub fn plan(&self) -> Option<(&P::Plan, u64)> {
         match &self.motion {
-            Motion::Run { plan, elapsed } => Some((plan, *elapsed)),
+            Motion::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
             Motion::Follow | Motion::Hold => None,
         }
     }
@@ -270,6 +283,12 @@ impl<P: Planner> Axis<P> {
                 }
             };
         }
+        self.fate_of_other(id)
+    }
+
+    /// What became of a command that is not the owner.
+    #[inline(never)]
+    fn fate_of_other(&self, id: CommandId) -> Fate {
         if self.queue.contains(id) || self.reset.as_ref().is_some_and(|reset| reset.id == id) {
             return Fate::Waiting;
         }
@@ -288,9 +307,9 @@ impl<P: Planner> Axis<P> {
             scans_left: match &self.motion {
                 Motion::Follow => None,
                 Motion::Hold => Some(0),
-                Motion::Run { plan, elapsed } => {
+                Motion::Run { elapsed, scans, .. } => {
                     // At least 1, to tell a plan at its goal from holding.
-                    let left = u64::from(plan.scans()).saturating_sub(*elapsed);
+                    let left = scans.saturating_sub(*elapsed);
                     Some(u32::try_from(left).unwrap_or(u32::MAX).saturating_add(1))
                 }
             },
@@ -308,28 +327,33 @@ impl<P: Planner> Axis<P> {
             cause_present: self.cause_present,
             reset: self.reset.as_ref().map(|reset| reset.id),
             homed: self.homed,
-            forward: self.last_direction > 0.0,
+            forward: self.last_velocity > 0.0,
         }
     }
 
     /// The drive's command for this scan.
     #[inline]
     pub fn drive_command(&mut self) -> DriveCommand {
+        let rename = match self.rename {
+            Some(position) => {
+                self.rename = None;
+                Some(position_at_drive(&self.config, position))
+            }
+            None => None,
+        };
         DriveCommand {
             request: self.drive_request(),
             position: position_at_drive(&self.config, self.setpoint.position),
             velocity: self.setpoint.velocity,
-            rename: self
-                .rename
-                .take()
-                .map(|position| position_at_drive(&self.config, position)),
+            rename,
         }
     }
 
     /// The running plan has reached its goal; a motion without a plan has.
+    #[inline]
     fn goal_reached(&self) -> bool {
         match &self.motion {
-            Motion::Run { plan, elapsed } => *elapsed >= u64::from(plan.scans()),
+            Motion::Run { elapsed, scans, .. } => elapsed >= scans,
             Motion::Hold => true,
             Motion::Follow => false,
         }

@@ -154,7 +154,7 @@ impl<P: Planner> Axis<P> {
     /// # Errors
     /// [`ErrorId::CommunicationLost`] if it was not latched in this scan.
     pub fn fresh_position(&self) -> Result<f64, ErrorId> {
-        match self.feedback.comms {
+        match self.power.comms {
             Comms::Ok => Ok(self.actual),
             Comms::Lost => Err(ErrorId::CommunicationLost),
         }
@@ -236,17 +236,17 @@ impl<P: Planner> Axis<P> {
 
     /// The communication with the drive is up.
     pub fn is_communicating(&self) -> bool {
-        self.feedback.comms == Comms::Ok
+        self.power.comms == Comms::Ok
     }
 
     /// Nothing known keeps the power stage from being on: communication and supply are there, no fault pends.
     pub fn is_ready_for_power(&self) -> bool {
-        self.is_communicating() && self.feedback.voltage && self.feedback.fault.is_none()
+        self.is_communicating() && self.power.voltage && self.power.fault.is_none()
     }
 
     /// What the drive reports beside its position.
     pub fn drive_signals(&self) -> DriveSignals {
-        self.feedback.signals
+        self.signals
     }
 }
 

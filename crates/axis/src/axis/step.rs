@@ -15,6 +15,39 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
         self.apply_power(scan, log);
+        // Short of the goal a plan needs a step and nothing else.
+        if let Motion::Run { elapsed, scans, .. } = &self.motion
+            && elapsed.wrapping_add(1) < *scans
+        {
+            self.step_along_plan(scan, log);
+        } else {
+            self.step_at_goal(scan, log);
+        }
+        self.finish_reset();
+    }
+
+    /// The next set-point of the plan, if it may be published.
+    // Inlined for the same reason as `publish`.
+    #[inline(always)]
+    fn step_along_plan(&mut self, scan: u64, log: &mut Log) {
+        let Motion::Run { plan, elapsed, .. } = &mut self.motion else {
+            return;
+        };
+        // Scans of 1 ms wrap after 10^8 years.
+        *elapsed = elapsed.wrapping_add(1);
+        let next = plan.at(*elapsed);
+        if !next.is_finite() {
+            self.fail(ErrorId::SetpointBroken, scan, log);
+        } else if self.would_leave() {
+            self.fail(ErrorId::SoftwareLimitReached, scan, log);
+        } else {
+            self.publish(next);
+        }
+    }
+
+    /// The step of an axis that is at its goal, or will be after it, or is not in operation.
+    #[inline(never)]
+    fn step_at_goal(&mut self, scan: u64, log: &mut Log) {
         if self.owner.is_none() && self.goal_reached() {
             // A ramp nobody commanded ended in the scan before; until then power stays on, so that the drive
             // gets the last set-point.
@@ -23,20 +56,11 @@ impl<P: Planner> Axis<P> {
         match &mut self.motion {
             Motion::Follow => self.publish(Setpoint::at_rest(self.actual)),
             Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
-            Motion::Run { plan, elapsed } => {
-                *elapsed = elapsed.saturating_add(1);
-                let next = plan.at(*elapsed);
-                if !next.is_finite() {
-                    self.fail(ErrorId::SetpointBroken, scan, log);
-                } else if self.would_leave() {
-                    self.fail(ErrorId::SoftwareLimitReached, scan, log);
-                } else {
-                    self.publish(next);
-                }
-            }
+            Motion::Run { .. } => self.step_along_plan(scan, log),
         }
-        self.settle(scan, log);
-        self.finish_reset();
+        if self.goal_reached() {
+            self.settle(scan, log);
+        }
     }
 
     // Inlined, so that a set-point goes from registers to its place and is not copied through memory, which
@@ -45,7 +69,7 @@ impl<P: Planner> Axis<P> {
     fn publish(&mut self, next: Setpoint) {
         self.setpoint = next;
         if next.velocity != 0.0 {
-            self.last_direction = if next.velocity < 0.0 { -1.0 } else { 1.0 };
+            self.last_velocity = next.velocity;
         }
     }
 
@@ -54,7 +78,7 @@ impl<P: Planner> Axis<P> {
     fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
         self.trip(error, 0, Reaction::Ramp, scan, log);
         let next = match &mut self.motion {
-            Motion::Run { plan, elapsed } => {
+            Motion::Run { plan, elapsed, .. } => {
                 *elapsed = 1;
                 plan.at(1)
             }
@@ -67,17 +91,19 @@ impl<P: Planner> Axis<P> {
     /// software limits inside them.
     #[inline]
     fn would_leave(&self) -> bool {
-        match (self.config.software_limits, &self.motion) {
-            (Some(limits), Motion::Run { plan, elapsed }) => {
-                self.would_leave_from(&plan.at(*elapsed), limits)
-            }
-            _ => false,
+        match self.config.software_limits {
+            Some(limits) => self.would_leave_within(limits),
+            None => false,
         }
     }
 
-    /// The same for the next set-point and limits `min` and `max` (u).
+    /// The same for limits `min` and `max` (u).
     #[inline(never)]
-    fn would_leave_from(&self, next: &Setpoint, (min, max): (f64, f64)) -> bool {
+    fn would_leave_within(&self, (min, max): (f64, f64)) -> bool {
+        let Motion::Run { plan, elapsed, .. } = &self.motion else {
+            return false;
+        };
+        let next = &plan.at(*elapsed);
         let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
         let leaving = match self.owner.as_ref().map(|owner| &owner.work) {
             Some(Work::Velocity { .. }) => true,
@@ -105,9 +131,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Completion and hand-over.
+    /// Completion and hand-over, at the goal.
     fn settle(&mut self, scan: u64, log: &mut Log) {
-        let reached = self.goal_reached();
         let Some(owner) = &self.owner else {
             if self.state == AxisState::Standstill && !self.queue.is_empty() {
                 // MC_Stop released the axis in this scan (note 6).
@@ -116,7 +141,7 @@ impl<P: Planner> Axis<P> {
             return;
         };
         match owner.work {
-            Work::Position(_) | Work::Distance(_) | Work::Halt if reached => self.complete(scan, log),
+            Work::Position(_) | Work::Distance(_) | Work::Halt => self.complete(scan, log),
             Work::Home(position) => {
                 self.rename_actual(self.setpoint.position, position);
                 self.setpoint = Setpoint::at_rest(position);
@@ -124,19 +149,18 @@ impl<P: Planner> Axis<P> {
                 self.homed = true;
                 self.complete(scan, log);
             }
-            Work::Stop if reached && owner.held => {
+            Work::Stop if owner.held => {
                 self.motion = Motion::Hold;
                 self.stop_held = true;
             }
-            Work::Stop if reached => {
+            Work::Stop => {
                 self.motion = Motion::Hold;
                 self.end_owner(Fate::Done);
                 self.enter(AxisEvent::StopReleased);
                 self.hand_over(scan, log);
             }
             // An endless motion gives way when it has reached its velocity.
-            Work::Velocity { .. } if reached => self.hand_over(scan, log),
-            Work::Position(_) | Work::Distance(_) | Work::Halt | Work::Stop | Work::Velocity { .. } => {}
+            Work::Velocity { .. } => self.hand_over(scan, log),
         }
     }
 
