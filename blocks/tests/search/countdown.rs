@@ -1,6 +1,6 @@
 //! A planner that only counts: every change takes two scans.
 
-use standstill_axis::{Excess, Limits, Plan, PlanError, Planner, Setpoint};
+use standstill_axis::{Excess, Limits, MoveProfile, Plan, PlanError, Planner, Setpoint};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Countdown;
@@ -26,7 +26,14 @@ impl Count {
 impl Planner for Countdown {
     type Plan = Count;
 
-    fn move_to(&self, start: &Setpoint, target: f64, _: &Limits, _: &Limits) -> Result<Count, PlanError> {
+    fn move_to(
+        &self,
+        _: MoveProfile,
+        start: &Setpoint,
+        target: f64,
+        _: &Limits,
+        _: &Limits,
+    ) -> Result<Count, PlanError> {
         Ok(Count::to(start, Setpoint::at_rest(target)))
     }
 

@@ -248,6 +248,7 @@ impl<P: Planner> Axis<P> {
     /// Plans a command from the present set-point. Nothing changes.
     pub(super) fn plan_for(&self, entry: &Entry) -> Result<Motion<P::Plan>, ErrorId> {
         let start = &self.setpoint;
+        let profile = self.config.profile;
         let before = if matches!(self.motion, Motion::Run { .. }) {
             &self.in_force
         } else {
@@ -256,7 +257,7 @@ impl<P: Planner> Axis<P> {
         let planned = match entry.work {
             Work::Position(target) => {
                 self.planner
-                    .move_to(start, self.allowed(target)?, &entry.limits, before)
+                    .move_to(profile, start, self.allowed(target)?, &entry.limits, before)
             }
             Work::Distance(distance) => {
                 let target = start.position + distance;
@@ -264,7 +265,7 @@ impl<P: Planner> Axis<P> {
                     return Err(ErrorId::PositionInvalid);
                 }
                 self.planner
-                    .move_to(start, self.allowed(target)?, &entry.limits, before)
+                    .move_to(profile, start, self.allowed(target)?, &entry.limits, before)
             }
             Work::Velocity { velocity, along } => {
                 let velocity = if along {
@@ -378,19 +379,6 @@ impl<P: Planner> Axis<P> {
             instance: entry.instance,
         };
         let positioning = matches!(entry.work, Work::Position(_) | Work::Distance(_));
-        let Limits {
-            acceleration,
-            deceleration,
-            ..
-        } = entry.limits;
-        if positioning && acceleration != deceleration {
-            let (value, limit) = if acceleration > deceleration {
-                (acceleration, deceleration)
-            } else {
-                (deceleration, acceleration)
-            };
-            self.record(Event::LowerUsed { value, limit }, source, log);
-        }
         if let Motion::Run { plan, .. } = &motion {
             let end = plan.at(u64::from(plan.scans()));
             let goal = if positioning {
