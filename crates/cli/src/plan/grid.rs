@@ -34,7 +34,7 @@ pub fn grid(fields: &Fields<'_>, problem: &Problem, method: Method) -> Result<Pl
     Ok(Planned::new(
         plan.duration(),
         plan.scans(),
-        plan.segments().map(segment).collect(),
+        plan.segments().map(Segment::from).collect(),
         plan.peaks(),
         plan.at(plan.scans().into()),
         Setpoints::Unequal(plan),
@@ -49,7 +49,7 @@ fn with_one_rate(plan: &GridPlan, asked_for: bool) -> Planned {
         ..Planned::new(
             plan.duration(),
             plan.scans(),
-            plan.segments().map(segment).collect(),
+            plan.segments().map(Segment::from).collect(),
             plan.peaks(),
             plan.at(plan.scans().into()),
             Setpoints::Grid(*plan),
@@ -67,16 +67,6 @@ fn refuse_too_long<T>(
         let nearest = nearest_limit(error, limits, |limits| plan(limits).is_ok());
         Refusal::of_plan_error(fields, error).nearest(nearest.map(number))
     })
-}
-
-fn segment(segment: standstill_planner::grid::Segment) -> Segment {
-    Segment {
-        duration: segment.duration,
-        velocity: segment.velocity,
-        acceleration: segment.acceleration,
-        jerk: segment.jerk,
-        snap: segment.snap,
-    }
 }
 
 /// As many boxes as the order, also of a move of no length, so that readers need no special case.
