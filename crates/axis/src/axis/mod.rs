@@ -128,6 +128,9 @@ pub struct Beside {
     pub command: Option<(CommandId, &'static str, bool)>,
     /// 0 if what is added holds, else one more than the scans to its goal.
     pub scans_left: u32,
+    /// Scans of the owner's plan until a command that waits or was lowered is tried again; the largest number if
+    /// it waits for the next plan.
+    pub tried_in: u32,
     /// Position and velocity of the owner's own set-point, as bits.
     pub base: (u64, u64),
     /// The position added and what is left to add, as bits.
