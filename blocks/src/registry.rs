@@ -6,7 +6,8 @@ use crate::administrative::{
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
-    mc_halt::McHalt, mc_move_absolute::McMoveAbsolute, mc_move_relative::McMoveRelative,
+    mc_halt::McHalt, mc_halt_superimposed::McHaltSuperimposed, mc_move_absolute::McMoveAbsolute,
+    mc_move_relative::McMoveRelative, mc_move_superimposed::McMoveSuperimposed,
     mc_move_velocity::McMoveVelocity, mc_stop::McStop,
 };
 use crate::standard::{
@@ -58,7 +59,7 @@ macro_rules! registry {
 registry! {
     McPower McReset McReadStatus McReadActualPosition McReadAxisError
     McHome
-    McStop McHalt McMoveAbsolute McMoveRelative McMoveVelocity
+    McStop McHalt McMoveAbsolute McMoveRelative McMoveVelocity McMoveSuperimposed McHaltSuperimposed
     RTrig FTrig Sr Rs Ctu Ctd Ctud Ton Tof Tp
 }
 

@@ -40,6 +40,18 @@ impl Planner for Countdown {
             },
         ))
     }
+
+    fn fits(&self, _: (&Count, u64), _: (&Count, u64), _: &Limits, _: Option<(f64, f64)>) -> bool {
+        true
+    }
+
+    fn room(&self, _: (&Count, u64), limits: &Limits) -> Limits {
+        *limits
+    }
+
+    fn next_switch(&self, (_, elapsed): (&Count, u64)) -> u64 {
+        elapsed
+    }
 }
 
 impl Plan for Count {

@@ -153,7 +153,7 @@ mod tests {
                     )
                 })
                 .collect();
-            let end = path.follow(&start, spans.into_iter());
+            let end = path.fill(&start, spans.into_iter());
             let peaks = peaks(&path, end.velocity);
             let mut bound = |peak: f64| peak * (1.0 + 0.3 * random.unit() + 1e-12);
             let bounds = [peaks.velocity, peaks.acceleration, peaks.jerk].map(&mut bound);

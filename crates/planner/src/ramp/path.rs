@@ -49,15 +49,21 @@ impl<const N: usize> Path<N> {
         spans: impl Iterator<Item = (f64, f64)>,
         velocity: f64,
     ) -> Self {
-        let mut path = Self::new(order);
-        path.follow(start, spans);
+        let mut path = Self::follow(order, start, spans);
         path.pin(velocity);
         path
     }
 
-    /// Lays `spans` from `start` on to wherever they end, on a path without pieces; what does not fit in is
-    /// left out. The last piece is stored by the state at its end, which is given back.
-    pub(crate) fn follow(&mut self, start: &Setpoint, spans: impl Iterator<Item = (f64, f64)>) -> Setpoint {
+    /// Lays `spans` from `start` on to wherever they end; what does not fit in is left out.
+    pub(crate) fn follow(order: Order, start: &Setpoint, spans: impl Iterator<Item = (f64, f64)>) -> Self {
+        let mut path = Self::new(order);
+        path.fill(start, spans);
+        path
+    }
+
+    /// As [`Path::follow`], on a path without pieces yet. The last piece is stored by the state at its end, which
+    /// is given back.
+    pub(crate) fn fill(&mut self, start: &Setpoint, spans: impl Iterator<Item = (f64, f64)>) -> Setpoint {
         let mut way = Way::new(self.order, start);
         let mut time = 0.0;
         for (duration, input) in spans {
