@@ -10,6 +10,9 @@ pub trait Planner {
     /// A plan: a plain value.
     type Plan: Plan;
 
+    /// The sample time (s): the distance in time of two set-points.
+    fn cycle(&self) -> f64;
+
     /// A move from `start` that ends at rest exactly on `target` (u) within `limits`.
     ///
     /// `before` are the limits that held for the motion `start` belongs to: until the state is inside
@@ -123,6 +126,10 @@ impl StandardPlan {
 
 impl Planner for Standard {
     type Plan = StandardPlan;
+
+    fn cycle(&self) -> f64 {
+        self.cycle
+    }
 
     fn move_to(
         &self,
