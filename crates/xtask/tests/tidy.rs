@@ -85,6 +85,7 @@ fn forbidden_words_stay_out_of_the_sources() {
 #[test]
 fn the_top_level_holds_what_a_newcomer_expects() {
     let allowed = [
+        "CITATION.cff",
         "Cargo.lock",
         "Cargo.toml",
         "LICENSE-APACHE",
