@@ -8,7 +8,8 @@ use crate::administrative::{
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
-    mc_halt::McHalt, mc_move_absolute::McMoveAbsolute, mc_move_relative::McMoveRelative,
+    mc_halt::McHalt, mc_halt_superimposed::McHaltSuperimposed, mc_move_absolute::McMoveAbsolute,
+    mc_move_relative::McMoveRelative, mc_move_superimposed::McMoveSuperimposed,
     mc_move_velocity::McMoveVelocity, mc_stop::McStop,
 };
 use crate::standard::{
@@ -61,7 +62,7 @@ registry! {
     McPower McReset McReadStatus McReadMotionState McReadAxisInfo McReadAxisError
     McReadActualPosition McReadActualVelocity
     McHome
-    McStop McHalt McMoveAbsolute McMoveRelative McMoveVelocity
+    McStop McHalt McMoveAbsolute McMoveRelative McMoveVelocity McMoveSuperimposed McHaltSuperimposed
     RTrig FTrig Sr Rs Ctu Ctd Ctud Ton Tof Tp
 }
 

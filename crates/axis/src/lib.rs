@@ -21,10 +21,10 @@ mod log;
 mod scaling;
 mod state;
 
-pub use axis::{Axis, MotionState, Outlook, Pace, Source, Way};
+pub use axis::{Axis, Beside, MotionState, Outlook, Pace, Source, Way};
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, IecEnum, InstanceId, QUEUE_MAX, Raw,
-    Request, ValueSource,
+    Request, Superimpose, ValueSource,
 };
 pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, PowerOff, StartState};
 pub use drive::{

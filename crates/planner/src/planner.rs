@@ -1,6 +1,6 @@
 //! The seam between an axis and the maths: what an axis may ask of any planner.
 
-use crate::{Excess, GridPlan, Limits, OnlinePlan, PlanError, RampPlan, Rung, Setpoint};
+use crate::{Excess, GridPlan, Limits, OnlinePlan, PlanError, RampPlan, Rung, Segment, Setpoint, sum};
 
 /// Plans moves for an axis.
 ///
@@ -40,6 +40,23 @@ pub trait Planner {
         limits: &Limits,
         before: &Limits,
     ) -> Result<Self::Plan, PlanError>;
+
+    /// Whether two plans, each so many scans after its start, keep `limits` together from now on and do not
+    /// turn outside `range` (u), which is one of the sum of their positions.
+    fn fits(
+        &self,
+        first: (&Self::Plan, u64),
+        second: (&Self::Plan, u64),
+        limits: &Limits,
+        range: Option<(f64, f64)>,
+    ) -> bool;
+
+    /// What the rest of a plan leaves of `limits` whatever is added when; 0 where it leaves nothing.
+    fn room(&self, rest: (&Self::Plan, u64), limits: &Limits) -> Limits;
+
+    /// The scan of a plan, counted from its start, at which it next changes its highest derivative, or what
+    /// is given if it never does again.
+    fn next_switch(&self, rest: (&Self::Plan, u64)) -> u64;
 }
 
 /// A planned motion, evaluated by scan count from its start.
@@ -137,6 +154,41 @@ impl Planner for Standard {
         before: &Limits,
     ) -> Result<StandardPlan, PlanError> {
         RampPlan::new(start, velocity, limits, before, self.cycle).map(StandardPlan::Ramp)
+    }
+
+    fn fits(
+        &self,
+        first: (&StandardPlan, u64),
+        second: (&StandardPlan, u64),
+        limits: &Limits,
+        range: Option<(f64, f64)>,
+    ) -> bool {
+        sum::fits(first, second, limits, range, self.cycle)
+    }
+
+    fn room(&self, rest: (&StandardPlan, u64), limits: &Limits) -> Limits {
+        sum::room(rest, limits, self.cycle)
+    }
+
+    fn next_switch(&self, rest: (&StandardPlan, u64)) -> u64 {
+        sum::next_switch(rest, self.cycle)
+    }
+}
+
+impl StandardPlan {
+    /// The stretches of constant highest derivative, in order of time; at most 46 of them.
+    pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+        let (grid, ramp, online) = match self {
+            Self::Grid(grid) => (Some(grid), None, None),
+            Self::Ramp(ramp) => (None, Some(ramp), None),
+            Self::Online(plan) => (None, None, Some(plan)),
+        };
+        let grid = grid
+            .into_iter()
+            .flat_map(|grid| grid.segments().map(Segment::from));
+        let ramp = ramp.into_iter().flat_map(RampPlan::segments);
+        let online = online.into_iter().flat_map(OnlinePlan::segments);
+        grid.chain(ramp).chain(online)
     }
 }
 

@@ -35,6 +35,18 @@ impl Planner for Noting {
     fn ramp_to(&self, _: &Setpoint, _: f64, _: &Limits, _: &Limits) -> Result<Note, PlanError> {
         Ok(Note(self.0))
     }
+
+    fn fits(&self, _: (&Note, u64), _: (&Note, u64), _: &Limits, _: Option<(f64, f64)>) -> bool {
+        true
+    }
+
+    fn room(&self, _: (&Note, u64), limits: &Limits) -> Limits {
+        *limits
+    }
+
+    fn next_switch(&self, (_, elapsed): (&Note, u64)) -> u64 {
+        elapsed
+    }
 }
 
 impl Plan for Note {

@@ -9,7 +9,7 @@ use crate::{
     AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Event, Fate, Goal,
     Log, Raw, Request,
 };
-use standstill_planner::{Excess, Field, Limits, Plan, PlanError, Planner};
+use standstill_planner::{Excess, Field, Limits, Plan, PlanError, Planner, Setpoint};
 
 /// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
 const ROUNDING: f64 = 1e-9;
@@ -19,6 +19,21 @@ const ROUNDING: f64 = 1e-9;
 enum Way {
     Now,
     Wait,
+}
+
+/// What a block shows of a planner's refusal.
+pub(super) fn refusal(error: PlanError) -> ErrorId {
+    match error {
+        PlanError::TooLong { .. } => ErrorId::MoveTooLong,
+        // Distance over cycle^n does not fit into a number: longer than anything countable.
+        PlanError::InvalidInput {
+            field: Field::Cycle, ..
+        } => ErrorId::MoveTooLong,
+        PlanError::InvalidInput {
+            field: Field::Target, ..
+        } => ErrorId::PositionInvalid,
+        _ => ErrorId::PlanRefused,
+    }
 }
 
 impl<P: Planner> Axis<P> {
@@ -51,7 +66,10 @@ impl<P: Planner> Axis<P> {
             held: work == Work::Stop,
         };
         match way {
-            Way::Wait => self.queue.push(entry),
+            Way::Wait => {
+                self.queue.push(entry);
+                self.start_beside(source.scan, log);
+            }
             Way::Now => {
                 let motion = self
                     .plan_for(&entry)
@@ -219,7 +237,7 @@ impl<P: Planner> Axis<P> {
     }
 
     fn positioning(&self, dynamics: &Dynamics, source: Source, log: &mut Log) -> Result<Limits, ErrorId> {
-        let velocity = self.positioning_velocity(dynamics.velocity, source, log)?;
+        let velocity = self.positive_velocity("Velocity", dynamics.velocity, source, log)?;
         Ok(Limits {
             velocity,
             ..self.resolve(dynamics, source, log)?
@@ -247,12 +265,16 @@ impl<P: Planner> Axis<P> {
 
     /// Plans a command from the present set-point. Nothing changes.
     pub(super) fn plan_for(&self, entry: &Entry) -> Result<Motion<P::Plan>, ErrorId> {
-        let start = &self.setpoint;
-        let before = if matches!(self.motion, Motion::Run { .. }) {
-            &self.in_force
-        } else {
-            &entry.limits
-        };
+        self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))
+    }
+
+    /// Plans a command from `start`, whose motion was within `before`.
+    pub(super) fn plan_from(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        before: &Limits,
+    ) -> Result<Motion<P::Plan>, ErrorId> {
         let planned = match entry.work {
             Work::Position(target) => {
                 self.planner
@@ -279,19 +301,11 @@ impl<P: Planner> Axis<P> {
         };
         match planned {
             Ok(plan) => Ok(Motion::along(plan)),
-            Err(PlanError::TooLong { .. }) => Err(ErrorId::MoveTooLong),
-            // Distance over cycle^n does not fit into a number: longer than anything countable.
-            Err(PlanError::InvalidInput {
-                field: Field::Cycle, ..
-            }) => Err(ErrorId::MoveTooLong),
-            Err(PlanError::InvalidInput {
-                field: Field::Target, ..
-            }) => Err(ErrorId::PositionInvalid),
-            Err(_) => Err(ErrorId::PlanRefused),
+            Err(error) => Err(refusal(error)),
         }
     }
 
-    fn allowed(&self, target: f64) -> Result<f64, ErrorId> {
+    pub(super) fn allowed(&self, target: f64) -> Result<f64, ErrorId> {
         match self.config.software_limits {
             Some((min, max)) if target < min || target > max => Err(ErrorId::TargetOutsideSoftwareLimits),
             _ => Ok(target),
@@ -324,7 +338,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The software limit `target` is beyond (u).
-    fn broken_software_limit(&self, target: f64) -> f64 {
+    pub(super) fn broken_software_limit(&self, target: f64) -> f64 {
         match self.config.software_limits {
             Some((min, max)) => {
                 if target > max {
@@ -339,11 +353,12 @@ impl<P: Planner> Axis<P> {
 
     /// Where a positioning command ends (u).
     fn target(&self, entry: &Entry) -> f64 {
-        match entry.work {
+        let target = match entry.work {
             Work::Position(target) => target,
             Work::Distance(distance) => self.setpoint.position + distance,
             Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) => self.setpoint.position,
-        }
+        };
+        target + self.superimposed_left()
     }
 
     /// What of an excess over a command's limits is beyond those of the axis as well, rounding apart. A faster

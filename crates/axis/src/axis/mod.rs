@@ -1,8 +1,8 @@
 //! One axis: what it knows and what others may ask.
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
-//! on commands, [`step`] moves and hands over, [`power`] reacts to feedback, power, faults and resets,
-//! [`reading`] answers what reading blocks ask.
+//! on commands, [`step`] moves and hands over, [`superimposed`] adds a second motion, [`power`] reacts to
+//! feedback, power, faults and resets, [`reading`] answers what reading blocks ask.
 
 mod accept;
 mod dynamics;
@@ -10,6 +10,7 @@ mod power;
 mod queue;
 mod reading;
 mod step;
+mod superimposed;
 
 use crate::fate::Fates;
 use crate::{
@@ -47,6 +48,19 @@ impl<P: Plan> Motion<P> {
             plan,
             elapsed: 0,
             scans: u64::from(plan.scans()),
+        }
+    }
+
+    /// `None` if the set-point follows the feedback, 0 if it holds, else one more than the scans to the goal.
+    fn scans_left(&self) -> Option<u32> {
+        match self {
+            Self::Follow => None,
+            Self::Hold => Some(0),
+            Self::Run { elapsed, scans, .. } => {
+                // At least 1, to tell a plan at its goal from holding.
+                let left = scans.saturating_sub(*elapsed);
+                Some(u32::try_from(left).unwrap_or(u32::MAX).saturating_add(1))
+            }
         }
     }
 }
@@ -105,6 +119,24 @@ pub struct Outlook {
     pub homed: bool,
     /// The last motion was in positive direction.
     pub forward: bool,
+    /// What is superimposed.
+    pub superimposed: Option<Beside>,
+}
+
+/// What a superimposed motion will do next, part of [`Outlook`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Beside {
+    /// The command: its number, what it does, and whether the motion is its own; else it waits for room.
+    pub command: Option<(CommandId, &'static str, bool)>,
+    /// 0 if what is added holds, else one more than the scans to its goal.
+    pub scans_left: u32,
+    /// Scans of the owner's plan until a command that waits or was lowered is tried again; the largest number if
+    /// it waits for the next plan.
+    pub tried_in: u32,
+    /// Position and velocity of the owner's own set-point, as bits.
+    pub base: (u64, u64),
+    /// The position added and what is left to add, as bits.
+    pub added: (u64, u64),
 }
 
 impl Outlook {
@@ -118,6 +150,13 @@ impl Outlook {
             *id = NUMBERLESS;
         }
         self.reset = self.reset.map(|_| NUMBERLESS);
+        if let Some(Beside {
+            command: Some((id, ..)),
+            ..
+        }) = &mut self.superimposed
+        {
+            *id = NUMBERLESS;
+        }
         self
     }
 }
@@ -135,6 +174,10 @@ pub struct Axis<P: Planner = Standard> {
     /// What the drive reported last beside its position.
     signals: DriveSignals,
     motion: Motion<P::Plan>,
+    /// A second motion on top of it.
+    layer: Option<superimposed::Layer<P::Plan>>,
+    /// The last superimposed command that ended, and the distance it added (u).
+    covered: Option<(CommandId, f64)>,
     /// Limits of the present motion, for whoever takes over from it.
     in_force: Limits,
     /// The last velocity that was not zero (u/s): its sign is mcCurrentDirection.
@@ -177,6 +220,8 @@ impl<P: Planner> Axis<P> {
             past: reading::Past::new(config.position),
             signals: DriveSignals::default(),
             motion: if powered { Motion::Hold } else { Motion::Follow },
+            layer: None,
+            covered: None,
             in_force: config.limits,
             last_velocity: 1.0,
             owner: None,
@@ -257,7 +302,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The command that owns the axis.
+    /// The command that owns the axis; a superimposed one does not.
     pub fn active_command(&self) -> Option<CommandId> {
         self.owner.as_ref().map(|owner| owner.id)
     }
@@ -292,6 +337,9 @@ impl<P: Planner> Axis<P> {
         if self.queue.contains(id) || self.reset.as_ref().is_some_and(|reset| reset.id == id) {
             return Fate::Waiting;
         }
+        if let Some(fate) = self.superimposed_fate(id) {
+            return fate;
+        }
         self.fates.find(id).unwrap_or(Fate::Failed(ErrorId::FateLost))
     }
 
@@ -304,15 +352,7 @@ impl<P: Planner> Axis<P> {
         }
         Outlook {
             state: self.state,
-            scans_left: match &self.motion {
-                Motion::Follow => None,
-                Motion::Hold => Some(0),
-                Motion::Run { elapsed, scans, .. } => {
-                    // At least 1, to tell a plan at its goal from holding.
-                    let left = scans.saturating_sub(*elapsed);
-                    Some(u32::try_from(left).unwrap_or(u32::MAX).saturating_add(1))
-                }
-            },
+            scans_left: self.motion.scans_left(),
             owner: self
                 .owner
                 .as_ref()
@@ -328,6 +368,7 @@ impl<P: Planner> Axis<P> {
             reset: self.reset.as_ref().map(|reset| reset.id),
             homed: self.homed,
             forward: self.last_velocity > 0.0,
+            superimposed: self.superimposed_outlook(),
         }
     }
 
@@ -372,8 +413,9 @@ impl<P: Planner> Axis<P> {
         CommandId(self.last_id)
     }
 
-    /// Ends the owner and everything that waits.
+    /// Ends the owner, what is superimposed on it and everything that waits.
     fn end_all(&mut self, owner: Fate, waiting: Fate) {
+        self.end_superimposed(owner);
         self.end_owner(owner);
         // Bounded by QUEUE_MAX: each round takes one out.
         while let Some(entry) = self.queue.pop() {

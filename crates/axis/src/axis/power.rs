@@ -194,7 +194,8 @@ impl<P: Planner> Axis<P> {
 
     /// Plans a ramp to rest with the stop dynamics.
     fn ramp_down(&mut self, source: Source, log: &mut Log) {
-        if !matches!(self.motion, Motion::Run { .. }) || self.setpoint.is_at_rest() {
+        // Only a plan leaves a set-point that is not at rest.
+        if self.setpoint.is_at_rest() {
             self.motion = Motion::Hold;
             return;
         }

@@ -18,6 +18,7 @@ impl<P: Planner> Axis<P> {
         // Short of the goal a plan needs a step and nothing else.
         if let Motion::Run { elapsed, scans, .. } = &self.motion
             && elapsed.wrapping_add(1) < *scans
+            && self.layer.is_none()
         {
             self.step_along_plan(scan, log);
         } else {
@@ -45,13 +46,18 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The step of an axis that is at its goal, or will be after it, or is not in operation.
+    /// The step of an axis that is at its goal, or will be after it, or is not in operation, or has something
+    /// superimposed.
     #[inline(never)]
     fn step_at_goal(&mut self, scan: u64, log: &mut Log) {
         if self.owner.is_none() && self.goal_reached() {
             // A ramp nobody commanded ended in the scan before; until then power stays on, so that the drive
             // gets the last set-point.
             self.motion = Motion::Hold;
+        }
+        if self.layer.is_some() {
+            self.advance_both(scan, log);
+            return;
         }
         match &mut self.motion {
             Motion::Follow => self.publish(Setpoint::at_rest(self.actual)),
@@ -66,7 +72,7 @@ impl<P: Planner> Axis<P> {
     // Inlined, so that a set-point goes from registers to its place and is not copied through memory, which
     // takes longer than computing it.
     #[inline(always)]
-    fn publish(&mut self, next: Setpoint) {
+    pub(super) fn publish(&mut self, next: Setpoint) {
         self.setpoint = next;
         if next.velocity != 0.0 {
             self.last_velocity = next.velocity;
@@ -75,7 +81,7 @@ impl<P: Planner> Axis<P> {
 
     /// Enters ErrorStop and publishes the first set-point of the ramp, which starts at the last one published.
     #[cold]
-    fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
+    pub(super) fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
         self.trip(error, 0, Reaction::Ramp, scan, log);
         let next = match &mut self.motion {
             Motion::Run { plan, elapsed, .. } => {
@@ -98,16 +104,20 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The same for limits `min` and `max` (u).
+    fn would_leave_within(&self, limits: (f64, f64)) -> bool {
+        match &self.motion {
+            Motion::Run { plan, elapsed, .. } => self.would_leave_from(&plan.at(*elapsed), limits),
+            Motion::Follow | Motion::Hold => false,
+        }
+    }
+
+    /// The same for the next set-point.
     #[inline(never)]
-    fn would_leave_within(&self, (min, max): (f64, f64)) -> bool {
-        let Motion::Run { plan, elapsed, .. } = &self.motion else {
-            return false;
-        };
-        let next = &plan.at(*elapsed);
+    pub(super) fn would_leave_from(&self, next: &Setpoint, (min, max): (f64, f64)) -> bool {
         let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
         let leaving = match self.owner.as_ref().map(|owner| &owner.work) {
             Some(Work::Velocity { .. }) => true,
-            Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan()),
+            Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan() + self.superimposed_left()),
             // Targets were checked when the command was taken.
             Some(Work::Position(_) | Work::Distance(_) | Work::Home(_)) | None => false,
         };
@@ -132,10 +142,12 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Completion and hand-over, at the goal.
-    fn settle(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn settle(&mut self, scan: u64, log: &mut Log) {
         let Some(owner) = &self.owner else {
-            if self.state == AxisState::Standstill && !self.queue.is_empty() {
-                // MC_Stop released the axis in this scan (note 6).
+            if matches!(self.state, AxisState::Standstill | AxisState::DiscreteMotion)
+                && !self.queue.is_empty()
+            {
+                // MC_Stop released the axis in this scan (note 6), or a command waits for a superimposed motion.
                 self.hand_over(scan, log);
             }
             return;
@@ -169,18 +181,29 @@ impl<P: Planner> Axis<P> {
     fn complete(&mut self, scan: u64, log: &mut Log) {
         self.motion = Motion::Hold;
         self.end_owner(Fate::Done);
-        self.enter(AxisEvent::MotionDone);
+        // The motion is not over while something is superimposed (V14).
+        if !self.is_superimposing() {
+            self.enter(AxisEvent::MotionDone);
+        }
         self.hand_over(scan, log);
     }
 
     /// The next waiting command that can be planned becomes the owner; those that cannot fail (R79). An
     /// endless owner stays if there is none.
     #[inline(never)]
-    fn hand_over(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn hand_over(&mut self, scan: u64, log: &mut Log) {
         for _ in 0..QUEUE_MAX {
-            let Some(next) = self.queue.pop() else { return };
-            match self.plan_for(&next) {
-                Ok(motion) => {
+            let Some(next) = self.queue.first().copied() else {
+                return;
+            };
+            let planned = self.plan_next(&next);
+            if let Ok(None) = planned {
+                return;
+            }
+            self.queue.pop();
+            match planned {
+                Ok(None) => {}
+                Ok(Some(motion)) => {
                     self.end_owner(Fate::Aborted);
                     self.begin(next, motion, scan, log);
                     return;
