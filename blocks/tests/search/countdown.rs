@@ -27,6 +27,10 @@ impl Count {
 impl Planner for Countdown {
     type Plan = Count;
 
+    fn cycle(&self) -> f64 {
+        1.0
+    }
+
     fn move_to(
         &self,
         _: MoveProfile,

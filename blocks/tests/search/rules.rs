@@ -71,6 +71,8 @@ fn rule(holds: bool, id: &str, name: &str, what: &str) -> Result<(), String> {
 }
 
 /// Rules on what a call shows.
+///
+/// Covers: R21, R22, R23, R24, R28, R30, R34, R43, R60, R78, S2, S11
 pub fn check_calls(scene: &Scene<'_>, kinds: [&str; 4]) -> Result<(), String> {
     let executes = |inputs: &Inputs, name: &str| match name {
         "first" => inputs.execute[0],
@@ -170,6 +172,8 @@ pub fn check_calls(scene: &Scene<'_>, kinds: [&str; 4]) -> Result<(), String> {
 }
 
 /// Rules on what is so after the motion step, whichever instance was called when.
+///
+/// Covers: R25, R47, R48, R50, R77, S1
 pub fn check_truth(polled: &[Shown], axis: &Outlook, kinds: [&str; 4]) -> Result<(), String> {
     let state = axis.state;
     let owned = axis.owner.is_some();

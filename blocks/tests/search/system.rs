@@ -3,8 +3,8 @@
 use crate::countdown::Countdown;
 use crate::rules::{self, Shown};
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Fault,
-    InstanceId, Limits, Log, Outlook, Source, StartState,
+    Axis, AxisConfig, AxisId, AxisState, Comms, DriveFeedback, DrivePosition, DriveRequest, DriveSignals,
+    ErrorId, Fault, InstanceId, Limits, Log, Outlook, Source, StartState,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, Value};
@@ -268,6 +268,7 @@ impl System {
             }),
             position: DrivePosition::Units(f64::from_bits(self.drive.position)),
             comms: Comms::Ok,
+            signals: DriveSignals::default(),
         }
     }
 

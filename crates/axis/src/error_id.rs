@@ -97,6 +97,8 @@ error_ids! {
         "Raise the limits, shorten the move or lengthen the cycle.";
     TargetOutsideSoftwareLimits = 117, "The move would end outside the software limits.",
         "Choose a target inside them or change the axis configuration.";
+    SourceInvalid = 118, "Source is not a number of MC_SOURCE.",
+        "Use mcCommandedValue (0), mcSetValue (1) or mcActualValue (2).";
 
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";
@@ -185,6 +187,7 @@ impl ErrorId {
 mod tests {
     use super::*;
 
+    /// Covers: V27, R73
     #[test]
     fn numbers_rise_and_every_error_says_what_to_do() {
         for pair in ErrorId::ALL.windows(2) {

@@ -14,6 +14,9 @@ pub trait Planner {
     /// A plan: a plain value.
     type Plan: Plan;
 
+    /// The sample time (s): the distance in time of two set-points.
+    fn cycle(&self) -> f64;
+
     /// A move from `start` that ends at rest exactly on `target` (u) within `limits`.
     ///
     /// `profile` is what the axis asks for; a planner may know one only. `before` are the limits that held for
@@ -245,6 +248,10 @@ impl StandardPlan {
 
 impl Planner for Standard {
     type Plan = StandardPlan;
+
+    fn cycle(&self) -> f64 {
+        self.cycle
+    }
 
     fn move_to(
         &self,

@@ -24,6 +24,10 @@ struct Note(usize);
 impl Planner for Noting {
     type Plan = Note;
 
+    fn cycle(&self) -> f64 {
+        0.001
+    }
+
     fn move_to(
         &self,
         _: MoveProfile,

@@ -2,21 +2,23 @@
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`superimposed`] adds a second motion, [`power`] reacts to
-//! feedback, power, faults and resets.
+//! feedback, power, faults and resets, [`reading`] answers what reading blocks ask.
 
 mod accept;
 mod dynamics;
 mod power;
 mod queue;
+mod reading;
 mod step;
 mod superimposed;
 
 use crate::fate::Fates;
 use crate::{
     AxisConfig, AxisEvent, AxisId, AxisState, CommandId, Comms, ConfigError, DriveCommand, DrivePosition,
-    ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
+    DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
 };
 use queue::{Entry, Queue, Work};
+pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
 
 /// Who gives a command and when; goes into the records.
@@ -168,6 +170,9 @@ pub struct Axis<P: Planner = Standard> {
     state: AxisState,
     setpoint: Setpoint,
     actual: f64,
+    past: reading::Past,
+    /// What the drive reported last beside its position.
+    signals: DriveSignals,
     motion: Motion<P::Plan>,
     /// A second motion on top of it.
     layer: Option<superimposed::Layer<P::Plan>>,
@@ -212,6 +217,8 @@ impl<P: Planner> Axis<P> {
             },
             setpoint: Setpoint::at_rest(config.position),
             actual: config.position,
+            past: reading::Past::new(config.position),
+            signals: DriveSignals::default(),
             motion: if powered { Motion::Hold } else { Motion::Follow },
             layer: None,
             covered: None,

@@ -75,6 +75,7 @@ impl Image {
             })),
             position: any(real.position),
             comms: any(Comms::Lost),
+            signals: any(real.signals),
         };
         for axis in axes.iter_mut() {
             axis.follow_feedback(&any(feedback), *scan, log);
