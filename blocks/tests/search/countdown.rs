@@ -1,7 +1,7 @@
 //! A planner that only counts: every change takes two scans. At velocity 2 a move takes two scans even to
 //! where it is: what is superimposed must not make the positions many.
 
-use standstill_axis::{Excess, Limits, Plan, PlanError, Planner, Setpoint};
+use standstill_axis::{Excess, Limits, MoveProfile, Plan, PlanError, Planner, Setpoint};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Countdown;
@@ -33,6 +33,7 @@ impl Planner for Countdown {
 
     fn move_to(
         &self,
+        _: MoveProfile,
         start: &Setpoint,
         target: f64,
         limits: &Limits,

@@ -36,6 +36,6 @@ pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
 pub use log::{Event, Goal, LOG_KEPT, Log, Record};
 pub use scaling::Scaling;
 pub use standstill_planner::{
-    Excess, Limits, Order, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
+    Excess, Limits, MoveProfile, Order, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
 };
 pub use state::{ARROWS, Arrow, AxisEvent, AxisState, Refused, next};

@@ -3,8 +3,8 @@
 //! The planner of this test notes which axis asks its plan for a set-point.
 
 use standstill_axis::{
-    AxisConfig, AxisId, Command, Direction, DrivePosition, Dynamics, Excess, IdealDrive, Limits, Plan,
-    PlanError, Planner, Raw, Request, Setpoint, StartState,
+    AxisConfig, AxisId, Command, Direction, DrivePosition, Dynamics, Excess, IdealDrive, Limits, MoveProfile,
+    Plan, PlanError, Planner, Raw, Request, Setpoint, StartState,
 };
 use standstill_fb::Context;
 use standstill_scan::{
@@ -28,7 +28,14 @@ impl Planner for Noting {
         0.001
     }
 
-    fn move_to(&self, _: &Setpoint, _: f64, _: &Limits, _: &Limits) -> Result<Note, PlanError> {
+    fn move_to(
+        &self,
+        _: MoveProfile,
+        _: &Setpoint,
+        _: f64,
+        _: &Limits,
+        _: &Limits,
+    ) -> Result<Note, PlanError> {
         Ok(Note(self.0))
     }
 

@@ -275,10 +275,11 @@ impl<P: Planner> Axis<P> {
         start: &Setpoint,
         before: &Limits,
     ) -> Result<Motion<P::Plan>, ErrorId> {
+        let profile = self.config.profile;
         let planned = match entry.work {
             Work::Position(target) => {
                 self.planner
-                    .move_to(start, self.allowed(target)?, &entry.limits, before)
+                    .move_to(profile, start, self.allowed(target)?, &entry.limits, before)
             }
             Work::Distance(distance) => {
                 let target = start.position + distance;
@@ -286,7 +287,7 @@ impl<P: Planner> Axis<P> {
                     return Err(ErrorId::PositionInvalid);
                 }
                 self.planner
-                    .move_to(start, self.allowed(target)?, &entry.limits, before)
+                    .move_to(profile, start, self.allowed(target)?, &entry.limits, before)
             }
             Work::Velocity { velocity, along } => {
                 let velocity = if along {
@@ -393,19 +394,6 @@ impl<P: Planner> Axis<P> {
             instance: entry.instance,
         };
         let positioning = matches!(entry.work, Work::Position(_) | Work::Distance(_));
-        let Limits {
-            acceleration,
-            deceleration,
-            ..
-        } = entry.limits;
-        if positioning && acceleration != deceleration {
-            let (value, limit) = if acceleration > deceleration {
-                (acceleration, deceleration)
-            } else {
-                (deceleration, acceleration)
-            };
-            self.record(Event::LowerUsed { value, limit }, source, log);
-        }
         if let Motion::Run { plan, .. } = &motion {
             let end = plan.at(u64::from(plan.scans()));
             let goal = if positioning {
