@@ -6,7 +6,9 @@ use crate::administrative::{
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
-    mc_halt::McHalt, mc_move_absolute::McMoveAbsolute, mc_move_relative::McMoveRelative,
+    mc_halt::McHalt, mc_move_absolute::McMoveAbsolute, mc_move_additive::McMoveAdditive,
+    mc_move_continuous_absolute::McMoveContinuousAbsolute,
+    mc_move_continuous_relative::McMoveContinuousRelative, mc_move_relative::McMoveRelative,
     mc_move_velocity::McMoveVelocity, mc_stop::McStop,
 };
 use crate::standard::{
@@ -58,7 +60,8 @@ macro_rules! registry {
 registry! {
     McPower McReset McReadStatus McReadActualPosition McReadAxisError
     McHome
-    McStop McHalt McMoveAbsolute McMoveRelative McMoveVelocity
+    McStop McHalt McMoveAbsolute McMoveRelative McMoveAdditive McMoveVelocity
+    McMoveContinuousAbsolute McMoveContinuousRelative
     RTrig FTrig Sr Rs Ctu Ctd Ctud Ton Tof Tp
 }
 

@@ -1,6 +1,6 @@
 //! A planner that only counts: every change takes two scans.
 
-use standstill_axis::{Excess, Limits, Plan, PlanError, Planner, Setpoint};
+use standstill_axis::{Excess, Limits, Passage, Plan, PlanError, Planner, Setpoint};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Countdown;
@@ -39,6 +39,37 @@ impl Planner for Countdown {
                 ..Setpoint::at_rest(start.position)
             },
         ))
+    }
+
+    fn pass(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        velocity: f64,
+        _: &Limits,
+        _: &Limits,
+    ) -> Result<Count, PlanError> {
+        let goal = Setpoint {
+            velocity,
+            ..Setpoint::at_rest(target)
+        };
+        Ok(Count::to(start, goal))
+    }
+
+    fn blend(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        passage: &Passage,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<Option<Count>, PlanError> {
+        let velocity = passage.wanted.copysign(target - start.position);
+        self.pass(start, target, velocity, limits, before).map(Some)
+    }
+
+    fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits, _: &Limits) -> f64 {
+        wanted
     }
 }
 

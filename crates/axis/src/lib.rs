@@ -27,12 +27,12 @@ pub use command::{
 };
 pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, PowerOff, StartState};
 pub use drive::{Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, Fault};
-pub use error_id::{ErrorClass, ErrorId};
+pub use error_id::{ErrorClass, ErrorId, RETIRED};
 pub use fate::{FATES_KEPT, Fate};
 pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
 pub use log::{Event, Goal, LOG_KEPT, Log, Record};
 pub use scaling::Scaling;
 pub use standstill_planner::{
-    Excess, Limits, Order, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
+    Excess, Limits, Order, Passage, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
 };
 pub use state::{ARROWS, Arrow, AxisEvent, AxisState, Refused, next};

@@ -28,7 +28,7 @@ mod setpoint;
 pub use error::{Field, PlanError};
 pub use grid::{GridPlan, Method};
 pub use limits::{Limits, Order};
-pub use online::{OnlinePlan, Rung};
+pub use online::{OnlinePlan, Passage, Rung};
 pub use planner::{Plan, Planner, Standard, StandardPlan};
 pub use ramp::{Excess, Peaks, RampPlan, Segment};
 pub use setpoint::Setpoint;

@@ -1,6 +1,6 @@
 //! The seam between an axis and the maths: what an axis may ask of any planner.
 
-use crate::{Excess, GridPlan, Limits, OnlinePlan, PlanError, RampPlan, Rung, Setpoint};
+use crate::{Excess, GridPlan, Limits, OnlinePlan, Passage, PlanError, RampPlan, Rung, Setpoint, online};
 
 /// Plans moves for an axis.
 ///
@@ -37,6 +37,41 @@ pub trait Planner {
         limits: &Limits,
         before: &Limits,
     ) -> Result<Self::Plan, PlanError>;
+
+    /// A move from `start` that has the `velocity` (u/s, signed, at most that of `limits`) when it is at
+    /// `target` (u), and keeps it from there on; `before` as in [`Planner::move_to`]. Against the direction
+    /// in which the target lies it passes, turns, and is there again.
+    ///
+    /// # Errors
+    /// [`PlanError`] if an input is not usable or the move too long.
+    fn pass(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        velocity: f64,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<Self::Plan, PlanError>;
+
+    /// A move that passes `target` (u) as `passage` says, with the wanted speed or the nearest that needs no
+    /// overshoot and no reversal; `None` if there is none. The wanted speed may be above that of `limits`,
+    /// which then holds until just before the target; `before` as in [`Planner::move_to`].
+    ///
+    /// # Errors
+    /// [`PlanError`] if an input is not usable or the move too long.
+    fn blend(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        passage: &Passage,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<Option<Self::Plan>, PlanError>;
+
+    /// The largest speed (u/s), at most `wanted`, at which a move over `distance` (u, not negative) can
+    /// begin up to one scan late and still pass its end with no more than the speed `exit`; `before` are the
+    /// limits of the move it takes over from.
+    fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits, before: &Limits) -> f64;
 }
 
 /// A planned motion, evaluated by scan count from its start.
@@ -118,6 +153,36 @@ impl Planner for Standard {
         before: &Limits,
     ) -> Result<StandardPlan, PlanError> {
         RampPlan::new(start, velocity, limits, before, self.cycle).map(StandardPlan::Ramp)
+    }
+
+    fn pass(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        velocity: f64,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<StandardPlan, PlanError> {
+        if velocity == 0.0 {
+            return self.move_to(start, target, limits, before);
+        }
+        OnlinePlan::passing(start, target, velocity, limits, before, self.cycle).map(StandardPlan::Online)
+    }
+
+    fn blend(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        passage: &Passage,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<Option<StandardPlan>, PlanError> {
+        OnlinePlan::blending(start, target, passage, limits, before, self.cycle)
+            .map(|plan| plan.map(StandardPlan::Online))
+    }
+
+    fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits, before: &Limits) -> f64 {
+        online::entry_speed(wanted, distance, exit, limits, before, self.cycle)
     }
 }
 

@@ -3,8 +3,8 @@
 //! The planner of this test notes which axis asks its plan for a set-point.
 
 use standstill_axis::{
-    AxisConfig, AxisId, Command, Direction, DrivePosition, Dynamics, Excess, IdealDrive, Limits, Plan,
-    PlanError, Planner, Raw, Request, Setpoint, StartState,
+    AxisConfig, AxisId, Command, Direction, DrivePosition, Dynamics, Excess, IdealDrive, Limits, Passage,
+    Plan, PlanError, Planner, Raw, Request, Setpoint, StartState,
 };
 use standstill_fb::Context;
 use standstill_scan::{
@@ -30,6 +30,25 @@ impl Planner for Noting {
 
     fn ramp_to(&self, _: &Setpoint, _: f64, _: &Limits, _: &Limits) -> Result<Note, PlanError> {
         Ok(Note(self.0))
+    }
+
+    fn pass(&self, _: &Setpoint, _: f64, _: f64, _: &Limits, _: &Limits) -> Result<Note, PlanError> {
+        Ok(Note(self.0))
+    }
+
+    fn blend(
+        &self,
+        _: &Setpoint,
+        _: f64,
+        _: &Passage,
+        _: &Limits,
+        _: &Limits,
+    ) -> Result<Option<Note>, PlanError> {
+        Ok(None)
+    }
+
+    fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits, _: &Limits) -> f64 {
+        wanted
     }
 }
 

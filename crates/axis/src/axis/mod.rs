@@ -1,9 +1,11 @@
 //! One axis: what it knows and what others may ask.
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
-//! on commands, [`step`] moves and hands over, [`power`] reacts to feedback, power, faults and resets.
+//! on commands, [`step`] moves and hands over, [`blend`] says how fast,
+//! [`power`] reacts to feedback, power, faults and resets.
 
 mod accept;
+mod blend;
 mod dynamics;
 mod power;
 mod queue;
@@ -11,8 +13,9 @@ mod step;
 
 use crate::fate::Fates;
 use crate::{
-    AxisConfig, AxisEvent, AxisId, AxisState, CommandId, ConfigError, DriveCommand, DriveFeedback,
-    DrivePosition, ErrorId, Event, Fate, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
+    AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, ConfigError, DriveCommand,
+    DriveFeedback, DrivePosition, ErrorId, Event, Fate, InstanceId, Log, QUEUE_MAX, Record, StartState,
+    state,
 };
 use queue::{Entry, Queue, Work};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
@@ -65,8 +68,8 @@ pub struct Outlook {
     pub owner: Option<(CommandId, &'static str, bool)>,
     /// MC_Stop has come to rest and is held.
     pub stop_held: bool,
-    /// Commands that wait, in order.
-    pub waiting: [Option<(CommandId, &'static str)>; QUEUE_MAX],
+    /// Commands that wait, in order, with how they follow the one before.
+    pub waiting: [Option<(CommandId, &'static str, BufferMode)>; QUEUE_MAX],
     /// MC_Power.Enable.
     pub power_wanted: bool,
     /// Operation is enabled.
@@ -94,7 +97,7 @@ impl Outlook {
         if let Some((id, ..)) = &mut self.owner {
             *id = NUMBERLESS;
         }
-        for (id, _) in self.waiting.iter_mut().flatten() {
+        for (id, ..) in self.waiting.iter_mut().flatten() {
             *id = NUMBERLESS;
         }
         self.reset = self.reset.map(|_| NUMBERLESS);
@@ -115,6 +118,8 @@ pub struct Axis<P: Planner = Standard> {
     motion: Motion<P::Plan>,
     /// Limits of the present motion, for whoever takes over from it.
     in_force: Limits,
+    /// Limits of the motion the owner took over from, for planning the owner anew.
+    before: Limits,
     /// Sign of the last velocity that was not zero (mcCurrentDirection).
     last_direction: f64,
     owner: Option<Entry>,
@@ -162,6 +167,7 @@ impl<P: Planner> Axis<P> {
             feedback,
             motion: if powered { Motion::Hold } else { Motion::Follow },
             in_force: config.limits,
+            before: config.limits,
             last_direction: 1.0,
             owner: None,
             stop_held: false,
@@ -256,7 +262,7 @@ impl<P: Planner> Axis<P> {
         {
             return match owner.work {
                 Work::Stop if self.stop_held => Fate::Done,
-                Work::Velocity { .. } => Fate::Active {
+                Work::Velocity { .. } | Work::Through { .. } => Fate::Active {
                     reached: self.goal_reached(),
                 },
                 Work::Position(_) | Work::Distance(_) | Work::Halt | Work::Stop | Work::Home(_) => {
@@ -275,7 +281,7 @@ impl<P: Planner> Axis<P> {
     pub fn outlook(&self) -> Outlook {
         let mut waiting = [None; QUEUE_MAX];
         for (slot, entry) in waiting.iter_mut().zip(self.queue.iter()) {
-            *slot = Some((entry.id, entry.work.kind()));
+            *slot = Some((entry.id, entry.work.kind(), entry.mode));
         }
         Outlook {
             state: self.state,

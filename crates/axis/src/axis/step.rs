@@ -81,6 +81,8 @@ impl<P: Planner> Axis<P> {
         let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
         let leaving = match self.owner.as_ref().map(|owner| &owner.work) {
             Some(Work::Velocity { .. }) => true,
+            // One that ends at rest does so at its target, which was checked.
+            Some(Work::Through { end_velocity, .. }) => *end_velocity != 0.0,
             Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan()),
             // Targets were checked when the command was taken.
             Some(Work::Position(_) | Work::Distance(_) | Work::Home(_)) | None => false,
@@ -98,7 +100,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Where the running plan has its goal (u).
-    fn end_of_plan(&self) -> f64 {
+    pub(super) fn end_of_plan(&self) -> f64 {
         match &self.motion {
             Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
             Motion::Follow | Motion::Hold => self.setpoint.position,
@@ -111,7 +113,7 @@ impl<P: Planner> Axis<P> {
         let Some(owner) = &self.owner else {
             if self.state == AxisState::Standstill && !self.queue.is_empty() {
                 // MC_Stop released the axis in this scan (note 6).
-                self.hand_over(scan, log);
+                self.hand_over(self.setpoint.position, scan, log);
             }
             return;
         };
@@ -131,29 +133,43 @@ impl<P: Planner> Axis<P> {
                 self.motion = Motion::Hold;
                 self.end_owner(Fate::Done);
                 self.enter(AxisEvent::StopReleased);
-                self.hand_over(scan, log);
+                self.hand_over(self.setpoint.position, scan, log);
             }
             // An endless motion gives way when it has reached its velocity.
-            Work::Velocity { .. } if reached => self.hand_over(scan, log),
-            Work::Position(_) | Work::Distance(_) | Work::Halt | Work::Stop | Work::Velocity { .. } => {}
+            Work::Velocity { .. } | Work::Through { .. } if reached => {
+                self.hand_over(self.passed_end(), scan, log);
+            }
+            Work::Position(_)
+            | Work::Distance(_)
+            | Work::Halt
+            | Work::Stop
+            | Work::Velocity { .. }
+            | Work::Through { .. } => {}
         }
     }
 
-    /// The owner has completed at rest.
+    /// The owner has completed, at rest or passing its end on to a blended successor.
     #[cold]
     fn complete(&mut self, scan: u64, log: &mut Log) {
+        if self.setpoint.velocity != 0.0 {
+            return self.pass_on(scan, log);
+        }
         self.motion = Motion::Hold;
         self.end_owner(Fate::Done);
         self.enter(AxisEvent::MotionDone);
-        self.hand_over(scan, log);
+        self.hand_over(self.setpoint.position, scan, log);
     }
 
     /// The next waiting command that can be planned becomes the owner; those that cannot fail (R79). An
-    /// endless owner stays if there is none.
+    /// endless owner stays if there is none. Distances count from `from` (B10).
     #[inline(never)]
-    fn hand_over(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn hand_over(&mut self, from: f64, scan: u64, log: &mut Log) {
         for _ in 0..QUEUE_MAX {
-            let Some(next) = self.queue.pop() else { return };
+            let Some(mut next) = self.queue.pop() else {
+                return;
+            };
+            next.end = next.work.end(from);
+            next.passage = self.passage(&next);
             match self.plan_for(&next) {
                 Ok(motion) => {
                     self.end_owner(Fate::Aborted);

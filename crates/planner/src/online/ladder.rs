@@ -71,12 +71,15 @@ struct Climb<'a> {
     unavoidable: Option<Excess>,
 }
 
-/// The first candidate from rung `first` on that keeps the limits and arrives (O8).
+/// The first candidate from rung `first` on that keeps the limits and arrives (O8); before its last ramp it
+/// goes for the velocity `top`.
+#[expect(clippy::too_many_arguments, reason = "a problem, as it was given")]
 pub(super) fn climb(
     first: Rung,
     start: &Setpoint,
     target: f64,
     end_velocity: f64,
+    top: f64,
     limits: &Limits,
     wider: &Limits,
     cycle: f64,
@@ -93,6 +96,7 @@ pub(super) fn climb(
             &ramps,
             ramps.inward(distance, 0),
             ramps.inward(end_velocity, 1),
+            ramps.inward(top, 1),
             resolution,
         ),
         ramps: &ramps,

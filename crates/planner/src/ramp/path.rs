@@ -181,6 +181,18 @@ impl<const N: usize> Path<N> {
         }
     }
 
+    /// Whether the velocity towards `side` (1 or -1) never comes below `-small`.
+    pub(crate) fn keeps_side(&self, side: f64, small: f64) -> bool {
+        self.stretches().all(|(stretch, first)| {
+            let length = stretch.end - stretch.begin;
+            let within = |time: f64| if time > 0.0 && time < length { time } else { length };
+            let [one, other] = zeros(first.acceleration, first.jerk, first.snap).map(within);
+            [0.0, one, other, length]
+                .into_iter()
+                .all(|time| side * moved(&first, time).velocity >= -small)
+        })
+    }
+
     pub(crate) const fn order(&self) -> Order {
         self.order
     }
