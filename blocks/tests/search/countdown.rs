@@ -68,7 +68,7 @@ impl Planner for Countdown {
         self.pass(start, target, velocity, limits, before).map(Some)
     }
 
-    fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits, _: &Limits) -> f64 {
+    fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits) -> f64 {
         wanted
     }
 }

@@ -6,8 +6,8 @@
 //! B14, B15). The numbers are seeded; a failing case prints its own.
 
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Dynamics, Fate, Limits, Log, Request,
-    Source, Standard, StartState,
+    Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Dynamics, Fate, Limits, Log,
+    Request, Source, Standard, StartState,
 };
 
 /// The generator splitmix64.
@@ -67,7 +67,11 @@ fn limits(random: &mut Random, cycle: f64) -> Limits {
             acceleration * random.between(0.3, 3.0)
         },
         jerk: if order >= 1 { jerk } else { f64::INFINITY },
-        snap: if order == 2 { jerk / times[2] } else { f64::INFINITY },
+        snap: if order == 2 {
+            jerk / times[2]
+        } else {
+            f64::INFINITY
+        },
     }
 }
 
@@ -102,8 +106,16 @@ fn chain(random: &mut Random, limits: &Limits, cycle: f64) -> Vec<Move> {
             let same = random.below(2) == 0;
             let dynamics = Dynamics {
                 velocity: limits.velocity * random.between(0.05, 1.0),
-                acceleration: if same { 0.0 } else { part(random, limits.acceleration) },
-                deceleration: if same { 0.0 } else { part(random, limits.deceleration) },
+                acceleration: if same {
+                    0.0
+                } else {
+                    part(random, limits.acceleration)
+                },
+                deceleration: if same {
+                    0.0
+                } else {
+                    part(random, limits.deceleration)
+                },
                 jerk: if same { 0.0 } else { part(random, limits.jerk) },
                 snap: if same { 0.0 } else { part(random, limits.snap) },
             };
@@ -190,16 +202,23 @@ fn judge(seed: u64) -> Result<Seen, String> {
                 scan,
                 ..Source::default()
             };
-            ids.push(axis.command(&request, source, &mut log).map_err(|e| format!("{e:?}"))?);
+            ids.push(
+                axis.command(&request, source, &mut log)
+                    .map_err(|e| format!("{e:?}"))?,
+            );
             if axis.setpoint() != before {
                 return Err("a command changed a set-point already published".to_owned());
             }
         }
-        let owner = ids.iter().position(|id| matches!(axis.fate(*id), Fate::Active { .. }));
+        let owner = ids
+            .iter()
+            .position(|id| matches!(axis.fate(*id), Fate::Active { .. }));
         let past = axis.setpoint().position;
         axis.advance(scan, &mut log);
         let point = axis.setpoint();
-        watch.see(point.position).map_err(|what| format!("scan {scan}: {what}"))?;
+        watch
+            .see(point.position)
+            .map_err(|what| format!("scan {scan}: {what}"))?;
         if let Some(owner) = owner {
             let from = if owner == 0 { 0.0 } else { moves[owner - 1].target };
             let to = moves[owner].target;
@@ -222,7 +241,9 @@ fn judge(seed: u64) -> Result<Seen, String> {
                     return Err(format!("scan {scan}: move {owner} ended, expected {done}"));
                 }
                 if beyond < -1e-9 * watch.largest {
-                    return Err(format!("scan {scan}: move {owner} ended {beyond} short of its end"));
+                    return Err(format!(
+                        "scan {scan}: move {owner} ended {beyond} short of its end"
+                    ));
                 }
                 if point.velocity == 0.0 && point.position != to {
                     return Err(format!("scan {scan}: move {owner} rests at {}", point.position));
@@ -262,7 +283,10 @@ fn many(seeds: core::ops::Range<u64>) {
         }
     }
     println!("{sum:?}");
-    assert!(sum.blended > sum.rested / 2, "hardly anything was blended: {sum:?}");
+    assert!(
+        sum.blended > sum.rested / 2,
+        "hardly anything was blended: {sum:?}"
+    );
 }
 
 #[test]

@@ -69,9 +69,8 @@ pub trait Planner {
     ) -> Result<Option<Self::Plan>, PlanError>;
 
     /// The largest speed (u/s), at most `wanted`, at which a move over `distance` (u, not negative) can
-    /// begin up to one scan late and still pass its end with no more than the speed `exit`; `before` are the
-    /// limits of the move it takes over from.
-    fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits, before: &Limits) -> f64;
+    /// begin up to one scan late and still pass its end with no more than the speed `exit`.
+    fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits) -> f64;
 }
 
 /// A planned motion, evaluated by scan count from its start.
@@ -181,8 +180,8 @@ impl Planner for Standard {
             .map(|plan| plan.map(StandardPlan::Online))
     }
 
-    fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits, before: &Limits) -> f64 {
-        online::entry_speed(wanted, distance, exit, limits, before, self.cycle)
+    fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits) -> f64 {
+        online::entry_speed(wanted, distance, exit, limits, self.cycle)
     }
 }
 

@@ -47,7 +47,7 @@ impl Planner for Noting {
         Ok(None)
     }
 
-    fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits, _: &Limits) -> f64 {
+    fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits) -> f64 {
         wanted
     }
 }

@@ -175,9 +175,7 @@ impl<P: Planner> Axis<P> {
         };
         match exit {
             Some(exit) => {
-                let most = self
-                    .planner
-                    .entry_speed(wanted, towards.abs(), exit, limits, &entry.limits);
+                let most = self.planner.entry_speed(wanted, towards.abs(), exit, limits);
                 Passage { wanted: most, most }
             }
             None => Passage {

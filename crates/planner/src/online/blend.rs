@@ -14,8 +14,9 @@ use crate::{Limits, PlanError, Setpoint};
 /// Halvings of the search for a speed below the wanted one; the speed is found to 2^-24 of it.
 pub const BLEND_STEPS: u32 = 24;
 
-/// How far a speed on the border of what can be reached is moved inside, as parts of it, until a plan agrees.
-const INSIDE: [f64; 4] = [0.0, 1e-12, 1e-9, 1e-6];
+/// How far a speed on the border of what can be reached is moved inside until a plan agrees, as parts of the
+/// way to the speed that certainly can be.
+const INSIDE: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1.0];
 
 /// How a target is to be passed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +41,7 @@ impl OnlinePlan {
     /// to zero (O11). If that is faster than wanted, because the braking comes late, a slower one is looked
     /// for by halving between zero and the wanted one (O12), and the nearer of the two is taken.
     ///
-    /// Bounded work: one plan, in the worst case [`BLEND_STEPS`] + 6 and a root of ramps.
+    /// Bounded work: one plan, in the worst case [`BLEND_STEPS`] + 7 and a root of ramps.
     ///
     /// # Errors
     /// As [`OnlinePlan::passing`].
@@ -58,13 +59,18 @@ impl OnlinePlan {
         if distance == 0.0 {
             return Ok(None);
         }
-        let raised = raised(limits, wanted);
+        // One pair of limits for all speeds tried: a start that is inside for one is inside for all.
+        let raised = Limits {
+            velocity: limits.velocity.max(wanted),
+            ..*limits
+        };
         let ramps = Ramps::new(&raised, &wider(&raised, before));
         let way = Way {
             start,
             target,
             side: if distance < 0.0 { -1.0 } else { 1.0 },
-            limits,
+            top: limits.velocity,
+            raised: &raised,
             before,
             cycle,
             ramps: &ramps,
@@ -97,19 +103,13 @@ impl OnlinePlan {
     }
 }
 
-fn raised(limits: &Limits, speed: f64) -> Limits {
-    Limits {
-        velocity: limits.velocity.max(speed),
-        ..*limits
-    }
-}
-
 /// A target to pass.
 struct Way<'a> {
     start: &'a Setpoint,
     target: f64,
     side: f64,
-    limits: &'a Limits,
+    top: f64,
+    raised: &'a Limits,
     before: &'a Limits,
     cycle: f64,
     ramps: &'a Ramps,
@@ -118,14 +118,14 @@ struct Way<'a> {
 impl Way<'_> {
     /// The plan that passes with `speed`, if it goes no way that it need not go.
     fn with(&self, speed: f64) -> Result<Option<OnlinePlan>, PlanError> {
-        let limits = raised(self.limits, speed);
+        let limits = self.raised;
         let plan = OnlinePlan::cruising(
             Rung::PushThenStop,
             self.start,
             self.target,
             self.side * speed,
-            self.limits.velocity,
-            &limits,
+            self.top,
+            limits,
             self.before,
             self.cycle,
         )?;
@@ -139,8 +139,7 @@ impl Way<'_> {
         Ok((pushes || straight()).then_some(plan))
     }
 
-    /// As [`Way::with`] for a speed on the border of what can be reached, up to a millionth inside, where
-    /// `inside` is.
+    /// As [`Way::with`] for a speed on the `border` of what can be reached, moved towards `inside` if it must.
     fn near(&self, border: f64, inside: f64) -> Result<Option<OnlinePlan>, PlanError> {
         for part in INSIDE {
             if let Some(plan) = self.with(border + (inside - border) * part)? {
@@ -199,19 +198,13 @@ impl Way<'_> {
 /// The largest speed (u/s), `wanted` at most, at which a move over `distance` (u, 0 or more) can begin, one
 /// scan of that speed late, and still come down to the speed `exit` at its end without overshoot (O13).
 ///
-/// `limits` are those of the move, `before` those of what it takes over from. No move is so short that it is
-/// passed within one scan: the speed is at most `distance / cycle`.
+/// `limits` are those of the move, and hold alone: what it takes over from may allow more, but helps a slower
+/// start less than a faster one. Every move takes two scans at least: the speed is at most half of
+/// `distance / cycle`.
 ///
 /// Bounded work: one ramp if `wanted` will do, else one root of ramps.
-pub fn entry_speed(
-    wanted: f64,
-    distance: f64,
-    exit: f64,
-    limits: &Limits,
-    before: &Limits,
-    cycle: f64,
-) -> f64 {
-    let wanted = wanted.min(distance / cycle);
+pub fn entry_speed(wanted: f64, distance: f64, exit: f64, limits: &Limits, cycle: f64) -> f64 {
+    let wanted = wanted.min(0.5 * distance / cycle);
     if wanted <= exit {
         return wanted;
     }
@@ -219,7 +212,7 @@ pub fn entry_speed(
         velocity: limits.velocity.max(exit),
         ..*limits
     };
-    let ramps = Ramps::new(&limits, &wider(&limits, before));
+    let ramps = Ramps::new(&limits, &limits);
     let goal = ramps.inward(exit, 1);
     let way = ramps.inward(distance, 0);
     let beyond = |speed: f64| {
@@ -242,7 +235,7 @@ pub fn entry_speed(
     }
     let slowest = beyond(exit);
     if slowest.value > 0.0 {
-        return exit.min(distance / cycle);
+        return exit;
     }
     zero(slowest, fastest, beyond).0.at
 }
