@@ -6,10 +6,10 @@ use crate::administrative::{
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
-    mc_halt::McHalt, mc_move_absolute::McMoveAbsolute, mc_move_additive::McMoveAdditive,
-    mc_move_continuous_absolute::McMoveContinuousAbsolute,
+    mc_halt::McHalt, mc_halt_superimposed::McHaltSuperimposed, mc_move_absolute::McMoveAbsolute,
+    mc_move_additive::McMoveAdditive, mc_move_continuous_absolute::McMoveContinuousAbsolute,
     mc_move_continuous_relative::McMoveContinuousRelative, mc_move_relative::McMoveRelative,
-    mc_move_velocity::McMoveVelocity, mc_stop::McStop,
+    mc_move_superimposed::McMoveSuperimposed, mc_move_velocity::McMoveVelocity, mc_stop::McStop,
 };
 use crate::standard::{
     ctd::Ctd, ctu::Ctu, ctud::Ctud, f_trig::FTrig, r_trig::RTrig, rs::Rs, sr::Sr, tof::Tof, ton::Ton, tp::Tp,
@@ -61,7 +61,7 @@ registry! {
     McPower McReset McReadStatus McReadActualPosition McReadAxisError
     McHome
     McStop McHalt McMoveAbsolute McMoveRelative McMoveAdditive McMoveVelocity
-    McMoveContinuousAbsolute McMoveContinuousRelative
+    McMoveContinuousAbsolute McMoveContinuousRelative McMoveSuperimposed McHaltSuperimposed
     RTrig FTrig Sr Rs Ctu Ctd Ctud Ton Tof Tp
 }
 

@@ -71,6 +71,18 @@ impl Planner for Countdown {
     fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits) -> f64 {
         wanted
     }
+
+    fn fits(&self, _: (&Count, u64), _: (&Count, u64), _: &Limits, _: Option<(f64, f64)>) -> bool {
+        true
+    }
+
+    fn room(&self, _: (&Count, u64), limits: &Limits) -> Limits {
+        *limits
+    }
+
+    fn next_switch(&self, (_, elapsed): (&Count, u64)) -> u64 {
+        elapsed
+    }
 }
 
 impl Plan for Count {

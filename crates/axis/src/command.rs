@@ -261,3 +261,14 @@ impl Request {
         }
     }
 }
+
+/// MC_MoveSuperimposed: values as they stand at the pins, unchecked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Superimpose {
+    /// Distance to add (u), signed.
+    pub distance: f64,
+    /// Dynamic values of what is added; the velocity (VelocityDiff) must be positive.
+    pub dynamics: Dynamics,
+    /// The ContinuousUpdate pin.
+    pub continuous_update: bool,
+}

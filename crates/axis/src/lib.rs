@@ -21,9 +21,10 @@ mod log;
 mod scaling;
 mod state;
 
-pub use axis::{Axis, Outlook, Source};
+pub use axis::{Axis, Beside, Outlook, Source};
 pub use command::{
-    AxisId, BufferMode, Command, CommandId, Direction, Dynamics, IecEnum, InstanceId, QUEUE_MAX, Raw, Request,
+    AxisId, BufferMode, Command, CommandId, Direction, Dynamics, IecEnum, InstanceId, QUEUE_MAX, Raw,
+    Request, Superimpose,
 };
 pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, PowerOff, StartState};
 pub use drive::{Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, Fault};

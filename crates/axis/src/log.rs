@@ -61,6 +61,15 @@ pub enum Event {
         /// Its scans.
         scans: u32,
     },
+    /// A superimposed motion was planned: this distance (u) to be covered, or none for a halt.
+    Superimposed {
+        /// As commanded (u).
+        distance: Option<f64>,
+        /// Its scans.
+        scans: u32,
+    },
+    /// A superimposed command waits until the motion under it leaves room below the axis limits.
+    RoomAwaited,
     /// The axis entered ErrorStop.
     Fault {
         /// Why.

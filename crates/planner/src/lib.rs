@@ -24,6 +24,7 @@ pub mod papers;
 mod planner;
 pub mod ramp;
 mod setpoint;
+mod sum;
 
 pub use error::{Field, PlanError};
 pub use grid::{GridPlan, Method};

@@ -1,6 +1,8 @@
 //! The seam between an axis and the maths: what an axis may ask of any planner.
 
-use crate::{Excess, GridPlan, Limits, OnlinePlan, Passage, PlanError, RampPlan, Rung, Setpoint, online};
+use crate::{
+    Excess, GridPlan, Limits, OnlinePlan, Passage, PlanError, RampPlan, Rung, Segment, Setpoint, online, sum,
+};
 
 /// Plans moves for an axis.
 ///
@@ -71,6 +73,23 @@ pub trait Planner {
     /// The largest speed (u/s), at most `wanted`, at which a move over `distance` (u, not negative) can
     /// begin up to one scan late and still pass its end with no more than the speed `exit`.
     fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits) -> f64;
+
+    /// Whether two plans, each so many scans after its start, keep `limits` together from now on and do not
+    /// turn outside `range` (u), which is one of the sum of their positions.
+    fn fits(
+        &self,
+        first: (&Self::Plan, u64),
+        second: (&Self::Plan, u64),
+        limits: &Limits,
+        range: Option<(f64, f64)>,
+    ) -> bool;
+
+    /// What the rest of a plan leaves of `limits` whatever is added when; 0 where it leaves nothing.
+    fn room(&self, rest: (&Self::Plan, u64), limits: &Limits) -> Limits;
+
+    /// The scan of a plan, counted from its start, at which it next changes its highest derivative, or what
+    /// is given if it never does again.
+    fn next_switch(&self, rest: (&Self::Plan, u64)) -> u64;
 }
 
 /// A planned motion, evaluated by scan count from its start.
@@ -123,6 +142,18 @@ impl Standard {
     /// A planner for the sample time `cycle` (s).
     pub const fn new(cycle: f64) -> Self {
         Self { cycle }
+    }
+}
+
+impl StandardPlan {
+    #[inline(never)]
+    fn numbers_at(&self, scan: u64) -> [f64; 5] {
+        let setpoint = match self {
+            Self::Grid(grid) => grid.at(scan),
+            Self::Ramp(ramp) => ramp.at(scan),
+            Self::Online(plan) => plan.at(scan),
+        };
+        setpoint.numbers()
     }
 }
 
@@ -183,6 +214,41 @@ impl Planner for Standard {
     fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits) -> f64 {
         online::entry_speed(wanted, distance, exit, limits, self.cycle)
     }
+
+    fn fits(
+        &self,
+        first: (&StandardPlan, u64),
+        second: (&StandardPlan, u64),
+        limits: &Limits,
+        range: Option<(f64, f64)>,
+    ) -> bool {
+        sum::fits(first, second, limits, range, self.cycle)
+    }
+
+    fn room(&self, rest: (&StandardPlan, u64), limits: &Limits) -> Limits {
+        sum::room(rest, limits, self.cycle)
+    }
+
+    fn next_switch(&self, rest: (&StandardPlan, u64)) -> u64 {
+        sum::next_switch(rest, self.cycle)
+    }
+}
+
+impl StandardPlan {
+    /// The stretches of constant highest derivative, in order of time; at most 46 of them.
+    pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+        let (grid, ramp, online) = match self {
+            Self::Grid(grid) => (Some(grid), None, None),
+            Self::Ramp(ramp) => (None, Some(ramp), None),
+            Self::Online(plan) => (None, None, Some(plan)),
+        };
+        let grid = grid
+            .into_iter()
+            .flat_map(|grid| grid.segments().map(Segment::from));
+        let ramp = ramp.into_iter().flat_map(RampPlan::segments);
+        let online = online.into_iter().flat_map(OnlinePlan::segments);
+        grid.chain(ramp).chain(online)
+    }
 }
 
 impl Plan for StandardPlan {
@@ -194,12 +260,12 @@ impl Plan for StandardPlan {
         }
     }
 
+    // The most frequent kind in line with the axis, the others by a call.
     #[inline(always)]
     fn at(&self, scan: u64) -> Setpoint {
         match self {
             Self::Grid(grid) => grid.at(scan),
-            Self::Ramp(ramp) => ramp.at(scan),
-            Self::Online(plan) => plan.at(scan),
+            Self::Ramp(_) | Self::Online(_) => Setpoint::of(self.numbers_at(scan)),
         }
     }
 

@@ -50,6 +50,18 @@ impl Planner for Noting {
     fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits) -> f64 {
         wanted
     }
+
+    fn fits(&self, _: (&Note, u64), _: (&Note, u64), _: &Limits, _: Option<(f64, f64)>) -> bool {
+        true
+    }
+
+    fn room(&self, _: (&Note, u64), limits: &Limits) -> Limits {
+        *limits
+    }
+
+    fn next_switch(&self, (_, elapsed): (&Note, u64)) -> u64 {
+        elapsed
+    }
 }
 
 impl Plan for Note {

@@ -9,7 +9,7 @@ use crate::{
     AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Event, Fate, Goal,
     Log, Raw, Request,
 };
-use standstill_planner::{Excess, Field, Limits, Passage, Plan, PlanError, Planner};
+use standstill_planner::{Excess, Field, Limits, Passage, Plan, PlanError, Planner, Setpoint};
 
 /// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
 const ROUNDING: f64 = 1e-9;
@@ -25,6 +25,21 @@ pub(super) const REST: Passage = Passage {
 enum Way {
     Now,
     Wait,
+}
+
+/// What a block shows of a planner's refusal.
+pub(super) fn refusal(error: PlanError) -> ErrorId {
+    match error {
+        PlanError::TooLong { .. } => ErrorId::MoveTooLong,
+        // Distance over cycle^n does not fit into a number: longer than anything countable.
+        PlanError::InvalidInput {
+            field: Field::Cycle, ..
+        } => ErrorId::MoveTooLong,
+        PlanError::InvalidInput {
+            field: Field::Target, ..
+        } => ErrorId::PositionInvalid,
+        _ => ErrorId::PlanRefused,
+    }
 }
 
 impl<P: Planner> Axis<P> {
@@ -64,6 +79,7 @@ impl<P: Planner> Axis<P> {
             Way::Wait => {
                 self.queue.push(entry);
                 self.arm(mode, source.scan, log);
+                self.start_beside(source.scan, log);
             }
             Way::Now => {
                 let motion = self
@@ -149,7 +165,7 @@ impl<P: Planner> Axis<P> {
     /// Whether a command that waits now would follow a motion without an end, so not start at rest.
     fn predecessor_is_endless(&self) -> bool {
         let last = self.queue.last().or(self.owner.as_ref());
-        last.is_some_and(|entry| matches!(entry.work, Work::Velocity { .. } | Work::Through { .. }))
+        last.is_some_and(Entry::is_endless)
     }
 
     /// The values at the pins.
@@ -300,7 +316,7 @@ impl<P: Planner> Axis<P> {
     }
 
     fn positioning(&self, dynamics: &Dynamics, source: Source, log: &mut Log) -> Result<Limits, ErrorId> {
-        let velocity = self.positioning_velocity(dynamics.velocity, source, log)?;
+        let velocity = self.positive_velocity("Velocity", dynamics.velocity, source, log)?;
         Ok(Limits {
             velocity,
             ..self.resolve(dynamics, source, log)?
@@ -328,19 +344,23 @@ impl<P: Planner> Axis<P> {
 
     /// Plans a command from the present set-point. Nothing changes.
     pub(super) fn plan_for(&self, entry: &Entry) -> Result<Motion<P::Plan>, ErrorId> {
-        let start = &self.setpoint;
-        let before = if matches!(self.motion, Motion::Run { .. }) {
-            &self.in_force
-        } else {
-            &entry.limits
-        };
+        self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))
+    }
+
+    /// Plans a command from `start`, whose motion was within `before`.
+    pub(super) fn plan_from(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        before: &Limits,
+    ) -> Result<Motion<P::Plan>, ErrorId> {
         let end = match entry.end {
             Some(end) if !end.is_finite() => return Err(ErrorId::PositionInvalid),
             Some(end) => self.allowed(end)?,
             None => start.position,
         };
         let planned = match entry.work {
-            Work::Position(_) | Work::Distance(_) => match self.blended(entry, end, before) {
+            Work::Position(_) | Work::Distance(_) => match self.blended(entry, start, end, before) {
                 Some(plan) => Ok(plan),
                 None => self.planner.move_to(start, end, &entry.limits, before),
             },
@@ -349,7 +369,7 @@ impl<P: Planner> Axis<P> {
             }
             Work::Velocity { velocity, along } => {
                 let velocity = if along {
-                    velocity * self.last_direction
+                    velocity * self.last_velocity.signum()
                 } else {
                     velocity
                 };
@@ -359,16 +379,8 @@ impl<P: Planner> Axis<P> {
             Work::Home(_) => return Ok(Motion::Hold),
         };
         match planned {
-            Ok(plan) => Ok(Motion::Run { plan, elapsed: 0 }),
-            Err(PlanError::TooLong { .. }) => Err(ErrorId::MoveTooLong),
-            // Distance over cycle^n does not fit into a number: longer than anything countable.
-            Err(PlanError::InvalidInput {
-                field: Field::Cycle, ..
-            }) => Err(ErrorId::MoveTooLong),
-            Err(PlanError::InvalidInput {
-                field: Field::Target, ..
-            }) => Err(ErrorId::PositionInvalid),
-            Err(_) => Err(ErrorId::PlanRefused),
+            Ok(plan) => Ok(Motion::along(plan)),
+            Err(error) => Err(refusal(error)),
         }
     }
 
@@ -405,7 +417,7 @@ impl<P: Planner> Axis<P> {
         let limit = match self.config.software_limits {
             Some((_, max))
                 if error == ErrorId::TargetOutsideSoftwareLimits
-                    && entry.end.is_some_and(|end| end > max) =>
+                    && entry.end.is_some_and(|end| end + self.superimposed_left() > max) =>
             {
                 max
             }
@@ -416,7 +428,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The software limit `target` is beyond (u).
-    fn broken_software_limit(&self, target: f64) -> f64 {
+    pub(super) fn broken_software_limit(&self, target: f64) -> f64 {
         match self.config.software_limits {
             Some((min, max)) => {
                 if target > max {

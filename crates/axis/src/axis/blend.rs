@@ -8,7 +8,7 @@ use super::power::Reaction;
 use super::queue::{Entry, Work};
 use super::{Axis, Motion};
 use crate::{BufferMode, ErrorId, Event, Fate, Goal, Log, QUEUE_MAX};
-use standstill_planner::{Limits, Passage, Plan, Planner};
+use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};
 
 /// A command of a chain: the owner to be, or one that waits.
 #[derive(Clone, Copy)]
@@ -26,13 +26,13 @@ impl<P: Planner> Axis<P> {
             return;
         }
         let Some(mut owner) = self.owner else { return };
-        let passage = self.passage(&owner);
+        let passage = self.passage(&owner, 0);
         let Some(end) = owner.end else { return };
         if passage == owner.passage || !matches!(self.motion, Motion::Run { .. }) {
             return;
         }
         owner.passage = passage;
-        if let Some(plan) = self.blended(&owner, end, &self.before) {
+        if let Some(plan) = self.blended(&owner, &self.setpoint, end, &self.before) {
             self.in_force = raised(&owner.limits, &plan);
             let event = Event::Planned {
                 goal: Goal::Passing {
@@ -42,19 +42,25 @@ impl<P: Planner> Axis<P> {
                 scans: plan.scans(),
             };
             self.record(event, self.owner_source(scan), log);
-            self.motion = Motion::Run { plan, elapsed: 0 };
+            self.motion = Motion::along(plan);
             self.owner = Some(owner);
         }
     }
 
     /// The plan that passes `end` as `entry` is to; `None` if it is to come to rest there, or can't help it.
-    pub(super) fn blended(&self, entry: &Entry, end: f64, before: &Limits) -> Option<P::Plan> {
+    pub(super) fn blended(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        end: f64,
+        before: &Limits,
+    ) -> Option<P::Plan> {
         if entry.passage.wanted <= 0.0 {
             return None;
         }
         let planned = self
             .planner
-            .blend(&self.setpoint, end, &entry.passage, &entry.limits, before);
+            .blend(start, end, &entry.passage, &entry.limits, before);
         // What can't be planned blended is planned as a move to rest, whose error would be the same.
         planned
             .ok()
@@ -64,49 +70,73 @@ impl<P: Planner> Axis<P> {
 
     /// Notes whose limits hold from now on, and which did for the motion taken over from.
     pub(super) fn take_over(&mut self, limits: Limits, motion: &Motion<P::Plan>) {
-        self.before = if matches!(self.motion, Motion::Run { .. }) {
-            self.in_force
-        } else {
-            limits
-        };
+        self.before = self.limits_before(&limits);
         self.in_force = match motion {
             Motion::Run { plan, .. } => raised(&limits, plan),
             Motion::Follow | Motion::Hold => limits,
         };
     }
 
-    /// The owner has passed its end in motion: Done, and the next takes over from the set-point (B2).
+    /// The owner has passed its end in motion: Done, and the next takes over from the set-point (B2). Should
+    /// the next have to wait for a superimposed motion, so does the owner, with the velocity it has.
     pub(super) fn pass_on(&mut self, scan: u64, log: &mut Log) {
-        let from = self.passed_end();
-        self.end_owner(Fate::Done);
-        self.hand_over(from, scan, log);
-        if self.owner.is_none() {
-            // All were checked when the owner was told to pass on.
+        self.hand_over(self.passed_end(), scan, log);
+        if self.queue.is_empty() && self.base().velocity != 0.0 && self.goal_reached() && self.passes_on() {
+            // Those that waited were checked when the owner was told to pass on, and yet all failed.
+            self.end_owner(Fate::Done);
             self.trip(ErrorId::PlanRefused, 0, Reaction::Ramp, scan, log);
         }
     }
 
-    /// Where distances of the next command count from (u): the owner's end if it was passed in this scan,
-    /// else the set position (B10).
+    /// What becomes of the owner when another takes over in motion: what has an end has passed it.
+    pub(super) fn fate_at_hand_over(&self) -> Fate {
+        if self.passes_on() {
+            Fate::Done
+        } else {
+            Fate::Aborted
+        }
+    }
+
+    fn passes_on(&self) -> bool {
+        self.owner
+            .as_ref()
+            .is_some_and(|owner| matches!(owner.work, Work::Position(_) | Work::Distance(_)))
+    }
+
+    /// The set-point of the owner alone.
+    pub(super) fn base(&self) -> Setpoint {
+        self.layer.as_ref().map_or(self.setpoint, |layer| layer.base)
+    }
+
+    /// Where distances of the next command count from (u): the owner's end if it was passed in this scan, with
+    /// what is superimposed there, else the set position (B10).
     pub(super) fn passed_end(&self) -> f64 {
         let now = self.setpoint.position;
-        match (&self.motion, &self.owner) {
-            (Motion::Run { plan, elapsed }, Some(owner)) if *elapsed == u64::from(plan.scans()) => {
-                owner.end.unwrap_or(now)
+        let end = self.owner.as_ref().and_then(|owner| owner.end);
+        match (&self.motion, end) {
+            (Motion::Run { elapsed, scans, .. }, Some(end)) if elapsed == scans && self.layer.is_none() => {
+                end
+            }
+            (Motion::Run { elapsed, scans, .. }, Some(end)) if elapsed == scans => {
+                end + (now - self.base().position)
             }
             _ => now,
         }
     }
 
-    /// How `first`, whose end is known, is to pass it, with the queue behind it: from the last to the first,
-    /// because no command may begin faster than it can end.
+    /// How `first`, whose end is known, is to pass it, with the queue behind it, of which `skip` have had
+    /// their turn: from the last to the first, because no command may begin faster than it can end. While
+    /// something is superimposed all ends are passed at rest: where the axis is then, is not where they are.
     ///
     /// Cost: at most one ramp or root of ramps for each command that waits.
-    pub(super) fn passage(&self, first: &Entry) -> Passage {
+    pub(super) fn passage(&self, first: &Entry, skip: usize) -> Passage {
+        if self.layer.is_some() {
+            return REST;
+        }
         const NONE: Option<Leg<'_>> = None;
         let mut legs = [NONE; QUEUE_MAX];
         let mut from = first.end;
-        for (leg, entry) in legs.iter_mut().zip(self.queue.iter()) {
+        for (leg, entry) in legs.iter_mut().zip(self.queue.iter().skip(skip)) {
             let end = from.and_then(|from| entry.work.end(from));
             *leg = Some(Leg {
                 entry,

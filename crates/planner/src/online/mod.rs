@@ -57,7 +57,7 @@ impl OnlinePlan {
     /// is told by [`OnlinePlan::excess`].
     ///
     /// Bounded work: at most [`MAX_SOLVES`] ramps, in practice about 11 ([`OnlinePlan::solves`]), each with at
-    /// most three roots of [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
+    /// most seven roots of [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
     ///
     /// # Errors
     /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, a start or target that is
@@ -272,15 +272,10 @@ impl OnlinePlan {
             snap: 0.0,
         };
         let wait = (wait.duration > 0.0).then_some(wait);
-        let grid = self.tail.into_iter().flat_map(|tail| {
-            tail.grid.segments().map(|segment| Segment {
-                duration: segment.duration,
-                velocity: segment.velocity,
-                acceleration: segment.acceleration,
-                jerk: segment.jerk,
-                snap: segment.snap,
-            })
-        });
+        let grid = self
+            .tail
+            .into_iter()
+            .flat_map(|tail| tail.grid.segments().map(Segment::from));
         path.chain(wait).chain(grid)
     }
 

@@ -175,20 +175,28 @@ impl<'a> Search<'a> {
     pub(super) fn arrest_then_push(&self, start: &Setpoint) -> Candidate {
         let bound = self.ramps.velocity();
         let velocity = self.ramps.arrested(start).max(-bound).min(bound);
-        self.ramp_then_push(start, velocity)
-    }
-
-    /// To rest, then push and stop.
-    pub(super) fn rest_then_push(&self, start: &Setpoint) -> Candidate {
-        self.ramp_then_push(start, 0.0)
-    }
-
-    fn ramp_then_push(&self, start: &Setpoint, velocity: f64) -> Candidate {
         let ramp = self.ramp(start, velocity);
         let state = steady(&follow(self.ramps.order(), start, &ramp), velocity);
         let mut spans = Spans::new();
         spans.extend(&ramp);
         spans.extend(&self.push_then_stop(&state));
+        spans
+    }
+
+    /// To rest, then push and stop, both with the lower one of acceleration and deceleration.
+    ///
+    /// With one bound for both, nothing changes where the velocity passes zero, so the place where a ramp
+    /// ends is continuous all along the push, and the root is exact.
+    pub(super) fn rest_then_push(&self, start: &Setpoint) -> Candidate {
+        let mut spans = Spans::new();
+        let ramp = self.ramp(start, 0.0);
+        let state = steady(&follow(self.ramps.order(), start, &ramp), 0.0);
+        let even = self.ramps.even();
+        let search = Search::new(&even, self.target, self.end_velocity, self.top, self.resolution);
+        spans.extend(&ramp);
+        spans.extend(&search.push_then_stop(&state));
+        self.solves.set(self.solves.get() + search.solves());
+        self.steps.set(self.steps.get().max(search.steps()));
         spans
     }
 

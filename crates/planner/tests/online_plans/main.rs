@@ -2,6 +2,7 @@
 
 mod blend;
 mod chains;
+mod last;
 mod scans;
 mod shape;
 #[path = "../ramp_plans/support.rs"]

@@ -62,7 +62,11 @@ fn instance_name<'a>(script: &'a Script, record: &Record) -> Option<&'a str> {
 /// the axis.
 fn subject(script: &Script, record: &Record) -> String {
     match record.event {
-        Event::Refused { .. } | Event::Clamped { .. } | Event::LowerUsed { .. } => {
+        Event::Refused { .. }
+        | Event::Clamped { .. }
+        | Event::LowerUsed { .. }
+        | Event::Superimposed { .. }
+        | Event::RoomAwaited => {
             instance_name(script, record).map_or_else(|| axis_name(script, record), str::to_owned)
         }
         Event::Unavoidable(_) | Event::Planned { .. } | Event::Fault { .. } => axis_name(script, record),
@@ -116,6 +120,17 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
             let how = plan.map_or_else(String::new, |plan| format!("; {}", plan_text(plan)));
             format!("plan{by} to {goal} in {scans} scans{how}")
         }
+        Event::Superimposed {
+            distance: Some(distance),
+            scans,
+        } => format!("superimposes {} in {scans} scans", shortest(distance)),
+        Event::Superimposed {
+            distance: None,
+            scans,
+        } => {
+            format!("superimposed motion to rest in {scans} scans")
+        }
+        Event::RoomAwaited => "waits for room below the axis limits".to_owned(),
         Event::Fault { error, code } => {
             format!("fault {} {}, code {code}", error.number(), error.name())
         }
