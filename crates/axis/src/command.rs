@@ -147,6 +147,18 @@ iec_enum! {
     }
 }
 
+iec_enum! {
+    /// Which values of an axis are meant (MC_SOURCE, numbers in the standard's order).
+    ValueSource = "MC_SOURCE" {
+        /// What the inputs of the active command ask for.
+        Commanded = "mcCommandedValue", 0;
+        /// The newest set-point.
+        Set = "mcSetValue", 1;
+        /// The newest feedback.
+        Actual = "mcActualValue", 2;
+    }
+}
+
 /// Most commands that can wait behind the active one; the configured queue is at most this.
 pub const QUEUE_MAX: usize = 16;
 

@@ -97,6 +97,8 @@ error_ids! {
         "Raise the limits, shorten the move or lengthen the cycle.";
     TargetOutsideSoftwareLimits = 117, "The move would end outside the software limits.",
         "Choose a target inside them or change the axis configuration.";
+    SourceInvalid = 118, "Source is not a number of MC_SOURCE.",
+        "Use mcCommandedValue (0), mcSetValue (1) or mcActualValue (2).";
     EndVelocityInvalid = 120, "EndVelocity is NaN or infinite, or its magnitude is above Velocity.",
         "Give a finite number not above Velocity; its sign is the direction of motion at the target.";
     EndVelocityAboveLimit = 121, "EndVelocity is above the axis limit and the axis is set to refuse that.",
@@ -190,6 +192,7 @@ impl ErrorId {
 mod tests {
     use super::*;
 
+    /// Covers: V27, R73
     #[test]
     fn retired_numbers_are_not_used_again() {
         for (number, _) in RETIRED {

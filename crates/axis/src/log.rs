@@ -45,13 +45,6 @@ pub enum Event {
         /// The limit used instead.
         limit: f64,
     },
-    /// Acceleration and Deceleration differ; the move uses the lower one for both.
-    LowerUsed {
-        /// The larger one (u/s^2).
-        value: f64,
-        /// The one used (u/s^2).
-        limit: f64,
-    },
     /// The start state forces the plan out of its limits by this much.
     Unavoidable(Excess),
     /// A plan was accepted.

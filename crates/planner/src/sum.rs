@@ -229,7 +229,7 @@ pub(crate) fn next_switch((plan, elapsed): Part<'_>, cycle: f64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Planner, Standard};
+    use crate::{MoveProfile, Planner, Standard};
 
     const CYCLE: f64 = 0.01;
     const LIMITS: Limits = Limits {
@@ -250,7 +250,13 @@ mod tests {
         };
         let standard = Standard::new(CYCLE);
         standard
-            .move_to(&Setpoint::at_rest(from), from + distance, &limits, &limits)
+            .move_to(
+                MoveProfile::Overlapped,
+                &Setpoint::at_rest(from),
+                from + distance,
+                &limits,
+                &limits,
+            )
             .unwrap()
     }
 

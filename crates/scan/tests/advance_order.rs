@@ -3,8 +3,8 @@
 //! The planner of this test notes which axis asks its plan for a set-point.
 
 use standstill_axis::{
-    AxisConfig, AxisId, Command, Direction, DrivePosition, Dynamics, Excess, IdealDrive, Limits, Passage,
-    Plan, PlanError, Planner, Raw, Request, Setpoint, StartState,
+    AxisConfig, AxisId, Command, Direction, DrivePosition, Dynamics, Excess, IdealDrive, Limits, MoveProfile,
+    Passage, Plan, PlanError, Planner, Raw, Request, Setpoint, StartState,
 };
 use standstill_fb::Context;
 use standstill_scan::{
@@ -24,7 +24,18 @@ struct Note(usize);
 impl Planner for Noting {
     type Plan = Note;
 
-    fn move_to(&self, _: &Setpoint, _: f64, _: &Limits, _: &Limits) -> Result<Note, PlanError> {
+    fn cycle(&self) -> f64 {
+        0.001
+    }
+
+    fn move_to(
+        &self,
+        _: MoveProfile,
+        _: &Setpoint,
+        _: f64,
+        _: &Limits,
+        _: &Limits,
+    ) -> Result<Note, PlanError> {
         Ok(Note(self.0))
     }
 

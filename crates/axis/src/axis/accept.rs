@@ -359,11 +359,18 @@ impl<P: Planner> Axis<P> {
             Some(end) => self.allowed(end)?,
             None => start.position,
         };
+        let to_rest = || {
+            let profile = self.config.profile;
+            self.planner.move_to(profile, start, end, &entry.limits, before)
+        };
         let planned = match entry.work {
             Work::Position(_) | Work::Distance(_) => match self.blended(entry, start, end, before) {
                 Some(plan) => Ok(plan),
-                None => self.planner.move_to(start, end, &entry.limits, before),
+                None => to_rest(),
             },
+            Work::Through {
+                end_velocity: 0.0, ..
+            } => to_rest(),
             Work::Through { end_velocity, .. } => {
                 self.planner.pass(start, end, end_velocity, &entry.limits, before)
             }
@@ -473,19 +480,6 @@ impl<P: Planner> Axis<P> {
             instance: entry.instance,
         };
         let positioning = matches!(entry.work, Work::Position(_) | Work::Distance(_));
-        let Limits {
-            acceleration,
-            deceleration,
-            ..
-        } = entry.limits;
-        if positioning && entry.passage == REST && acceleration != deceleration {
-            let (value, limit) = if acceleration > deceleration {
-                (acceleration, deceleration)
-            } else {
-                (deceleration, acceleration)
-            };
-            self.record(Event::LowerUsed { value, limit }, source, log);
-        }
         if let Motion::Run { plan, .. } = &motion {
             let end = plan.at(u64::from(plan.scans()));
             let goal = match entry.end {

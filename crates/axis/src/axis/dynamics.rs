@@ -117,12 +117,12 @@ impl<P: Planner> Axis<P> {
             return Err(self.refuse("EndVelocity", value, f64::NAN, invalid, source, log));
         }
         let limit = self.config.limits.velocity;
-        let above = ErrorId::EndVelocityAboveLimit;
-        let value = self.within("EndVelocity", value, limit, above, source, log)?;
-        if value.abs() > velocity {
+        // Above the axis limit Velocity has been clamped to it, or the command refused.
+        if value.abs().min(limit) > velocity {
             return Err(self.refuse("EndVelocity", value, velocity, invalid, source, log));
         }
-        Ok(value)
+        let above = ErrorId::EndVelocityAboveLimit;
+        self.within("EndVelocity", value, limit, above, source, log)
     }
 
     /// Limits of a ramp nobody commanded: power-off, ErrorStop.

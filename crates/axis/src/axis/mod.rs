@@ -2,22 +2,25 @@
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
-//! [`power`] reacts to feedback, power, faults and resets.
+//! [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks ask.
 
 mod accept;
 mod blend;
 mod dynamics;
 mod power;
 mod queue;
+mod reading;
 mod step;
 mod superimposed;
 
 use crate::fate::Fates;
 use crate::{
     AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, Comms, ConfigError, DriveCommand,
-    DrivePosition, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
+    DrivePosition, DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState,
+    state,
 };
 use queue::{Entry, Queue, Work};
+pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
 
 /// Who gives a command and when; goes into the records.
@@ -129,6 +132,9 @@ pub struct Beside {
     pub command: Option<(CommandId, &'static str, bool)>,
     /// 0 if what is added holds, else one more than the scans to its goal.
     pub scans_left: u32,
+    /// Scans of the owner's plan until a command that waits or was lowered is tried again; the largest number if
+    /// it waits for the next plan.
+    pub tried_in: u32,
     /// Position and velocity of the owner's own set-point, as bits.
     pub base: (u64, u64),
     /// The position added and what is left to add, as bits.
@@ -166,6 +172,9 @@ pub struct Axis<P: Planner = Standard> {
     state: AxisState,
     setpoint: Setpoint,
     actual: f64,
+    past: reading::Past,
+    /// What the drive reported last beside its position.
+    signals: DriveSignals,
     motion: Motion<P::Plan>,
     /// A second motion on top of it.
     layer: Option<superimposed::Layer<P::Plan>>,
@@ -212,6 +221,8 @@ impl<P: Planner> Axis<P> {
             },
             setpoint: Setpoint::at_rest(config.position),
             actual: config.position,
+            past: reading::Past::new(config.position),
+            signals: DriveSignals::default(),
             motion: if powered { Motion::Hold } else { Motion::Follow },
             layer: None,
             covered: None,

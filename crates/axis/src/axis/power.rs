@@ -36,7 +36,8 @@ impl<P: Planner> Axis<P> {
         // In most scans nothing but the position changes.
         if self.is_steady(feedback) {
             debug_assert!(self.power.fault.is_none() && self.power.comms == Comms::Ok);
-            self.actual = self.position_of(feedback);
+            self.latch(self.position_of(feedback));
+            self.signals = feedback.signals;
             self.power.voltage = feedback.voltage;
         } else {
             self.follow_change(feedback, scan, log);
@@ -74,13 +75,15 @@ impl<P: Planner> Axis<P> {
 
     #[inline(never)]
     fn follow_change(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
+        self.signals = feedback.signals;
         self.power.voltage = feedback.voltage;
         self.power.fault = feedback.fault;
         self.power.comms = feedback.comms;
         if feedback.comms == Comms::Lost {
+            self.latch_nothing();
             self.trip(ErrorId::CommunicationLost, 0, Reaction::Ramp, scan, log);
         } else {
-            self.actual = self.position_of(feedback);
+            self.latch(self.position_of(feedback));
             self.follow_power(feedback, scan, log);
         }
         self.finish_reset();

@@ -157,6 +157,7 @@ impl<P: Planner> Axis<P> {
         match owner.work {
             Work::Position(_) | Work::Distance(_) | Work::Halt => self.complete(scan, log),
             Work::Home(position) => {
+                self.rename_actual(self.setpoint.position, position);
                 self.setpoint = Setpoint::at_rest(position);
                 self.rename = Some(position);
                 self.homed = true;

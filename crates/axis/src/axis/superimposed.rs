@@ -2,7 +2,7 @@
 //!
 //! The owner's set-point and what is added are planned apart and published as their sum, so the owner keeps
 //! its time and path. What is added must leave the sum inside the limits of the axis: it is taken as asked,
-//! slower, or it waits until the owner's motion leaves room (docs/superimposed.md, docs/decisions/0005).
+//! slower, or it waits until the owner's motion leaves room (docs/superimposed.md, docs/decisions/0006).
 //!
 //! Source: PLCopen Motion Control Part 1, sections MC_MoveSuperimposed and MC_HaltSuperimposed; R51, R64 to
 //! R66, S9, V14, V14a.
@@ -402,6 +402,12 @@ impl<P: Planner> Axis<P> {
                 (command.id, kind, command.planned)
             }),
             scans_left: layer.motion.scans_left().unwrap_or(0),
+            tried_in: match (&layer.command, &self.motion) {
+                (Some(command), Motion::Run { elapsed, .. }) if !command.planned || command.lowered => {
+                    u32::try_from(layer.retry.saturating_sub(*elapsed)).unwrap_or(u32::MAX)
+                }
+                _ => 0,
+            },
             base: (layer.base.position.to_bits(), layer.base.velocity.to_bits()),
             added: (layer.added.position.to_bits(), layer.left().to_bits()),
         })

@@ -200,7 +200,13 @@ impl GridPlan {
 }
 
 /// The boxes by one method, none if they are too long to count, and the work it took.
-fn choose(method: Method, problem: &Problem, length: f64, limits: &Limits, cycle: f64) -> (Boxes, Work) {
+pub(super) fn choose(
+    method: Method,
+    problem: &Problem,
+    length: f64,
+    limits: &Limits,
+    cycle: f64,
+) -> (Boxes, Work) {
     let step_by_step = || sequential::plan(problem, length, limits, cycle);
     let (best, work) = match method {
         Method::Sequential => return (step_by_step(), Work::default()),
@@ -222,7 +228,12 @@ fn sum(boxes: &Boxes) -> u64 {
 }
 
 /// The signed distance (u) of a move whose inputs are all usable.
-fn checked_distance(start: f64, target: f64, limits: &Limits, cycle: f64) -> Result<f64, PlanError> {
+pub(super) fn checked_distance(
+    start: f64,
+    target: f64,
+    limits: &Limits,
+    cycle: f64,
+) -> Result<f64, PlanError> {
     let invalid = |field, value| Err(PlanError::InvalidInput { field, value });
     if !(cycle > 0.0 && cycle.is_finite()) {
         return invalid(Field::Cycle, cycle);

@@ -12,7 +12,7 @@ const SIGNS: [i64; 8] = [1, -1, -1, 1, -1, 1, 1, -1];
 
 /// Which of two values holds at an instant where a derivative jumps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Side {
+pub(super) enum Side {
     /// The one in force just before the instant.
     Before,
     /// The one in force just after it.
@@ -288,40 +288,58 @@ impl GridPlan {
         };
         // Time runs backwards from the far end, so the sides swap there.
         let through = near + i64::from((side == Side::After) != mirrored);
-        let [d0, d1, d2, d3, d4] = self.derivatives(near, through);
-        let [f0, f1, f2, f3, f4] = self.scale;
-        // Adding 0 turns -0 into 0.
+        let sums = self.derivatives(near, through);
         if mirrored {
-            Setpoint {
-                position: self.target - d0 * f0,
-                velocity: d1 * f1 + 0.0,
-                acceleration: 0.0 - d2 * f2,
-                jerk: d3 * f3 + 0.0,
-                snap: 0.0 - d4 * f4,
-            }
+            backwards(self.target, &sums, &self.scale)
         } else {
-            Setpoint {
-                position: self.start + d0 * f0,
-                velocity: d1 * f1 + 0.0,
-                acceleration: d2 * f2 + 0.0,
-                jerk: d3 * f3 + 0.0,
-                snap: d4 * f4 + 0.0,
-            }
+            forwards(self.start, &sums, &self.scale)
         }
     }
 
     /// The derivatives 0 to 4 at `near` scans from an end, before scaling.
     #[inline(never)]
     fn derivatives(&self, near: i64, through: i64) -> [f64; 5] {
-        let instants = self.early_instants();
-        match (self.order, self.wide) {
-            (Order::Four, false) => derivatives::<i64, 8>(&instants, near, through),
-            (Order::Four, true) => derivatives::<i128, 8>(&instants, near, through),
-            (Order::Three, false) => derivatives::<i64, 4>(&instants, near, through),
-            (Order::Three, true) => derivatives::<i128, 4>(&instants, near, through),
-            // Two boxes of less than 2^31 scans in all: the sums fit 64 bits always.
-            (Order::Two, _) => derivatives::<i64, 2>(&instants, near, through),
-        }
+        sums(self.order, self.wide, &self.early_instants(), near, through)
+    }
+}
+
+/// The derivatives 0 to 4 of a profile of `order` at `near` scans from an end, before scaling, in as many bits
+/// as they need; the highest one counts the instants before `through` (docs/planner.md, eq. 21).
+#[inline(always)]
+pub(super) fn sums(order: Order, wide: bool, instants: &[i64; 8], near: i64, through: i64) -> [f64; 5] {
+    match (order, wide) {
+        (Order::Four, false) => derivatives::<i64, 8>(instants, near, through),
+        (Order::Four, true) => derivatives::<i128, 8>(instants, near, through),
+        (Order::Three, false) => derivatives::<i64, 4>(instants, near, through),
+        (Order::Three, true) => derivatives::<i128, 4>(instants, near, through),
+        // Two boxes of less than 2^31 scans in all: the sums fit 64 bits always.
+        (Order::Two, _) => derivatives::<i64, 2>(instants, near, through),
+    }
+}
+
+/// The state with these sums counted from rest at `start`. Adding 0 turns -0 into 0.
+#[inline(always)]
+pub(super) fn forwards(start: f64, sums: &[f64; 5], scale: &[f64; 5]) -> Setpoint {
+    let ([d0, d1, d2, d3, d4], [f0, f1, f2, f3, f4]) = (sums, scale);
+    Setpoint {
+        position: start + d0 * f0,
+        velocity: d1 * f1 + 0.0,
+        acceleration: d2 * f2 + 0.0,
+        jerk: d3 * f3 + 0.0,
+        snap: d4 * f4 + 0.0,
+    }
+}
+
+/// The state with these sums counted backwards from rest at `target`.
+#[inline(always)]
+pub(super) fn backwards(target: f64, sums: &[f64; 5], scale: &[f64; 5]) -> Setpoint {
+    let ([d0, d1, d2, d3, d4], [f0, f1, f2, f3, f4]) = (sums, scale);
+    Setpoint {
+        position: target - d0 * f0,
+        velocity: d1 * f1 + 0.0,
+        acceleration: 0.0 - d2 * f2,
+        jerk: d3 * f3 + 0.0,
+        snap: 0.0 - d4 * f4,
     }
 }
 

@@ -131,8 +131,8 @@ impl Way<'_> {
         )?;
         // A push towards the target turns only what has to be turned; any other may not turn at all.
         let small = ON_LIMIT * limits.velocity;
-        let straight = || plan.tail.is_none() && plan.path.keeps_side(self.side, small);
-        let pushes = plan.rung == Rung::PushThenStop
+        let straight = || plan.found.tail.is_none() && plan.found.path.keeps_side(self.side, small);
+        let pushes = plan.found.rung == Rung::PushThenStop
             && self
                 .search()
                 .ends_short(&self.inward(), self.side, self.ramps.inward(speed, 1));

@@ -4,7 +4,7 @@
 
 use core::cell::Cell;
 
-use crate::kernel::{MAX_STEPS, NOISE, Point, Spans, zero};
+use crate::kernel::{MAX_STEPS, NOISE, Point, Spans, THIRD_SPANS, zero};
 use crate::ramp::path::Way;
 use crate::ramp::solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
 use crate::{Order, Setpoint};
@@ -24,7 +24,7 @@ const MAX_PUSH_SOLVES: u32 = (PARTS * RAMP_SPANS) as u32 + MAX_STEPS + 6;
 pub const MAX_SOLVES: u32 = 3 * MAX_PUSH_SOLVES + 2 * (MAX_STEPS + 3) + 5;
 
 /// Spans of a whole move.
-pub(super) type Candidate = Spans<CANDIDATE_SPANS>;
+type Candidate = Spans<CANDIDATE_SPANS>;
 
 /// A move to find.
 pub(super) struct Search<'a> {
@@ -92,15 +92,22 @@ impl<'a> Search<'a> {
         self.steps.get()
     }
 
+    /// The whole move where the kernel has it (O3).
+    pub(super) fn profile(&self, start: &Setpoint) -> Option<Spans<THIRD_SPANS>> {
+        if self.end_velocity != 0.0 {
+            return None;
+        }
+        let profile = self.ramps.position_profile(start, self.target)?;
+        self.solves.set(self.solves.get() + 1);
+        self.steps.set(self.steps.get().max(profile.steps));
+        Some(profile.spans)
+    }
+
     /// Push towards a velocity bound, then the fastest stop, which begins where it ends on the target (O2).
     pub(super) fn push_then_stop(&self, start: &Setpoint) -> Candidate {
         let mut spans = Spans::new();
-        if self.end_velocity == 0.0
-            && let Some(profile) = self.ramps.position_profile(start, self.target)
-        {
-            self.solves.set(self.solves.get() + 1);
-            self.steps.set(self.steps.get().max(profile.steps));
-            spans.extend(&profile.spans);
+        if let Some(profile) = self.profile(start) {
+            spans.extend(&profile);
             return spans;
         }
         let stop = self.stop(start);

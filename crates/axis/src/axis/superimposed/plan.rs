@@ -131,7 +131,11 @@ impl<P: Planner> Axis<P> {
             last = Some(limits);
             let before = if layer.moves() { &layer.in_force } else { &limits };
             let planned = match command.adds {
-                Adds::Distance { target, .. } => self.planner.move_to(&layer.added, target, &limits, before),
+                Adds::Distance { target, .. } => {
+                    let profile = self.config.profile;
+                    self.planner
+                        .move_to(profile, &layer.added, target, &limits, before)
+                }
                 Adds::Halt => self.planner.ramp_to(&layer.added, 0.0, &limits, before),
             };
             match planned {
