@@ -1,10 +1,11 @@
 //! One axis: what it knows and what others may ask.
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
-//! on commands, [`step`] moves and hands over, [`superimposed`] adds a second motion, [`power`] reacts to
-//! feedback, power, faults and resets, [`reading`] answers what reading blocks ask.
+//! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
+//! [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks ask.
 
 mod accept;
+mod blend;
 mod dynamics;
 mod power;
 mod queue;
@@ -14,8 +15,9 @@ mod superimposed;
 
 use crate::fate::Fates;
 use crate::{
-    AxisConfig, AxisEvent, AxisId, AxisState, CommandId, Comms, ConfigError, DriveCommand, DrivePosition,
-    DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
+    AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, Comms, ConfigError, DriveCommand,
+    DrivePosition, DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState,
+    state,
 };
 use queue::{Entry, Queue, Work};
 pub use reading::{MotionState, Pace, Way};
@@ -99,8 +101,8 @@ pub struct Outlook {
     pub owner: Option<(CommandId, &'static str, bool)>,
     /// MC_Stop has come to rest and is held.
     pub stop_held: bool,
-    /// Commands that wait, in order.
-    pub waiting: [Option<(CommandId, &'static str)>; QUEUE_MAX],
+    /// Commands that wait, in order, with how they follow the one before.
+    pub waiting: [Option<(CommandId, &'static str, BufferMode)>; QUEUE_MAX],
     /// MC_Power.Enable.
     pub power_wanted: bool,
     /// Operation is enabled.
@@ -146,7 +148,7 @@ impl Outlook {
         if let Some((id, ..)) = &mut self.owner {
             *id = NUMBERLESS;
         }
-        for (id, _) in self.waiting.iter_mut().flatten() {
+        for (id, ..) in self.waiting.iter_mut().flatten() {
             *id = NUMBERLESS;
         }
         self.reset = self.reset.map(|_| NUMBERLESS);
@@ -180,6 +182,8 @@ pub struct Axis<P: Planner = Standard> {
     covered: Option<(CommandId, f64)>,
     /// Limits of the present motion, for whoever takes over from it.
     in_force: Limits,
+    /// Limits of the motion the owner took over from, for planning the owner anew.
+    before: Limits,
     /// The last velocity that was not zero (u/s): its sign is mcCurrentDirection.
     last_velocity: f64,
     owner: Option<Entry>,
@@ -223,6 +227,7 @@ impl<P: Planner> Axis<P> {
             layer: None,
             covered: None,
             in_force: config.limits,
+            before: config.limits,
             last_velocity: 1.0,
             owner: None,
             stop_held: false,
@@ -320,7 +325,7 @@ impl<P: Planner> Axis<P> {
         {
             return match owner.work {
                 Work::Stop if self.stop_held => Fate::Done,
-                Work::Velocity { .. } => Fate::Active {
+                Work::Velocity { .. } | Work::Through { .. } => Fate::Active {
                     reached: self.goal_reached(),
                 },
                 Work::Position(_) | Work::Distance(_) | Work::Halt | Work::Stop | Work::Home(_) => {
@@ -348,7 +353,7 @@ impl<P: Planner> Axis<P> {
     pub fn outlook(&self) -> Outlook {
         let mut waiting = [None; QUEUE_MAX];
         for (slot, entry) in waiting.iter_mut().zip(self.queue.iter()) {
-            *slot = Some((entry.id, entry.work.kind()));
+            *slot = Some((entry.id, entry.work.kind(), entry.mode));
         }
         Outlook {
             state: self.state,

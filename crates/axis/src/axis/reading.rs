@@ -203,7 +203,13 @@ impl<P: Planner> Axis<P> {
             (Motion::Run { plan, .. }, Some(Work::Velocity { .. })) => {
                 return Way::of(plan.at(u64::from(plan.scans())).velocity);
             }
-            (Motion::Run { plan, .. }, Some(Work::Position(_) | Work::Distance(_))) => {
+            (Motion::Run { plan, .. }, Some(Work::Through { .. })) if self.goal_reached() => {
+                return Way::of(plan.at(u64::from(plan.scans())).velocity);
+            }
+            (
+                Motion::Run { plan, .. },
+                Some(Work::Position(_) | Work::Distance(_) | Work::Through { .. }),
+            ) => {
                 let place = self.layer.as_ref().map_or(&self.setpoint, |layer| &layer.base);
                 plan.at(u64::from(plan.scans())).position - place.position
             }

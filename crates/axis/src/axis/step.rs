@@ -117,6 +117,8 @@ impl<P: Planner> Axis<P> {
         let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
         let leaving = match self.owner.as_ref().map(|owner| &owner.work) {
             Some(Work::Velocity { .. }) => true,
+            // One that ends at rest does so at its target, which was checked.
+            Some(Work::Through { end_velocity, .. }) => *end_velocity != 0.0,
             Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan() + self.superimposed_left()),
             // Targets were checked when the command was taken.
             Some(Work::Position(_) | Work::Distance(_) | Work::Home(_)) | None => false,
@@ -134,7 +136,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Where the running plan has its goal (u).
-    fn end_of_plan(&self) -> f64 {
+    pub(super) fn end_of_plan(&self) -> f64 {
         match &self.motion {
             Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
             Motion::Follow | Motion::Hold => self.setpoint.position,
@@ -148,7 +150,7 @@ impl<P: Planner> Axis<P> {
                 && !self.queue.is_empty()
             {
                 // MC_Stop released the axis in this scan (note 6), or a command waits for a superimposed motion.
-                self.hand_over(scan, log);
+                self.hand_over(self.setpoint.position, scan, log);
             }
             return;
         };
@@ -169,33 +171,38 @@ impl<P: Planner> Axis<P> {
                 self.motion = Motion::Hold;
                 self.end_owner(Fate::Done);
                 self.enter(AxisEvent::StopReleased);
-                self.hand_over(scan, log);
+                self.hand_over(self.setpoint.position, scan, log);
             }
             // An endless motion gives way when it has reached its velocity.
-            Work::Velocity { .. } => self.hand_over(scan, log),
+            Work::Velocity { .. } | Work::Through { .. } => self.hand_over(self.passed_end(), scan, log),
         }
     }
 
-    /// The owner has completed at rest.
+    /// The owner has completed, at rest or passing its end on to a blended successor.
     #[cold]
     fn complete(&mut self, scan: u64, log: &mut Log) {
+        if self.base().velocity != 0.0 {
+            return self.pass_on(scan, log);
+        }
         self.motion = Motion::Hold;
         self.end_owner(Fate::Done);
         // The motion is not over while something is superimposed (V14).
         if !self.is_superimposing() {
             self.enter(AxisEvent::MotionDone);
         }
-        self.hand_over(scan, log);
+        self.hand_over(self.setpoint.position, scan, log);
     }
 
     /// The next waiting command that can be planned becomes the owner; those that cannot fail (R79). An
-    /// endless owner stays if there is none.
+    /// endless owner stays if there is none. Distances count from `from` (B10).
     #[inline(never)]
-    pub(super) fn hand_over(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn hand_over(&mut self, from: f64, scan: u64, log: &mut Log) {
         for _ in 0..QUEUE_MAX {
-            let Some(next) = self.queue.first().copied() else {
+            let Some(mut next) = self.queue.first().copied() else {
                 return;
             };
+            next.end = next.work.end(from);
+            next.passage = self.passage(&next, 1);
             let planned = self.plan_next(&next);
             if let Ok(None) = planned {
                 return;
@@ -204,7 +211,7 @@ impl<P: Planner> Axis<P> {
             match planned {
                 Ok(None) => {}
                 Ok(Some(motion)) => {
-                    self.end_owner(Fate::Aborted);
+                    self.end_owner(self.fate_at_hand_over());
                     self.begin(next, motion, scan, log);
                     return;
                 }
