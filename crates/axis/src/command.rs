@@ -89,7 +89,7 @@ impl<E: IecEnum> Raw<E> {
 macro_rules! iec_enum {
     ($(#[$meta:meta])* $name:ident = $iec:literal { $($(#[$doc:meta])* $element:ident = $text:literal, $number:literal;)* }) => {
         $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum $name { $($(#[$doc])* $element = $number,)* }
 
         impl IecEnum for $name {
@@ -147,6 +147,18 @@ iec_enum! {
     }
 }
 
+iec_enum! {
+    /// Which values of an axis are meant (MC_SOURCE, numbers in the standard's order).
+    ValueSource = "MC_SOURCE" {
+        /// What the inputs of the active command ask for.
+        Commanded = "mcCommandedValue", 0;
+        /// The newest set-point.
+        Set = "mcSetValue", 1;
+        /// The newest feedback.
+        Actual = "mcActualValue", 2;
+    }
+}
+
 /// Most commands that can wait behind the active one; the configured queue is at most this.
 pub const QUEUE_MAX: usize = 16;
 
@@ -182,6 +194,34 @@ pub enum Command {
     MoveRelative {
         /// Distance (u), signed.
         distance: f64,
+        /// Dynamic values.
+        dynamics: Dynamics,
+    },
+    /// By a distance from the last commanded target, or from the set position where there is none; the
+    /// velocity must be positive.
+    MoveAdditive {
+        /// Distance (u), signed.
+        distance: f64,
+        /// Dynamic values.
+        dynamics: Dynamics,
+    },
+    /// To an absolute position and on from there without end; the velocity must be positive.
+    MoveContinuousAbsolute {
+        /// Target (u).
+        position: f64,
+        /// Velocity at the target and from there on (u/s), signed.
+        end_velocity: f64,
+        /// Dynamic values.
+        dynamics: Dynamics,
+        /// Way round on a modulo axis; ignored on a linear one.
+        direction: Raw<Direction>,
+    },
+    /// The same by a distance from the set position at the start.
+    MoveContinuousRelative {
+        /// Distance (u), signed.
+        distance: f64,
+        /// Velocity at the target and from there on (u/s), signed.
+        end_velocity: f64,
         /// Dynamic values.
         dynamics: Dynamics,
     },
@@ -232,4 +272,15 @@ impl Request {
             replaces: None,
         }
     }
+}
+
+/// MC_MoveSuperimposed: values as they stand at the pins, unchecked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Superimpose {
+    /// Distance to add (u), signed.
+    pub distance: f64,
+    /// Dynamic values of what is added; the velocity (VelocityDiff) must be positive.
+    pub dynamics: Dynamics,
+    /// The ContinuousUpdate pin.
+    pub continuous_update: bool,
 }

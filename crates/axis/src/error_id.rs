@@ -97,6 +97,12 @@ error_ids! {
         "Raise the limits, shorten the move or lengthen the cycle.";
     TargetOutsideSoftwareLimits = 117, "The move would end outside the software limits.",
         "Choose a target inside them or change the axis configuration.";
+    SourceInvalid = 118, "Source is not a number of MC_SOURCE.",
+        "Use mcCommandedValue (0), mcSetValue (1) or mcActualValue (2).";
+    EndVelocityInvalid = 120, "EndVelocity is NaN or infinite, or its magnitude is above Velocity.",
+        "Give a finite number not above Velocity; its sign is the direction of motion at the target.";
+    EndVelocityAboveLimit = 121, "EndVelocity is above the axis limit and the axis is set to refuse that.",
+        "Lower EndVelocity, raise the limit, or set above_limit to clamp.";
 
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";
@@ -131,8 +137,6 @@ error_ids! {
     CommunicationLost = 601, "The communication with the drive was lost.",
         "Restore it, then call MC_Reset.";
 
-    BlendingUnsupported = 701, "Blending buffer modes are not supported yet.",
-        "Use mcAborting or mcBuffered.";
     ContinuousUpdateUnsupported = 702, "ContinuousUpdate is not supported yet.",
         "Leave ContinuousUpdate FALSE and give a new command instead.";
     DirectionEnableUnsupported = 703, "EnablePositive and EnableNegative are not supported yet.",
@@ -145,6 +149,9 @@ error_ids! {
     PlanRefused = 903, "The planner refused inputs that the axis had accepted.",
         "This is a defect of standstill: please report the trace.";
 }
+
+/// Numbers that earlier versions showed and no version will show again, each with what it said.
+pub const RETIRED: &[(u16, &str)] = &[(701, "Blending buffer modes were not supported.")];
 
 // Deriving it needs an attribute on a variant that the table above writes.
 #[allow(clippy::derivable_impls)]
@@ -184,6 +191,14 @@ impl ErrorId {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Covers: V27, R73
+    #[test]
+    fn retired_numbers_are_not_used_again() {
+        for (number, _) in RETIRED {
+            assert_eq!(ErrorId::from_number(*number), None);
+        }
+    }
 
     #[test]
     fn numbers_rise_and_every_error_says_what_to_do() {

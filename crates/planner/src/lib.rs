@@ -24,11 +24,13 @@ pub mod papers;
 mod planner;
 pub mod ramp;
 mod setpoint;
+mod sum;
 
 pub use error::{Field, PlanError};
-pub use grid::{GridPlan, Method};
+pub use grid::{GridPlan, Method, UnequalPlan};
 pub use limits::{Limits, Order};
-pub use online::{OnlinePlan, Rung};
-pub use planner::{Plan, Planner, Standard, StandardPlan};
+pub use online::{OnlinePlan, Passage, Rung};
+pub use papers::SampledPlan;
+pub use planner::{MoveProfile, Plan, Planner, Standard, StandardPlan};
 pub use ramp::{Excess, Peaks, RampPlan, Segment};
 pub use setpoint::Setpoint;

@@ -1,6 +1,8 @@
 //! The third-order kernel by itself: from any state, inside its bounds or not, it arrives; fast.
 
-use standstill_planner::kernel::{Bounds, MAX_STEPS, Profile, Sides, falling_root, second, third};
+use standstill_planner::kernel::{
+    Bounds, MAX_STEPS, Point, Profile, Sides, falling_root, second, third, zero,
+};
 
 /// splitmix64, as a number in 0..1.
 struct Random(u64);
@@ -248,6 +250,40 @@ fn a_root_needs_no_cap() {
     }
     println!("{most} steps of {MAX_STEPS}");
     assert!(most <= 94);
+}
+
+/// Functions that jump over zero, which no step comes near to, and steep ones.
+#[test]
+fn a_zero_needs_no_cap() {
+    let mut random = Random(59);
+    let mut most = 0;
+    for case in 0..20_000 {
+        let root = match case % 3 {
+            0 => 0.0,
+            1 => random.signed() * random.log(1e-300, 1.0),
+            _ => random.signed(),
+        };
+        let (up, down) = (random.log(1e-12, 1.0), random.log(1e-12, 1.0));
+        let function = |at: f64| Point {
+            at,
+            value: match case % 2 {
+                0 if at < root => -down,
+                0 => up,
+                _ => (at - root).cbrt(),
+            },
+            noise: 0.0,
+        };
+        let (point, steps) = zero(
+            function(-1.0 - random.unit()),
+            function(1.0 + random.unit()),
+            function,
+        );
+        // At a jump any point is as good as another.
+        assert!(case % 2 == 0 || (point.at - root).abs() <= 1e-15, "{root} {point:?}");
+        most = most.max(steps);
+    }
+    println!("{most} steps of {MAX_STEPS}");
+    assert!(most <= 114, "{most}");
 }
 
 /// `cargo test --release -p standstill-planner --features std --test ramp_kernel -- --ignored --nocapture`

@@ -74,18 +74,19 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The velocity of a positioning move: above 0, at most the axis limit.
-    pub(super) fn positioning_velocity(
+    /// The velocity of a positioning move at `pin`: above 0, at most the axis limit.
+    pub(super) fn positive_velocity(
         &self,
+        pin: &'static str,
         value: f64,
         source: Source,
         log: &mut Log,
     ) -> Result<f64, ErrorId> {
         if !(value > 0.0 && value.is_finite()) {
-            return Err(self.refuse("Velocity", value, 0.0, ErrorId::VelocityInvalid, source, log));
+            return Err(self.refuse(pin, value, 0.0, ErrorId::VelocityInvalid, source, log));
         }
         self.within(
-            "Velocity",
+            pin,
             value,
             self.config.limits.velocity,
             ErrorId::VelocityAboveLimit,
@@ -101,6 +102,27 @@ impl<P: Planner> Axis<P> {
         }
         let limit = self.config.limits.velocity;
         self.within("Velocity", value, limit, ErrorId::VelocityAboveLimit, source, log)
+    }
+
+    /// The end velocity of a continuous move: signed, at most `velocity` in magnitude.
+    pub(super) fn end_velocity(
+        &self,
+        value: f64,
+        velocity: f64,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<f64, ErrorId> {
+        let invalid = ErrorId::EndVelocityInvalid;
+        if !value.is_finite() {
+            return Err(self.refuse("EndVelocity", value, f64::NAN, invalid, source, log));
+        }
+        let limit = self.config.limits.velocity;
+        // Above the axis limit Velocity has been clamped to it, or the command refused.
+        if value.abs().min(limit) > velocity {
+            return Err(self.refuse("EndVelocity", value, velocity, invalid, source, log));
+        }
+        let above = ErrorId::EndVelocityAboveLimit;
+        self.within("EndVelocity", value, limit, above, source, log)
     }
 
     /// Limits of a ramp nobody commanded: power-off, ErrorStop.

@@ -1,8 +1,9 @@
 //! The plan value and how it is made.
 
 use super::problem::{Boxes, LONGEST, Problem};
+use super::profile::{self, Cruise};
 use super::search::{self, Family, Work};
-use super::{Method, profile, sequential};
+use super::{Method, sequential};
 use crate::{Field, Limits, Order, PlanError};
 
 /// A rest-to-rest plan: a plain value of at most four box lengths and five scale factors.
@@ -23,12 +24,11 @@ pub struct GridPlan {
     method: Method,
     /// Whether the position sums need more than 64 bits.
     pub(super) wide: bool,
-    /// How far from both ends the velocity is constant (scans); more than any plan has if it never is.
-    pub(super) cruise_after: u32,
+    pub(super) cruise: Cruise,
 }
 
 /// A plan is copied about by value, so it stays small.
-const _: () = assert!(size_of::<GridPlan>() <= 96);
+const _: () = assert!(size_of::<GridPlan>() <= 120);
 
 /// Durations of the segments in scans, as the published planner counts them (docs/planner.md, eq. 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +61,7 @@ impl GridPlan {
         limits: &Limits,
         cycle: f64,
     ) -> Result<Self, PlanError> {
-        Self::new_counted(method, start, target, limits, cycle).map(|(plan, _)| plan)
+        Self::with_work(method, start, target, limits, cycle, &mut Work::default())
     }
 
     /// As [`GridPlan::new`], with the work the search took.
@@ -80,39 +80,58 @@ impl GridPlan {
         limits: &Limits,
         cycle: f64,
     ) -> Result<(Self, Work), PlanError> {
+        let mut work = Work::default();
+        let plan = Self::with_work(method, start, target, limits, cycle, &mut work)?;
+        Ok((plan, work))
+    }
+
+    fn with_work(
+        method: Method,
+        start: f64,
+        target: f64,
+        limits: &Limits,
+        cycle: f64,
+        work: &mut Work,
+    ) -> Result<Self, PlanError> {
         let distance = checked_distance(start, target, limits, cycle)?;
-        let mut plan = Self {
+        let order = limits.order();
+        // Built in one go: fields written one by one and then copied would wait for their stores.
+        let plan = |boxes, scans, scale, wide, cruise| Self {
             start,
             target,
             cycle,
-            scale: [0.0; 5],
-            boxes: [0; 4],
-            scans: 0,
-            order: limits.order(),
+            scale,
+            boxes,
+            scans,
+            order,
             method,
-            wide: false,
-            cruise_after: u32::MAX,
+            wide,
+            cruise,
         };
         if distance == 0.0 {
-            return Ok((plan, Work::default()));
+            return Ok(plan([0; 4], 0, [0.0; 5], false, Cruise::NONE));
         }
         let length = distance.abs();
         let problem = Problem::new(length, limits, cycle)?;
-        let (boxes, work) = choose(method, &problem, length, limits, cycle);
+        let (boxes, searched) = choose(method, &problem, length, limits, cycle);
+        *work = searched;
         let scans = sum(&boxes);
         if !(1..=LONGEST).contains(&scans) {
             return Err(problem.too_long(limits));
         }
-        plan.scans = scans as u32;
         let [n1, n2, n3, n4] = boxes;
-        plan.boxes = match plan.order {
+        let boxes = match order {
             Order::Four => [n1, n2, n3, n4],
             Order::Three => [n2, n3, n4, 0],
             Order::Two => [n3, n4, 0, 0],
         };
-        (plan.scale, plan.wide) = profile::scale(plan.order, plan.product(), distance, cycle);
-        plan.cruise_after = profile::cruise_after(plan.order, plan.boxes, plan.wide);
-        Ok((plan, work))
+        let (scale, wide) = profile::scale(order, product(order, boxes), distance, cycle);
+        let cruise = if wide {
+            Cruise::NONE
+        } else {
+            Cruise::new(order, boxes, &scale)
+        };
+        Ok(plan(boxes, scans as u32, scale, wide, cruise))
     }
 
     /// Where the move starts (u).
@@ -158,12 +177,7 @@ impl GridPlan {
 
     /// Product of the box lengths: the whole number the distance is divided by (docs/planner.md, eq. 4).
     pub fn product(&self) -> u128 {
-        let [a, b, c, d] = self.boxes.map(u64::from);
-        match self.order {
-            Order::Four => u128::from(a * b) * u128::from(c * d),
-            Order::Three => u128::from(a * b) * u128::from(c),
-            Order::Two => u128::from(a * b),
-        }
+        product(self.order, self.boxes)
     }
 
     /// The published planner's segment durations; none for [`Method::Overlapped`], whose cruise may be
@@ -197,8 +211,24 @@ impl GridPlan {
     }
 }
 
+/// Product of the boxes of a plan.
+fn product(order: Order, boxes: [u32; 4]) -> u128 {
+    let [a, b, c, d] = boxes.map(u64::from);
+    match order {
+        Order::Four => u128::from(a * b) * u128::from(c * d),
+        Order::Three => u128::from(a * b) * u128::from(c),
+        Order::Two => u128::from(a * b),
+    }
+}
+
 /// The boxes by one method, none if they are too long to count, and the work it took.
-fn choose(method: Method, problem: &Problem, length: f64, limits: &Limits, cycle: f64) -> (Boxes, Work) {
+pub(super) fn choose(
+    method: Method,
+    problem: &Problem,
+    length: f64,
+    limits: &Limits,
+    cycle: f64,
+) -> (Boxes, Work) {
     let step_by_step = || sequential::plan(problem, length, limits, cycle);
     let (best, work) = match method {
         Method::Sequential => return (step_by_step(), Work::default()),
@@ -220,7 +250,12 @@ fn sum(boxes: &Boxes) -> u64 {
 }
 
 /// The signed distance (u) of a move whose inputs are all usable.
-fn checked_distance(start: f64, target: f64, limits: &Limits, cycle: f64) -> Result<f64, PlanError> {
+pub(super) fn checked_distance(
+    start: f64,
+    target: f64,
+    limits: &Limits,
+    cycle: f64,
+) -> Result<f64, PlanError> {
     let invalid = |field, value| Err(PlanError::InvalidInput { field, value });
     if !(cycle > 0.0 && cycle.is_finite()) {
         return invalid(Field::Cycle, cycle);

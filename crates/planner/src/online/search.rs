@@ -4,7 +4,7 @@
 
 use core::cell::Cell;
 
-use crate::kernel::{MAX_STEPS, NOISE, Point, Spans, zero};
+use crate::kernel::{MAX_STEPS, NOISE, Point, Spans, THIRD_SPANS, zero};
 use crate::ramp::path::Way;
 use crate::ramp::solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
 use crate::{Order, Setpoint};
@@ -27,13 +27,15 @@ const HALVINGS: u32 = 64;
 pub const MAX_SOLVES: u32 = 2 * MAX_PUSH_SOLVES + 2 * (MAX_STEPS + 3) + 2 * (HALVINGS + 1) + 5;
 
 /// Spans of a whole move.
-pub(super) type Candidate = Spans<CANDIDATE_SPANS>;
+type Candidate = Spans<CANDIDATE_SPANS>;
 
 /// A move to find.
 pub(super) struct Search<'a> {
     ramps: &'a Ramps,
     target: f64,
     end_velocity: f64,
+    /// The velocity a push goes for and a cruise keeps; that of the limits, or less.
+    top: f64,
     /// What the positions of start and target may be off by.
     resolution: f64,
     /// Ramps solved so far.
@@ -63,12 +65,20 @@ impl Stop {
 }
 
 impl<'a> Search<'a> {
-    /// A search for moves of `target`, which end with `end_velocity`; positions are off by `resolution`.
-    pub(super) const fn new(ramps: &'a Ramps, target: f64, end_velocity: f64, resolution: f64) -> Self {
+    /// A search for moves of `target`, which go for the velocity `top` and end with `end_velocity`;
+    /// positions are off by `resolution`.
+    pub(super) const fn new(
+        ramps: &'a Ramps,
+        target: f64,
+        end_velocity: f64,
+        top: f64,
+        resolution: f64,
+    ) -> Self {
         Self {
             ramps,
             target,
             end_velocity,
+            top,
             resolution,
             solves: Cell::new(0),
             steps: Cell::new(0),
@@ -85,15 +95,22 @@ impl<'a> Search<'a> {
         self.steps.get()
     }
 
+    /// The whole move where the kernel has it (O3).
+    pub(super) fn profile(&self, start: &Setpoint) -> Option<Spans<THIRD_SPANS>> {
+        if self.end_velocity != 0.0 {
+            return None;
+        }
+        let profile = self.ramps.position_profile(start, self.target)?;
+        self.solves.set(self.solves.get() + 1);
+        self.steps.set(self.steps.get().max(profile.steps));
+        Some(profile.spans)
+    }
+
     /// Push towards a velocity bound, then the fastest stop, which begins where it ends on the target (O2).
     pub(super) fn push_then_stop(&self, start: &Setpoint) -> Candidate {
         let mut spans = Spans::new();
-        if self.end_velocity == 0.0
-            && let Some(profile) = self.ramps.position_profile(start, self.target)
-        {
-            self.solves.set(self.solves.get() + 1);
-            self.steps.set(self.steps.get().max(profile.steps));
-            spans.extend(&profile.spans);
+        if let Some(profile) = self.profile(start) {
+            spans.extend(&profile);
             return spans;
         }
         let stop = self.stop(start);
@@ -102,7 +119,7 @@ impl<'a> Search<'a> {
             return spans;
         }
         let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
-        let top = side * self.ramps.velocity();
+        let top = side * self.top;
         let push = self.ramp(start, top);
         let mut way = Way::new(self.ramps.order(), start);
         let mut from = stop.ahead(0.0, side);
@@ -138,7 +155,7 @@ impl<'a> Search<'a> {
         let mut spans = Spans::new();
         let stop = self.stop(start);
         let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
-        let top = side * self.ramps.velocity();
+        let top = side * self.top;
         let through = |peak: f64| {
             let ramp = self.ramp(start, peak);
             let state = steady(&follow(self.ramps.order(), start, &ramp), peak);
@@ -177,7 +194,7 @@ impl<'a> Search<'a> {
     }
 
     /// To rest, and to the end velocity, which is not 0, by way of a velocity that is held for as long as it
-    /// takes (O12).
+    /// takes (O15).
     ///
     /// It is the highest of ever halved ones with which the move does not go too far: forwards, or, where the
     /// ramp from rest would end beyond the target, backwards. So nothing has to be met by a root.
@@ -185,7 +202,7 @@ impl<'a> Search<'a> {
         let brake = self.ramp(start, 0.0);
         let rest = steady(&follow(self.ramps.order(), start, &brake), 0.0);
         let even = self.ramps.even();
-        let search = Search::new(&even, self.target, self.end_velocity, self.resolution);
+        let search = Search::new(&even, self.target, self.end_velocity, self.top, self.resolution);
         let mut spans = Spans::new();
         spans.extend(&brake);
         spans.extend(&search.run_up(&rest));
@@ -204,7 +221,7 @@ impl<'a> Search<'a> {
         } else {
             (self.end_velocity.signum(), self.end_velocity.abs())
         };
-        let mut held = self.ramps.velocity();
+        let mut held = self.top;
         for _ in 0..HALVINGS {
             let first = self.ramp(rest, way * held);
             let state = steady(&follow(self.ramps.order(), rest, &first), way * held);
@@ -235,9 +252,28 @@ impl<'a> Search<'a> {
         self.ramps.ramp(start, velocity, heading, Course::Free)
     }
 
+    /// The speed between `near`, from which the ramp alone ends short of the target, and `far`, from which
+    /// it ends beyond, where it ends on the target (O11); `None` if they do not bracket it. Speeds are those
+    /// towards the side `side`.
+    pub(super) fn speed_on_target(&self, start: &Setpoint, side: f64, near: f64, far: f64) -> Option<f64> {
+        let at = |speed: f64| self.ramp_to(start, side * speed).ahead(speed, side);
+        let (low, high) = (at(near), at(far));
+        (low.value <= 0.0 && high.value > 0.0).then(|| self.zero(low, high, at).at)
+    }
+
+    /// Whether the ramp alone to `speed` towards the side `side` ends on the target or short of it.
+    pub(super) fn ends_short(&self, start: &Setpoint, side: f64, speed: f64) -> bool {
+        let end = self.ramp_to(start, side * speed);
+        side * end.beyond <= end.noise.max(self.resolution)
+    }
+
     /// The ramp from `start` to the end velocity.
     fn stop(&self, start: &Setpoint) -> Stop {
-        let spans = self.ramp(start, self.end_velocity);
+        self.ramp_to(start, self.end_velocity)
+    }
+
+    fn ramp_to(&self, start: &Setpoint, velocity: f64) -> Stop {
+        let spans = self.ramp(start, velocity);
         let end = follow(self.ramps.order(), start, &spans);
         let added_up = start.position.abs() + self.target.abs() + spans.duration() * start.velocity.abs();
         Stop {
@@ -255,7 +291,7 @@ impl<'a> Search<'a> {
 
     /// Appends what is left at the velocity bound.
     fn cruise(&self, spans: &mut Candidate, left: f64) {
-        spans.push(left.max(0.0) / self.ramps.velocity(), 0.0);
+        spans.push(left.max(0.0) / self.top, 0.0);
     }
 }
 

@@ -54,6 +54,18 @@ pub struct Segment {
     pub snap: f64,
 }
 
+impl From<crate::grid::Segment> for Segment {
+    fn from(segment: crate::grid::Segment) -> Self {
+        Self {
+            duration: segment.duration,
+            velocity: segment.velocity,
+            acceleration: segment.acceleration,
+            jerk: segment.jerk,
+            snap: segment.snap,
+        }
+    }
+}
+
 impl RampPlan {
     /// Plans from `start` to `velocity` (u/s) in least time with sample time `cycle` (s).
     ///

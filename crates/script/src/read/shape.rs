@@ -52,6 +52,7 @@ pub(crate) const AXIS: Shape = Shape {
         "scaling",
         "software_limits",
         "above_limit",
+        "profile",
         "queue",
         "stop_deceleration",
         "stop_jerk",
