@@ -1,8 +1,10 @@
 //! Random replans that follow each other, and how to write one as a line of `standstill plan`.
 
 use crate::random::Random;
+use standstill_planner::grid::{self, Family};
 use standstill_planner::{
     Excess, GridPlan, Limits, Method, OnlinePlan, Order, Peaks, PlanError, RampPlan, Segment, Setpoint,
+    UnequalPlan,
 };
 
 /// What a replan is to reach.
@@ -41,6 +43,8 @@ pub struct Case {
 pub enum Plan {
     /// From rest to rest on the sample grid.
     Grid(GridPlan),
+    /// The same with a deceleration of its own.
+    Unequal(UnequalPlan),
     /// To a position.
     Online(OnlinePlan),
     /// To a velocity.
@@ -58,6 +62,10 @@ impl Case {
             ..
         } = self;
         match self.goal {
+            Goal::Grid(target) if limits.acceleration != limits.deceleration => {
+                UnequalPlan::new(Family::Overlapped, start.position, target, limits, *cycle)
+                    .map(Plan::Unequal)
+            }
             Goal::Grid(target) => {
                 GridPlan::new(Method::Overlapped, start.position, target, limits, *cycle).map(Plan::Grid)
             }
@@ -132,6 +140,7 @@ impl Plan {
     pub fn scans(&self) -> u32 {
         match self {
             Self::Grid(plan) => plan.scans(),
+            Self::Unequal(plan) => plan.scans(),
             Self::Online(plan) => plan.scans(),
             Self::Ramp(plan) => plan.scans(),
         }
@@ -141,6 +150,7 @@ impl Plan {
     pub fn at(&self, scan: u64) -> Setpoint {
         match self {
             Self::Grid(plan) => plan.at(scan),
+            Self::Unequal(plan) => plan.at(scan),
             Self::Online(plan) => plan.at(scan),
             Self::Ramp(plan) => plan.at(scan),
         }
@@ -150,6 +160,7 @@ impl Plan {
     pub fn duration(&self) -> f64 {
         match self {
             Self::Grid(plan) => plan.duration(),
+            Self::Unequal(plan) => plan.duration(),
             Self::Online(plan) => plan.duration(),
             Self::Ramp(plan) => plan.duration(),
         }
@@ -158,7 +169,7 @@ impl Plan {
     /// What the plan tells of exceeding.
     pub fn excess(&self) -> Option<Excess> {
         match self {
-            Self::Grid(_) => None,
+            Self::Grid(_) | Self::Unequal(_) => None,
             Self::Online(plan) => plan.excess(),
             Self::Ramp(plan) => plan.excess(),
         }
@@ -167,15 +178,8 @@ impl Plan {
     /// The largest magnitudes the plan tells of.
     pub fn peaks(&self) -> Peaks {
         match self {
-            Self::Grid(plan) => {
-                let peaks = plan.peaks();
-                Peaks {
-                    velocity: peaks.velocity,
-                    acceleration: peaks.acceleration,
-                    jerk: peaks.jerk.unwrap_or(f64::INFINITY),
-                    snap: peaks.snap.unwrap_or(f64::INFINITY),
-                }
-            }
+            Self::Grid(plan) => unbounded_where_none(plan.peaks()),
+            Self::Unequal(plan) => unbounded_where_none(plan.peaks()),
             Self::Online(plan) => plan.peaks(),
             Self::Ramp(plan) => plan.peaks(),
         }
@@ -184,19 +188,25 @@ impl Plan {
     /// The stretches of constant highest derivative.
     pub fn segments(&self) -> Vec<Segment> {
         match self {
-            Self::Grid(plan) => plan
-                .segments()
-                .map(|segment| Segment {
-                    duration: segment.duration,
-                    velocity: segment.velocity,
-                    acceleration: segment.acceleration,
-                    jerk: segment.jerk,
-                    snap: segment.snap,
-                })
-                .collect(),
+            Self::Grid(plan) => plan.segments().map(Segment::from).collect(),
+            Self::Unequal(plan) => plan.segments().map(Segment::from).collect(),
             Self::Online(plan) => plan.segments().collect(),
             Self::Ramp(plan) => plan.segments().collect(),
         }
+    }
+
+    /// Whether every switch lies on a scan.
+    pub const fn is_on_grid(&self) -> bool {
+        matches!(self, Self::Grid(_) | Self::Unequal(_))
+    }
+}
+
+fn unbounded_where_none(peaks: grid::Peaks) -> Peaks {
+    Peaks {
+        velocity: peaks.velocity,
+        acceleration: peaks.acceleration,
+        jerk: peaks.jerk.unwrap_or(f64::INFINITY),
+        snap: peaks.snap.unwrap_or(f64::INFINITY),
     }
 }
 

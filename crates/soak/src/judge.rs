@@ -77,7 +77,7 @@ pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
 /// A search that ran into its cap.
 fn cut_short(plan: &Plan) -> Option<String> {
     let (solves, steps) = match plan {
-        Plan::Grid(_) => (0, 0),
+        Plan::Grid(_) | Plan::Unequal(_) => (0, 0),
         Plan::Online(plan) => (plan.solves(), plan.steps()),
         Plan::Ramp(plan) => (0, plan.steps()),
     };
@@ -275,7 +275,7 @@ fn ends(case: &Case, plan: &Plan, order: Order, followed: &Followed, scale: &Sca
     if !(scans >= needed * (1.0 - 2.0 * RELATIVE) && scans <= needed + 1.0) {
         return Err(format!("{scans} scans, but {needed:?} cycles"));
     }
-    if last > 0 && !matches!(plan, Plan::Grid(_)) && plan.at(0) != case.start {
+    if last > 0 && !plan.is_on_grid() && plan.at(0) != case.start {
         return Err(format!("the first set-point is {:?}", plan.at(0)));
     }
     for scan in [last, last + 1] {
@@ -289,7 +289,7 @@ fn ends(case: &Case, plan: &Plan, order: Order, followed: &Followed, scale: &Sca
             },
         };
         // On the grid the last switch is at the last scan; what may jump has not done so just before it.
-        let smooth = if scan == last && matches!(plan, Plan::Grid(_)) {
+        let smooth = if scan == last && plan.is_on_grid() {
             without_jumps(&found, order)
         } else {
             found

@@ -41,7 +41,7 @@ impl Tally {
         self.count(case);
         self.exceeding += u64::from(plan.excess().is_some());
         let steps = match plan {
-            Plan::Grid(_) => [0, 0],
+            Plan::Grid(_) | Plan::Unequal(_) => [0, 0],
             Plan::Ramp(plan) => [0, plan.steps()],
             Plan::Online(plan) => {
                 self.rungs[plan.rung() as usize] += 1;
