@@ -70,7 +70,7 @@ impl Planner for Countdown {
             velocity,
             ..Setpoint::at_rest(target)
         };
-        Ok(Count::to(start, goal))
+        Ok(Count::to(start, goal, false))
     }
 
     fn blend(
