@@ -344,7 +344,13 @@ impl<P: Planner> Axis<P> {
 
     /// Plans a command from the present set-point. Nothing changes.
     pub(super) fn plan_for(&self, entry: &Entry) -> Result<Motion<P::Plan>, ErrorId> {
-        self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))
+        let before = if self.passes_its_end() {
+            // From a blended end on the limits of the second command hold, and no others (B5).
+            entry.limits
+        } else {
+            self.limits_before(&entry.limits)
+        };
+        self.plan_from(entry, &self.setpoint, &before)
     }
 
     /// Plans a command from `start`, whose motion was within `before`.

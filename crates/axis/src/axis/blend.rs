@@ -32,7 +32,10 @@ impl<P: Planner> Axis<P> {
             return;
         }
         owner.passage = passage;
-        if let Some(plan) = self.blended(&owner, &self.setpoint, end, &self.before) {
+        let planned = self.blended(&owner, &self.setpoint, end, &self.before);
+        // Should it have to come to rest all the same, it does so as planned.
+        let planned = planned.filter(|plan| plan.at(u64::from(plan.scans())).velocity != 0.0);
+        if let Some(plan) = planned {
             self.in_force = raised(&owner.limits, &plan);
             let event = Event::Planned {
                 goal: Goal::Passing {
@@ -47,7 +50,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The plan that passes `end` as `entry` is to; `None` if it is to come to rest there, or can't help it.
+    /// The plan that passes `end` as `entry` is to; `None` if it is to come to rest there from where it need not
+    /// be blended, or can't do without turning.
     pub(super) fn blended(
         &self,
         entry: &Entry,
@@ -55,17 +59,14 @@ impl<P: Planner> Axis<P> {
         end: f64,
         before: &Limits,
     ) -> Option<P::Plan> {
-        if entry.passage.wanted <= 0.0 {
+        if entry.passage.wanted <= 0.0 && !self.passes_its_end() {
             return None;
         }
         let planned = self
             .planner
             .blend(start, end, &entry.passage, &entry.limits, before);
         // What can't be planned blended is planned as a move to rest, whose error would be the same.
-        planned
-            .ok()
-            .flatten()
-            .filter(|plan| plan.at(u64::from(plan.scans())).velocity != 0.0)
+        planned.ok().flatten()
     }
 
     /// Notes whose limits hold from now on, and which did for the motion taken over from.
@@ -86,6 +87,11 @@ impl<P: Planner> Axis<P> {
             self.end_owner(Fate::Done);
             self.trip(ErrorId::PlanRefused, 0, Reaction::Ramp, scan, log);
         }
+    }
+
+    /// Whether the owner is at its end in motion, for the next to take over.
+    pub(super) fn passes_its_end(&self) -> bool {
+        self.goal_reached() && self.passes_on() && self.setpoint.velocity != 0.0
     }
 
     /// What becomes of the owner when another takes over in motion: what has an end has passed it.

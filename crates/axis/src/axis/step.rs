@@ -211,8 +211,12 @@ impl<P: Planner> Axis<P> {
             match planned {
                 Ok(None) => {}
                 Ok(Some(motion)) => {
+                    let blended = self.passes_its_end();
                     self.end_owner(self.fate_at_hand_over());
                     self.begin(next, motion, scan, log);
+                    if blended {
+                        self.before = next.limits;
+                    }
                     return;
                 }
                 Err(error) => {
