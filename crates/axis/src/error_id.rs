@@ -98,6 +98,9 @@ error_ids! {
     TargetOutsideSoftwareLimits = 117, "The move would end outside the software limits.",
         "Choose a target inside them or change the axis configuration.";
 
+    PositionOutsideModulo = 118, "The position is not in the first turn of a modulo axis.",
+        "Give a position from 0 to below the length of a turn, or move by a distance.";
+
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";
     InErrorStop = 202, "The axis is in ErrorStop.",

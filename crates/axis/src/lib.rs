@@ -25,13 +25,13 @@ pub use axis::{Axis, Outlook, Source};
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, IecEnum, InstanceId, QUEUE_MAX, Raw, Request,
 };
-pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, PowerOff, StartState};
+pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, MODULO_MAX, PowerOff, StartState};
 pub use drive::{Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, Fault};
 pub use error_id::{ErrorClass, ErrorId};
 pub use fate::{FATES_KEPT, Fate};
 pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
 pub use log::{Event, Goal, LOG_KEPT, Log, Record};
-pub use scaling::Scaling;
+pub use scaling::{Scaling, Turn};
 pub use standstill_planner::{
     Excess, Limits, Order, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
 };

@@ -24,6 +24,7 @@ pub mod papers;
 mod planner;
 pub mod ramp;
 mod setpoint;
+pub mod turns;
 
 pub use error::{Field, PlanError};
 pub use grid::{GridPlan, Method};

@@ -58,6 +58,16 @@ pub trait Plan: Copy + core::fmt::Debug {
     fn rung(&self) -> Option<Rung> {
         None
     }
+
+    /// Where `scan` is past the goal of an endless motion: the same motion with that scan as its start, and
+    /// whole `length`s (u) taken off its position so that it starts within one. Returns how many; `None`, and
+    /// the plan as it is, for any other scan or plan.
+    ///
+    /// However often a motion is brought back, its position is off by a rounding or two, not by one for each
+    /// time.
+    fn bring_back(&mut self, _scan: u64, _length: f64) -> Option<i64> {
+        None
+    }
 }
 
 /// The planner of the product: the shortest grid plan of the overlapped family from rest, a ramp for
@@ -151,6 +161,19 @@ impl Plan for StandardPlan {
         match self {
             Self::Grid(_) | Self::Ramp(_) => None,
             Self::Online(plan) => Some(plan.rung()),
+        }
+    }
+
+    fn bring_back(&mut self, scan: u64, length: f64) -> Option<i64> {
+        match self {
+            Self::Grid(_) => None,
+            Self::Ramp(ramp) => ramp.bring_back(scan, length),
+            Self::Online(plan) => {
+                let mut cruise = plan.cruise(scan)?;
+                let turns = cruise.bring_back(scan, length);
+                *self = Self::Ramp(cruise);
+                turns
+            }
         }
     }
 }

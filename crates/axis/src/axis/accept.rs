@@ -14,6 +14,18 @@ use standstill_planner::{Excess, Field, Limits, Plan, PlanError, Planner};
 /// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
 const ROUNDING: f64 = 1e-9;
 
+/// The Direction pin of a command to a position; the checks refuse undefined numbers.
+fn direction_of(command: &Command) -> Direction {
+    match command {
+        Command::MoveAbsolute { direction, .. } => direction.get().unwrap_or(Direction::Unset),
+        Command::MoveRelative { .. }
+        | Command::MoveVelocity { .. }
+        | Command::Halt { .. }
+        | Command::Stop { .. }
+        | Command::Home { .. } => Direction::Unset,
+    }
+}
+
 /// When an admitted command starts.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Way {
@@ -48,6 +60,7 @@ impl<P: Planner> Axis<P> {
             instance: source.instance,
             work,
             limits,
+            direction: direction_of(&request.command),
             held: work == Work::Stop,
         };
         match way {
@@ -162,6 +175,9 @@ impl<P: Planner> Axis<P> {
                     ));
                 }
                 let position = self.finite("Position", position, source, log)?;
+                self.in_first_turn(position).map_err(|(length, error)| {
+                    self.refuse("Position", position, length, error, source, log)
+                })?;
                 self.allowed(position).map_err(|error| {
                     self.refuse(
                         "Position",
@@ -204,10 +220,13 @@ impl<P: Planner> Axis<P> {
             }
             Command::Halt { ref dynamics } => Ok((Work::Halt, self.resolve(dynamics, source, log)?)),
             Command::Stop { ref dynamics } => Ok((Work::Stop, self.resolve(dynamics, source, log)?)),
-            Command::Home { position } => Ok((
-                Work::Home(self.finite("Position", position, source, log)?),
-                self.config.limits,
-            )),
+            Command::Home { position } => {
+                let position = self.finite("Position", position, source, log)?;
+                self.in_first_turn(position).map_err(|(length, error)| {
+                    self.refuse("Position", position, length, error, source, log)
+                })?;
+                Ok((Work::Home(position), self.config.limits))
+            }
         }
     }
 
@@ -254,6 +273,10 @@ impl<P: Planner> Axis<P> {
             &entry.limits
         };
         let planned = match entry.work {
+            Work::Position(_) | Work::Distance(_) if self.modulo.is_some() => {
+                let (start, target) = self.way_round(entry, before)?;
+                self.planner.move_to(&start, target, &entry.limits, before)
+            }
             Work::Position(target) => {
                 self.planner
                     .move_to(start, self.allowed(target)?, &entry.limits, before)
@@ -421,6 +444,9 @@ impl<P: Planner> Axis<P> {
         });
         self.in_force = entry.limits;
         self.motion = motion;
+        if self.modulo.is_some() {
+            self.start_of_plan();
+        }
         self.owner = Some(entry);
     }
 }

@@ -1,10 +1,12 @@
 //! One axis: what it knows and what others may ask.
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
-//! on commands, [`step`] moves and hands over, [`power`] reacts to feedback, power, faults and resets.
+//! on commands, [`step`] moves and hands over, [`modulo`] counts turns and finds the way round, [`power`] reacts
+//! to feedback, power, faults and resets.
 
 mod accept;
 mod dynamics;
+mod modulo;
 mod power;
 mod queue;
 mod step;
@@ -14,6 +16,7 @@ use crate::{
     AxisConfig, AxisEvent, AxisId, AxisState, CommandId, ConfigError, DriveCommand, DriveFeedback,
     DrivePosition, ErrorId, Event, Fate, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
 };
+use modulo::Modulo;
 use queue::{Entry, Queue, Work};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
 
@@ -109,8 +112,10 @@ pub struct Axis<P: Planner = Standard> {
     config: AxisConfig,
     planner: P,
     state: AxisState,
+    /// On a modulo axis its position may be some turns away from the one shown.
     setpoint: Setpoint,
     actual: f64,
+    modulo: Option<Modulo>,
     feedback: DriveFeedback,
     motion: Motion<P::Plan>,
     /// Limits of the present motion, for whoever takes over from it.
@@ -159,6 +164,7 @@ impl<P: Planner> Axis<P> {
             },
             setpoint: Setpoint::at_rest(config.position),
             actual: config.position,
+            modulo: Modulo::new(&config),
             feedback,
             motion: if powered { Motion::Hold } else { Motion::Follow },
             in_force: config.limits,
@@ -200,9 +206,13 @@ impl<P: Planner> Axis<P> {
         self.state
     }
 
-    /// The set-point last published.
+    /// The set-point last published; on a modulo axis its position is in the first turn.
+    #[inline]
     pub fn setpoint(&self) -> Setpoint {
-        self.setpoint
+        match &self.modulo {
+            None => self.setpoint,
+            Some(modulo) => modulo.shown(&self.setpoint),
+        }
     }
 
     /// Actual position (u), as last latched.
@@ -311,7 +321,10 @@ impl<P: Planner> Axis<P> {
     pub fn drive_command(&mut self) -> DriveCommand {
         DriveCommand {
             request: self.drive_request(),
-            position: position_at_drive(&self.config, self.setpoint.position),
+            position: match &self.modulo {
+                None => position_at_drive(&self.config, self.setpoint.position),
+                Some(modulo) => modulo.at_drive(&self.config, self.setpoint.position),
+            },
             velocity: self.setpoint.velocity,
             rename: self
                 .rename

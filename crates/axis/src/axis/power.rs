@@ -43,6 +43,9 @@ impl<P: Planner> Axis<P> {
                 // A drive that counts increments needs a scaling; take one increment as one unit.
                 (DrivePosition::Increments(increments), None) => increments as f64,
             };
+            if let Some(modulo) = &mut self.modulo {
+                self.actual = modulo.latch(&self.config, feedback.position);
+            }
             // In most scans nothing but the position changes.
             if self.is_steady(feedback) {
                 return;
@@ -94,6 +97,7 @@ impl<P: Planner> Axis<P> {
     /// The set-point takes over where the feedback is: enabling never makes it step.
     fn hold_at_actual(&mut self) {
         self.setpoint = standstill_planner::Setpoint::at_rest(self.actual);
+        self.count_actual_turns();
         self.motion = Motion::Hold;
     }
 

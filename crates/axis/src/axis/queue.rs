@@ -1,6 +1,6 @@
 //! Commands that were accepted: the owner and those that wait.
 
-use crate::{CommandId, InstanceId, QUEUE_MAX};
+use crate::{CommandId, Direction, InstanceId, QUEUE_MAX};
 use standstill_planner::Limits;
 
 /// A checked command.
@@ -40,6 +40,8 @@ pub(super) struct Entry {
     pub instance: InstanceId,
     pub work: Work,
     pub limits: Limits,
+    /// Way round to a position on a modulo axis.
+    pub direction: Direction,
     /// MC_Stop: Execute is still TRUE.
     pub held: bool,
 }

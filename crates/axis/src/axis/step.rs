@@ -21,7 +21,10 @@ impl<P: Planner> Axis<P> {
             self.motion = Motion::Hold;
         }
         match &mut self.motion {
-            Motion::Follow => self.publish(Setpoint::at_rest(self.actual)),
+            Motion::Follow => {
+                self.publish(Setpoint::at_rest(self.actual));
+                self.count_actual_turns();
+            }
             Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
             Motion::Run { plan, elapsed } => {
                 *elapsed = elapsed.saturating_add(1);
@@ -34,6 +37,9 @@ impl<P: Planner> Axis<P> {
                     self.publish(next);
                 }
             }
+        }
+        if self.modulo.is_some() {
+            self.bring_back();
         }
         self.settle(scan, log);
         self.finish_reset();
@@ -119,6 +125,7 @@ impl<P: Planner> Axis<P> {
             Work::Position(_) | Work::Distance(_) | Work::Halt if reached => self.complete(scan, log),
             Work::Home(position) => {
                 self.setpoint = Setpoint::at_rest(position);
+                self.forget_turns();
                 self.rename = Some(position);
                 self.homed = true;
                 self.complete(scan, log);

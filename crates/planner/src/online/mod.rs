@@ -14,7 +14,7 @@ use crate::grid::GridPlan;
 use crate::ramp::excess::{self, Excess, Peaks};
 use crate::ramp::path::Path;
 use crate::ramp::{self, Segment};
-use crate::{Field, Limits, PlanError, Setpoint};
+use crate::{Field, Limits, PlanError, RampPlan, Setpoint};
 use ladder::{Found, Tail};
 
 /// Most pieces of a plan.
@@ -185,6 +185,21 @@ impl OnlinePlan {
             velocity: self.end_velocity,
             ..Setpoint::at_rest(self.target + self.end_velocity * since)
         }
+    }
+
+    /// The motion with the end velocity alone, as a plan of its own with the same count of scans; none before
+    /// `scan` is at its end, or if it ends at rest.
+    pub(crate) fn cruise(&self, scan: u64) -> Option<RampPlan> {
+        if scan < u64::from(self.scans) || self.end_velocity == 0.0 {
+            return None;
+        }
+        let start = self.target - self.end_velocity * self.duration();
+        Some(RampPlan::cruising(
+            start,
+            self.end_velocity,
+            self.path.order(),
+            self.cycle,
+        ))
     }
 
     /// By how much the start state forced the plan out of its limits, if it did by more than 1e-9 of them.

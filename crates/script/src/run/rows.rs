@@ -48,21 +48,25 @@ impl<'a> Rows<'a> {
     }
 
     /// Backward difference of published positions of this order (1 to 4) at `scan` over cycle^order, after
-    /// the one of the same order one scan earlier: [before, now].
+    /// the one of the same order one scan earlier: [before, now]. On a modulo axis it is the difference of the
+    /// unwrapped positions.
     ///
     /// Subtracts neighbours `order` times rather than weighing positions with binomial coefficients:
     /// neighbours are close, so nearly every subtraction is exact.
     fn differences(&self, axis: usize, scan: u64, order: u8) -> Option<[f64; 2]> {
         let order = usize::from(order);
-        // Newest first; order + 2 of them give two differences.
-        let mut values = [0.0; 6];
-        let used = values.get_mut(..order + 2)?;
-        for (back, value) in used.iter_mut().enumerate() {
-            *value = self.position(axis, scan, back as u64)?;
+        // Newest first; order + 2 positions have order + 1 first differences and give two of the last.
+        let mut values = [0.0; 5];
+        let used = values.get_mut(..=order)?;
+        let mut newer = self.position(axis, scan, 0)?;
+        for (back, value) in (1..).zip(used.iter_mut()) {
+            let older = self.position(axis, scan, back)?;
+            *value = self.way(axis, newer - older);
+            newer = older;
         }
         let cycle = self.script.cycle_ns as f64 / 1e9;
-        let mut unit = 1.0;
-        for length in (0..order).map(|done| order + 1 - done) {
+        let mut unit = cycle;
+        for length in (1..order).map(|done| order + 1 - done) {
             unit *= cycle;
             for index in 0..length {
                 if let [newer, older] = &mut used[index..index + 2] {
@@ -73,6 +77,16 @@ impl<'a> Rows<'a> {
         match used {
             [now, before, ..] => Some([*before / unit, *now / unit]),
             _ => None,
+        }
+    }
+
+    /// The way of a difference of positions: on a modulo axis the shorter way round, since no axis goes half a
+    /// turn in a scan.
+    pub(crate) fn way(&self, axis: usize, difference: f64) -> f64 {
+        match self.script.axes.get(axis).and_then(|axis| axis.config.modulo) {
+            Some(turn) if difference > turn / 2.0 => difference - turn,
+            Some(turn) if difference < -turn / 2.0 => difference + turn,
+            _ => difference,
         }
     }
 
