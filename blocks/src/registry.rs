@@ -1,12 +1,15 @@
 //! Every block the runtime knows, by its IEC name.
 
 use crate::administrative::{
-    mc_power::McPower, mc_read_actual_position::McReadActualPosition, mc_read_axis_error::McReadAxisError,
-    mc_read_status::McReadStatus, mc_reset::McReset,
+    mc_power::McPower, mc_read_actual_position::McReadActualPosition,
+    mc_read_actual_velocity::McReadActualVelocity, mc_read_axis_error::McReadAxisError,
+    mc_read_axis_info::McReadAxisInfo, mc_read_motion_state::McReadMotionState, mc_read_status::McReadStatus,
+    mc_reset::McReset,
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
-    mc_halt::McHalt, mc_move_absolute::McMoveAbsolute, mc_move_relative::McMoveRelative,
+    mc_halt::McHalt, mc_halt_superimposed::McHaltSuperimposed, mc_move_absolute::McMoveAbsolute,
+    mc_move_relative::McMoveRelative, mc_move_superimposed::McMoveSuperimposed,
     mc_move_velocity::McMoveVelocity, mc_stop::McStop,
 };
 use crate::standard::{
@@ -56,9 +59,10 @@ macro_rules! registry {
 }
 
 registry! {
-    McPower McReset McReadStatus McReadActualPosition McReadAxisError
+    McPower McReset McReadStatus McReadMotionState McReadAxisInfo McReadAxisError
+    McReadActualPosition McReadActualVelocity
     McHome
-    McStop McHalt McMoveAbsolute McMoveRelative McMoveVelocity
+    McStop McHalt McMoveAbsolute McMoveRelative McMoveVelocity McMoveSuperimposed McHaltSuperimposed
     RTrig FTrig Sr Rs Ctu Ctd Ctud Ton Tof Tp
 }
 
@@ -102,6 +106,44 @@ mod tests {
         assert!(BlockInstance::new("MC_Nothing").is_none());
     }
 
+    /// Covers: R3, R7
+    #[test]
+    fn mc_blocks_have_one_axis_and_numbers_are_lreal() {
+        for info in REGISTRY.iter().filter(|info| info.name.starts_with("MC_")) {
+            let axes: Vec<_> = info.pins_of(standstill_fb::Direction::InOut).collect();
+            assert_eq!(axes.len(), 1, "{}", info.name);
+            assert_eq!(
+                (axes[0].name, axes[0].ty.iec_name()),
+                ("Axis", "AXIS_REF"),
+                "{}",
+                info.name
+            );
+            for pin in info.pins().filter(|pin| !pin.unit.is_empty()) {
+                assert_eq!(pin.ty.iec_name(), "LREAL", "{}.{}", info.name, pin.name);
+            }
+        }
+    }
+
+    /// Covers: R84, V8, V8a
+    #[test]
+    fn enumerations_have_the_stated_numbers_and_prefixed_names() {
+        let numbers = |name: &str| -> Vec<i32> {
+            match name {
+                "MC_BUFFER_MODE" => (0..=5).collect(),
+                "MC_DIRECTION" => (0..=4).collect(),
+                "MC_SOURCE" => (0..=2).collect(),
+                _ => panic!("state the numbers of {name} here"),
+            }
+        };
+        for pin in REGISTRY.iter().flat_map(|info| info.pins()) {
+            if let standstill_fb::PinType::Enum(info) = pin.ty {
+                let found: Vec<_> = info.elements.iter().map(|(_, number)| *number).collect();
+                assert_eq!(found, numbers(info.name), "{}", info.name);
+                assert!(info.elements.iter().all(|(name, _)| name.starts_with("mc")));
+            }
+        }
+    }
+
     #[test]
     fn every_pin_reads_back_what_was_written() {
         for info in REGISTRY {
@@ -123,6 +165,7 @@ mod tests {
         }
     }
 
+    /// Covers: R87
     #[test]
     fn vendor_pins_come_after_the_standard_pins_of_their_kind() {
         for info in REGISTRY {

@@ -45,28 +45,32 @@ impl Block for McPower {
     type Inputs = Inputs;
     type Outputs = Outputs;
 
+    // Called in every scan: in line, the outputs of the usual case are one constant.
+    #[inline(always)]
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let barred = inputs.enable && !(inputs.enable_positive && inputs.enable_negative);
-        let refused = if barred {
-            ErrorId::DirectionEnableUnsupported
-        } else {
-            ErrorId::None
+        let (axis, log, source) = match context.axis(inputs.axis) {
+            Ok(found) => found,
+            Err(id) if inputs.enable => return refused(false, id),
+            Err(_) => return Outputs::default(),
         };
-        match context.axis(inputs.axis) {
-            Ok((axis, log, source)) => {
-                axis.set_power(inputs.enable && !barred, source, log);
-                Outputs {
-                    status: axis.is_powered(),
-                    valid: inputs.enable && !barred,
-                    error: barred,
-                    error_id: refused,
-                }
-            }
-            Err(id) => Outputs {
-                error: inputs.enable,
-                error_id: if inputs.enable { id } else { ErrorId::None },
-                ..Outputs::default()
-            },
+        if inputs.enable && !(inputs.enable_positive && inputs.enable_negative) {
+            axis.set_power(false, source, log);
+            return refused(axis.is_powered(), ErrorId::DirectionEnableUnsupported);
         }
+        axis.set_power(inputs.enable, source, log);
+        Outputs {
+            status: axis.is_powered(),
+            valid: inputs.enable,
+            ..Outputs::default()
+        }
+    }
+}
+
+fn refused(status: bool, error_id: ErrorId) -> Outputs {
+    Outputs {
+        status,
+        error: true,
+        error_id,
+        ..Outputs::default()
     }
 }

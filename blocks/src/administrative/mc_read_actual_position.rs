@@ -2,8 +2,8 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; rules R52 to R59.
 
-use standstill_axis::{AxisId, ErrorId, Planner};
-use standstill_fb::{Block, Context, Group, pins};
+use standstill_axis::{Axis, AxisId, ErrorId, Planner};
+use standstill_fb::{Block, Context, EnableCore, Group, pins};
 
 pins! {
     in_outs {
@@ -18,22 +18,24 @@ pins! {
     outputs {
         /// The other outputs can be relied on.
         Valid => valid: bool, "";
-        /// Enabled.
+        /// Enabled, and not ended by an error.
         Busy => busy: bool, "";
         /// The block cannot read.
         Error => error: bool, "";
         /// Why; 0 without an error.
         ErrorID => error_id: ErrorId, "";
-        /// Actual position.
+        /// Actual position, as latched in this scan.
         Position => position: f64, "u";
     }
     vendor_outputs {}
 }
 
-/// Keeps nothing: reads in every call.
+/// State kept between calls.
 #[doc(alias = "MC_ReadActualPosition")]
 #[derive(Clone, Copy, Debug, Default)]
-pub struct McReadActualPosition;
+pub struct McReadActualPosition {
+    core: EnableCore,
+}
 
 impl Block for McReadActualPosition {
     const NAME: &'static str = "MC_ReadActualPosition";
@@ -43,22 +45,15 @@ impl Block for McReadActualPosition {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        if !inputs.enable {
-            return Outputs::default();
-        }
-        match context.axes.get(inputs.axis.index()) {
-            Some(axis) => Outputs {
-                valid: true,
-                busy: true,
-                position: axis.actual_position(),
-                ..Outputs::default()
-            },
-            // Not recoverable: the pin is wired to nothing (R57).
-            None => Outputs {
-                error: true,
-                error_id: ErrorId::AxisUnknown,
-                ..Outputs::default()
-            },
+        let reading = self
+            .core
+            .scan(inputs.enable, inputs.axis, context, Axis::fresh_position);
+        Outputs {
+            valid: reading.is_valid(),
+            busy: reading.is_busy(),
+            error: reading.is_error(),
+            error_id: reading.error_id(),
+            position: reading.value(),
         }
     }
 }

@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section of that name; rules R52 to R59.
 
 use standstill_axis::{AxisId, ErrorId, Planner};
-use standstill_fb::{Block, Context, Group, pins};
+use standstill_fb::{Block, Context, EnableCore, Group, pins};
 
 pins! {
     in_outs {
@@ -18,7 +18,7 @@ pins! {
     outputs {
         /// The other outputs can be relied on.
         Valid => valid: bool, "";
-        /// Enabled.
+        /// Enabled, and not ended by an error.
         Busy => busy: bool, "";
         /// The block cannot read.
         Error => error: bool, "";
@@ -30,10 +30,12 @@ pins! {
     vendor_outputs {}
 }
 
-/// Keeps nothing: reads in every call.
+/// State kept between calls.
 #[doc(alias = "MC_ReadAxisError")]
 #[derive(Clone, Copy, Debug, Default)]
-pub struct McReadAxisError;
+pub struct McReadAxisError {
+    core: EnableCore,
+}
 
 impl Block for McReadAxisError {
     const NAME: &'static str = "MC_ReadAxisError";
@@ -43,22 +45,15 @@ impl Block for McReadAxisError {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        if !inputs.enable {
-            return Outputs::default();
-        }
-        match context.axes.get(inputs.axis.index()) {
-            Some(axis) => Outputs {
-                valid: true,
-                busy: true,
-                axis_error_id: axis.error_id(),
-                ..Outputs::default()
-            },
-            // Not recoverable: the pin is wired to nothing (R57).
-            None => Outputs {
-                error: true,
-                error_id: ErrorId::AxisUnknown,
-                ..Outputs::default()
-            },
+        let reading = self
+            .core
+            .scan(inputs.enable, inputs.axis, context, |axis| Ok(axis.error_id()));
+        Outputs {
+            valid: reading.is_valid(),
+            busy: reading.is_busy(),
+            error: reading.is_error(),
+            error_id: reading.error_id(),
+            axis_error_id: reading.value(),
         }
     }
 }

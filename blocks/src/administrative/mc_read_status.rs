@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section of that name; rules R52 to R59.
 
 use standstill_axis::{AxisId, AxisState, ErrorId, Planner};
-use standstill_fb::{Block, Context, Group, pins};
+use standstill_fb::{Block, Context, EnableCore, Group, pins};
 
 pins! {
     in_outs {
@@ -18,7 +18,7 @@ pins! {
     outputs {
         /// The other outputs can be relied on.
         Valid => valid: bool, "";
-        /// Enabled.
+        /// Enabled, and not ended by an error.
         Busy => busy: bool, "";
         /// The block cannot read.
         Error => error: bool, "";
@@ -44,10 +44,12 @@ pins! {
     vendor_outputs {}
 }
 
-/// Keeps nothing: reads in every call.
+/// State kept between calls.
 #[doc(alias = "MC_ReadStatus")]
 #[derive(Clone, Copy, Debug, Default)]
-pub struct McReadStatus;
+pub struct McReadStatus {
+    core: EnableCore,
+}
 
 impl Block for McReadStatus {
     const NAME: &'static str = "MC_ReadStatus";
@@ -57,29 +59,23 @@ impl Block for McReadStatus {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        if !inputs.enable {
-            return Outputs::default();
-        }
-        match context.axes.get(inputs.axis.index()) {
-            Some(axis) => Outputs {
-                valid: true,
-                busy: true,
-                error_stop: axis.state() == AxisState::ErrorStop,
-                disabled: axis.state() == AxisState::Disabled,
-                stopping: axis.state() == AxisState::Stopping,
-                homing: axis.state() == AxisState::Homing,
-                standstill: axis.state() == AxisState::Standstill,
-                discrete_motion: axis.state() == AxisState::DiscreteMotion,
-                continuous_motion: axis.state() == AxisState::ContinuousMotion,
-                synchronized_motion: axis.state() == AxisState::SynchronizedMotion,
-                ..Outputs::default()
-            },
-            // Not recoverable: the pin is wired to nothing (R57).
-            None => Outputs {
-                error: true,
-                error_id: ErrorId::AxisUnknown,
-                ..Outputs::default()
-            },
+        let reading = self
+            .core
+            .scan(inputs.enable, inputs.axis, context, |axis| Ok(Some(axis.state())));
+        let state = reading.value();
+        Outputs {
+            valid: reading.is_valid(),
+            busy: reading.is_busy(),
+            error: reading.is_error(),
+            error_id: reading.error_id(),
+            error_stop: state == Some(AxisState::ErrorStop),
+            disabled: state == Some(AxisState::Disabled),
+            stopping: state == Some(AxisState::Stopping),
+            homing: state == Some(AxisState::Homing),
+            standstill: state == Some(AxisState::Standstill),
+            discrete_motion: state == Some(AxisState::DiscreteMotion),
+            continuous_motion: state == Some(AxisState::ContinuousMotion),
+            synchronized_motion: state == Some(AxisState::SynchronizedMotion),
         }
     }
 }

@@ -2,6 +2,9 @@
 
 pub mod mc_power;
 pub mod mc_read_actual_position;
+pub mod mc_read_actual_velocity;
 pub mod mc_read_axis_error;
+pub mod mc_read_axis_info;
+pub mod mc_read_motion_state;
 pub mod mc_read_status;
 pub mod mc_reset;

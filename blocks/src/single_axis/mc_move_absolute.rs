@@ -65,6 +65,8 @@ impl Block for McMoveAbsolute {
     type Inputs = Inputs;
     type Outputs = Outputs;
 
+    // Called in every scan: in line, the outputs of the usual case are one constant.
+    #[inline(always)]
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self.core.scan(inputs.execute, context, |context, replaces| {
             let (axis, log, source) = context.axis(inputs.axis)?;

@@ -1,7 +1,9 @@
 //! Blocks that move one axis.
 
 pub mod mc_halt;
+pub mod mc_halt_superimposed;
 pub mod mc_move_absolute;
 pub mod mc_move_relative;
+pub mod mc_move_superimposed;
 pub mod mc_move_velocity;
 pub mod mc_stop;

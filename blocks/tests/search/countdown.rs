@@ -1,6 +1,7 @@
-//! A planner that only counts: every change takes two scans.
+//! A planner that only counts: every change takes two scans. At velocity 2 a move takes two scans even to
+//! where it is: what is superimposed must not make the positions many.
 
-use standstill_axis::{Excess, Limits, Plan, PlanError, Planner, Setpoint};
+use standstill_axis::{Excess, Limits, MoveProfile, Plan, PlanError, Planner, Setpoint};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Countdown;
@@ -13,8 +14,8 @@ pub struct Count {
 }
 
 impl Count {
-    fn to(start: &Setpoint, goal: Setpoint) -> Self {
-        let there = start.position == goal.position && start.velocity == goal.velocity;
+    fn to(start: &Setpoint, goal: Setpoint, always: bool) -> Self {
+        let there = !always && start.position == goal.position && start.velocity == goal.velocity;
         Self {
             start: *start,
             goal,
@@ -26,8 +27,23 @@ impl Count {
 impl Planner for Countdown {
     type Plan = Count;
 
-    fn move_to(&self, start: &Setpoint, target: f64, _: &Limits, _: &Limits) -> Result<Count, PlanError> {
-        Ok(Count::to(start, Setpoint::at_rest(target)))
+    fn cycle(&self) -> f64 {
+        1.0
+    }
+
+    fn move_to(
+        &self,
+        _: MoveProfile,
+        start: &Setpoint,
+        target: f64,
+        limits: &Limits,
+        _: &Limits,
+    ) -> Result<Count, PlanError> {
+        Ok(Count::to(
+            start,
+            Setpoint::at_rest(target),
+            limits.velocity == 2.0,
+        ))
     }
 
     fn ramp_to(&self, start: &Setpoint, velocity: f64, _: &Limits, _: &Limits) -> Result<Count, PlanError> {
@@ -38,7 +54,25 @@ impl Planner for Countdown {
                 velocity,
                 ..Setpoint::at_rest(start.position)
             },
+            false,
         ))
+    }
+
+    /// Two motions fit unless the one below has just begun: so a command waits, and a hand-over finds no room.
+    fn fits(&self, (_, elapsed): (&Count, u64), _: (&Count, u64), _: &Limits, _: Option<(f64, f64)>) -> bool {
+        elapsed > 0
+    }
+
+    fn room(&self, _: (&Count, u64), limits: &Limits) -> Limits {
+        *limits
+    }
+
+    fn next_switch(&self, (plan, elapsed): (&Count, u64)) -> u64 {
+        if elapsed < u64::from(plan.scans) {
+            elapsed + 1
+        } else {
+            elapsed
+        }
     }
 }
 

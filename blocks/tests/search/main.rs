@@ -108,6 +108,31 @@ fn home_and_move_absolute() {
 }
 
 #[test]
+fn superimposed_and_absolute_move() {
+    all_states("MC_MoveSuperimposed", "MC_MoveAbsolute");
+}
+
+#[test]
+fn velocity_and_superimposed_move() {
+    all_states("MC_MoveVelocity", "MC_MoveSuperimposed");
+}
+
+#[test]
+fn home_and_superimposed_move() {
+    all_states("MC_Home", "MC_MoveSuperimposed");
+}
+
+#[test]
+fn two_superimposed_moves() {
+    all_states("MC_MoveSuperimposed", "MC_MoveSuperimposed");
+}
+
+#[test]
+fn superimposed_move_and_its_halt() {
+    all_states("MC_MoveSuperimposed", "MC_HaltSuperimposed");
+}
+
+#[test]
 fn a_broken_rule_is_found_and_printed_as_a_script() {
     // The search is worth what it finds: with a rule that forbids Stopping it must give the shortest way there.
     let start = System::new("MC_MoveAbsolute", "MC_MoveVelocity");

@@ -71,7 +71,9 @@ fn rule(holds: bool, id: &str, name: &str, what: &str) -> Result<(), String> {
 }
 
 /// Rules on what a call shows.
-pub fn check_calls(scene: &Scene<'_>) -> Result<(), String> {
+///
+/// Covers: R21, R22, R23, R24, R28, R30, R34, R43, R60, R78, S2, S11
+pub fn check_calls(scene: &Scene<'_>, kinds: [&str; 4]) -> Result<(), String> {
     let executes = |inputs: &Inputs, name: &str| match name {
         "first" => inputs.execute[0],
         "second" => inputs.execute[1],
@@ -134,7 +136,7 @@ pub fn check_calls(scene: &Scene<'_>) -> Result<(), String> {
         )?;
         let refusing = matches!(scene.state_at_call, AxisState::Disabled | AxisState::ErrorStop);
         rule(
-            !(rising && refusing) || now.error,
+            !(rising && refusing) || now.error || kinds[place] == "MC_HaltSuperimposed",
             "R78",
             name,
             "a command is accepted without power or in ErrorStop",
@@ -170,12 +172,38 @@ pub fn check_calls(scene: &Scene<'_>) -> Result<(), String> {
 }
 
 /// Rules on what is so after the motion step, whichever instance was called when.
-pub fn check_truth(polled: &[Shown], axis: &Outlook) -> Result<(), String> {
+///
+/// Covers: R25, R47, R48, R50, R77, S1
+pub fn check_truth(polled: &[Shown], axis: &Outlook, kinds: [&str; 4]) -> Result<(), String> {
     let state = axis.state;
     let owned = axis.owner.is_some();
     let waiting = axis.waiting.iter().flatten().count();
-    let active = polled.iter().filter(|shown| shown.active).count();
-    rule(active <= 1, "R48", "axis", "two commands are Active")?;
+    let beside = |place: usize| kinds[place].ends_with("Superimposed");
+    let active_of = |superimposed: bool| {
+        let of_kind = polled
+            .iter()
+            .enumerate()
+            .filter(|(place, _)| beside(*place) == superimposed);
+        of_kind.filter(|(_, shown)| shown.active).count()
+    };
+    let active = active_of(false) + active_of(true);
+    rule(
+        active_of(false) <= 1 && active_of(true) <= 1,
+        "R48",
+        "axis",
+        "two commands are Active",
+    )?;
+    // What is superimposed, and whether it waits for room.
+    let added = axis
+        .superimposed
+        .and_then(|added| added.command)
+        .map(|(.., planned)| planned);
+    rule(
+        active_of(true) == usize::from(added == Some(true)),
+        "R51",
+        "axis",
+        "Active is not whether the added motion is the block's",
+    )?;
     let idle = matches!(
         state,
         AxisState::Disabled | AxisState::Standstill | AxisState::ErrorStop
@@ -197,7 +225,7 @@ pub fn check_truth(polled: &[Shown], axis: &Outlook) -> Result<(), String> {
         AxisState::Homing | AxisState::DiscreteMotion | AxisState::ContinuousMotion
     );
     rule(
-        !moving || owned,
+        !moving || owned || (state == AxisState::DiscreteMotion && added.is_some()),
         "R25",
         "axis",
         &format!("{state:?} without an owner"),
@@ -212,7 +240,7 @@ pub fn check_truth(polled: &[Shown], axis: &Outlook) -> Result<(), String> {
     let stopping = owned && state == AxisState::Stopping;
     let inactive = polled.iter().filter(|shown| shown.busy && !shown.active).count();
     rule(
-        inactive <= waiting + usize::from(stopping),
+        inactive <= waiting + usize::from(stopping) + usize::from(added == Some(false)),
         "R50",
         "axis",
         "an instance is Busy with a command that neither owns the axis nor waits",

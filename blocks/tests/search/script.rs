@@ -9,6 +9,7 @@ pub fn print(first: &str, second: &str, path: &[Inputs]) -> String {
         let goal = match block {
             "MC_MoveAbsolute" => format!(", \"Position\": {position}, \"Velocity\": 1"),
             "MC_MoveVelocity" => ", \"Velocity\": 1".to_string(),
+            "MC_MoveSuperimposed" => ", \"VelocityDiff\": 2".to_string(),
             "MC_Home" => format!(", \"Position\": {position}"),
             _ => String::new(),
         };

@@ -3,8 +3,8 @@
 use crate::countdown::Countdown;
 use crate::rules::{self, Shown};
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Fault,
-    InstanceId, Limits, Log, Outlook, Source, StartState,
+    Axis, AxisConfig, AxisId, AxisState, Comms, DriveFeedback, DrivePosition, DriveRequest, DriveSignals,
+    ErrorId, Fault, InstanceId, Limits, Log, Outlook, Source, StartState,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, Value};
@@ -69,6 +69,7 @@ pub struct System {
     axis: [Axis<Countdown>; 1],
     drive: Drive,
     blocks: [BlockInstance; 4],
+    kinds: [&'static str; 4],
     inputs: Inputs,
     scans: u64,
 }
@@ -84,8 +85,8 @@ const SECOND: usize = 3;
 /// Names a state: systems of equal keys behave alike from now on.
 ///
 /// Command numbers only grow, so they must not be part of it. They need not be: an instance follows at most
-/// one command, which owns the axis (it polls as Active), waits in the only place of the queue (Busy but not
-/// Active), or has ended as polling shows.
+/// one command, which owns the axis or is superimposed (it polls as Active, and the two are different kinds of
+/// block), waits in the only place of the queue or for room (Busy but not Active), or has ended as polling shows.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key {
     axis: Outlook,
@@ -97,7 +98,7 @@ pub struct Key {
 }
 
 impl System {
-    pub fn new(first: &str, second: &str) -> Self {
+    pub fn new(first: &'static str, second: &'static str) -> Self {
         let limits = Limits {
             velocity: 10.0,
             acceleration: 10.0,
@@ -110,13 +111,14 @@ impl System {
             queue: 1,
             ..AxisConfig::new(limits)
         };
-        let mut blocks = ["MC_Power", first, "MC_Stop", second]
-            .map(|name| BlockInstance::new(name).expect("a registered block"));
+        let kinds = ["MC_Power", first, "MC_Stop", second];
+        let mut blocks = kinds.map(|name| BlockInstance::new(name).expect("a registered block"));
         for block in &mut blocks {
             set(block, "Axis", Value::Axis(AxisId::new(0)));
         }
         for (place, position) in [(FIRST, 1.0), (SECOND, 0.0)] {
-            for (pin, value) in [("Position", position), ("Velocity", 1.0)] {
+            // No distance, in two scans: positions that add up would be infinitely many.
+            for (pin, value) in [("Position", position), ("Velocity", 1.0), ("VelocityDiff", 2.0)] {
                 if blocks[place].info().pin(pin).is_some() {
                     set(&mut blocks[place], pin, Value::Lreal(value));
                 }
@@ -136,6 +138,7 @@ impl System {
             axis: [Axis::new(AxisId::new(0), config, Countdown).expect("a good configuration")],
             drive,
             blocks,
+            kinds,
             inputs,
             scans: 0,
         }
@@ -158,7 +161,8 @@ impl System {
     pub fn choices(&self, changes: usize) -> Vec<Inputs> {
         let modes = |place: usize| {
             let mut modes = vec![(false, false), (true, false)];
-            if !self.inputs.execute[place] {
+            let block = &self.blocks[[FIRST, SECOND][place]];
+            if !self.inputs.execute[place] && block.info().pin("BufferMode").is_some() {
                 modes.push((true, true));
             }
             modes
@@ -208,11 +212,11 @@ impl System {
             state: self.state(),
             powered: self.axis[0].is_powered(),
         };
-        rules::check_calls(&scene)?;
+        rules::check_calls(&scene, self.kinds)?;
         self.axis[0].advance(self.scans, &mut log);
         self.write();
         self.scans += 1;
-        rules::check_truth(&self.polled(), &self.axis[0].outlook())
+        rules::check_truth(&self.polled(), &self.axis[0].outlook(), self.kinds)
     }
 
     fn apply(&mut self, inputs: &Inputs) {
@@ -245,11 +249,10 @@ impl System {
                 "Execute",
                 Value::Bool(inputs.execute[index]),
             );
-            set(
-                &mut self.blocks[place],
-                "BufferMode",
-                Value::Enum(i32::from(inputs.buffered[index])),
-            );
+            if self.blocks[place].info().pin("BufferMode").is_some() {
+                let mode = Value::Enum(i32::from(inputs.buffered[index]));
+                set(&mut self.blocks[place], "BufferMode", mode);
+            }
         }
         set(&mut self.blocks[STOP], "Execute", Value::Bool(inputs.stop));
         set(&mut self.blocks[POWER], "Enable", Value::Bool(inputs.enable));
@@ -265,6 +268,7 @@ impl System {
             }),
             position: DrivePosition::Units(f64::from_bits(self.drive.position)),
             comms: Comms::Ok,
+            signals: DriveSignals::default(),
         }
     }
 

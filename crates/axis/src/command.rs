@@ -147,6 +147,18 @@ iec_enum! {
     }
 }
 
+iec_enum! {
+    /// Which values of an axis are meant (MC_SOURCE, numbers in the standard's order).
+    ValueSource = "MC_SOURCE" {
+        /// What the inputs of the active command ask for.
+        Commanded = "mcCommandedValue", 0;
+        /// The newest set-point.
+        Set = "mcSetValue", 1;
+        /// The newest feedback.
+        Actual = "mcActualValue", 2;
+    }
+}
+
 /// Most commands that can wait behind the active one; the configured queue is at most this.
 pub const QUEUE_MAX: usize = 16;
 
@@ -232,4 +244,15 @@ impl Request {
             replaces: None,
         }
     }
+}
+
+/// MC_MoveSuperimposed: values as they stand at the pins, unchecked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Superimpose {
+    /// Distance to add (u), signed.
+    pub distance: f64,
+    /// Dynamic values of what is added; the velocity (VelocityDiff) must be positive.
+    pub dynamics: Dynamics,
+    /// The ContinuousUpdate pin.
+    pub continuous_update: bool,
 }

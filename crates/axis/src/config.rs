@@ -2,7 +2,7 @@
 
 use crate::{QUEUE_MAX, Scaling};
 use core::fmt;
-use standstill_planner::Limits;
+use standstill_planner::{Limits, MoveProfile};
 
 /// What happens to a value above the axis limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -68,6 +68,8 @@ pub struct AxisConfig {
     pub software_limits: Option<(f64, f64)>,
     /// What happens to values above the limits.
     pub above_limit: AboveLimit,
+    /// How moves to a position are planned.
+    pub profile: MoveProfile,
     /// Commands that can wait, the active one not counted; at most [`QUEUE_MAX`].
     pub queue: usize,
     /// Deceleration of ramps nobody commanded (u/s^2); `None` takes the limit.
@@ -97,6 +99,7 @@ impl AxisConfig {
             modulo: None,
             software_limits: None,
             above_limit: AboveLimit::Clamp,
+            profile: MoveProfile::Overlapped,
             queue: 8,
             stop_deceleration: None,
             stop_jerk: None,
@@ -179,7 +182,30 @@ impl AxisConfig {
         if self.queue > QUEUE_MAX {
             return Err(ConfigError::Queue { value: self.queue });
         }
-        Ok(())
+        self.check_profile()
+    }
+
+    /// Refuses a profile that could serve no move of the axis, because it cannot keep one of its limits.
+    fn check_profile(&self) -> Result<(), ConfigError> {
+        let snap = ("limits.snap", self.limits.snap);
+        let jerk = ("limits.jerk", self.limits.jerk);
+        let unkept: &[_] = match self.profile {
+            MoveProfile::SCurve | MoveProfile::ShortPath => &[snap],
+            MoveProfile::Trapezoid => &[snap, jerk],
+            MoveProfile::Overlapped
+            | MoveProfile::Grid
+            | MoveProfile::Sequential
+            | MoveProfile::Online
+            | MoveProfile::Fastest => &[],
+        };
+        match unkept.iter().find(|(_, limit)| limit.is_finite()) {
+            Some((key, limit)) => Err(ConfigError::Profile {
+                profile: self.profile,
+                key,
+                limit: *limit,
+            }),
+            None => Ok(()),
+        }
     }
 
     fn check_modulo(&self, length: f64) -> Result<(), ConfigError> {
@@ -263,6 +289,15 @@ pub enum ConfigError {
         /// Places asked for.
         value: usize,
     },
+    /// The profile cannot keep a limit of the axis.
+    Profile {
+        /// The profile asked for.
+        profile: MoveProfile,
+        /// The configuration key of the limit.
+        key: &'static str,
+        /// The limit.
+        limit: f64,
+    },
     /// A ratio of zero, or an offset that is not finite.
     Scaling {
         /// Drive increments.
@@ -284,6 +319,7 @@ impl ConfigError {
             Self::PositionOutsideModulo { .. } => "position",
             Self::ModuloWithSoftwareLimits => "software_limits",
             Self::Queue { .. } => "queue",
+            Self::Profile { .. } => "profile",
             Self::Scaling { .. } => "scaling",
         }
     }
@@ -328,6 +364,11 @@ impl fmt::Display for ConfigError {
                 "modulo is {value:?}: with this scaling a turn is no fraction of increments with parts below 2^63; choose a unit of which a turn is a whole number"
             ),
             Self::Queue { value } => write!(f, "queue is {value}: at most {QUEUE_MAX} commands can wait"),
+            Self::Profile { profile, key, limit } => write!(
+                f,
+                "profile is {}, which cannot keep {key} {limit:?}: leave that limit out or choose another profile, such as fastest",
+                profile.name()
+            ),
             Self::Scaling {
                 increments,
                 units,

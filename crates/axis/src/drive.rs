@@ -30,6 +30,21 @@ pub struct Fault {
     pub cause_present: bool,
 }
 
+/// What a drive may report beside its position and its power stage; what it does not know stays FALSE.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DriveSignals {
+    /// The drive is simulated.
+    pub simulated: bool,
+    /// The home switch is active.
+    pub home_switch: bool,
+    /// The hardware end switch in positive direction is active.
+    pub limit_switch_positive: bool,
+    /// The hardware end switch in negative direction is active.
+    pub limit_switch_negative: bool,
+    /// A warning is present.
+    pub warning: bool,
+}
+
 /// What a drive tells, latched once a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveFeedback {
@@ -43,6 +58,8 @@ pub struct DriveFeedback {
     pub position: DrivePosition,
     /// State of the communication.
     pub comms: Comms,
+    /// Switches, warnings, and whether it is simulated.
+    pub signals: DriveSignals,
 }
 
 /// What the axis asks of the power stage.

@@ -97,8 +97,10 @@ error_ids! {
         "Raise the limits, shorten the move or lengthen the cycle.";
     TargetOutsideSoftwareLimits = 117, "The move would end outside the software limits.",
         "Choose a target inside them or change the axis configuration.";
+    SourceInvalid = 118, "Source is not a number of MC_SOURCE.",
+        "Use mcCommandedValue (0), mcSetValue (1) or mcActualValue (2).";
 
-    PositionOutsideModulo = 118, "The position is not in the first turn of a modulo axis.",
+    PositionOutsideModulo = 119, "The position is not in the first turn of a modulo axis.",
         "Give a position from 0 to below the length of a turn, or move by a distance.";
 
     NotPowered = 201, "The axis is Disabled.",
@@ -188,6 +190,7 @@ impl ErrorId {
 mod tests {
     use super::*;
 
+    /// Covers: V27, R73
     #[test]
     fn numbers_rise_and_every_error_says_what_to_do() {
         for pair in ErrorId::ALL.windows(2) {

@@ -9,9 +9,9 @@ pub const FATES_KEPT: usize = 64;
 /// What became of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fate {
-    /// In the buffer.
+    /// In the buffer; a superimposed command: until there is room for it.
     Waiting,
-    /// Owns the axis; `reached` once an endless motion runs at its goal, or a held stop stands.
+    /// Owns the axis, or is being superimposed; `reached` once an endless motion runs at its goal, or a held stop stands.
     Active {
         /// The goal is reached.
         reached: bool,

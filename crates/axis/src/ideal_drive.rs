@@ -1,6 +1,6 @@
 //! A simulated drive that follows its command exactly, some scans late, and can be made to fail.
 
-use crate::{Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, Fault};
+use crate::{Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals, Fault};
 
 /// Longest delay (scans) from command to actual position.
 pub const DELAY_MAX: usize = 64;
@@ -145,6 +145,11 @@ impl Drive for IdealDrive {
             fault: self.fault,
             position: if lost { self.stale } else { self.actual() },
             comms: self.comms,
+            // An ideal drive has no switches and nothing to warn of.
+            signals: DriveSignals {
+                simulated: true,
+                ..DriveSignals::default()
+            },
         }
     }
 

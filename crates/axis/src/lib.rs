@@ -21,18 +21,21 @@ mod log;
 mod scaling;
 mod state;
 
-pub use axis::{Axis, Outlook, Source};
+pub use axis::{Axis, Beside, MotionState, Outlook, Pace, Source, Way};
 pub use command::{
-    AxisId, BufferMode, Command, CommandId, Direction, Dynamics, IecEnum, InstanceId, QUEUE_MAX, Raw, Request,
+    AxisId, BufferMode, Command, CommandId, Direction, Dynamics, IecEnum, InstanceId, QUEUE_MAX, Raw,
+    Request, Superimpose, ValueSource,
 };
 pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, MODULO_MAX, PowerOff, StartState};
-pub use drive::{Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, Fault};
+pub use drive::{
+    Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals, Fault,
+};
 pub use error_id::{ErrorClass, ErrorId};
 pub use fate::{FATES_KEPT, Fate};
 pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
 pub use log::{Event, Goal, LOG_KEPT, Log, Record};
 pub use scaling::{Scaling, Turn};
 pub use standstill_planner::{
-    Excess, Limits, Order, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
+    Excess, Limits, MoveProfile, Order, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
 };
 pub use state::{ARROWS, Arrow, AxisEvent, AxisState, Refused, next};

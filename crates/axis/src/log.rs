@@ -38,13 +38,6 @@ pub enum Event {
         /// The limit used instead.
         limit: f64,
     },
-    /// Acceleration and Deceleration differ; the move uses the lower one for both.
-    LowerUsed {
-        /// The larger one (u/s^2).
-        value: f64,
-        /// The one used (u/s^2).
-        limit: f64,
-    },
     /// The start state forces the plan out of its limits by this much.
     Unavoidable(Excess),
     /// A plan was accepted.
@@ -54,6 +47,15 @@ pub enum Event {
         /// Its scans.
         scans: u32,
     },
+    /// A superimposed motion was planned: this distance (u) to be covered, or none for a halt.
+    Superimposed {
+        /// As commanded (u).
+        distance: Option<f64>,
+        /// Its scans.
+        scans: u32,
+    },
+    /// A superimposed command waits until the motion under it leaves room below the axis limits.
+    RoomAwaited,
     /// The axis entered ErrorStop.
     Fault {
         /// Why.

@@ -307,6 +307,7 @@ pub const ARROWS: &[Arrow] = {
 mod tests {
     use super::*;
 
+    /// Covers: S3, S4, S10
     #[test]
     fn code_and_arrows_agree_on_every_state_and_event() {
         for &state in AxisState::ALL {

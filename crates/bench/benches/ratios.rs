@@ -1,6 +1,7 @@
 //! Times of the scan path as multiples of one sample of a plain trapezoid, timed in the same run.
 //!
-//! Prints a table with the bars of docs/performance.md and marks what is above its bar.
+//! Prints a table with the bars of docs/performance.md and marks what is above its bar. The bars are multiples of
+//! a sample from its parameters; the multiples of one that was planned before are shown too.
 
 use standstill_bench::{CYCLE, Executed, LIMITS, Move, OneAxis, Random, TARGET, Trapezoid, trapezoid};
 use standstill_planner::{GridPlan, Method, RampPlan, Setpoint};
@@ -25,15 +26,16 @@ fn time(count: u64, run: impl FnOnce()) -> f64 {
 }
 
 fn main() {
-    let mut yardstick = trapezoid_sample();
+    let mut planned = trapezoid_sample();
+    let mut yardstick = trapezoid_from_parameters();
     let mut measures = [
         Measure {
-            name: "trapezoid sample, planned before (the yardstick)",
+            name: "trapezoid sample, planned before",
             bar: None,
             batch: Box::new(trapezoid_sample()),
         },
         Measure {
-            name: "trapezoid sample from its parameters",
+            name: "trapezoid sample from its parameters (the yardstick)",
             bar: None,
             batch: Box::new(trapezoid_from_parameters()),
         },
@@ -70,22 +72,29 @@ fn main() {
     ];
     let mut times = vec![Vec::new(); measures.len()];
     let mut ratios = vec![Vec::new(); measures.len()];
+    let mut planned_ratios = vec![Vec::new(); measures.len()];
     for _ in 0..ROUNDS {
         for (index, measure) in measures.iter_mut().enumerate() {
             // Neighbours in time, so that a busy machine slows both.
-            let before = yardstick();
+            let before = (planned(), yardstick());
             let took = (measure.batch)();
+            let after = (yardstick(), planned());
             times[index].push(took);
-            ratios[index].push(took / (0.5 * (before + yardstick())));
+            ratios[index].push(took / (0.5 * (before.1 + after.0)));
+            planned_ratios[index].push(took / (0.5 * (before.0 + after.1)));
         }
     }
-    println!("{:<52} {:>9} {:>7} {:>5}", "", "ns", "ratio", "bar");
+    println!(
+        "{:<52} {:>9} {:>7} {:>7} {:>5}",
+        "", "ns", "planned", "ratio", "bar"
+    );
     for (index, measure) in measures.iter().enumerate() {
         let ratio = median(&mut ratios[index]);
         println!(
-            "{:<52} {:>9.2} {ratio:>7.2} {:>5}{}",
+            "{:<52} {:>9.2} {:>7.2} {ratio:>7.2} {:>5}{}",
             measure.name,
             median(&mut times[index]),
+            median(&mut planned_ratios[index]),
             measure.bar.map_or(String::from("-"), |bar| bar.to_string()),
             if measure.bar.is_some_and(|bar| ratio > bar) {
                 "  ABOVE"

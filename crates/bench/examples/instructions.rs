@@ -3,12 +3,17 @@
 //! operations ran. `.ci/instructions` compares the counts with the committed ones.
 
 use standstill_bench::{CYCLE, Executed, LIMITS, Move, OneAxis, Random, TARGET, Trapezoid};
-use standstill_planner::{GridPlan, Method, RampPlan, Setpoint};
+use standstill_planner::{GridPlan, Method, Order, RampPlan, Setpoint};
 use std::hint::black_box;
+use std::ops::Range;
 use std::process::ExitCode;
 
 /// The seed of the move with the most search steps among a million, found by `worst_plan.rs`.
 const WORST: u64 = 471_978;
+
+/// The seeds of the replans of order 3 and 4 with the most root steps and ramps among a million, found by
+/// `worst_replan.rs`.
+const WORST_REPLANS: [u64; 2] = [614_139, 749_857];
 
 /// Scans counted of an axis at rest.
 const IDLE: u64 = 1000;
@@ -25,7 +30,7 @@ fn one_operation<T>(run: impl FnOnce() -> T) {
 /// A name, and what runs the operation and gives how often it did.
 type Workload = (&'static str, fn() -> u64);
 
-const WORKLOADS: [Workload; 11] = [
+const WORKLOADS: [Workload; 16] = [
     ("trapezoid-sample", trapezoid_sample),
     ("idle-scan", idle_scan),
     ("scan-in-motion", scan_in_motion),
@@ -37,6 +42,11 @@ const WORKLOADS: [Workload; 11] = [
     ("worst-plan", worst_plan),
     ("ramp-sample", ramp_sample),
     ("ramp-plan", ramp_plan),
+    ("replan-order-3", || replans(Order::Three, 0..PLANS)),
+    ("replan-order-4", || replans(Order::Four, 0..PLANS)),
+    ("worst-replan-order-3", || worst_replan(Order::Three)),
+    ("worst-replan-order-4", || worst_replan(Order::Four)),
+    ("replan-sample", replan_sample),
 ];
 
 fn main() -> ExitCode {
@@ -126,6 +136,29 @@ fn plan() -> u64 {
 fn worst_plan() -> u64 {
     one_plan(WORST);
     1
+}
+
+fn replans(order: Order, seeds: Range<u64>) -> u64 {
+    let count = seeds.end - seeds.start;
+    for seed in seeds {
+        let request = Random(seed).any_unit(true);
+        one_operation(|| black_box(&request).plan(order));
+    }
+    count
+}
+
+fn worst_replan(order: Order) -> u64 {
+    let [third, fourth] = WORST_REPLANS;
+    let seed = if order == Order::Three { third } else { fourth };
+    replans(order, seed..seed + 1)
+}
+
+fn replan_sample() -> u64 {
+    let plan = Random(0).any_unit(true).plan(Order::Four).expect("valid");
+    for scan in 0..u64::from(plan.scans()) {
+        one_operation(|| black_box(&plan).at(black_box(scan)));
+    }
+    u64::from(plan.scans())
 }
 
 /// The move of all measures.

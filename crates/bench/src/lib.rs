@@ -11,5 +11,5 @@ mod random;
 mod trapezoid;
 
 pub use one_axis::{CYCLE, Executed, LIMITS, OneAxis, Program, TARGET};
-pub use random::{Move, Random};
+pub use random::{Move, Random, Replan};
 pub use trapezoid::{Sample, Trapezoid, trapezoid};

@@ -1,6 +1,9 @@
-//! Random moves of the kind servo axes make.
+//! Random moves: from rest of the kind servo axes make, and from any state.
 
-use standstill_planner::Limits;
+use standstill_planner::kernel::{Sides, second};
+use standstill_planner::{Limits, OnlinePlan, Order, PlanError, Setpoint};
+
+use crate::CYCLE;
 
 /// The generator splitmix64: small, seeded, the same everywhere.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +20,35 @@ pub struct Move {
     pub limits: Limits,
     /// Sample time (s).
     pub cycle: f64,
+}
+
+/// A move from any state to rest.
+#[derive(Clone, Copy, Debug)]
+pub struct Replan {
+    /// Start; from it acceleration and jerk can be brought to zero inside the limits.
+    pub start: Setpoint,
+    /// Target (u).
+    pub target: f64,
+    /// Bounds, all finite.
+    pub limits: Limits,
+}
+
+impl Replan {
+    /// The plan of order 4, or of 3: without the snap bound, and whatever the start's jerk.
+    ///
+    /// # Errors
+    /// None for what [`Random`] draws.
+    pub fn plan(&self, order: Order) -> Result<OnlinePlan, PlanError> {
+        let limits = Limits {
+            snap: if order == Order::Four {
+                self.limits.snap
+            } else {
+                f64::INFINITY
+            },
+            ..self.limits
+        };
+        OnlinePlan::new(&self.start, self.target, &limits, &limits, CYCLE)
+    }
 }
 
 impl Random {
@@ -62,4 +94,92 @@ impl Random {
             cycle: self.log(1e-4, 1e-2),
         }
     }
+
+    /// Evenly between `low` and `high`.
+    pub fn even(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Positions and limits of ordinary size, as in the examples of planners for robots.
+    pub fn ordinary(&mut self, is_moving: bool) -> Replan {
+        let velocity = self.even(0.1, 12.0);
+        let acceleration = self.even(0.1, 12.0);
+        let jerk = self.even(0.1, 12.0);
+        let snap = self.even(0.1, 12.0);
+        let position = self.even(-8.0, 8.0);
+        let target = self.even(-8.0, 8.0);
+        self.replan(
+            [velocity, acceleration, jerk, snap],
+            position,
+            target - position,
+            is_moving,
+        )
+    }
+
+    /// Limits of servo axes in any unit: spread over binades, with distances from a hundred-thousandth of a
+    /// second at the velocity limit to a hundred seconds.
+    pub fn any_unit(&mut self, is_moving: bool) -> Replan {
+        let velocity = self.log(0.01, 1000.0);
+        let acceleration = velocity * self.log(1.0, 1000.0);
+        let jerk = acceleration * self.log(1.0, 1e4);
+        let snap = jerk * self.log(1.0, 1e4);
+        let distance = velocity * self.log(1e-5, 100.0);
+        let side = if self.bits() & 1 == 0 { 1.0 } else { -1.0 };
+        self.replan(
+            [velocity, acceleration, jerk, snap],
+            0.0,
+            side * distance,
+            is_moving,
+        )
+    }
+
+    fn replan(&mut self, bounds: [f64; 4], position: f64, distance: f64, is_moving: bool) -> Replan {
+        let [velocity, acceleration, jerk, snap] = bounds;
+        let limits = Limits {
+            velocity,
+            acceleration,
+            deceleration: acceleration,
+            jerk,
+            snap,
+        };
+        let mut start = Setpoint::at_rest(position);
+        if is_moving {
+            loop {
+                start.velocity = self.even(-velocity, velocity);
+                start.acceleration = self.even(-acceleration, acceleration);
+                start.jerk = self.even(-jerk, jerk);
+                if is_viable(&start, &limits) {
+                    break;
+                }
+            }
+        }
+        Replan {
+            start,
+            target: position + distance,
+            limits,
+        }
+    }
+}
+
+/// Whether acceleration and jerk come to zero inside `limits` if they do as soon as can be, and acceleration
+/// too where nothing bounds the snap.
+fn is_viable(start: &Setpoint, limits: &Limits) -> bool {
+    let snap = limits.snap;
+    let change = start.acceleration * start.acceleration.abs() / (2.0 * limits.jerk);
+    if (start.velocity + change).abs() > limits.velocity {
+        return false;
+    }
+    let sides = Sides::both(limits.jerk / snap);
+    let arrest = second(start.acceleration / snap, start.jerk / snap, 0.0, sides);
+    let mut state = *start;
+    for span in arrest.split(16) {
+        let (t, s) = (span.duration, span.input * snap);
+        state.velocity += t * (state.acceleration + t * (state.jerk / 2.0 + t * s / 6.0));
+        state.acceleration += t * (state.jerk + t * s / 2.0);
+        state.jerk += t * s;
+        if state.velocity.abs() > limits.velocity || state.acceleration.abs() > limits.acceleration {
+            return false;
+        }
+    }
+    true
 }

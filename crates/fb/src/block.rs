@@ -47,10 +47,23 @@ pub struct Context<'a, P: Planner = Standard> {
 }
 
 impl<P: Planner> Context<'_, P> {
+    /// The same for a call that is seldom made: the caller can then keep its own in registers.
+    #[inline]
+    pub(crate) fn reborrow(&mut self) -> Context<'_, P> {
+        Context {
+            now_ns: self.now_ns,
+            scan: self.scan,
+            instance: self.instance,
+            axes: self.axes,
+            log: self.log,
+        }
+    }
+
     /// The axis at a pin, with the ring and who speaks.
     ///
     /// # Errors
     /// [`ErrorId::AxisUnknown`] if there is no such axis.
+    #[inline]
     pub fn axis(&mut self, id: AxisId) -> Result<(&mut Axis<P>, &mut Log, Source), ErrorId> {
         let source = Source {
             scan: self.scan,
@@ -91,6 +104,7 @@ pub struct Instance<B: Block> {
 
 impl<B: Block> Instance<B> {
     /// Calls the block with the inputs as they stand.
+    #[inline]
     pub fn call<P: Planner>(&mut self, context: &mut Context<'_, P>) {
         self.outputs = self.block.call(&self.inputs, context);
     }

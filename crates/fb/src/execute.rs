@@ -90,6 +90,7 @@ impl From<Fate> for Phase {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ExecuteCore {
     executed: bool,
+    /// The last result; of no meaning while there is a command.
     phase: Phase,
     command: Option<(AxisId, CommandId)>,
 }
@@ -97,6 +98,8 @@ pub struct ExecuteCore {
 impl ExecuteCore {
     /// One call. `issue` gives the command at a rising edge (R8) and is told which command the instance
     /// held before (a retrigger replaces it silently, R32); it returns where to ask for its fate.
+    // In line, so that the many scans of a command in progress need not put a phase together and take it apart.
+    #[inline(always)]
     pub fn scan<P: Planner>(
         &mut self,
         execute: bool,
@@ -105,7 +108,7 @@ impl ExecuteCore {
     ) -> Phase {
         let rising = execute && !self.executed;
         self.executed = execute;
-        if rising && let Err(id) = self.start(context, issue) {
+        if rising && let Err(id) = self.start(&mut context.reborrow(), issue) {
             self.phase = Phase::Failed(id);
             return self.phase;
         }
@@ -115,9 +118,11 @@ impl ExecuteCore {
                     Some(axis) => axis.fate(id).into(),
                     None => Phase::Failed(ErrorId::AxisUnknown),
                 };
-                if !phase.is_busy() {
-                    self.command = None;
+                if phase.is_busy() {
+                    // Asked again in the next call, so nothing to remember.
+                    return phase;
                 }
+                self.command = None;
                 phase
             }
             // A result was already shown in an earlier call; with Execute FALSE it goes (R28, R30).

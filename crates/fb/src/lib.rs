@@ -1,4 +1,4 @@
-//! What all function blocks share: pins as data, and the cores that own edges and results.
+//! What all function blocks share: pins as data, and the cores that own edges, results and readings.
 //!
 //! What does not stand here: no block, and no motion. A block says only which command it gives; the cores
 //! own rising edges, results that stay until Execute falls, and visibility for at least one call.
@@ -9,9 +9,11 @@
 extern crate std;
 
 mod block;
+mod enable;
 mod execute;
 mod pins;
 
 pub use block::{AnyInstance, Block, BlockInfo, Context, Described, Group, Instance};
+pub use enable::{EnableCore, Reading};
 pub use execute::{ExecuteCore, Phase};
 pub use pins::{Direction, EnumInfo, Int, Pin, PinError, PinType, PinValue, Pins, Time, Value};

@@ -284,7 +284,10 @@ macro_rules! pins {
         }
 
         /// What the block shows: VAR_OUTPUT.
+        // Whole words: the outputs of most blocks then go to their place as one number. A word short of a byte
+        // is put together and taken apart again.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        #[repr(align(8))]
         pub struct Outputs {
             $($(#[doc = $out_doc])+ pub $out: $out_ty,)*
             $($(#[doc = $vo_doc])+ pub $vo: $vo_ty,)*

@@ -24,12 +24,14 @@ pub mod papers;
 mod planner;
 pub mod ramp;
 mod setpoint;
+mod sum;
 pub mod turns;
 
 pub use error::{Field, PlanError};
-pub use grid::{GridPlan, Method};
+pub use grid::{GridPlan, Method, UnequalPlan};
 pub use limits::{Limits, Order};
 pub use online::{OnlinePlan, Rung};
-pub use planner::{Plan, Planner, Standard, StandardPlan};
+pub use papers::SampledPlan;
+pub use planner::{MoveProfile, Plan, Planner, Standard, StandardPlan};
 pub use ramp::{Excess, Peaks, RampPlan, Segment};
 pub use setpoint::Setpoint;

@@ -1,6 +1,10 @@
 //! The seam between an axis and the maths: what an axis may ask of any planner.
 
-use crate::{Excess, GridPlan, Limits, OnlinePlan, PlanError, RampPlan, Rung, Setpoint};
+use crate::grid::Family;
+use crate::{
+    Excess, GridPlan, Limits, Method, OnlinePlan, PlanError, RampPlan, Rung, SampledPlan, Segment, Setpoint,
+    UnequalPlan, sum,
+};
 
 /// Plans moves for an axis.
 ///
@@ -10,15 +14,19 @@ pub trait Planner {
     /// A plan: a plain value.
     type Plan: Plan;
 
+    /// The sample time (s): the distance in time of two set-points.
+    fn cycle(&self) -> f64;
+
     /// A move from `start` that ends at rest exactly on `target` (u) within `limits`.
     ///
-    /// `before` are the limits that held for the motion `start` belongs to: until the state is inside
-    /// `limits` the larger of the two hold.
+    /// `profile` is what the axis asks for; a planner may know one only. `before` are the limits that held for
+    /// the motion `start` belongs to: until the state is inside `limits` the larger of the two hold.
     ///
     /// # Errors
     /// [`PlanError`] if an input is not usable or the move too long.
     fn move_to(
         &self,
+        profile: MoveProfile,
         start: &Setpoint,
         target: f64,
         limits: &Limits,
@@ -37,6 +45,80 @@ pub trait Planner {
         limits: &Limits,
         before: &Limits,
     ) -> Result<Self::Plan, PlanError>;
+
+    /// Whether two plans, each so many scans after its start, keep `limits` together from now on and do not
+    /// turn outside `range` (u), which is one of the sum of their positions.
+    fn fits(
+        &self,
+        first: (&Self::Plan, u64),
+        second: (&Self::Plan, u64),
+        limits: &Limits,
+        range: Option<(f64, f64)>,
+    ) -> bool;
+
+    /// What the rest of a plan leaves of `limits` whatever is added when; 0 where it leaves nothing.
+    fn room(&self, rest: (&Self::Plan, u64), limits: &Limits) -> Limits;
+
+    /// The scan of a plan, counted from its start, at which it next changes its highest derivative, or what
+    /// is given if it never does again.
+    fn next_switch(&self, rest: (&Self::Plan, u64)) -> u64;
+}
+
+/// How the moves of an axis to a position are planned (docs/planner.md, section 13).
+///
+/// Every profile ends at rest exactly on the target within the limits. A move that the one asked for cannot
+/// serve is planned as [`MoveProfile::Online`]: for all but `ShortPath` every move that starts in motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MoveProfile {
+    /// Every switch on the sample grid, the fewest scans when two snap pulses may overlap: [`GridPlan`] with
+    /// [`Method::Overlapped`], [`UnequalPlan`] where acceleration and deceleration differ.
+    #[default]
+    Overlapped,
+    /// As `Overlapped`, without the overlap: [`Method::Grid`].
+    Grid,
+    /// The published steps on the sample grid, [`Method::Sequential`]; the lower one of acceleration and
+    /// deceleration holds for both.
+    Sequential,
+    /// Switches anywhere: [`OnlinePlan`].
+    Online,
+    /// The one of `Overlapped` and `Online` with the fewer scans; `Overlapped` where they are equal.
+    Fastest,
+    /// [`SCurve`](crate::papers::SCurve): moves from rest with a bound on jerk and none on snap; the lower one
+    /// of acceleration and deceleration holds for both.
+    SCurve,
+    /// [`Trapezoid`](crate::papers::Trapezoid): moves from rest with no bound on jerk and none on snap.
+    Trapezoid,
+    /// [`ShortPath`](crate::papers::ShortPath): moves with a bound on jerk and none on snap, from rest or from
+    /// a velocity towards the target without acceleration, where the way is long enough to stop.
+    ShortPath,
+}
+
+impl MoveProfile {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Overlapped,
+        Self::Grid,
+        Self::Sequential,
+        Self::Online,
+        Self::Fastest,
+        Self::SCurve,
+        Self::Trapezoid,
+        Self::ShortPath,
+    ];
+
+    /// Its name in scan scripts and messages.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Overlapped => "overlapped",
+            Self::Grid => "grid",
+            Self::Sequential => "sequential",
+            Self::Online => "online",
+            Self::Fastest => "fastest",
+            Self::SCurve => "s-curve",
+            Self::Trapezoid => "trapezoid",
+            Self::ShortPath => "short-path",
+        }
+    }
 }
 
 /// A planned motion, evaluated by scan count from its start.
@@ -70,8 +152,7 @@ pub trait Plan: Copy + core::fmt::Debug {
     }
 }
 
-/// The planner of the product: the shortest grid plan of the overlapped family from rest, a ramp for
-/// velocities, and from motion an online plan.
+/// The planner of the product: moves to a position by [`MoveProfile`], ramps for velocities.
 #[derive(Clone, Copy, Debug)]
 pub struct Standard {
     cycle: f64,
@@ -86,10 +167,14 @@ pub struct Standard {
 pub enum StandardPlan {
     /// From rest to rest, every switch on the grid.
     Grid(GridPlan),
+    /// The same where acceleration and deceleration differ.
+    Unequal(UnequalPlan),
     /// To a velocity.
     Ramp(RampPlan),
-    /// From motion to rest.
+    /// To rest, from motion or with switches anywhere.
     Online(OnlinePlan),
+    /// To rest, by the method of a paper.
+    Sampled(SampledPlan),
 }
 
 /// A plan is copied about by value, once a command.
@@ -102,22 +187,99 @@ impl Standard {
     }
 }
 
+impl Standard {
+    /// From rest, every switch on the grid. The published steps know one rate.
+    fn on_grid(
+        &self,
+        method: Method,
+        start: f64,
+        target: f64,
+        limits: &Limits,
+    ) -> Result<StandardPlan, PlanError> {
+        let family = match method {
+            Method::Grid => Family::Separate,
+            Method::Overlapped => Family::Overlapped,
+            Method::Sequential => {
+                return GridPlan::new(method, start, target, limits, self.cycle).map(StandardPlan::Grid);
+            }
+        };
+        if limits.acceleration == limits.deceleration {
+            GridPlan::new(method, start, target, limits, self.cycle).map(StandardPlan::Grid)
+        } else {
+            UnequalPlan::new(family, start, target, limits, self.cycle).map(StandardPlan::Unequal)
+        }
+    }
+
+    /// The plan of `profile`, none where it does not serve the move.
+    fn by_profile(
+        &self,
+        profile: MoveProfile,
+        start: &Setpoint,
+        target: f64,
+        limits: &Limits,
+    ) -> Option<Result<StandardPlan, PlanError>> {
+        let rest = start.is_at_rest();
+        let grid = |method| rest.then(|| self.on_grid(method, start.position, target, limits));
+        // A method of a paper that does not serve the move says so by an error.
+        let sampled =
+            |plan: Result<SampledPlan, PlanError>| plan.ok().map(|plan| Ok(StandardPlan::Sampled(plan)));
+        match profile {
+            MoveProfile::Overlapped | MoveProfile::Fastest => grid(Method::Overlapped),
+            MoveProfile::Grid => grid(Method::Grid),
+            MoveProfile::Sequential => grid(Method::Sequential),
+            MoveProfile::Online => None,
+            MoveProfile::SCurve if rest => {
+                sampled(SampledPlan::s_curve(start.position, target, limits, self.cycle))
+            }
+            MoveProfile::Trapezoid if rest => {
+                sampled(SampledPlan::trapezoid(start.position, target, limits, self.cycle))
+            }
+            MoveProfile::ShortPath if start.acceleration == 0.0 => {
+                sampled(SampledPlan::short_path(start, target, limits, self.cycle))
+            }
+            MoveProfile::SCurve | MoveProfile::Trapezoid | MoveProfile::ShortPath => None,
+        }
+    }
+}
+
+impl StandardPlan {
+    #[inline(never)]
+    fn numbers_at(&self, scan: u64) -> [f64; 5] {
+        let setpoint = match self {
+            Self::Grid(grid) => grid.at(scan),
+            Self::Unequal(grid) => grid.at(scan),
+            Self::Ramp(ramp) => ramp.at(scan),
+            Self::Online(plan) => plan.at(scan),
+            Self::Sampled(plan) => plan.at(scan),
+        };
+        setpoint.numbers()
+    }
+}
+
 impl Planner for Standard {
     type Plan = StandardPlan;
 
+    fn cycle(&self) -> f64 {
+        self.cycle
+    }
+
     fn move_to(
         &self,
+        profile: MoveProfile,
         start: &Setpoint,
         target: f64,
         limits: &Limits,
         before: &Limits,
     ) -> Result<StandardPlan, PlanError> {
-        use crate::Method::Overlapped;
-        if start.is_at_rest() {
-            return GridPlan::new(Overlapped, start.position, target, limits, self.cycle)
-                .map(StandardPlan::Grid);
+        let online = || OnlinePlan::new(start, target, limits, before, self.cycle).map(StandardPlan::Online);
+        match self.by_profile(profile, start, target, limits) {
+            None => online(),
+            Some(Ok(grid)) if profile == MoveProfile::Fastest => Ok(match online() {
+                Ok(other) if other.scans() < grid.scans() => other,
+                _ => grid,
+            }),
+            Some(planned) => planned,
         }
-        OnlinePlan::new(start, target, limits, before, self.cycle).map(StandardPlan::Online)
     }
 
     fn ramp_to(
@@ -129,29 +291,71 @@ impl Planner for Standard {
     ) -> Result<StandardPlan, PlanError> {
         RampPlan::new(start, velocity, limits, before, self.cycle).map(StandardPlan::Ramp)
     }
+
+    fn fits(
+        &self,
+        first: (&StandardPlan, u64),
+        second: (&StandardPlan, u64),
+        limits: &Limits,
+        range: Option<(f64, f64)>,
+    ) -> bool {
+        sum::fits(first, second, limits, range, self.cycle)
+    }
+
+    fn room(&self, rest: (&StandardPlan, u64), limits: &Limits) -> Limits {
+        sum::room(rest, limits, self.cycle)
+    }
+
+    fn next_switch(&self, rest: (&StandardPlan, u64)) -> u64 {
+        sum::next_switch(rest, self.cycle)
+    }
+}
+
+impl StandardPlan {
+    /// The stretches of constant highest derivative, in order of time; at most 46 of them.
+    pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+        let (grid, unequal, ramp, online, sampled) = match self {
+            Self::Grid(grid) => (Some(grid), None, None, None, None),
+            Self::Unequal(grid) => (None, Some(grid), None, None, None),
+            Self::Ramp(ramp) => (None, None, Some(ramp), None, None),
+            Self::Online(plan) => (None, None, None, Some(plan), None),
+            Self::Sampled(plan) => (None, None, None, None, Some(plan)),
+        };
+        let grid = grid.into_iter().flat_map(GridPlan::segments);
+        let unequal = unequal.into_iter().flat_map(UnequalPlan::segments);
+        let ramp = ramp.into_iter().flat_map(RampPlan::segments);
+        let online = online.into_iter().flat_map(OnlinePlan::segments);
+        let sampled = sampled.into_iter().flat_map(|plan| plan.profile().segments());
+        let on_grid = grid.chain(unequal).map(Segment::from);
+        on_grid.chain(ramp).chain(online).chain(sampled)
+    }
 }
 
 impl Plan for StandardPlan {
     fn scans(&self) -> u32 {
         match self {
             Self::Grid(grid) => grid.scans(),
+            Self::Unequal(grid) => grid.scans(),
             Self::Ramp(ramp) => ramp.scans(),
             Self::Online(plan) => plan.scans(),
+            Self::Sampled(plan) => plan.scans(),
         }
     }
 
+    // The most frequent kind in line with the axis, the others by a call.
     #[inline(always)]
     fn at(&self, scan: u64) -> Setpoint {
         match self {
             Self::Grid(grid) => grid.at(scan),
-            Self::Ramp(ramp) => ramp.at(scan),
-            Self::Online(plan) => plan.at(scan),
+            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) => {
+                Setpoint::of(self.numbers_at(scan))
+            }
         }
     }
 
     fn excess(&self) -> Option<Excess> {
         match self {
-            Self::Grid(_) => None,
+            Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) => None,
             Self::Ramp(ramp) => ramp.excess(),
             Self::Online(plan) => plan.excess(),
         }
@@ -159,14 +363,14 @@ impl Plan for StandardPlan {
 
     fn rung(&self) -> Option<Rung> {
         match self {
-            Self::Grid(_) | Self::Ramp(_) => None,
+            Self::Grid(_) | Self::Unequal(_) | Self::Ramp(_) | Self::Sampled(_) => None,
             Self::Online(plan) => Some(plan.rung()),
         }
     }
 
     fn bring_back(&mut self, scan: u64, length: f64) -> Option<i64> {
         match self {
-            Self::Grid(_) => None,
+            Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) => None,
             Self::Ramp(ramp) => ramp.bring_back(scan, length),
             Self::Online(plan) => {
                 let mut cruise = plan.cruise(scan)?;

@@ -35,12 +35,64 @@ impl Setpoint {
         self.velocity == 0.0 && self.acceleration == 0.0 && self.jerk == 0.0
     }
 
+    /// Position and derivatives in order. What a function out of line gives back as numbers, its caller can keep
+    /// in registers; a set-point it would keep in memory, along with those it computed itself.
+    #[inline]
+    pub(crate) const fn numbers(self) -> [f64; 5] {
+        [
+            self.position,
+            self.velocity,
+            self.acceleration,
+            self.jerk,
+            self.snap,
+        ]
+    }
+
+    /// The set-point of these [`Setpoint::numbers`].
+    #[inline]
+    pub(crate) const fn of(numbers: [f64; 5]) -> Self {
+        let [position, velocity, acceleration, jerk, snap] = numbers;
+        Self {
+            position,
+            velocity,
+            acceleration,
+            jerk,
+            snap,
+        }
+    }
+
     /// Whether all five values are finite.
+    #[inline]
     pub fn is_finite(&self) -> bool {
-        self.position.is_finite()
-            && self.velocity.is_finite()
-            && self.acceleration.is_finite()
-            && self.jerk.is_finite()
-            && self.snap.is_finite()
+        // One look at the sum instead of five: infinity and NaN stay in it. Of finite values only huge ones have
+        // a sum that is not finite.
+        let sum = self.position + self.velocity + self.acceleration + self.jerk + self.snap;
+        sum.is_finite() || each_is_finite(self.numbers())
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn each_is_finite(numbers: [f64; 5]) -> bool {
+    numbers.iter().all(|number| number.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Setpoint;
+
+    #[test]
+    fn finite_is_what_each_value_is_whatever_their_sum() {
+        assert!(Setpoint::of([f64::MAX; 5]).is_finite());
+        assert!(Setpoint::of([f64::MIN; 5]).is_finite());
+        for broken in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for place in 0..5 {
+                for others in [0.0, 1.0, -f64::MAX, -broken] {
+                    let mut values = [others; 5];
+                    values[place] = broken;
+                    assert!(!Setpoint::of(values).is_finite(), "{values:?}");
+                }
+            }
+        }
     }
 }

@@ -3,8 +3,8 @@
 //! The planner of this test notes which axis asks its plan for a set-point.
 
 use standstill_axis::{
-    AxisConfig, AxisId, Command, Direction, DrivePosition, Dynamics, Excess, IdealDrive, Limits, Plan,
-    PlanError, Planner, Raw, Request, Setpoint, StartState,
+    AxisConfig, AxisId, Command, Direction, DrivePosition, Dynamics, Excess, IdealDrive, Limits, MoveProfile,
+    Plan, PlanError, Planner, Raw, Request, Setpoint, StartState,
 };
 use standstill_fb::Context;
 use standstill_scan::{
@@ -24,12 +24,35 @@ struct Note(usize);
 impl Planner for Noting {
     type Plan = Note;
 
-    fn move_to(&self, _: &Setpoint, _: f64, _: &Limits, _: &Limits) -> Result<Note, PlanError> {
+    fn cycle(&self) -> f64 {
+        0.001
+    }
+
+    fn move_to(
+        &self,
+        _: MoveProfile,
+        _: &Setpoint,
+        _: f64,
+        _: &Limits,
+        _: &Limits,
+    ) -> Result<Note, PlanError> {
         Ok(Note(self.0))
     }
 
     fn ramp_to(&self, _: &Setpoint, _: f64, _: &Limits, _: &Limits) -> Result<Note, PlanError> {
         Ok(Note(self.0))
+    }
+
+    fn fits(&self, _: (&Note, u64), _: (&Note, u64), _: &Limits, _: Option<(f64, f64)>) -> bool {
+        true
+    }
+
+    fn room(&self, _: (&Note, u64), limits: &Limits) -> Limits {
+        *limits
+    }
+
+    fn next_switch(&self, (_, elapsed): (&Note, u64)) -> u64 {
+        elapsed
     }
 }
 

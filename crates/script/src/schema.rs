@@ -3,7 +3,7 @@
 //! With it an editor completes and checks keys, block names, pins and enum elements. What a schema cannot say
 //! (which names exist, the types of wires, multiples of the cycle) only the reader checks.
 
-use crate::read::axis::{ABOVE_LIMIT, ON_POWER_OFF, START_STATES};
+use crate::read::axis::{ABOVE_LIMIT, ON_POWER_OFF, PROFILES, START_STATES};
 use crate::read::names::KEYWORDS;
 use crate::read::shape::{self, Shape};
 use crate::read::step::FAULT_KINDS;
@@ -214,6 +214,7 @@ fn axis_key(key: &str) -> Value {
             limits
         }
         "above_limit" => words(&ABOVE_LIMIT),
+        "profile" => words(&PROFILES),
         "queue" => integer(0, QUEUE_MAX as i64),
         "on_power_off" => words(&ON_POWER_OFF),
         "needs_homed" => json!({"type": "boolean"}),

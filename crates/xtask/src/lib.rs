@@ -4,10 +4,13 @@
 //! when one is stale or the repository is untidy. What does not stand here: anything a user runs.
 #![forbid(unsafe_code)]
 
+mod bad_input;
 mod blocks;
 mod error_ids;
+mod requirements;
 mod states;
 
+pub use requirements::Requirements;
 use std::path::{Path, PathBuf};
 
 /// A generated file: its path below the repository root and its text.
@@ -23,7 +26,9 @@ pub struct Generated {
 pub fn generated() -> Vec<Generated> {
     let mut files = blocks::pages();
     files.push(error_ids::page());
+    files.push(bad_input::page());
     files.extend(states::pages());
+    files.extend(Requirements::read().pages());
     files
 }
 

@@ -1,6 +1,6 @@
 //! The repository is tidy: generated files are fresh, links lead somewhere, forbidden words stay out.
 
-use standstill_xtask::{generated, root};
+use standstill_xtask::{Requirements, generated, root};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -14,6 +14,12 @@ fn generated_files_are_fresh() {
             file.path
         );
     }
+}
+
+#[test]
+fn every_requirement_has_a_test_or_a_stated_gap() {
+    let problems = Requirements::read().problems();
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
 /// Every file of the repository that people read or write, without build products.
@@ -79,6 +85,7 @@ fn forbidden_words_stay_out_of_the_sources() {
 #[test]
 fn the_top_level_holds_what_a_newcomer_expects() {
     let allowed = [
+        "CITATION.cff",
         "Cargo.lock",
         "Cargo.toml",
         "LICENSE-APACHE",

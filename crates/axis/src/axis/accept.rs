@@ -9,7 +9,7 @@ use crate::{
     AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Event, Fate, Goal,
     Log, Raw, Request,
 };
-use standstill_planner::{Excess, Field, Limits, Plan, PlanError, Planner};
+use standstill_planner::{Excess, Field, Limits, Plan, PlanError, Planner, Setpoint};
 
 /// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
 const ROUNDING: f64 = 1e-9;
@@ -31,6 +31,21 @@ fn direction_of(command: &Command) -> Direction {
 enum Way {
     Now,
     Wait,
+}
+
+/// What a block shows of a planner's refusal.
+pub(super) fn refusal(error: PlanError) -> ErrorId {
+    match error {
+        PlanError::TooLong { .. } => ErrorId::MoveTooLong,
+        // Distance over cycle^n does not fit into a number: longer than anything countable.
+        PlanError::InvalidInput {
+            field: Field::Cycle, ..
+        } => ErrorId::MoveTooLong,
+        PlanError::InvalidInput {
+            field: Field::Target, ..
+        } => ErrorId::PositionInvalid,
+        _ => ErrorId::PlanRefused,
+    }
 }
 
 impl<P: Planner> Axis<P> {
@@ -64,7 +79,10 @@ impl<P: Planner> Axis<P> {
             held: work == Work::Stop,
         };
         match way {
-            Way::Wait => self.queue.push(entry),
+            Way::Wait => {
+                self.queue.push(entry);
+                self.start_beside(source.scan, log);
+            }
             Way::Now => {
                 let motion = self
                     .plan_for(&entry)
@@ -238,7 +256,7 @@ impl<P: Planner> Axis<P> {
     }
 
     fn positioning(&self, dynamics: &Dynamics, source: Source, log: &mut Log) -> Result<Limits, ErrorId> {
-        let velocity = self.positioning_velocity(dynamics.velocity, source, log)?;
+        let velocity = self.positive_velocity("Velocity", dynamics.velocity, source, log)?;
         Ok(Limits {
             velocity,
             ..self.resolve(dynamics, source, log)?
@@ -266,20 +284,26 @@ impl<P: Planner> Axis<P> {
 
     /// Plans a command from the present set-point. Nothing changes.
     pub(super) fn plan_for(&self, entry: &Entry) -> Result<Motion<P::Plan>, ErrorId> {
-        let start = &self.setpoint;
-        let before = if matches!(self.motion, Motion::Run { .. }) {
-            &self.in_force
-        } else {
-            &entry.limits
-        };
+        self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))
+    }
+
+    /// Plans a command from `start`, whose motion was within `before`.
+    pub(super) fn plan_from(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        before: &Limits,
+    ) -> Result<Motion<P::Plan>, ErrorId> {
+        let profile = self.config.profile;
         let planned = match entry.work {
             Work::Position(_) | Work::Distance(_) if self.modulo.is_some() => {
-                let (start, target) = self.way_round(entry, before)?;
-                self.planner.move_to(&start, target, &entry.limits, before)
+                let (start, target) = self.way_round(entry, start, before)?;
+                self.planner
+                    .move_to(profile, &start, target, &entry.limits, before)
             }
             Work::Position(target) => {
                 self.planner
-                    .move_to(start, self.allowed(target)?, &entry.limits, before)
+                    .move_to(profile, start, self.allowed(target)?, &entry.limits, before)
             }
             Work::Distance(distance) => {
                 let target = start.position + distance;
@@ -287,11 +311,11 @@ impl<P: Planner> Axis<P> {
                     return Err(ErrorId::PositionInvalid);
                 }
                 self.planner
-                    .move_to(start, self.allowed(target)?, &entry.limits, before)
+                    .move_to(profile, start, self.allowed(target)?, &entry.limits, before)
             }
             Work::Velocity { velocity, along } => {
                 let velocity = if along {
-                    velocity * self.last_direction
+                    velocity * self.last_velocity.signum()
                 } else {
                     velocity
                 };
@@ -301,20 +325,12 @@ impl<P: Planner> Axis<P> {
             Work::Home(_) => return Ok(Motion::Hold),
         };
         match planned {
-            Ok(plan) => Ok(Motion::Run { plan, elapsed: 0 }),
-            Err(PlanError::TooLong { .. }) => Err(ErrorId::MoveTooLong),
-            // Distance over cycle^n does not fit into a number: longer than anything countable.
-            Err(PlanError::InvalidInput {
-                field: Field::Cycle, ..
-            }) => Err(ErrorId::MoveTooLong),
-            Err(PlanError::InvalidInput {
-                field: Field::Target, ..
-            }) => Err(ErrorId::PositionInvalid),
-            Err(_) => Err(ErrorId::PlanRefused),
+            Ok(plan) => Ok(Motion::along(plan)),
+            Err(error) => Err(refusal(error)),
         }
     }
 
-    fn allowed(&self, target: f64) -> Result<f64, ErrorId> {
+    pub(super) fn allowed(&self, target: f64) -> Result<f64, ErrorId> {
         match self.config.software_limits {
             Some((min, max)) if target < min || target > max => Err(ErrorId::TargetOutsideSoftwareLimits),
             _ => Ok(target),
@@ -347,7 +363,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The software limit `target` is beyond (u).
-    fn broken_software_limit(&self, target: f64) -> f64 {
+    pub(super) fn broken_software_limit(&self, target: f64) -> f64 {
         match self.config.software_limits {
             Some((min, max)) => {
                 if target > max {
@@ -362,11 +378,12 @@ impl<P: Planner> Axis<P> {
 
     /// Where a positioning command ends (u).
     fn target(&self, entry: &Entry) -> f64 {
-        match entry.work {
+        let target = match entry.work {
             Work::Position(target) => target,
             Work::Distance(distance) => self.setpoint.position + distance,
             Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) => self.setpoint.position,
-        }
+        };
+        target + self.superimposed_left()
     }
 
     /// What of an excess over a command's limits is beyond those of the axis as well, rounding apart. A faster
@@ -401,19 +418,6 @@ impl<P: Planner> Axis<P> {
             instance: entry.instance,
         };
         let positioning = matches!(entry.work, Work::Position(_) | Work::Distance(_));
-        let Limits {
-            acceleration,
-            deceleration,
-            ..
-        } = entry.limits;
-        if positioning && acceleration != deceleration {
-            let (value, limit) = if acceleration > deceleration {
-                (acceleration, deceleration)
-            } else {
-                (deceleration, acceleration)
-            };
-            self.record(Event::LowerUsed { value, limit }, source, log);
-        }
         if let Motion::Run { plan, .. } = &motion {
             let end = plan.at(u64::from(plan.scans()));
             let goal = if positioning {

@@ -74,18 +74,19 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The velocity of a positioning move: above 0, at most the axis limit.
-    pub(super) fn positioning_velocity(
+    /// The velocity of a positioning move at `pin`: above 0, at most the axis limit.
+    pub(super) fn positive_velocity(
         &self,
+        pin: &'static str,
         value: f64,
         source: Source,
         log: &mut Log,
     ) -> Result<f64, ErrorId> {
         if !(value > 0.0 && value.is_finite()) {
-            return Err(self.refuse("Velocity", value, 0.0, ErrorId::VelocityInvalid, source, log));
+            return Err(self.refuse(pin, value, 0.0, ErrorId::VelocityInvalid, source, log));
         }
         self.within(
-            "Velocity",
+            pin,
             value,
             self.config.limits.velocity,
             ErrorId::VelocityAboveLimit,

@@ -1,23 +1,27 @@
 //! One axis: what it knows and what others may ask.
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
-//! on commands, [`step`] moves and hands over, [`modulo`] counts turns and finds the way round, [`power`] reacts
-//! to feedback, power, faults and resets.
+//! on commands, [`step`] moves and hands over, [`modulo`] counts turns and finds the way round, [`superimposed`]
+//! adds a second motion, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading
+//! blocks ask.
 
 mod accept;
 mod dynamics;
 mod modulo;
 mod power;
 mod queue;
+mod reading;
 mod step;
+mod superimposed;
 
 use crate::fate::Fates;
 use crate::{
-    AxisConfig, AxisEvent, AxisId, AxisState, CommandId, ConfigError, DriveCommand, DriveFeedback,
-    DrivePosition, ErrorId, Event, Fate, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
+    AxisConfig, AxisEvent, AxisId, AxisState, CommandId, Comms, ConfigError, DriveCommand, DrivePosition,
+    DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
 };
 use modulo::Modulo;
 use queue::{Entry, Queue, Work};
+pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
 
 /// Who gives a command and when; goes into the records.
@@ -36,8 +40,32 @@ enum Motion<Plan> {
     Follow,
     /// It stays where it is.
     Hold,
-    /// A plan, so many scans after its start.
-    Run { plan: Plan, elapsed: u64 },
+    /// A plan, so many scans after its start, and the scans it has: asked for several times in every scan.
+    Run { plan: Plan, elapsed: u64, scans: u64 },
+}
+
+impl<P: Plan> Motion<P> {
+    /// Along `plan`, from its start.
+    fn along(plan: P) -> Self {
+        Self::Run {
+            plan,
+            elapsed: 0,
+            scans: u64::from(plan.scans()),
+        }
+    }
+
+    /// `None` if the set-point follows the feedback, 0 if it holds, else one more than the scans to the goal.
+    fn scans_left(&self) -> Option<u32> {
+        match self {
+            Self::Follow => None,
+            Self::Hold => Some(0),
+            Self::Run { elapsed, scans, .. } => {
+                // At least 1, to tell a plan at its goal from holding.
+                let left = scans.saturating_sub(*elapsed);
+                Some(u32::try_from(left).unwrap_or(u32::MAX).saturating_add(1))
+            }
+        }
+    }
 }
 
 /// What is known of the power stage.
@@ -51,10 +79,16 @@ struct Power {
     going_off: bool,
     /// Power was lost: it does not come back before a reset or a new rising Enable.
     tripped: bool,
-    /// What the last MC_Power of this scan asked for, and which instance.
-    asked: Option<(bool, InstanceId)>,
+    /// What the last MC_Power of this scan asked for, and which instance, unless that is the decider.
+    overruled: Option<(bool, InstanceId)>,
     /// The instance that spoke last in the scan before.
     decider: Option<InstanceId>,
+    /// Power for the stage is available, as last told.
+    voltage: bool,
+    /// The fault last told; only in ErrorStop.
+    fault: Option<Fault>,
+    /// State of the communication; lost only in ErrorStop.
+    comms: Comms,
 }
 
 /// What an axis will do next, see [`Axis::outlook`]; for searches over all reachable states.
@@ -88,6 +122,24 @@ pub struct Outlook {
     pub homed: bool,
     /// The last motion was in positive direction.
     pub forward: bool,
+    /// What is superimposed.
+    pub superimposed: Option<Beside>,
+}
+
+/// What a superimposed motion will do next, part of [`Outlook`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Beside {
+    /// The command: its number, what it does, and whether the motion is its own; else it waits for room.
+    pub command: Option<(CommandId, &'static str, bool)>,
+    /// 0 if what is added holds, else one more than the scans to its goal.
+    pub scans_left: u32,
+    /// Scans of the owner's plan until a command that waits or was lowered is tried again; the largest number if
+    /// it waits for the next plan.
+    pub tried_in: u32,
+    /// Position and velocity of the owner's own set-point, as bits.
+    pub base: (u64, u64),
+    /// The position added and what is left to add, as bits.
+    pub added: (u64, u64),
 }
 
 impl Outlook {
@@ -101,6 +153,13 @@ impl Outlook {
             *id = NUMBERLESS;
         }
         self.reset = self.reset.map(|_| NUMBERLESS);
+        if let Some(Beside {
+            command: Some((id, ..)),
+            ..
+        }) = &mut self.superimposed
+        {
+            *id = NUMBERLESS;
+        }
         self
     }
 }
@@ -116,12 +175,18 @@ pub struct Axis<P: Planner = Standard> {
     setpoint: Setpoint,
     actual: f64,
     modulo: Option<Modulo>,
-    feedback: DriveFeedback,
+    past: reading::Past,
+    /// What the drive reported last beside its position.
+    signals: DriveSignals,
     motion: Motion<P::Plan>,
+    /// A second motion on top of it.
+    layer: Option<superimposed::Layer<P::Plan>>,
+    /// The last superimposed command that ended, and the distance it added (u).
+    covered: Option<(CommandId, f64)>,
     /// Limits of the present motion, for whoever takes over from it.
     in_force: Limits,
-    /// Sign of the last velocity that was not zero (mcCurrentDirection).
-    last_direction: f64,
+    /// The last velocity that was not zero (u/s): its sign is mcCurrentDirection.
+    last_velocity: f64,
     owner: Option<Entry>,
     /// The owner is MC_Stop, stands, and is held by its Execute.
     stop_held: bool,
@@ -146,13 +211,6 @@ impl<P: Planner> Axis<P> {
     pub fn new(id: AxisId, config: AxisConfig, planner: P) -> Result<Self, ConfigError> {
         config.check()?;
         let powered = config.start == StartState::Standstill;
-        let feedback = DriveFeedback {
-            enabled: powered,
-            voltage: true,
-            fault: None,
-            position: position_at_drive(&config, config.position),
-            comms: crate::Comms::Ok,
-        };
         Ok(Self {
             id,
             config,
@@ -165,10 +223,13 @@ impl<P: Planner> Axis<P> {
             setpoint: Setpoint::at_rest(config.position),
             actual: config.position,
             modulo: Modulo::new(&config),
-            feedback,
+            past: reading::Past::new(config.position),
+            signals: DriveSignals::default(),
             motion: if powered { Motion::Hold } else { Motion::Follow },
+            layer: None,
+            covered: None,
             in_force: config.limits,
-            last_direction: 1.0,
+            last_velocity: 1.0,
             owner: None,
             stop_held: false,
             queue: Queue::default(),
@@ -179,8 +240,11 @@ impl<P: Planner> Axis<P> {
                 on: powered,
                 going_off: false,
                 tripped: false,
-                asked: None,
+                overruled: None,
                 decider: None,
+                voltage: true,
+                fault: None,
+                comms: Comms::Ok,
             },
             error: ErrorId::None,
             error_code: 0,
@@ -243,12 +307,12 @@ impl<P: Planner> Axis<P> {
     /// The plan in progress and the scans since its start.
     pub fn plan(&self) -> Option<(&P::Plan, u64)> {
         match &self.motion {
-            Motion::Run { plan, elapsed } => Some((plan, *elapsed)),
+            Motion::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
             Motion::Follow | Motion::Hold => None,
         }
     }
 
-    /// The command that owns the axis.
+    /// The command that owns the axis; a superimposed one does not.
     pub fn active_command(&self) -> Option<CommandId> {
         self.owner.as_ref().map(|owner| owner.id)
     }
@@ -274,8 +338,17 @@ impl<P: Planner> Axis<P> {
                 }
             };
         }
+        self.fate_of_other(id)
+    }
+
+    /// What became of a command that is not the owner.
+    #[inline(never)]
+    fn fate_of_other(&self, id: CommandId) -> Fate {
         if self.queue.contains(id) || self.reset.as_ref().is_some_and(|reset| reset.id == id) {
             return Fate::Waiting;
+        }
+        if let Some(fate) = self.superimposed_fate(id) {
+            return fate;
         }
         self.fates.find(id).unwrap_or(Fate::Failed(ErrorId::FateLost))
     }
@@ -289,15 +362,7 @@ impl<P: Planner> Axis<P> {
         }
         Outlook {
             state: self.state,
-            scans_left: match &self.motion {
-                Motion::Follow => None,
-                Motion::Hold => Some(0),
-                Motion::Run { plan, elapsed } => {
-                    // At least 1, to tell a plan at its goal from holding.
-                    let left = u64::from(plan.scans()).saturating_sub(*elapsed);
-                    Some(u32::try_from(left).unwrap_or(u32::MAX).saturating_add(1))
-                }
-            },
+            scans_left: self.motion.scans_left(),
             owner: self
                 .owner
                 .as_ref()
@@ -312,13 +377,21 @@ impl<P: Planner> Axis<P> {
             cause_present: self.cause_present,
             reset: self.reset.as_ref().map(|reset| reset.id),
             homed: self.homed,
-            forward: self.last_direction > 0.0,
+            forward: self.last_velocity > 0.0,
+            superimposed: self.superimposed_outlook(),
         }
     }
 
     /// The drive's command for this scan.
     #[inline]
     pub fn drive_command(&mut self) -> DriveCommand {
+        let rename = match self.rename {
+            Some(position) => {
+                self.rename = None;
+                Some(position_at_drive(&self.config, position))
+            }
+            None => None,
+        };
         DriveCommand {
             request: self.drive_request(),
             position: match &self.modulo {
@@ -326,17 +399,15 @@ impl<P: Planner> Axis<P> {
                 Some(modulo) => modulo.at_drive(&self.config, self.setpoint.position),
             },
             velocity: self.setpoint.velocity,
-            rename: self
-                .rename
-                .take()
-                .map(|position| position_at_drive(&self.config, position)),
+            rename,
         }
     }
 
     /// The running plan has reached its goal; a motion without a plan has.
+    #[inline]
     fn goal_reached(&self) -> bool {
         match &self.motion {
-            Motion::Run { plan, elapsed } => *elapsed >= u64::from(plan.scans()),
+            Motion::Run { elapsed, scans, .. } => elapsed >= scans,
             Motion::Hold => true,
             Motion::Follow => false,
         }
@@ -355,8 +426,9 @@ impl<P: Planner> Axis<P> {
         CommandId(self.last_id)
     }
 
-    /// Ends the owner and everything that waits.
+    /// Ends the owner, what is superimposed on it and everything that waits.
     fn end_all(&mut self, owner: Fate, waiting: Fate) {
+        self.end_superimposed(owner);
         self.end_owner(owner);
         // Bounded by QUEUE_MAX: each round takes one out.
         while let Some(entry) = self.queue.pop() {

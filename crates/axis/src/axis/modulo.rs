@@ -118,12 +118,17 @@ impl<P: Planner> Axis<P> {
         if self.setpoint.position.abs() < FAR * modulo.length {
             return;
         }
-        if let Motion::Run { plan, elapsed } = &mut self.motion
+        if let Motion::Run { plan, elapsed, scans } = &mut self.motion
             && let Some(turns) = plan.bring_back(*elapsed, modulo.length)
         {
-            *elapsed = 0;
-            self.setpoint.position = plan.at(0).position;
+            let passed = core::mem::take(elapsed);
+            *scans = u64::from(plan.scans());
+            let start = plan.at(0).position;
             modulo.turns = modulo.turns.saturating_add(turns);
+            self.setpoint.position = match &mut self.layer {
+                Some(layer) => layer.bring_back(start, passed),
+                None => start,
+            };
         }
     }
 
@@ -138,6 +143,9 @@ impl<P: Planner> Axis<P> {
         let nearest = (if turns < 0.0 { turns - 0.5 } else { turns + 0.5 }) as i64;
         modulo.turns = modulo.turns.saturating_add(nearest);
         self.setpoint.position = start;
+        if let Some(layer) = &mut self.layer {
+            layer.base.position = start;
+        }
     }
 
     /// Start and target of a positioning command on a modulo axis, in a frame whose first turn holds the
@@ -145,9 +153,14 @@ impl<P: Planner> Axis<P> {
     ///
     /// Cost: at most one ramp.
     #[inline(never)]
-    pub(super) fn way_round(&self, entry: &Entry, before: &Limits) -> Result<(Setpoint, f64), ErrorId> {
+    pub(super) fn way_round(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        before: &Limits,
+    ) -> Result<(Setpoint, f64), ErrorId> {
         let length = self.modulo.as_ref().map_or(f64::INFINITY, |modulo| modulo.length);
-        let (_, here) = split(self.setpoint.position, length);
+        let (_, here) = split(start.position, length);
         let (turns, target) = match entry.work {
             Work::Distance(distance) => {
                 // Whole turns apart, so that they do not cost the rest its last bits.
@@ -160,27 +173,22 @@ impl<P: Planner> Axis<P> {
                 let (further, target) = split(here + rest, length);
                 (turns.saturating_add(further), target)
             }
-            Work::Position(target) => (self.turns_to(target, here, length, entry, before)?, target),
+            Work::Position(target) => (self.turns_to(target, start, here, length, entry, before)?, target),
             Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) => (0, here),
         };
         let (whole, error) = two_product(turns as f64, length);
-        let start = (here - whole) - error;
-        if !start.is_finite() {
+        let position = (here - whole) - error;
+        if !position.is_finite() {
             return Err(ErrorId::PositionInvalid);
         }
-        Ok((
-            Setpoint {
-                position: start,
-                ..self.setpoint
-            },
-            target,
-        ))
+        Ok((Setpoint { position, ..*start }, target))
     }
 
     /// How many turns on `target` is met, both it and `here` in the first one.
     fn turns_to(
         &self,
         target: f64,
+        start: &Setpoint,
         here: f64,
         length: f64,
         entry: &Entry,
@@ -202,22 +210,22 @@ impl<P: Planner> Axis<P> {
             }
             Direction::Positive => true,
             Direction::Negative => false,
-            Direction::Current => self.last_direction > 0.0,
+            Direction::Current => self.last_velocity > 0.0,
         };
         let turns = match forward {
             true if target < here => 1,
             false if target > here => -1,
             true | false => 0,
         };
-        if self.setpoint.is_at_rest() {
+        if start.is_at_rest() {
             return Ok(turns);
         }
         // A motion that cannot stop before the target goes on to its next repetition.
         let stop = self
             .planner
-            .ramp_to(&self.setpoint, 0.0, &entry.limits, before)
+            .ramp_to(start, 0.0, &entry.limits, before)
             .map_err(|_| ErrorId::PlanRefused)?;
-        let way = stop.at(u64::from(stop.scans())).position - self.setpoint.position;
+        let way = stop.at(u64::from(stop.scans())).position - start.position;
         let to_target = target + turns as f64 * length - here;
         let missing = if forward { way - to_target } else { to_target - way };
         let missing = missing - ROUNDING * way.abs();

@@ -33,38 +33,65 @@ impl<P: Planner> Axis<P> {
     /// Latches the drive's feedback of this scan and lets the state follow it. Called before any block.
     #[inline]
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
-        self.feedback = *feedback;
+        // In most scans nothing but the position changes.
+        if self.is_steady(feedback) {
+            debug_assert!(self.power.fault.is_none() && self.power.comms == Comms::Ok);
+            let position = self.position_of(feedback);
+            self.latch(position);
+            self.signals = feedback.signals;
+            self.power.voltage = feedback.voltage;
+        } else {
+            self.follow_change(feedback, scan, log);
+        }
+    }
+
+    /// Whether the axis is in operation and stays so, with nothing to react to.
+    #[inline]
+    fn is_steady(&self, feedback: &DriveFeedback) -> bool {
+        self.power.on
+            && feedback.enabled
+            && feedback.fault.is_none()
+            && feedback.comms == Comms::Ok
+            && self.reset.is_none()
+            && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop)
+    }
+
+    /// The actual position (u).
+    #[inline]
+    fn position_of(&mut self, feedback: &DriveFeedback) -> f64 {
+        match (feedback.position, &mut self.modulo) {
+            (DrivePosition::Units(units), None) => units,
+            (DrivePosition::Increments(increments), None) => self.position_at_increment(increments),
+            (position, Some(modulo)) => modulo.latch(&self.config, position),
+        }
+    }
+
+    #[inline(never)]
+    fn position_at_increment(&self, increments: i64) -> f64 {
+        match self.config.scaling {
+            Some(scaling) => scaling.to_units(increments),
+            // A drive that counts increments needs a scaling; take one increment as one unit.
+            None => increments as f64,
+        }
+    }
+
+    #[inline(never)]
+    fn follow_change(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
+        self.signals = feedback.signals;
+        self.power.voltage = feedback.voltage;
+        self.power.fault = feedback.fault;
+        self.power.comms = feedback.comms;
         if feedback.comms == Comms::Lost {
+            self.latch_nothing();
             self.trip(ErrorId::CommunicationLost, 0, Reaction::Ramp, scan, log);
         } else {
-            self.actual = match (feedback.position, self.config.scaling) {
-                (DrivePosition::Increments(increments), Some(scaling)) => scaling.to_units(increments),
-                (DrivePosition::Units(units), _) => units,
-                // A drive that counts increments needs a scaling; take one increment as one unit.
-                (DrivePosition::Increments(increments), None) => increments as f64,
-            };
-            if let Some(modulo) = &mut self.modulo {
-                self.actual = modulo.latch(&self.config, feedback.position);
-            }
-            // In most scans nothing but the position changes.
-            if self.is_steady(feedback) {
-                return;
-            }
+            let position = self.position_of(feedback);
+            self.latch(position);
             self.follow_power(feedback, scan, log);
         }
         self.finish_reset();
     }
 
-    /// Whether the axis is in operation and stays so, with nothing to react to.
-    fn is_steady(&self, feedback: &DriveFeedback) -> bool {
-        self.power.on
-            && feedback.enabled
-            && feedback.fault.is_none()
-            && self.reset.is_none()
-            && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop)
-    }
-
-    #[inline(never)]
     fn follow_power(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
         let was_on = self.power.on;
         self.power.on = feedback.enabled;
@@ -108,38 +135,51 @@ impl<P: Planner> Axis<P> {
     /// before is obeyed at once, others at the end of the scan if nobody spoke after them.
     #[inline]
     pub fn set_power(&mut self, wanted: bool, source: Source, log: &mut Log) {
-        self.power.asked = Some((wanted, source.instance));
-        if self
-            .power
-            .decider
-            .is_none_or(|decider| decider == source.instance)
-        {
-            self.power.decider = Some(source.instance);
-            self.switch(wanted, source, log);
+        match self.power.decider {
+            Some(decider) if decider != source.instance => {
+                self.power.overruled = Some((wanted, source.instance));
+                return;
+            }
+            Some(_) => {}
+            None => self.power.decider = Some(source.instance),
         }
+        self.power.overruled = None;
+        self.switch(wanted, source, log);
     }
 
     /// Switches the axis off whatever MC_Power says: the runtime stops.
     pub fn switch_off(&mut self, source: Source, log: &mut Log) {
-        self.power.asked = None;
+        self.power.overruled = None;
         self.switch(false, source, log);
     }
 
     /// The end of a scan's calls: the last MC_Power decides.
+    #[inline]
     pub(super) fn apply_power(&mut self, scan: u64, log: &mut Log) {
-        if let Some((wanted, instance)) = self.power.asked.take()
-            && self.power.decider != Some(instance)
-        {
+        if self.power.overruled.is_some() {
+            self.change_decider(scan, log);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn change_decider(&mut self, scan: u64, log: &mut Log) {
+        if let Some((wanted, instance)) = self.power.overruled.take() {
             self.power.decider = Some(instance);
             self.switch(wanted, Source { scan, instance }, log);
         }
     }
 
+    #[inline]
     fn switch(&mut self, wanted: bool, source: Source, log: &mut Log) {
         self.power.wanted = wanted;
-        if wanted {
-            return;
+        if !wanted {
+            self.switch_to_off(source, log);
         }
+    }
+
+    #[inline(never)]
+    fn switch_to_off(&mut self, source: Source, log: &mut Log) {
         self.power.tripped = false;
         let idle = matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         if idle || self.power.going_off {
@@ -158,7 +198,8 @@ impl<P: Planner> Axis<P> {
 
     /// Plans a ramp to rest with the stop dynamics.
     fn ramp_down(&mut self, source: Source, log: &mut Log) {
-        if !matches!(self.motion, Motion::Run { .. }) || self.setpoint.is_at_rest() {
+        // Only a plan leaves a set-point that is not at rest.
+        if self.setpoint.is_at_rest() {
             self.motion = Motion::Hold;
             return;
         }
@@ -168,7 +209,7 @@ impl<P: Planner> Axis<P> {
                 if let Some(excess) = plan.excess().and_then(|excess| self.beyond_axis(excess, &limits)) {
                     self.record(Event::Unavoidable(excess), source, log);
                 }
-                Motion::Run { plan, elapsed: 0 }
+                Motion::along(plan)
             }
             Err(_) => Motion::Hold,
         };
@@ -225,9 +266,9 @@ impl<P: Planner> Axis<P> {
 
     fn cause_known(&self) -> bool {
         self.cause_present
-            || self.feedback.comms == Comms::Lost
-            || !self.feedback.voltage
-            || self.feedback.fault.is_some_and(|fault| fault.cause_present)
+            || self.power.comms == Comms::Lost
+            || !self.power.voltage
+            || self.power.fault.is_some_and(|fault| fault.cause_present)
     }
 
     /// Completes a reset when all it waits for has happened (notes 3 and 4, S12).
@@ -244,7 +285,7 @@ impl<P: Planner> Axis<P> {
         let id = reset.id;
         if self.state == AxisState::ErrorStop {
             reset.waited = reset.waited.saturating_add(1);
-            let given_up = reset.waited > RESET_PATIENCE && self.feedback.fault.is_some();
+            let given_up = reset.waited > RESET_PATIENCE && self.power.fault.is_some();
             if given_up || self.cause_known() {
                 self.reset = None;
                 self.fates.record(id, Fate::Failed(ErrorId::CauseStillPresent));
@@ -252,7 +293,7 @@ impl<P: Planner> Axis<P> {
             }
             let moving = matches!(self.motion, Motion::Run { .. }) && !reached;
             let unwanted = self.power.on && !self.power.wanted;
-            if moving || unwanted || self.feedback.fault.is_some() {
+            if moving || unwanted || self.power.fault.is_some() {
                 return;
             }
             self.power.tripped = false;
@@ -268,11 +309,15 @@ impl<P: Planner> Axis<P> {
         self.fates.record(id, Fate::Done);
     }
 
+    #[cold]
+    fn is_resetting_drive(&self) -> bool {
+        self.state == AxisState::ErrorStop && self.power.fault.is_some()
+    }
+
     /// What is asked of the power stage in this scan.
     pub(super) fn drive_request(&self) -> DriveRequest {
         let ramping = matches!(self.motion, Motion::Run { .. });
-        let resetting = self.reset.is_some() && self.state == AxisState::ErrorStop;
-        if resetting && self.feedback.fault.is_some() {
+        if self.reset.is_some() && self.is_resetting_drive() {
             DriveRequest::FaultReset
         } else if ramping && self.power.on {
             DriveRequest::Enable

@@ -46,6 +46,13 @@ pub(super) struct Entry {
     pub held: bool,
 }
 
+impl Entry {
+    /// Whether it goes on until another command takes over.
+    pub fn is_endless(&self) -> bool {
+        matches!(self.work, Work::Velocity { .. })
+    }
+}
+
 /// First in, first out; at most [`QUEUE_MAX`] entries.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Queue {
@@ -75,6 +82,10 @@ impl Queue {
         self.entries.rotate_left(1);
         self.len -= 1;
         Some(first)
+    }
+
+    pub fn first(&self) -> Option<&Entry> {
+        self.entries.first()?.as_ref()
     }
 
     pub fn last(&self) -> Option<&Entry> {

@@ -15,10 +15,49 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
         self.apply_power(scan, log);
+        // Short of the goal a plan needs a step and nothing else.
+        if let Motion::Run { elapsed, scans, .. } = &self.motion
+            && elapsed.wrapping_add(1) < *scans
+            && self.layer.is_none()
+        {
+            self.step_along_plan(scan, log);
+        } else {
+            self.step_at_goal(scan, log);
+        }
+        self.finish_reset();
+    }
+
+    /// The next set-point of the plan, if it may be published.
+    // Inlined for the same reason as `publish`.
+    #[inline(always)]
+    fn step_along_plan(&mut self, scan: u64, log: &mut Log) {
+        let Motion::Run { plan, elapsed, .. } = &mut self.motion else {
+            return;
+        };
+        // Scans of 1 ms wrap after 10^8 years.
+        *elapsed = elapsed.wrapping_add(1);
+        let next = plan.at(*elapsed);
+        if !next.is_finite() {
+            self.fail(ErrorId::SetpointBroken, scan, log);
+        } else if self.would_leave() {
+            self.fail(ErrorId::SoftwareLimitReached, scan, log);
+        } else {
+            self.publish(next);
+        }
+    }
+
+    /// The step of an axis that is at its goal, or will be after it, or is not in operation, or has something
+    /// superimposed.
+    #[inline(never)]
+    fn step_at_goal(&mut self, scan: u64, log: &mut Log) {
         if self.owner.is_none() && self.goal_reached() {
             // A ramp nobody commanded ended in the scan before; until then power stays on, so that the drive
             // gets the last set-point.
             self.motion = Motion::Hold;
+        }
+        if self.layer.is_some() {
+            self.advance_both(scan, log);
+            return;
         }
         match &mut self.motion {
             Motion::Follow => {
@@ -26,41 +65,32 @@ impl<P: Planner> Axis<P> {
                 self.count_actual_turns();
             }
             Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
-            Motion::Run { plan, elapsed } => {
-                *elapsed = elapsed.saturating_add(1);
-                let next = plan.at(*elapsed);
-                if !next.is_finite() {
-                    self.fail(ErrorId::SetpointBroken, scan, log);
-                } else if self.would_leave() {
-                    self.fail(ErrorId::SoftwareLimitReached, scan, log);
-                } else {
-                    self.publish(next);
-                }
-            }
+            Motion::Run { .. } => self.step_along_plan(scan, log),
         }
         if self.modulo.is_some() {
             self.bring_back();
         }
-        self.settle(scan, log);
-        self.finish_reset();
+        if self.goal_reached() {
+            self.settle(scan, log);
+        }
     }
 
     // Inlined, so that a set-point goes from registers to its place and is not copied through memory, which
     // takes longer than computing it.
     #[inline(always)]
-    fn publish(&mut self, next: Setpoint) {
+    pub(super) fn publish(&mut self, next: Setpoint) {
         self.setpoint = next;
         if next.velocity != 0.0 {
-            self.last_direction = if next.velocity < 0.0 { -1.0 } else { 1.0 };
+            self.last_velocity = next.velocity;
         }
     }
 
     /// Enters ErrorStop and publishes the first set-point of the ramp, which starts at the last one published.
     #[cold]
-    fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
+    pub(super) fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
         self.trip(error, 0, Reaction::Ramp, scan, log);
         let next = match &mut self.motion {
-            Motion::Run { plan, elapsed } => {
+            Motion::Run { plan, elapsed, .. } => {
                 *elapsed = 1;
                 plan.at(1)
             }
@@ -73,21 +103,27 @@ impl<P: Planner> Axis<P> {
     /// software limits inside them.
     #[inline]
     fn would_leave(&self) -> bool {
-        match (self.config.software_limits, &self.motion) {
-            (Some(limits), Motion::Run { plan, elapsed }) => {
-                self.would_leave_from(&plan.at(*elapsed), limits)
-            }
-            _ => false,
+        match self.config.software_limits {
+            Some(limits) => self.would_leave_within(limits),
+            None => false,
         }
     }
 
-    /// The same for the next set-point and limits `min` and `max` (u).
+    /// The same for limits `min` and `max` (u).
+    fn would_leave_within(&self, limits: (f64, f64)) -> bool {
+        match &self.motion {
+            Motion::Run { plan, elapsed, .. } => self.would_leave_from(&plan.at(*elapsed), limits),
+            Motion::Follow | Motion::Hold => false,
+        }
+    }
+
+    /// The same for the next set-point.
     #[inline(never)]
-    fn would_leave_from(&self, next: &Setpoint, (min, max): (f64, f64)) -> bool {
+    pub(super) fn would_leave_from(&self, next: &Setpoint, (min, max): (f64, f64)) -> bool {
         let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
         let leaving = match self.owner.as_ref().map(|owner| &owner.work) {
             Some(Work::Velocity { .. }) => true,
-            Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan()),
+            Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan() + self.superimposed_left()),
             // Targets were checked when the command was taken.
             Some(Work::Position(_) | Work::Distance(_) | Work::Home(_)) | None => false,
         };
@@ -111,38 +147,39 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Completion and hand-over.
-    fn settle(&mut self, scan: u64, log: &mut Log) {
-        let reached = self.goal_reached();
+    /// Completion and hand-over, at the goal.
+    pub(super) fn settle(&mut self, scan: u64, log: &mut Log) {
         let Some(owner) = &self.owner else {
-            if self.state == AxisState::Standstill && !self.queue.is_empty() {
-                // MC_Stop released the axis in this scan (note 6).
+            if matches!(self.state, AxisState::Standstill | AxisState::DiscreteMotion)
+                && !self.queue.is_empty()
+            {
+                // MC_Stop released the axis in this scan (note 6), or a command waits for a superimposed motion.
                 self.hand_over(scan, log);
             }
             return;
         };
         match owner.work {
-            Work::Position(_) | Work::Distance(_) | Work::Halt if reached => self.complete(scan, log),
+            Work::Position(_) | Work::Distance(_) | Work::Halt => self.complete(scan, log),
             Work::Home(position) => {
+                self.rename_actual(self.setpoint.position, position);
                 self.setpoint = Setpoint::at_rest(position);
                 self.forget_turns();
                 self.rename = Some(position);
                 self.homed = true;
                 self.complete(scan, log);
             }
-            Work::Stop if reached && owner.held => {
+            Work::Stop if owner.held => {
                 self.motion = Motion::Hold;
                 self.stop_held = true;
             }
-            Work::Stop if reached => {
+            Work::Stop => {
                 self.motion = Motion::Hold;
                 self.end_owner(Fate::Done);
                 self.enter(AxisEvent::StopReleased);
                 self.hand_over(scan, log);
             }
             // An endless motion gives way when it has reached its velocity.
-            Work::Velocity { .. } if reached => self.hand_over(scan, log),
-            Work::Position(_) | Work::Distance(_) | Work::Halt | Work::Stop | Work::Velocity { .. } => {}
+            Work::Velocity { .. } => self.hand_over(scan, log),
         }
     }
 
@@ -151,18 +188,29 @@ impl<P: Planner> Axis<P> {
     fn complete(&mut self, scan: u64, log: &mut Log) {
         self.motion = Motion::Hold;
         self.end_owner(Fate::Done);
-        self.enter(AxisEvent::MotionDone);
+        // The motion is not over while something is superimposed (V14).
+        if !self.is_superimposing() {
+            self.enter(AxisEvent::MotionDone);
+        }
         self.hand_over(scan, log);
     }
 
     /// The next waiting command that can be planned becomes the owner; those that cannot fail (R79). An
     /// endless owner stays if there is none.
     #[inline(never)]
-    fn hand_over(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn hand_over(&mut self, scan: u64, log: &mut Log) {
         for _ in 0..QUEUE_MAX {
-            let Some(next) = self.queue.pop() else { return };
-            match self.plan_for(&next) {
-                Ok(motion) => {
+            let Some(next) = self.queue.first().copied() else {
+                return;
+            };
+            let planned = self.plan_next(&next);
+            if let Ok(None) = planned {
+                return;
+            }
+            self.queue.pop();
+            match planned {
+                Ok(None) => {}
+                Ok(Some(motion)) => {
                     self.end_owner(Fate::Aborted);
                     self.begin(next, motion, scan, log);
                     return;

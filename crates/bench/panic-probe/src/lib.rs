@@ -13,7 +13,8 @@ use standstill_axis::{
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::{AnyInstance, Context, PinType, Time, Value};
-use standstill_planner::{GridPlan, Method, Plan, RampPlan};
+use standstill_planner::grid::Family;
+use standstill_planner::{GridPlan, Method, MoveProfile, Plan, RampPlan, UnequalPlan};
 
 /// Something of any value.
 fn any<T>(value: T) -> T {
@@ -74,6 +75,7 @@ impl Image {
             })),
             position: any(real.position),
             comms: any(Comms::Lost),
+            signals: any(real.signals),
         };
         for axis in axes.iter_mut() {
             axis.follow_feedback(&any(feedback), *scan, log);
@@ -166,6 +168,14 @@ pub fn plan() {
             any(segment);
         }
     }
+    let family = any(Family::Overlapped);
+    if let Ok((plan, work)) = any(UnequalPlan::new_counted(family, start, target, &limits, cycle)) {
+        any((work, plan.at(any(1)), plan.peaks(), plan.amplitudes()));
+        any((plan.up(), plan.down()));
+        for segment in any(plan.segments()) {
+            any(segment);
+        }
+    }
     if let Ok(plan) = any(RampPlan::new(&from, velocity, &limits, &any(limits), cycle)) {
         any((plan.at(any(1)), plan.peaks(), plan.excess(), plan.end_position()));
         for segment in plan.segments() {
@@ -173,7 +183,9 @@ pub fn plan() {
         }
     }
     let standard = Standard::new(cycle);
-    if let Ok(plan) = any(standard.move_to(&from, target, &limits, &any(limits))) {
+    if let Ok(plan) =
+        any(standard.move_to(any(MoveProfile::Overlapped), &from, target, &limits, &any(limits)))
+    {
         any((plan.scans(), plan.at(any(1)), plan.excess()));
     }
 }

@@ -6,45 +6,67 @@ use crate::plan::methods::Planned;
 use crate::plan::refusal::Refusal;
 use crate::plan::samples::Setpoints;
 use crate::plan::shared::check_rest;
-use standstill_planner::grid::{Counts, Method};
-use standstill_planner::{Field, GridPlan, Limits, Order, PlanError, Segment};
+use standstill_planner::grid::{Counts, Family, Method};
+use standstill_planner::{Field, GridPlan, Limits, Order, PlanError, Segment, UnequalPlan};
 
 /// Rest to rest on the sample grid.
 pub fn grid(fields: &Fields<'_>, problem: &Problem, method: Method) -> Result<Planned, Refusal> {
     check_rest(fields, problem)?;
     let cycle = fields.required("Ts")?;
     let target = fields.required("target")?;
+    let start = problem.start.position;
     let limits = problem.limits;
-    let with = |limits: &Limits| GridPlan::new(method, problem.start.position, target, limits, cycle);
-    let plan = with(&limits).map_err(|error| {
-        let nearest = nearest_limit(error, &limits, |limits| with(limits).is_ok());
-        Refusal::of_plan_error(fields, error).nearest(nearest.map(number))
+    let one_rate = limits.acceleration == limits.deceleration;
+    let family = match method {
+        Method::Grid if !one_rate => Family::Separate,
+        Method::Overlapped if !one_rate => Family::Overlapped,
+        // The published steps know one rate.
+        Method::Sequential | Method::Grid | Method::Overlapped => {
+            let plan = refuse_too_long(fields, &limits, |limits| {
+                GridPlan::new(method, start, target, limits, cycle)
+            })?;
+            return Ok(with_one_rate(&plan, one_rate));
+        }
+    };
+    let plan = refuse_too_long(fields, &limits, |limits| {
+        UnequalPlan::new(family, start, target, limits, cycle)
     })?;
-    let symmetric = limits.acceleration == limits.deceleration;
-    let segments = plan.segments().map(segment).collect();
-    let end = plan.at(plan.scans().into());
-    Ok(Planned {
-        boxes: symmetric.then(|| boxes(&plan)),
-        counts: (method != Method::Overlapped).then(|| counts(&plan)),
+    Ok(Planned::new(
+        plan.duration(),
+        plan.scans(),
+        plan.segments().map(Segment::from).collect(),
+        plan.peaks(),
+        plan.at(plan.scans().into()),
+        Setpoints::Unequal(plan),
+    ))
+}
+
+/// A plan whose acceleration and deceleration are the same, asked for so or not.
+fn with_one_rate(plan: &GridPlan, asked_for: bool) -> Planned {
+    Planned {
+        boxes: asked_for.then(|| boxes(plan)),
+        counts: (plan.method() != Method::Overlapped).then(|| counts(plan)),
         ..Planned::new(
             plan.duration(),
             plan.scans(),
-            segments,
+            plan.segments().map(Segment::from).collect(),
             plan.peaks(),
-            end,
-            Setpoints::Grid(plan),
+            plan.at(plan.scans().into()),
+            Setpoints::Grid(*plan),
         )
-    })
+    }
 }
 
-fn segment(segment: standstill_planner::grid::Segment) -> Segment {
-    Segment {
-        duration: segment.duration,
-        velocity: segment.velocity,
-        acceleration: segment.acceleration,
-        jerk: segment.jerk,
-        snap: segment.snap,
-    }
+/// The plan, or why there is none with the nearest limit there would be one for.
+fn refuse_too_long<T>(
+    fields: &Fields<'_>,
+    limits: &Limits,
+    plan: impl Fn(&Limits) -> Result<T, PlanError>,
+) -> Result<T, Refusal> {
+    plan(limits).map_err(|error| {
+        let nearest = nearest_limit(error, limits, |limits| plan(limits).is_ok());
+        Refusal::of_plan_error(fields, error).nearest(nearest.map(number))
+    })
 }
 
 /// As many boxes as the order, also of a move of no length, so that readers need no special case.

@@ -8,7 +8,7 @@ use crate::plan::samples::Setpoints;
 use crate::plan::shared::{bounded, check_limits, check_rest, cycle, too_long};
 use crate::suggest::nearest;
 use standstill_planner::papers::{Profile, SCurve, ShortPath, ShortPathPolicy, Timed, Trapezoid};
-use standstill_planner::{Field, PlanError};
+use standstill_planner::{Field, PlanError, SampledPlan};
 
 /// What a method of order 3 needs.
 const ORDER_THREE: [Field; 3] = [Field::LimitVelocity, Field::LimitAcceleration, Field::LimitJerk];
@@ -129,15 +129,15 @@ fn policy(fields: &Fields<'_>) -> Result<ShortPathPolicy, Refusal> {
 
 /// A profile in the terms of the answer.
 fn planned(fields: &Fields<'_>, profile: &Profile, cycle: f64) -> Result<Planned, Refusal> {
-    let scans = profile.scans(cycle).ok_or_else(|| too_long(fields))?;
+    let plan = SampledPlan::new(profile, cycle).map_err(|_| too_long(fields))?;
     let segments = profile.segments().collect();
     let peak = bounded(&profile.peaks());
     Ok(Planned::new(
         profile.duration(),
-        scans,
+        plan.scans(),
         segments,
         peak,
         profile.end(),
-        Setpoints::Profile(Box::new(*profile), cycle, scans),
+        Setpoints::Sampled(Box::new(plan)),
     ))
 }

@@ -4,8 +4,7 @@ use crate::exit::Failure;
 use crate::json::number;
 use crate::plan::methods::Planned;
 use crate::table;
-use standstill_planner::papers::Profile;
-use standstill_planner::{GridPlan, OnlinePlan, RampPlan, Setpoint};
+use standstill_planner::{GridPlan, OnlinePlan, RampPlan, SampledPlan, Setpoint, UnequalPlan};
 use standstill_script::suite::shown;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -22,12 +21,14 @@ id,scan,position,velocity,acceleration,jerk,snap
 pub enum Setpoints {
     /// A grid plan.
     Grid(GridPlan),
+    /// A grid plan with two rates.
+    Unequal(UnequalPlan),
     /// A ramp to a velocity.
     Ramp(Box<RampPlan>),
     /// Plans that follow each other, each with the scan it begins with; never empty.
     Online(Vec<(u32, OnlinePlan)>),
-    /// A profile, its sample time (s) and its scans.
-    Profile(Box<Profile>, f64, u32),
+    /// A profile of a paper.
+    Sampled(Box<SampledPlan>),
 }
 
 impl Setpoints {
@@ -35,6 +36,7 @@ impl Setpoints {
     fn at(&self, scan: u32) -> Setpoint {
         match self {
             Self::Grid(plan) => plan.at(scan.into()),
+            Self::Unequal(plan) => plan.at(scan.into()),
             Self::Ramp(plan) => plan.at(scan.into()),
             Self::Online(plans) => {
                 let mut begun = plans.iter().rev().filter(|(begin, _)| *begin <= scan);
@@ -42,10 +44,7 @@ impl Setpoints {
                     .next()
                     .map_or_else(Setpoint::default, |(begin, plan)| plan.at((scan - begin).into()))
             }
-            Self::Profile(profile, _, scans) if scan >= *scans && profile.end().velocity == 0.0 => {
-                profile.end()
-            }
-            Self::Profile(profile, cycle, _) => profile.at(f64::from(scan) * cycle),
+            Self::Sampled(plan) => plan.at(scan.into()),
         }
     }
 }

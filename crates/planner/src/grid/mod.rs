@@ -9,11 +9,13 @@ mod problem;
 mod profile;
 mod search;
 mod sequential;
+mod unequal;
 
 pub use euler::Euler;
 pub use plan::{Counts, GridPlan};
 pub use profile::{Peaks, Segment, Segments};
-pub use search::{MAX_CANDIDATES, MAX_ROWS, Work};
+pub use search::{Family, MAX_CANDIDATES, MAX_ROWS, Work};
+pub use unequal::{MAX_RAMP_ROWS, UnequalPlan, UnequalSegments, UnequalWork};
 
 /// How the box lengths are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,9 @@
 //! The plan value and how it is made.
 
 use super::problem::{Boxes, LONGEST, Problem};
+use super::profile::{self, Cruise};
 use super::search::{self, Family, Work};
-use super::{Method, profile, sequential};
+use super::{Method, sequential};
 use crate::{Field, Limits, Order, PlanError};
 
 /// A rest-to-rest plan: a plain value of at most four box lengths and five scale factors.
@@ -23,12 +24,11 @@ pub struct GridPlan {
     method: Method,
     /// Whether the position sums need more than 64 bits.
     pub(super) wide: bool,
-    /// How far from both ends the velocity is constant (scans); more than any plan has if it never is.
-    pub(super) cruise_after: u32,
+    pub(super) cruise: Cruise,
 }
 
 /// A plan is copied about by value, so it stays small.
-const _: () = assert!(size_of::<GridPlan>() <= 96);
+const _: () = assert!(size_of::<GridPlan>() <= 120);
 
 /// Durations of the segments in scans, as the published planner counts them (docs/planner.md, eq. 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +91,7 @@ impl GridPlan {
             order: limits.order(),
             method,
             wide: false,
-            cruise_after: u32::MAX,
+            cruise: Cruise::NONE,
         };
         if distance == 0.0 {
             return Ok((plan, Work::default()));
@@ -111,7 +111,9 @@ impl GridPlan {
             Order::Two => [n3, n4, 0, 0],
         };
         (plan.scale, plan.wide) = profile::scale(plan.order, plan.product(), distance, cycle);
-        plan.cruise_after = profile::cruise_after(plan.order, plan.boxes, plan.wide);
+        if !plan.wide {
+            plan.cruise = Cruise::new(plan.order, plan.boxes, &plan.scale);
+        }
         Ok((plan, work))
     }
 
@@ -198,7 +200,13 @@ impl GridPlan {
 }
 
 /// The boxes by one method, none if they are too long to count, and the work it took.
-fn choose(method: Method, problem: &Problem, length: f64, limits: &Limits, cycle: f64) -> (Boxes, Work) {
+pub(super) fn choose(
+    method: Method,
+    problem: &Problem,
+    length: f64,
+    limits: &Limits,
+    cycle: f64,
+) -> (Boxes, Work) {
     let step_by_step = || sequential::plan(problem, length, limits, cycle);
     let (best, work) = match method {
         Method::Sequential => return (step_by_step(), Work::default()),
@@ -220,7 +228,12 @@ fn sum(boxes: &Boxes) -> u64 {
 }
 
 /// The signed distance (u) of a move whose inputs are all usable.
-fn checked_distance(start: f64, target: f64, limits: &Limits, cycle: f64) -> Result<f64, PlanError> {
+pub(super) fn checked_distance(
+    start: f64,
+    target: f64,
+    limits: &Limits,
+    cycle: f64,
+) -> Result<f64, PlanError> {
     let invalid = |field, value| Err(PlanError::InvalidInput { field, value });
     if !(cycle > 0.0 && cycle.is_finite()) {
         return invalid(Field::Cycle, cycle);

@@ -39,14 +39,7 @@ impl Problem {
     /// # Errors
     /// [`PlanError::TooLong`] names the first bound that alone needs more than 2^31 scans.
     pub fn new(distance: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
-        let t = cycle;
-        let a = limits.lower_acceleration();
-        let ratios = [
-            distance / (limits.velocity * t),
-            distance / (a * t * t),
-            distance / (limits.jerk * t * t * t),
-            distance / (limits.snap * t * t * t * t),
-        ];
+        let ratios = ratios(distance, limits.lower_acceleration(), limits, cycle);
         // No plan that can be counted reaches more (docs/planner.md, eq. 8).
         let most = [31, 62, 93, 116].map(|bits| (1_u128 << bits) as f64);
         for ((ratio, most), bound) in ratios.iter().zip(most).zip(bounds(limits)) {
@@ -55,7 +48,7 @@ impl Problem {
                 return Err(PlanError::TooLong { field, value });
             }
         }
-        let [k4, k3, k2, k1] = ratios.map(|ratio| math::max(math::ceil(ratio * ONE_LESS_SLACK), 1.0));
+        let [k4, k3, k2, k1] = ratios.map(threshold);
         Ok(Self {
             order: limits.order(),
             k4,
@@ -119,6 +112,23 @@ impl Problem {
         }
         error
     }
+}
+
+/// What the products n4, n3 n4, n2 n3 n4, n1 n2 n3 n4 must reach, not yet rounded up, where `acceleration` is
+/// the bound on acceleration (docs/planner.md, eq. 7).
+pub(super) fn ratios(distance: f64, acceleration: f64, limits: &Limits, cycle: f64) -> [f64; 4] {
+    let t = cycle;
+    [
+        distance / (limits.velocity * t),
+        distance / (acceleration * t * t),
+        distance / (limits.jerk * t * t * t),
+        distance / (limits.snap * t * t * t * t),
+    ]
+}
+
+/// The least whole number >= 1 that counts as reaching `ratio` (docs/planner.md, eq. 7).
+pub(super) fn threshold(ratio: f64) -> f64 {
+    math::max(math::ceil(ratio * ONE_LESS_SLACK), 1.0)
 }
 
 /// The bounds in the order of the thresholds K4 to K1, with their names.

@@ -12,7 +12,7 @@ const SIGNS: [i64; 8] = [1, -1, -1, 1, -1, 1, 1, -1];
 
 /// Which of two values holds at an instant where a derivative jumps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Side {
+pub(super) enum Side {
     /// The one in force just before the instant.
     Before,
     /// The one in force just after it.
@@ -82,15 +82,43 @@ impl Iterator for Segments {
     }
 }
 
-/// How far from both ends the velocity is constant (scans): the sum of all boxes but the longest. Out of reach
-/// if the sums need more than 64 bits.
-pub(super) fn cruise_after(order: Order, boxes: [u32; 4], wide: bool) -> u32 {
-    let [a, b, c, _] = boxes;
-    match order {
-        _ if wide => u32::MAX,
-        Order::Four => a + b + c,
-        Order::Three => a + b,
-        Order::Two => a,
+/// The part of a plan at constant velocity, in closed form (docs/planner.md, eq. 21a): most scans of a long move
+/// are such ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Cruise {
+    /// How far from both ends the velocity is constant (scans): the sum of all boxes but the longest. More than
+    /// any plan has if it never is, or if the sums need more than 64 bits.
+    after: u32,
+    /// What the position sum grows by in half a scan: m!/2 times the product of all boxes but the longest.
+    half_step: i64,
+    /// Velocity (u/s).
+    velocity: f64,
+}
+
+impl Cruise {
+    /// A plan that never has constant velocity.
+    pub const NONE: Self = Self {
+        after: u32::MAX,
+        half_step: 0,
+        velocity: 0.0,
+    };
+
+    /// That of a plan with these boxes and factors, whose sums fit 64 bits.
+    pub fn new(order: Order, boxes: [u32; 4], scale: &[f64; 5]) -> Self {
+        let [a, b, c, _] = boxes;
+        let [p, q, r] = [a, b, c].map(i64::from);
+        let (after, half_step, velocity) = match order {
+            Order::Four => (a + b + c, 12 * (p * q * r), 6 * (p * q * r)),
+            Order::Three => (a + b, 3 * (p * q), 2 * (p * q)),
+            Order::Two => (a, p, p),
+        };
+        let [_, f1, ..] = *scale;
+        Self {
+            after,
+            half_step,
+            // Adding 0 turns -0 into 0.
+            velocity: velocity as f64 * f1 + 0.0,
+        }
     }
 }
 
@@ -145,8 +173,9 @@ impl GridPlan {
         let scans = u64::from(self.scans);
         if scan < scans {
             let left = scans - scan;
-            return if scan.min(left) > u64::from(self.cruise_after) {
-                self.cruise_at(scan as i64, left as i64)
+            let near = scan.min(left);
+            return if near > u64::from(self.cruise.after) {
+                self.cruise_at(near as i64, near < scan)
             } else {
                 self.state(scan as i64, Side::Before)
             };
@@ -226,31 +255,25 @@ impl GridPlan {
         [0, a, b, a + b, c, a + c, b + c, (a + b + c).min(d)]
     }
 
-    /// The state at constant velocity, `left` scans before the end: the sums in closed form (docs/planner.md,
-    /// eq. 21a). Most scans of a long move are such ones.
+    /// The state at constant velocity, `near` scans from the start or, mirrored, from the end (docs/planner.md,
+    /// eq. 21a).
     #[inline(always)]
-    fn cruise_at(&self, scan: i64, left: i64) -> Setpoint {
-        let [a, b, c, _] = self.boxes.map(i64::from);
-        let (half_factorial, factorial, product) = match self.order {
-            Order::Four => (12, 6, a * b * c),
-            Order::Three => (3, 2, a * b),
-            Order::Two => (1, 1, a),
-        };
-        let [f0, f1, ..] = self.scale;
-        let way =
-            |near: i64| (half_factorial * product * (2 * near - i64::from(self.cruise_after))) as f64 * f0;
+    fn cruise_at(&self, near: i64, mirrored: bool) -> Setpoint {
+        let [f0, ..] = self.scale;
+        let way = (self.cruise.half_step * (2 * near - i64::from(self.cruise.after))) as f64 * f0;
         Setpoint {
-            position: if scan > left {
-                self.target - way(left)
+            position: if mirrored {
+                self.target - way
             } else {
-                self.start + way(scan)
+                self.start + way
             },
-            velocity: (factorial * product) as f64 * f1 + 0.0,
+            velocity: self.cruise.velocity,
             ..Setpoint::default()
         }
     }
 
     /// The state at `scan` <= N, with the values of one side where a derivative jumps.
+    #[inline]
     fn state(&self, scan: i64, side: Side) -> Setpoint {
         // Each half is computed from its own end: half the terms, and exact at both ends.
         let twice_left = 2 * scan - i64::from(self.scans);
@@ -265,35 +288,58 @@ impl GridPlan {
         };
         // Time runs backwards from the far end, so the sides swap there.
         let through = near + i64::from((side == Side::After) != mirrored);
-        let instants = self.early_instants();
-        let derivatives = match (self.order, self.wide) {
-            (Order::Four, false) => derivatives::<i64, 8>(&instants, near, through),
-            (Order::Four, true) => derivatives::<i128, 8>(&instants, near, through),
-            (Order::Three, false) => derivatives::<i64, 4>(&instants, near, through),
-            (Order::Three, true) => derivatives::<i128, 4>(&instants, near, through),
-            // Two boxes of less than 2^31 scans in all: the sums fit 64 bits always.
-            (Order::Two, _) => derivatives::<i64, 2>(&instants, near, through),
-        };
-        let [f0, f1, f2, f3, f4] = self.scale;
-        let [d0, d1, d2, d3, d4] = derivatives;
-        // Adding 0 turns -0 into 0.
+        let sums = self.derivatives(near, through);
         if mirrored {
-            Setpoint {
-                position: self.target - d0 * f0,
-                velocity: d1 * f1 + 0.0,
-                acceleration: 0.0 - d2 * f2,
-                jerk: d3 * f3 + 0.0,
-                snap: 0.0 - d4 * f4,
-            }
+            backwards(self.target, &sums, &self.scale)
         } else {
-            Setpoint {
-                position: self.start + d0 * f0,
-                velocity: d1 * f1 + 0.0,
-                acceleration: d2 * f2 + 0.0,
-                jerk: d3 * f3 + 0.0,
-                snap: d4 * f4 + 0.0,
-            }
+            forwards(self.start, &sums, &self.scale)
         }
+    }
+
+    /// The derivatives 0 to 4 at `near` scans from an end, before scaling.
+    #[inline(never)]
+    fn derivatives(&self, near: i64, through: i64) -> [f64; 5] {
+        sums(self.order, self.wide, &self.early_instants(), near, through)
+    }
+}
+
+/// The derivatives 0 to 4 of a profile of `order` at `near` scans from an end, before scaling, in as many bits
+/// as they need; the highest one counts the instants before `through` (docs/planner.md, eq. 21).
+#[inline(always)]
+pub(super) fn sums(order: Order, wide: bool, instants: &[i64; 8], near: i64, through: i64) -> [f64; 5] {
+    match (order, wide) {
+        (Order::Four, false) => derivatives::<i64, 8>(instants, near, through),
+        (Order::Four, true) => derivatives::<i128, 8>(instants, near, through),
+        (Order::Three, false) => derivatives::<i64, 4>(instants, near, through),
+        (Order::Three, true) => derivatives::<i128, 4>(instants, near, through),
+        // Two boxes of less than 2^31 scans in all: the sums fit 64 bits always.
+        (Order::Two, _) => derivatives::<i64, 2>(instants, near, through),
+    }
+}
+
+/// The state with these sums counted from rest at `start`. Adding 0 turns -0 into 0.
+#[inline(always)]
+pub(super) fn forwards(start: f64, sums: &[f64; 5], scale: &[f64; 5]) -> Setpoint {
+    let ([d0, d1, d2, d3, d4], [f0, f1, f2, f3, f4]) = (sums, scale);
+    Setpoint {
+        position: start + d0 * f0,
+        velocity: d1 * f1 + 0.0,
+        acceleration: d2 * f2 + 0.0,
+        jerk: d3 * f3 + 0.0,
+        snap: d4 * f4 + 0.0,
+    }
+}
+
+/// The state with these sums counted backwards from rest at `target`.
+#[inline(always)]
+pub(super) fn backwards(target: f64, sums: &[f64; 5], scale: &[f64; 5]) -> Setpoint {
+    let ([d0, d1, d2, d3, d4], [f0, f1, f2, f3, f4]) = (sums, scale);
+    Setpoint {
+        position: target - d0 * f0,
+        velocity: d1 * f1 + 0.0,
+        acceleration: 0.0 - d2 * f2,
+        jerk: d3 * f3 + 0.0,
+        snap: 0.0 - d4 * f4,
     }
 }
 
@@ -362,6 +408,7 @@ where
 
 #[cfg(test)]
 mod tests {
+    use super::Cruise;
     use crate::{GridPlan, Limits, Method};
 
     /// The same bits come out of sums in 64 and in 128 bits, and of the closed form at constant velocity.
@@ -385,7 +432,7 @@ mod tests {
                 assert!(!narrow.wide);
                 let mut wide = narrow;
                 wide.wide = true;
-                wide.cruise_after = u32::MAX;
+                wide.cruise = Cruise::NONE;
                 for scan in 0..=u64::from(narrow.scans()) {
                     assert_eq!(narrow.at(scan), wide.at(scan));
                 }

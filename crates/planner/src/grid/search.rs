@@ -28,12 +28,12 @@ pub struct Work {
     pub capped: bool,
 }
 
-/// How close box 4 may come to the others.
+/// How close the ramp down may come to the ramp up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Family {
-    /// `n4 >= n1 + n2 + n3`: the published 15 segments.
+pub enum Family {
+    /// The ramps do not overlap, `n4 >= n1 + n2 + n3`: the published 15 segments.
     Separate,
-    /// `n4 >= n2 + n3`: the two middle jerk pulses may overlap.
+    /// The last snap pulse of the one and the first of the other may overlap, `n4 >= n2 + n3`.
     Overlapped,
 }
 

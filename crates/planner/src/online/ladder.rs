@@ -1,14 +1,14 @@
 //! The ladder: each candidate is verified against the true limits before it is taken.
 
-use super::search::{Candidate, Search, follow};
-use super::{MAX_PIECES, grid_from};
+use super::search::Search;
+use super::{MAX_PIECES, OnlinePlan, grid_from};
 use crate::grid::GridPlan;
 use crate::kernel::{NOISE, ON_LIMIT, Spans};
 use crate::ramp::excess::{self, Excess};
 use crate::ramp::path::Path;
 use crate::ramp::scans;
 use crate::ramp::solve::{RAMP_SPANS, Ramps};
-use crate::{Field, Limits, PlanError, Setpoint};
+use crate::{Field, Limits, Order, PlanError, Setpoint};
 
 /// The way a plan was found, best first. A plan of a later rung is longer, not less exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -46,15 +46,35 @@ pub(super) struct Tail {
     pub(super) begin: u32,
 }
 
-/// A plan as found.
+/// A plan as found. It is large, so it is made where it is to stay.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Found {
     pub(super) rung: Rung,
+    /// Ramps solved.
     pub(super) solves: u32,
+    /// Most steps of one root.
     pub(super) steps: u32,
+    /// Positions count from the start.
     pub(super) path: Path<MAX_PIECES>,
+    /// What the rounding of the path leaves to the target; it is spread over the whole plan (O9).
     pub(super) residual: f64,
     pub(super) tail: Option<Tail>,
     pub(super) excess: Option<Excess>,
+}
+
+impl Found {
+    /// Nothing yet.
+    pub(super) const fn nothing(order: Order) -> Self {
+        Self {
+            rung: Rung::PushThenStop,
+            solves: 0,
+            steps: 0,
+            path: Path::new(order),
+            residual: 0.0,
+            tail: None,
+            excess: None,
+        }
+    }
 }
 
 /// A problem, its search, and what verifies a candidate.
@@ -71,96 +91,92 @@ struct Climb<'a> {
     unavoidable: Option<Excess>,
 }
 
-/// The first candidate from rung `first` on that keeps the limits and arrives (O8).
-pub(super) fn climb(
-    first: Rung,
-    start: &Setpoint,
-    target: f64,
-    end_velocity: f64,
-    limits: &Limits,
-    wider: &Limits,
-    cycle: f64,
-) -> Result<Found, PlanError> {
-    let ramps = Ramps::new(limits, wider);
-    let origin = Setpoint {
-        position: 0.0,
-        ..*start
-    };
-    let distance = target - start.position;
-    let resolution = NOISE * ramps.inward(start.position.abs() + target.abs(), 0);
-    let mut climb = Climb {
-        search: Search::new(
-            &ramps,
-            ramps.inward(distance, 0),
-            ramps.inward(end_velocity, 1),
-            resolution,
-        ),
-        ramps: &ramps,
-        inward: ramps.state_inward(&origin),
-        start: origin,
-        distance,
-        end_velocity,
-        limits,
-        unavoidable: None,
-    };
-    for rung in Rung::ALL.into_iter().filter(|rung| *rung >= first) {
-        let from = climb.inward;
-        let candidate = match rung {
-            Rung::PushThenStop => climb.search.push_then_stop(&from),
-            Rung::TwoPhase => climb.search.two_phase(&from),
-            Rung::Arrest => climb.search.arrest_then_push(&from),
-            Rung::Brake if end_velocity != 0.0 => climb.search.rest_then_push(&from),
-            Rung::Brake => return climb.brake_to_grid(start.position, target, cycle),
+impl OnlinePlan {
+    /// Finds the first candidate from rung `first` on that keeps the limits and arrives (O8), for a plan of
+    /// which nothing is found yet.
+    pub(super) fn climb(&mut self, first: Rung, limits: &Limits, wider: &Limits) -> Result<(), PlanError> {
+        let Self {
+            start,
+            target,
+            end_velocity,
+            cycle,
+            ref mut found,
+            ..
+        } = *self;
+        let ramps = Ramps::new(limits, wider);
+        let origin = Setpoint {
+            position: 0.0,
+            ..start
         };
-        if let Some(found) = climb.verified(rung, &candidate) {
-            return Ok(found);
+        let distance = target - start.position;
+        let resolution = NOISE * ramps.inward(start.position.abs() + target.abs(), 0);
+        let mut climb = Climb {
+            search: Search::new(
+                &ramps,
+                ramps.inward(distance, 0),
+                ramps.inward(end_velocity, 1),
+                resolution,
+            ),
+            ramps: &ramps,
+            inward: ramps.state_inward(&origin),
+            start: origin,
+            distance,
+            end_velocity,
+            limits,
+            unavoidable: None,
+        };
+        for rung in Rung::ALL.into_iter().filter(|rung| *rung >= first) {
+            let from = climb.inward;
+            found.rung = rung;
+            let is_plan = match rung {
+                Rung::PushThenStop => match climb.search.profile(&from) {
+                    Some(spans) => climb.verify(found, &spans),
+                    None => climb.verify(found, &climb.search.push_then_stop(&from)),
+                },
+                Rung::TwoPhase => climb.verify(found, &climb.search.two_phase(&from)),
+                Rung::Arrest => climb.verify(found, &climb.search.arrest_then_push(&from)),
+                Rung::Brake if end_velocity != 0.0 => {
+                    climb.verify(found, &climb.search.rest_then_push(&from))
+                }
+                Rung::Brake => {
+                    climb.brake_to_grid(found, start.position, target, cycle)?;
+                    true
+                }
+            };
+            if is_plan {
+                found.solves = climb.search.solves();
+                found.steps = climb.search.steps();
+                return Ok(());
+            }
+            found.path = Path::new(ramps.order());
         }
+        Err(PlanError::TooLong {
+            field: Field::Target,
+            value: target,
+        })
     }
-    Err(PlanError::TooLong {
-        field: Field::Target,
-        value: target,
-    })
 }
 
 impl Climb<'_> {
-    /// The plan of `candidate` if it arrives and, but on the last rung, exceeds no more than what can't be
-    /// avoided.
-    fn verified(&mut self, rung: Rung, candidate: &Candidate) -> Option<Found> {
+    /// Lays `candidate` into `found`; whether it arrives and, but on the last rung, exceeds no more than what
+    /// can't be avoided.
+    fn verify<const N: usize>(&mut self, found: &mut Found, candidate: &Spans<N>) -> bool {
         if candidate.len() > MAX_PIECES {
-            return None;
+            return false;
         }
-        let path: Path<MAX_PIECES> = Path::lay(
-            self.ramps.order(),
-            &self.start,
-            self.ramps.scale().outward(candidate),
-            self.end_velocity,
-        );
-        let end = follow(self.ramps.order(), &self.inward, candidate);
-        let residual = self.distance - path.end_position().unwrap_or(0.0);
+        let path = &mut found.path;
+        let end = path.fill(&self.start, self.ramps.scale().outward(candidate));
+        path.pin(self.end_velocity);
+        found.residual = self.distance - path.end_position().unwrap_or(0.0);
         let way = self.limits.velocity.max(self.start.velocity.abs()) * path.duration();
-        let arrives = residual.abs() <= ON_LIMIT * way + NOISE * self.distance.abs()
-            && (end.velocity - self.ramps.inward(self.end_velocity, 1)).abs()
-                <= ON_LIMIT * self.ramps.velocity();
+        let arrives = found.residual.abs() <= ON_LIMIT * way + NOISE * self.distance.abs()
+            && (end.velocity - self.end_velocity).abs() <= ON_LIMIT * self.limits.velocity;
         if !arrives {
-            return None;
+            return false;
         }
-        let excess = excess::excess(&path, self.end_velocity, None, self.limits);
+        found.excess = excess::excess(path, self.end_velocity, None, self.limits);
         // There is nothing after the last rung.
-        if let Some(excess) = excess
-            && rung < Rung::Brake
-            && !self.is_unavoidable(&excess)
-        {
-            return None;
-        }
-        Some(Found {
-            rung,
-            solves: self.search.solves(),
-            steps: self.search.steps(),
-            path,
-            residual,
-            tail: None,
-            excess,
-        })
+        found.rung == Rung::Brake || found.excess.is_none_or(|excess| self.is_unavoidable(&excess))
     }
 
     /// Whether a stop at once, or getting inside the limits as soon as can be, exceeds the limits as much.
@@ -195,14 +211,17 @@ impl Climb<'_> {
     }
 
     /// To rest, and with the next scan a grid plan: what can't fail for want of accuracy.
-    fn brake_to_grid(&mut self, origin: f64, target: f64, cycle: f64) -> Result<Found, PlanError> {
+    fn brake_to_grid(
+        &mut self,
+        found: &mut Found,
+        origin: f64,
+        target: f64,
+        cycle: f64,
+    ) -> Result<(), PlanError> {
         let stop = self.search.ramp(&self.inward, 0.0);
-        let path: Path<MAX_PIECES> = Path::lay(
-            self.ramps.order(),
-            &self.start,
-            self.ramps.scale().outward(&stop),
-            0.0,
-        );
+        let path = &mut found.path;
+        path.fill(&self.start, self.ramps.scale().outward(&stop));
+        path.pin(0.0);
         let rest = origin + path.end_position().unwrap_or(0.0);
         // Inputs are checked, so a grid plan is refused only for lengths and times beyond numbers.
         let too_long = PlanError::TooLong {
@@ -210,17 +229,12 @@ impl Climb<'_> {
             value: target,
         };
         let begin = scans(path.duration(), cycle).ok_or(too_long)?;
-        Ok(Found {
-            rung: Rung::Brake,
-            solves: self.search.solves(),
-            steps: self.search.steps(),
-            excess: excess::excess(&path, 0.0, None, self.limits),
-            residual: 0.0,
-            tail: Some(Tail {
-                grid: grid_from(rest, target, self.limits, cycle).map_err(|_| too_long)?,
-                begin,
-            }),
-            path,
-        })
+        found.excess = excess::excess(path, 0.0, None, self.limits);
+        found.residual = 0.0;
+        found.tail = Some(Tail {
+            grid: grid_from(rest, target, self.limits, cycle).map_err(|_| too_long)?,
+            begin,
+        });
+        Ok(())
     }
 }

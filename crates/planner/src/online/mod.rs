@@ -12,7 +12,6 @@ pub use search::MAX_SOLVES;
 
 use crate::grid::GridPlan;
 use crate::ramp::excess::{self, Excess, Peaks};
-use crate::ramp::path::Path;
 use crate::ramp::{self, Segment};
 use crate::{Field, Limits, PlanError, RampPlan, Setpoint};
 use ladder::{Found, Tail};
@@ -29,15 +28,7 @@ pub struct OnlinePlan {
     end_velocity: f64,
     cycle: f64,
     scans: u32,
-    rung: Rung,
-    solves: u32,
-    steps: u32,
-    /// Positions count from the start.
-    path: Path<MAX_PIECES>,
-    /// What the rounding of the path leaves to the target; it is spread over the whole plan (O9).
-    residual: f64,
-    tail: Option<Tail>,
-    excess: Option<Excess>,
+    found: Found,
 }
 
 impl OnlinePlan {
@@ -54,7 +45,7 @@ impl OnlinePlan {
     /// is told by [`OnlinePlan::excess`].
     ///
     /// Bounded work: at most [`MAX_SOLVES`] ramps, in practice about 11 ([`OnlinePlan::solves`]), each with at
-    /// most three roots of [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
+    /// most seven roots of [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
     ///
     /// # Errors
     /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, a start or target that is
@@ -110,36 +101,23 @@ impl OnlinePlan {
     ) -> Result<Self, PlanError> {
         check(start, target, end_velocity, limits, before, cycle)?;
         let wider = ramp::wider(limits, before);
-        let Found {
-            rung,
-            solves,
-            steps,
-            path,
-            residual,
-            tail,
-            excess,
-        } = ladder::climb(first, start, target, end_velocity, limits, &wider, cycle)?;
-        let too_long = PlanError::TooLong {
-            field: Field::Target,
-            value: target,
-        };
-        let moving = ramp::scans(path.duration(), cycle).ok_or(too_long)?;
-        // Both counts are below 2^31, so the sum fits.
-        let scans = moving + tail.map_or(0, |tail| tail.grid.scans());
-        Ok(Self {
+        let mut plan = Self {
             start: *start,
             target,
             end_velocity,
             cycle,
-            scans,
-            rung,
-            solves,
-            steps,
-            path,
-            residual,
-            tail,
-            excess,
-        })
+            scans: 0,
+            found: Found::nothing(limits.order()),
+        };
+        plan.climb(first, limits, &wider)?;
+        let too_long = PlanError::TooLong {
+            field: Field::Target,
+            value: target,
+        };
+        let moving = ramp::scans(plan.found.path.duration(), cycle).ok_or(too_long)?;
+        // Both counts are below 2^31, so the sum fits.
+        plan.scans = moving + plan.found.tail.map_or(0, |tail| tail.grid.scans());
+        Ok(plan)
     }
 
     /// Number of scans until the target; 0 if the start is there.
@@ -152,6 +130,7 @@ impl OnlinePlan {
     /// `scan` 0 is the start; from [`OnlinePlan::scans`] on it is the goal: at rest exactly on the target,
     /// or moving on with exactly the end velocity. Between them the highest derivative is the one in force
     /// just before the instant. At most 30 comparisons.
+    #[inline]
     pub fn at(&self, scan: u64) -> Setpoint {
         if scan >= u64::from(self.scans) {
             return self.beyond(scan);
@@ -159,16 +138,16 @@ impl OnlinePlan {
         if scan == 0 {
             return self.start;
         }
-        if let Some(Tail { grid, begin }) = &self.tail
+        if let Some(Tail { grid, begin }) = &self.found.tail
             && scan >= u64::from(*begin)
         {
             return grid.at(scan - u64::from(*begin));
         }
         let time = scan as f64 * self.cycle;
-        match self.path.at(time) {
+        match self.found.path.at(time) {
             Some(state) => Setpoint {
                 position: self.start.position
-                    + (state.position + self.residual * (time / self.path.duration())),
+                    + (state.position + self.found.residual * (time / self.found.path.duration())),
                 ..state
             },
             None => self.beyond(scan),
@@ -197,21 +176,21 @@ impl OnlinePlan {
         Some(RampPlan::cruising(
             start,
             self.end_velocity,
-            self.path.order(),
+            self.found.path.order(),
             self.cycle,
         ))
     }
 
     /// By how much the start state forced the plan out of its limits, if it did by more than 1e-9 of them.
     pub const fn excess(&self) -> Option<Excess> {
-        self.excess
+        self.found.excess
     }
 
     /// Time until the target (s), not rounded to scans but where a grid plan ends it.
     pub fn duration(&self) -> f64 {
-        match &self.tail {
+        match &self.found.tail {
             Some(tail) => f64::from(tail.begin) * self.cycle + tail.grid.duration(),
-            None => self.path.duration(),
+            None => self.found.path.duration(),
         }
     }
 
@@ -227,22 +206,22 @@ impl OnlinePlan {
 
     /// The rung of the ladder the plan is from.
     pub const fn rung(&self) -> Rung {
-        self.rung
+        self.found.rung
     }
 
     /// Ramps solved to find the plan, on all rungs tried; at most [`MAX_SOLVES`].
     pub const fn solves(&self) -> u32 {
-        self.solves
+        self.found.solves
     }
 
     /// Most steps one root took, at most [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS).
     pub const fn steps(&self) -> u32 {
-        self.steps
+        self.found.steps
     }
 
     /// The stretches of constant highest derivative, in order of time; none of no length.
     pub fn segments(&self) -> impl Iterator<Item = Segment> {
-        let path = self.path.stretches().map(|(stretch, first)| Segment {
+        let path = self.found.path.stretches().map(|(stretch, first)| Segment {
             duration: stretch.end - stretch.begin,
             velocity: first.velocity,
             acceleration: first.acceleration,
@@ -250,8 +229,8 @@ impl OnlinePlan {
             snap: first.snap,
         });
         // The grid plan begins with a scan.
-        let wait = self.tail.map_or(0.0, |tail| {
-            f64::from(tail.begin) * self.cycle - self.path.duration()
+        let wait = self.found.tail.map_or(0.0, |tail| {
+            f64::from(tail.begin) * self.cycle - self.found.path.duration()
         });
         let wait = Segment {
             duration: wait,
@@ -261,22 +240,18 @@ impl OnlinePlan {
             snap: 0.0,
         };
         let wait = (wait.duration > 0.0).then_some(wait);
-        let grid = self.tail.into_iter().flat_map(|tail| {
-            tail.grid.segments().map(|segment| Segment {
-                duration: segment.duration,
-                velocity: segment.velocity,
-                acceleration: segment.acceleration,
-                jerk: segment.jerk,
-                snap: segment.snap,
-            })
-        });
+        let grid = self
+            .found
+            .tail
+            .into_iter()
+            .flat_map(|tail| tail.grid.segments().map(Segment::from));
         path.chain(wait).chain(grid)
     }
 
     /// The largest magnitudes of the continuous plan, in closed form.
     pub fn peaks(&self) -> Peaks {
-        let peaks = excess::peaks(&self.path, self.end_velocity);
-        let Some(grid) = self.tail.map(|tail| tail.grid.peaks()) else {
+        let peaks = excess::peaks(&self.found.path, self.end_velocity);
+        let Some(grid) = self.found.tail.map(|tail| tail.grid.peaks()) else {
             return peaks;
         };
         Peaks {

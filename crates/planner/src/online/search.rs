@@ -4,7 +4,7 @@
 
 use core::cell::Cell;
 
-use crate::kernel::{MAX_STEPS, NOISE, Point, Spans, zero};
+use crate::kernel::{MAX_STEPS, NOISE, Point, Spans, THIRD_SPANS, zero};
 use crate::ramp::path::Way;
 use crate::ramp::solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
 use crate::{Order, Setpoint};
@@ -24,7 +24,7 @@ const MAX_PUSH_SOLVES: u32 = (PARTS * RAMP_SPANS) as u32 + MAX_STEPS + 6;
 pub const MAX_SOLVES: u32 = 3 * MAX_PUSH_SOLVES + 2 * (MAX_STEPS + 3) + 5;
 
 /// Spans of a whole move.
-pub(super) type Candidate = Spans<CANDIDATE_SPANS>;
+type Candidate = Spans<CANDIDATE_SPANS>;
 
 /// A move to find.
 pub(super) struct Search<'a> {
@@ -82,15 +82,22 @@ impl<'a> Search<'a> {
         self.steps.get()
     }
 
+    /// The whole move where the kernel has it (O3).
+    pub(super) fn profile(&self, start: &Setpoint) -> Option<Spans<THIRD_SPANS>> {
+        if self.end_velocity != 0.0 {
+            return None;
+        }
+        let profile = self.ramps.position_profile(start, self.target)?;
+        self.solves.set(self.solves.get() + 1);
+        self.steps.set(self.steps.get().max(profile.steps));
+        Some(profile.spans)
+    }
+
     /// Push towards a velocity bound, then the fastest stop, which begins where it ends on the target (O2).
     pub(super) fn push_then_stop(&self, start: &Setpoint) -> Candidate {
         let mut spans = Spans::new();
-        if self.end_velocity == 0.0
-            && let Some(profile) = self.ramps.position_profile(start, self.target)
-        {
-            self.solves.set(self.solves.get() + 1);
-            self.steps.set(self.steps.get().max(profile.steps));
-            spans.extend(&profile.spans);
+        if let Some(profile) = self.profile(start) {
+            spans.extend(&profile);
             return spans;
         }
         let stop = self.stop(start);
@@ -165,20 +172,28 @@ impl<'a> Search<'a> {
     pub(super) fn arrest_then_push(&self, start: &Setpoint) -> Candidate {
         let bound = self.ramps.velocity();
         let velocity = self.ramps.arrested(start).max(-bound).min(bound);
-        self.ramp_then_push(start, velocity)
-    }
-
-    /// To rest, then push and stop.
-    pub(super) fn rest_then_push(&self, start: &Setpoint) -> Candidate {
-        self.ramp_then_push(start, 0.0)
-    }
-
-    fn ramp_then_push(&self, start: &Setpoint, velocity: f64) -> Candidate {
         let ramp = self.ramp(start, velocity);
         let state = steady(&follow(self.ramps.order(), start, &ramp), velocity);
         let mut spans = Spans::new();
         spans.extend(&ramp);
         spans.extend(&self.push_then_stop(&state));
+        spans
+    }
+
+    /// To rest, then push and stop, both with the lower one of acceleration and deceleration.
+    ///
+    /// With one bound for both, nothing changes where the velocity passes zero, so the place where a ramp
+    /// ends is continuous all along the push, and the root is exact.
+    pub(super) fn rest_then_push(&self, start: &Setpoint) -> Candidate {
+        let mut spans = Spans::new();
+        let ramp = self.ramp(start, 0.0);
+        let state = steady(&follow(self.ramps.order(), start, &ramp), 0.0);
+        let even = self.ramps.even();
+        let search = Search::new(&even, self.target, self.end_velocity, self.resolution);
+        spans.extend(&ramp);
+        spans.extend(&search.push_then_stop(&state));
+        self.solves.set(self.solves.get() + search.solves());
+        self.steps.set(self.steps.get().max(search.steps()));
         spans
     }
 
@@ -227,7 +242,7 @@ fn steady(state: &Setpoint, velocity: f64) -> Setpoint {
 }
 
 /// The end of `spans` from `start`.
-pub(super) fn follow<const N: usize>(order: Order, start: &Setpoint, spans: &Spans<N>) -> Setpoint {
+fn follow<const N: usize>(order: Order, start: &Setpoint, spans: &Spans<N>) -> Setpoint {
     let mut way = Way::new(order, start);
     way.follow(spans);
     way.state

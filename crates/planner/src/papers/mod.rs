@@ -14,12 +14,14 @@
 
 mod profile;
 mod s_curve;
+mod sampled;
 mod short_path;
 mod timed;
 mod tracking;
 
 pub use profile::{MAX_SEGMENTS, Profile, Times};
 pub use s_curve::{SCurve, SCurveCase, Stepper};
+pub use sampled::SampledPlan;
 pub use short_path::{ShortPath, ShortPathPolicy, ShortPathType};
 pub use timed::{Timed, Trapezoid};
 pub use tracking::{Tracking, peaks};

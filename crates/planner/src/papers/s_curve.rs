@@ -5,7 +5,7 @@
 
 use super::profile::Times;
 use super::{Profile, check_limits, distance};
-use crate::math::{rough_cbrt, sqrt};
+use crate::math::{cbrt, sqrt};
 use crate::ramp::path::moved;
 use crate::{Field, Limits, Order, PlanError, Setpoint};
 
@@ -138,23 +138,6 @@ fn times(s: f64, limits: &Limits) -> (SCurveCase, Times) {
         }
     };
     (case, times)
-}
-
-/// Cube root of `x` >= 0 within an ulp or two: five of Newton's steps, which from 6 % off are enough.
-pub(super) fn cbrt(x: f64) -> f64 {
-    /// Lifts what is below the normal range into it; its cube root is 2^54.
-    const LIFT: f64 = ((1_u128 << 81) as f64) * ((1_u128 << 81) as f64);
-    if x == 0.0 {
-        return 0.0;
-    }
-    if !x.is_normal() {
-        return cbrt_of_normal(x * LIFT) / (1_u64 << 54) as f64;
-    }
-    cbrt_of_normal(x)
-}
-
-fn cbrt_of_normal(x: f64) -> f64 {
-    (0..5).fold(rough_cbrt(x), |root, _| root - (root - x / (root * root)) / 3.0)
 }
 
 /// The second view of a move: the state carried from call to call, as the paper's section 4 has it.

@@ -4,10 +4,9 @@
 //! length", with the corrections of `docs/papers.md`. One function of the peak velocity takes the place of the
 //! paper's table of conditions.
 
-use super::s_curve::cbrt;
 use super::{Profile, SLACK, check_limits, distance, invalid};
 use crate::kernel::falling_root;
-use crate::math::sqrt;
+use crate::math::{cbrt, sqrt};
 use crate::{Field, Limits, Order, PlanError, Setpoint};
 
 /// What a bound on a root is widened by, so that rounding does not shut the root out.

@@ -5,9 +5,8 @@
 //! trapezoid of velocity the paper compares with.
 
 use super::profile::Times;
-use super::s_curve::cbrt;
 use super::{Profile, SLACK, check_limits, distance, invalid};
-use crate::math::sqrt;
+use crate::math::{cbrt, sqrt};
 use crate::{Field, Limits, Order, PlanError, Setpoint};
 
 /// A move from rest to rest in a given time at order 3; its shape is given by two shares.

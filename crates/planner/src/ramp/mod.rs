@@ -57,6 +57,18 @@ pub struct Segment {
     pub snap: f64,
 }
 
+impl From<crate::grid::Segment> for Segment {
+    fn from(segment: crate::grid::Segment) -> Self {
+        Self {
+            duration: segment.duration,
+            velocity: segment.velocity,
+            acceleration: segment.acceleration,
+            jerk: segment.jerk,
+            snap: segment.snap,
+        }
+    }
+}
+
 impl RampPlan {
     /// Plans from `start` to `velocity` (u/s) in least time with sample time `cycle` (s).
     ///
@@ -69,8 +81,8 @@ impl RampPlan {
     /// and `before`; an infinite bound in `before` counts as that of `limits`. What is exceeded on the way
     /// is the least possible and told by [`RampPlan::excess`].
     ///
-    /// Bounded work: closed forms and at most one root of
-    /// [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps.
+    /// Bounded work: two ramps of closed forms and at most seven roots of
+    /// [`kernel::MAX_STEPS`](crate::kernel::MAX_STEPS) steps; most have none or one.
     ///
     /// # Errors
     /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, a start or velocity that

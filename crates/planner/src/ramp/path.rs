@@ -29,18 +29,20 @@ pub(crate) struct Path<const N: usize> {
 }
 
 impl<const N: usize> Path<N> {
-    fn new(order: Order) -> Self {
+    /// No pieces.
+    pub(crate) const fn new(order: Order) -> Self {
+        const EMPTY: Piece = Piece {
+            end: 0.0,
+            state: Setpoint::at_rest(0.0),
+        };
         Self {
-            pieces: [Piece::default(); N],
+            pieces: [EMPTY; N],
             len: 0,
             order,
         }
     }
 
     /// Lays `spans` of (seconds, highest derivative) from `start` on and pins the end to `velocity`.
-    ///
-    /// The last piece is stored by the state at its end, so that it runs into the end velocity from one
-    /// side, without a rounding error that would pass it.
     pub(crate) fn lay(
         order: Order,
         start: &Setpoint,
@@ -48,7 +50,49 @@ impl<const N: usize> Path<N> {
         velocity: f64,
     ) -> Self {
         let mut path = Self::follow(order, start, spans);
-        if let Some(last) = path.last_mut() {
+        path.pin(velocity);
+        path
+    }
+
+    /// Lays `spans` from `start` on to wherever they end; what does not fit in is left out.
+    pub(crate) fn follow(order: Order, start: &Setpoint, spans: impl Iterator<Item = (f64, f64)>) -> Self {
+        let mut path = Self::new(order);
+        path.fill(start, spans);
+        path
+    }
+
+    /// As [`Path::follow`], on a path without pieces yet. The last piece is stored by the state at its end, which
+    /// is given back.
+    pub(crate) fn fill(&mut self, start: &Setpoint, spans: impl Iterator<Item = (f64, f64)>) -> Setpoint {
+        let mut way = Way::new(self.order, start);
+        let mut time = 0.0;
+        for (duration, input) in spans {
+            let state = way.begin(input);
+            let end = time + duration;
+            // A span too short to move the clock moves nothing else either.
+            if end > time
+                && let Some(piece) = self.pieces.get_mut(self.len)
+            {
+                *piece = Piece { end, state };
+                self.len += 1;
+                time = end;
+            }
+            way.go(duration);
+        }
+        if let Some(last) = self.last_mut() {
+            last.state = Setpoint {
+                snap: last.state.snap,
+                ..way.state
+            };
+        }
+        way.state
+    }
+
+    /// Makes the end exactly `velocity`, so that the last piece runs into it from one side, without a
+    /// rounding error that would pass it.
+    pub(crate) fn pin(&mut self, velocity: f64) {
+        let order = self.order;
+        if let Some(last) = self.last_mut() {
             last.state.velocity = velocity;
             if order >= Order::Three {
                 last.state.acceleration = 0.0;
@@ -57,34 +101,6 @@ impl<const N: usize> Path<N> {
                 last.state.jerk = 0.0;
             }
         }
-        path
-    }
-
-    /// Lays `spans` from `start` on to wherever they end; what does not fit in is left out.
-    pub(crate) fn follow(order: Order, start: &Setpoint, spans: impl Iterator<Item = (f64, f64)>) -> Self {
-        let mut path = Self::new(order);
-        let mut way = Way::new(order, start);
-        let mut time = 0.0;
-        for (duration, input) in spans {
-            let state = way.begin(input);
-            let end = time + duration;
-            // A span too short to move the clock moves nothing else either.
-            if end > time
-                && let Some(piece) = path.pieces.get_mut(path.len)
-            {
-                *piece = Piece { end, state };
-                path.len += 1;
-                time = end;
-            }
-            way.go(duration);
-        }
-        if let Some(last) = path.last_mut() {
-            last.state = Setpoint {
-                snap: last.state.snap,
-                ..way.state
-            };
-        }
-        path
     }
 
     fn last_mut(&mut self) -> Option<&mut Piece> {
@@ -106,6 +122,7 @@ impl<const N: usize> Path<N> {
     }
 
     /// The state at `time` (s) after the start; at the boundary of two pieces that of the earlier one.
+    #[inline]
     pub(crate) fn at(&self, time: f64) -> Option<Setpoint> {
         let mut begin = 0.0;
         for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
@@ -137,7 +154,11 @@ impl<const N: usize> Path<N> {
                     state: piece.state,
                 };
                 begin = piece.end;
-                let first = moved(&stretch.state, stretch.begin - stretch.anchor);
+                let first = if stretch.anchor == stretch.begin {
+                    stretch.state
+                } else {
+                    moved(&stretch.state, stretch.begin - stretch.anchor)
+                };
                 (stretch, first)
             })
     }
@@ -179,6 +200,42 @@ impl<const N: usize> Path<N> {
                 (from, low) = (to, high);
             }
         }
+    }
+
+    /// Whether no extreme of velocity, acceleration and jerk can be beyond these bounds. What takes more than
+    /// a look at the ends of the pieces is not decided: then it is `false`, and [`Path::extremes`] tells.
+    pub(crate) fn is_surely_within(&self, velocity: f64, acceleration: f64, jerk: f64) -> bool {
+        let within = |v: f64, a: f64| v.abs() <= velocity && a.abs() <= acceleration;
+        let Some(end) = self.last().map(|last| last.state) else {
+            return false;
+        };
+        let mut stretches = self.stretches();
+        let mut next = stretches.next();
+        while let Some((stretch, first)) = next {
+            next = stretches.next();
+            let last = next.as_ref().map_or(&end, |(_, first)| first);
+            let Setpoint {
+                velocity: v,
+                acceleration: a,
+                jerk: j,
+                snap: s,
+                ..
+            } = first;
+            // The extreme acceleration inside, and the velocity where the acceleration passes zero, or one beyond it.
+            let turns = s != 0.0 && j * last.jerk < 0.0;
+            let peak = if turns { a - j * j / (2.0 * s) } else { a };
+            let passes = a * peak < 0.0 || peak * last.acceleration < 0.0;
+            let top = match (passes, s == 0.0) {
+                (false, _) => v,
+                (true, true) => v - a * a / (2.0 * j),
+                (true, false) => v + a * (stretch.end - stretch.begin),
+            };
+            let is_decided = !(passes && turns) && within(v, a) && within(top, peak) && j.abs() <= jerk;
+            if !is_decided {
+                return false;
+            }
+        }
+        within(end.velocity, end.acceleration) && end.jerk.abs() <= jerk
     }
 
     pub(crate) const fn order(&self) -> Order {
@@ -289,6 +346,9 @@ pub(crate) fn moved(state: &Setpoint, t: f64) -> Setpoint {
 
 /// The zeros of `a + j t + s t^2/2`, in the form that loses no digits; NaN or infinite where there is none.
 pub(crate) fn zeros(a: f64, j: f64, s: f64) -> [f64; 2] {
+    if s == 0.0 {
+        return [-a / j, f64::INFINITY];
+    }
     let root = sqrt(j * j - 2.0 * a * s);
     let sum = if j >= 0.0 { j + root } else { j - root };
     [-2.0 * a / sum, -sum / s]

@@ -77,6 +77,16 @@ impl Ramps {
         }
     }
 
+    /// The same with the lower one of acceleration and deceleration for both, in the same units.
+    pub(crate) fn even(&self) -> Self {
+        let lower = self.acceleration.min(self.deceleration);
+        Self {
+            acceleration: lower,
+            deceleration: lower,
+            ..*self
+        }
+    }
+
     /// The order of the ramps.
     pub(crate) const fn order(&self) -> Order {
         self.order

@@ -4,10 +4,11 @@
 //! that meet where the velocity is zero. Everything is in the kernel's units and mirrored so that the
 //! motion starts forwards.
 
-use super::inside::{self, Box4, State};
+use super::inside::{self, State};
 use super::path::Way;
 use super::solve::Ramps;
-use crate::kernel::{Bounds, ON_LIMIT, Sides, Spans, THIRD_SPANS, falling_root, second, third};
+use crate::kernel::{Bounds, ON_LIMIT, Profile, Sides, Spans, THIRD_SPANS, falling_root, second, third};
+use crate::math::sqrt;
 use crate::{Order, Setpoint};
 
 /// Most spans of a leg: a profile, or a push of three, a hold and a release of three.
@@ -30,18 +31,15 @@ impl Ramps {
     pub(super) fn turning(&self, start: &Setpoint, goal: f64) -> (Spans<TURN_SPANS>, u32) {
         let mut legs = Legs::from(Way::new(self.order(), start));
         if goal < 0.0 {
-            self.brake_to_zero(&mut legs, goal);
-            self.speed_up(&mut legs, goal);
+            self.turn(&mut legs, goal);
         } else if legs.until_zero(&self.plain(start, goal, self.forward())) {
             // It dips below zero: from there it comes back like a motion that starts the other way.
             let mut back = Legs::from(legs.way);
             back.way.state = mirrored(&legs.way.state);
             if goal > 0.0 {
-                self.brake_to_zero(&mut back, -goal);
-                self.speed_up(&mut back, -goal);
+                self.turn(&mut back, -goal);
             } else {
-                let stop = self.plain(&back.way.state, 0.0, self.forward());
-                back.spans.extend(&stop);
+                back.follow_profile(&self.plain(&back.way.state, 0.0, self.forward()));
             }
             legs.spans.extend(&back.spans.mirrored());
             legs.steps = legs.steps.max(back.steps);
@@ -49,31 +47,48 @@ impl Ramps {
         (legs.spans, legs.steps)
     }
 
-    /// The leg to where the velocity passes zero on the way to `goal` < 0.
-    fn brake_to_zero(&self, legs: &mut Legs, goal: f64) {
-        let mut direct = Legs::from(legs.way);
-        direct.until_zero(&self.plain(&legs.way.state, goal, self.forward()));
-        if self.may_speed_up(&direct.way.state) {
-            legs.append(&direct);
-        } else if !self.release_at_zero(legs) {
-            // Too late for that: inside what the other side allows as soon as can be.
-            let lower = Sides::both(self.acceleration());
-            if self.order() == Order::Four {
-                let state = state(&legs.way.state);
-                let lead = inside::enter(
-                    state,
-                    &Box4 {
-                        a: lower,
-                        brake_before: lower.minus,
-                        jerk: self.jerk(),
-                        jerk_before: self.jerk(),
-                        snap_before: 1.0,
-                    },
-                );
-                legs.follow(&lead);
+    /// The legs to `goal` < 0: braking to where the velocity is zero, and speeding up from there.
+    fn turn(&self, legs: &mut Legs, goal: f64) {
+        let direct = self.plain(&legs.way.state, goal, self.forward());
+        let mut braking = Legs::from(legs.way);
+        braking.until_zero(&direct);
+        if self.may_pass(&legs.way, &direct.spans, braking.spans.duration()) {
+            legs.follow_profile(&direct);
+        } else if self.may_speed_up(&braking.way.state) {
+            legs.append(&braking);
+            self.speed_up(legs, goal);
+        } else {
+            self.release(legs, goal);
+        }
+    }
+
+    /// Whether `spans` from `begin`, which pass zero velocity after `zero`, are the best way from there on,
+    /// too: inside the acceleration limit, and not kept from using it by a deceleration limit that is lower.
+    fn may_pass(&self, begin: &Way, spans: &Spans<THIRD_SPANS>, zero: f64) -> bool {
+        let mut way = *begin;
+        let (mut elapsed, mut lowest) = (0.0, f64::INFINITY);
+        for span in spans.iter() {
+            let Setpoint {
+                acceleration: a,
+                jerk: j,
+                snap: s,
+                ..
+            } = way.begin(span.input);
+            let at = |time: f64| a + time * (j + 0.5 * time * s);
+            let (from, to) = (zero - elapsed, span.duration);
+            if from < to {
+                let from = from.max(0.0);
+                let flat = -j / s;
+                let between = if flat > from && flat < to { flat } else { to };
+                lowest = lowest.min(at(from)).min(at(between)).min(at(to));
             }
-            let gently = self.plain(&legs.way.state, goal, lower);
-            legs.until_zero(&gently);
+            elapsed += span.duration;
+            way.go(span.duration);
+        }
+        if self.deceleration() < self.acceleration() {
+            lowest > -self.deceleration() * (1.0 - ON_LIMIT)
+        } else {
+            lowest >= -self.acceleration() * (1.0 + ON_LIMIT)
         }
     }
 
@@ -88,46 +103,118 @@ impl Ramps {
         coming >= -self.acceleration() * (1.0 + ON_LIMIT)
     }
 
-    /// The leg that brakes with the deceleration, and is back at the acceleration limit, which is lower,
-    /// just when the velocity is zero; whether there is one.
-    fn release_at_zero(&self, legs: &mut Legs) -> bool {
-        let (low, high) = (-self.deceleration(), -self.acceleration());
+    /// The legs that brake with the deceleration, are back at the acceleration limit, which is lower, just
+    /// when the velocity is zero, and go on from there (O11).
+    ///
+    /// They come back with the jerk of [`Ramps::arrival`]. Where even a release at once is too late for
+    /// that, with the least that is early enough: a stop is on such a release, so a start that could still
+    /// stop is never too late. From any other the acceleration is inside as soon as can be.
+    fn release(&self, legs: &mut Legs, goal: f64) {
         let begin = legs.way;
-        let push = self.change(&begin.state, low);
-        let braking = |time: f64| {
+        let push = self.change(&begin.state, -self.deceleration());
+        let released = |time: f64, arrival: f64| {
             let mut leg = Legs::from(begin);
             leg.follow(&push.until::<4>(time));
-            let release = self.change(&leg.way.state, high);
-            leg.follow(&release);
-            leg
+            let limit = -self.acceleration();
+            let arrival = self.reachable(&leg.way.state, arrival);
+            let beyond = self.change(&leg.way.state, limit + 0.5 * arrival * arrival);
+            leg.follow(&beyond.until::<4>(beyond.duration() - arrival));
+            (leg, arrival)
         };
-        let left = |time: f64| braking(time).way.state.velocity;
-        // A state on the release itself is off it by rounding.
-        let room = left(0.0);
-        if room < -ON_LIMIT * self.velocity() {
-            return false;
-        }
-        let mut pushed = begin;
-        pushed.follow(&push);
-        let longest = push.duration() + pushed.state.velocity.max(0.0) / self.deceleration();
-        let (time, steps) = if room > 0.0 {
-            falling_root(0.0, longest, left)
+        let left = |time: f64, arrival: f64| released(time, arrival).0.way.state.velocity;
+        let (wanted, steps) = self.arrival(goal);
+        legs.steps = legs.steps.max(steps);
+        let in_time = left(0.0, wanted) >= 0.0;
+        let (time, arrival, steps) = if in_time {
+            let mut pushed = begin;
+            pushed.follow(&push);
+            let longest = push.duration() + pushed.state.velocity.max(0.0) / self.deceleration();
+            let (time, steps) = falling_root(0.0, longest, |time| left(time, wanted));
+            (time, wanted, steps)
+        } else if self.may_speed_up(&begin.state) {
+            // Inside the lower limit, it can stay so.
+            legs.follow_profile(&self.plain(&begin.state, goal, Sides::both(self.acceleration())));
+            return;
         } else {
-            (0.0, 0)
+            let most = self.stoppable();
+            if left(0.0, most) >= 0.0 {
+                let (arrival, steps) = falling_root(wanted, most, |arrival| -left(0.0, arrival));
+                (0.0, arrival, steps)
+            } else {
+                (0.0, most, 0)
+            }
         };
-        legs.append(&braking(time));
+        let (leg, arrived) = released(time, arrival);
+        legs.append(&leg);
         legs.steps = legs.steps.max(steps);
         // What the root leaves of the velocity is rounding.
         legs.way.state.velocity = legs.way.state.velocity.min(0.0);
-        true
+        if in_time && wanted > 0.0 && arrived == wanted {
+            // What the root of the jerk leaves of the goal is rounding, too; to make up for it would take
+            // the cube root of it in time.
+            let arrest = self.change(&legs.way.state, 0.0);
+            legs.follow(&arrest);
+        } else {
+            self.speed_up(legs, goal);
+        }
+    }
+
+    /// The jerk with which a release should come back to the acceleration limit at zero velocity: none,
+    /// unless the acceleration could then not be taken back before the velocity is past `goal` < 0; then
+    /// that with which it just can. Also the root steps taken.
+    fn arrival(&self, goal: f64) -> (f64, u32) {
+        let beyond = |jerk: f64| {
+            let state = State {
+                v: 0.0,
+                a: -self.acceleration(),
+                j: jerk,
+            };
+            goal - inside::arrested(state, self.jerk())
+        };
+        // At order 3 the way to such a goal keeps the limit by itself.
+        if self.order() < Order::Four || beyond(0.0) <= 0.0 {
+            return (0.0, 0);
+        }
+        let most = self.stoppable();
+        if beyond(most) > 0.0 {
+            (most, 0)
+        } else {
+            falling_root(0.0, most, beyond)
+        }
+    }
+
+    /// The largest jerk at the acceleration limit that can be stopped before the acceleration changes its
+    /// sign.
+    fn stoppable(&self) -> f64 {
+        match self.order() {
+            Order::Two | Order::Three => 0.0,
+            Order::Four => self.jerk().min(sqrt(2.0 * self.acceleration())),
+        }
+    }
+
+    /// The jerk nearest to `wanted` with which the acceleration can come back to its limit from `start`
+    /// without a detour.
+    fn reachable(&self, start: &Setpoint, wanted: f64) -> f64 {
+        let State { a, j, .. } = state(start);
+        let change = -self.acceleration() - a;
+        if self.order() < Order::Four || change <= 0.0 && j >= 0.0 {
+            return 0.0;
+        }
+        // Of a jerk that rises already this much is left.
+        let least = if j > 0.0 {
+            sqrt((j * j - 2.0 * change).max(0.0))
+        } else {
+            0.0
+        };
+        let most = sqrt((j * j + 2.0 * change).max(0.0));
+        wanted.max(least).min(most)
     }
 
     /// The leg from zero velocity on to `goal` < 0: a motion that speeds up the other way.
     fn speed_up(&self, legs: &mut Legs, goal: f64) {
-        let speeding = self
-            .plain(&mirrored(&legs.way.state), -goal, self.forward())
-            .mirrored();
-        legs.spans.extend(&speeding);
+        let Profile { spans, steps } = self.plain(&mirrored(&legs.way.state), -goal, self.forward());
+        legs.spans.extend(&spans.mirrored());
+        legs.steps = legs.steps.max(steps);
     }
 
     /// The bounds of a motion that keeps its sign.
@@ -138,8 +225,8 @@ impl Ramps {
         }
     }
 
-    /// The least-time spans under the same bounds throughout.
-    fn plain(&self, start: &Setpoint, goal: f64, sides: Sides) -> Spans<THIRD_SPANS> {
+    /// The least-time way under the same bounds throughout.
+    fn plain(&self, start: &Setpoint, goal: f64, sides: Sides) -> Profile {
         let State { v, a, j } = state(start);
         let mut spans = Spans::new();
         match self.order() {
@@ -151,10 +238,10 @@ impl Ramps {
                     v: sides,
                     a: Sides::both(self.jerk()),
                 };
-                spans = third(v, a, j, goal, &bounds).spans;
+                return third(v, a, j, goal, &bounds);
             }
         }
-        spans
+        Profile { spans, steps: 0 }
     }
 
     /// The least-time spans to another acceleration, with no jerk at order 4.
@@ -191,9 +278,15 @@ impl Legs {
         self.spans.extend(spans);
     }
 
-    /// Follows `spans` as far as the velocity is not below zero; whether it comes to that.
-    fn until_zero<const N: usize>(&mut self, spans: &Spans<N>) -> bool {
-        for span in spans.iter() {
+    fn follow_profile(&mut self, profile: &Profile) {
+        self.follow(&profile.spans);
+        self.steps = self.steps.max(profile.steps);
+    }
+
+    /// Follows `profile` as far as the velocity is not below zero; whether it comes to that.
+    fn until_zero(&mut self, profile: &Profile) -> bool {
+        self.steps = self.steps.max(profile.steps);
+        for span in profile.spans.iter() {
             self.way.begin(span.input);
             let after = |time: f64| {
                 let mut way = self.way;

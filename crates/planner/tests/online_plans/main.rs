@@ -1,6 +1,7 @@
 //! Plans from any moving state to a position: fewest scans, limits kept, targets met.
 
 mod chains;
+mod last;
 mod scans;
 mod shape;
 #[path = "../ramp_plans/support.rs"]

@@ -207,7 +207,7 @@ fn a_move_planned_again_continues_itself() {
 #[test]
 fn every_rung_arrives() {
     let mut random = Random(71);
-    let (mut longer, mut later) = ([1.0f64; 4], 0);
+    let mut longer = [1.0f64; 4];
     for case in 0..4000 {
         let order = ORDERS[case % 3];
         let (limits, cycle, start) = moving(&mut random, order);
@@ -219,9 +219,7 @@ fn every_rung_arrives() {
         };
         let best =
             OnlinePlan::passing(&start, target, end_velocity, &limits, &limits, cycle).expect("a plan");
-        // With an end velocity on the other side of zero the first rung may have no exact switch.
-        assert!(best.rung() == Rung::PushThenStop || end_velocity != 0.0);
-        later += u32::from(best.rung() != Rung::PushThenStop);
+        assert_eq!(best.rung(), Rung::PushThenStop);
         for rung in Rung::ALL {
             let plan = OnlinePlan::with(rung, &start, target, end_velocity, &limits, &limits, cycle)
                 .unwrap_or_else(|error| {
@@ -276,10 +274,7 @@ fn every_rung_arrives() {
             }
         }
     }
-    println!(
-        "longest beside push-then-stop, by rung: {longer:?}; {later} of 2000 that pass need a later rung"
-    );
-    assert!(later <= 4);
+    println!("longest beside push-then-stop, by rung: {longer:?}");
 }
 
 /// Limits that change at every replan, and end velocities: always a plan, and it passes the target.

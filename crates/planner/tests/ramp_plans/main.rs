@@ -4,3 +4,4 @@ mod chains;
 mod changes;
 mod shape;
 mod support;
+mod turns;

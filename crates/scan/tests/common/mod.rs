@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test target uses its own part")]
 
 use standstill_axis::{
-    AxisConfig, Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, Limits, Standard,
-    StartState,
+    AxisConfig, Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals, Limits,
+    Standard, StartState,
 };
 use standstill_fb::Context;
 use standstill_scan::{
@@ -36,6 +36,7 @@ impl Drive for TapeDrive {
             fault: None,
             position: self.position,
             comms: Comms::Ok,
+            signals: DriveSignals::default(),
         }
     }
 

@@ -6,11 +6,22 @@ use super::{Reader, shape};
 use crate::error::{Code, Diagnostic};
 use crate::model::{Axis, IdealDriveSetup, Span};
 use standstill_axis::{
-    AboveLimit, AxisConfig, AxisState, DELAY_MAX, Defaults, Limits, PowerOff, QUEUE_MAX, Scaling, StartState,
+    AboveLimit, AxisConfig, AxisState, DELAY_MAX, Defaults, Limits, MoveProfile, PowerOff, QUEUE_MAX,
+    Scaling, StartState,
 };
 
 pub(crate) const ABOVE_LIMIT: [(&str, AboveLimit); 2] =
     [("clamp", AboveLimit::Clamp), ("error", AboveLimit::Error)];
+pub(crate) const PROFILES: [(&str, MoveProfile); MoveProfile::ALL.len()] = {
+    let mut words = [("", MoveProfile::Overlapped); MoveProfile::ALL.len()];
+    let mut index = 0;
+    while index < words.len() {
+        let profile = MoveProfile::ALL[index];
+        words[index] = (profile.name(), profile);
+        index += 1;
+    }
+    words
+};
 pub(crate) const ON_POWER_OFF: [(&str, PowerOff); 3] = [
     ("ramp", PowerOff::Ramp),
     ("coast", PowerOff::Coast),
@@ -118,6 +129,11 @@ impl Reader {
             .map_or(Some(AboveLimit::default()), |node| {
                 self.choice(node, "`above_limit`", &ABOVE_LIMIT)
             });
+        let profile = fields
+            .get("profile")
+            .map_or(Some(MoveProfile::default()), |node| {
+                self.choice(node, "`profile`", &PROFILES)
+            });
         let on_power_off = fields
             .get("on_power_off")
             .map_or(Some(PowerOff::default()), |node| {
@@ -139,6 +155,7 @@ impl Reader {
         config.stop_jerk = stop_jerk?;
         config.start = start?;
         config.above_limit = above_limit?;
+        config.profile = profile?;
         config.on_power_off = on_power_off?;
         config.queue = usize::try_from(queue?).ok()?;
         config.needs_homed = needs_homed?;

@@ -53,6 +53,7 @@ pub(crate) const AXIS: Shape = Shape {
         "modulo",
         "software_limits",
         "above_limit",
+        "profile",
         "queue",
         "stop_deceleration",
         "stop_jerk",

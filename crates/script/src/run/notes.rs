@@ -62,7 +62,7 @@ fn instance_name<'a>(script: &'a Script, record: &Record) -> Option<&'a str> {
 /// the axis.
 fn subject(script: &Script, record: &Record) -> String {
     match record.event {
-        Event::Refused { .. } | Event::Clamped { .. } | Event::LowerUsed { .. } => {
+        Event::Refused { .. } | Event::Clamped { .. } | Event::Superimposed { .. } | Event::RoomAwaited => {
             instance_name(script, record).map_or_else(|| axis_name(script, record), str::to_owned)
         }
         Event::Unavoidable(_) | Event::Planned { .. } | Event::Fault { .. } => axis_name(script, record),
@@ -96,13 +96,6 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
         Event::Clamped { pin, value, limit } => {
             format!("clamped: {pin} {} to {}", shortest(value), shortest(limit))
         }
-        Event::LowerUsed { value, limit } => {
-            format!(
-                "lower used for Acceleration and Deceleration: {} instead of {}",
-                shortest(limit),
-                shortest(value)
-            )
-        }
         Event::Unavoidable(excess) => format!("unavoidable: {}", excess_text(&excess)),
         Event::Planned { goal, scans } => {
             let goal = match goal {
@@ -113,6 +106,17 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
             let how = plan.map_or_else(String::new, |plan| format!("; {}", plan_text(plan)));
             format!("plan{by} to {goal} in {scans} scans{how}")
         }
+        Event::Superimposed {
+            distance: Some(distance),
+            scans,
+        } => format!("superimposes {} in {scans} scans", shortest(distance)),
+        Event::Superimposed {
+            distance: None,
+            scans,
+        } => {
+            format!("superimposed motion to rest in {scans} scans")
+        }
+        Event::RoomAwaited => "waits for room below the axis limits".to_owned(),
         Event::Fault { error, code } => {
             format!("fault {} {}, code {code}", error.number(), error.name())
         }
@@ -137,17 +141,17 @@ fn plan_text(plan: &StandardPlan) -> String {
     match plan {
         StandardPlan::Grid(grid) if grid.scans() == 0 => format!("from {}", shortest(grid.start())),
         StandardPlan::Grid(grid) => {
-            let boxes: Vec<_> = grid.boxes().iter().map(u32::to_string).collect();
-            let derivative = match grid.order() {
-                Order::Two => "acceleration",
-                Order::Three => "jerk",
-                Order::Four => "snap",
-            };
+            let boxes = boxes_text(grid.boxes(), grid.order(), grid.amplitude());
+            format!("from {}, {boxes}", shortest(grid.start()))
+        }
+        StandardPlan::Unequal(grid) if grid.scans() == 0 => format!("from {}", shortest(grid.start())),
+        StandardPlan::Unequal(grid) => {
+            let [up, down] = grid.amplitudes();
             format!(
-                "from {}, boxes {}, {derivative} {}",
+                "from {}, up {}, down {}",
                 shortest(grid.start()),
-                boxes.join(" "),
-                shortest(grid.amplitude())
+                boxes_text(grid.up(), grid.order(), up),
+                boxes_text(grid.down(), grid.order(), down)
             )
         }
         StandardPlan::Ramp(ramp) => ramp_text(
@@ -162,7 +166,24 @@ fn plan_text(plan: &StandardPlan) -> String {
                 .collect();
             format!("{} {}", plan.rung().name(), ramp_text(pieces))
         }
+        StandardPlan::Sampled(plan) => ramp_text(
+            plan.profile()
+                .segments()
+                .map(|piece| [piece.duration, piece.acceleration, piece.jerk, piece.snap])
+                .collect(),
+        ),
     }
+}
+
+/// Box lengths and the highest derivative they switch on and off.
+fn boxes_text(boxes: &[u32], order: Order, amplitude: f64) -> String {
+    let boxes: Vec<_> = boxes.iter().map(u32::to_string).collect();
+    let derivative = match order {
+        Order::Two => "acceleration",
+        Order::Three => "jerk",
+        Order::Four => "snap",
+    };
+    format!("boxes {}, {derivative} {}", boxes.join(" "), shortest(amplitude))
 }
 
 /// The highest derivative of a ramp piece by piece; with the state it starts from, that is all of it. A piece

@@ -338,6 +338,20 @@ pub fn cases() -> Vec<Case> {
         case(
             "bad_value",
             Schema,
+            "an unknown profile",
+            "\"state\"",
+            "\"profile\": \"fastets\", \"state\"",
+        ),
+        case(
+            "bad_value",
+            Reader,
+            "a profile that cannot keep a limit",
+            "200}",
+            "200, \"jerk\": 2000}, \"profile\": \"trapezoid\"",
+        ),
+        case(
+            "bad_value",
+            Schema,
             "a state no axis starts in",
             "\"Standstill\"",
             "\"Homing\"",

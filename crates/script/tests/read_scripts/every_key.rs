@@ -1,6 +1,6 @@
 //! A script with every key of the format, looked at where the example of the format says nothing.
 
-use standstill_axis::{AboveLimit, AxisId, Limits, PowerOff, Scaling};
+use standstill_axis::{AboveLimit, AxisId, Limits, MoveProfile, PowerOff, Scaling};
 use standstill_fb::Value;
 use standstill_script::model::{
     Action, ClaimKind, Comparison, FaultKind, IdealDriveSetup, Point, Range, Script, Test, When, Wire,
@@ -31,6 +31,7 @@ fn axes_take_their_configuration() {
     assert_eq!(x.config.scaling, Scaling::new(8_388_608, 10, true, 0.25).ok());
     assert_eq!(x.config.software_limits, Some((-100.0, 100.0)));
     assert_eq!(x.config.above_limit, AboveLimit::Error);
+    assert_eq!(x.config.profile, MoveProfile::SCurve);
     assert_eq!(x.config.queue, 2);
     assert_eq!(
         (x.config.stop_deceleration, x.config.stop_jerk),

@@ -1,0 +1,76 @@
+//! `MC_ReadMotionState`: what the motion of an axis is doing.
+//!
+//! Source: PLCopen Motion Control Part 1, section of that name; rules R52 to R59, V12b.
+
+use standstill_axis::{AxisId, ErrorId, Pace, Planner, Raw, ValueSource, Way};
+use standstill_fb::{Block, Context, EnableCore, Group, pins};
+
+pins! {
+    in_outs {
+        /// The axis to read.
+        Axis => axis: AxisId;
+    }
+    inputs {
+        /// Read in every call while TRUE.
+        Enable => enable: bool = false, "";
+        /// The values to judge by; may change while Enable is TRUE.
+        Source => source: Raw<ValueSource> = ValueSource::Set.into(), "";
+    }
+    vendor_inputs {}
+    outputs {
+        /// The other outputs can be relied on.
+        Valid => valid: bool, "";
+        /// Enabled, and not ended by an error.
+        Busy => busy: bool, "";
+        /// The block cannot read.
+        Error => error: bool, "";
+        /// Why; 0 without an error.
+        ErrorID => error_id: ErrorId, "";
+        /// The velocity is constant, 0 too; commanded values change in jumps only; a window applies to actual ones.
+        ConstantVelocity => constant_velocity: bool, "";
+        /// The magnitude of the velocity grows.
+        Accelerating => accelerating: bool, "";
+        /// The magnitude of the velocity shrinks.
+        Decelerating => decelerating: bool, "";
+        /// The position grows; for commanded values: shall grow.
+        DirectionPositive => direction_positive: bool, "";
+        /// The position shrinks; for commanded values: shall shrink.
+        DirectionNegative => direction_negative: bool, "";
+    }
+    vendor_outputs {}
+}
+
+/// State kept between calls.
+#[doc(alias = "MC_ReadMotionState")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct McReadMotionState {
+    core: EnableCore,
+}
+
+impl Block for McReadMotionState {
+    const NAME: &'static str = "MC_ReadMotionState";
+    const GROUP: Group = Group::Administrative;
+    const DOC: &'static str =
+        "Reads whether an axis speeds up, slows down or keeps its velocity, and in which direction it moves.";
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+
+    fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
+        let reading = self.core.scan(inputs.enable, inputs.axis, context, |axis| {
+            axis.motion_state(inputs.source).map(Some)
+        });
+        let state = reading.value();
+        let (pace, way) = (state.map(|state| state.pace), state.map(|state| state.way));
+        Outputs {
+            valid: reading.is_valid(),
+            busy: reading.is_busy(),
+            error: reading.is_error(),
+            error_id: reading.error_id(),
+            constant_velocity: pace == Some(Pace::Constant),
+            accelerating: pace == Some(Pace::Accelerating),
+            decelerating: pace == Some(Pace::Decelerating),
+            direction_positive: way == Some(Way::Positive),
+            direction_negative: way == Some(Way::Negative),
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Two axes with drives that follow exactly, and instances of any block on the first.
+
+#![allow(dead_code, reason = "each test target uses its own part")]
+
+use standstill_axis::{
+    Axis, AxisConfig, AxisId, Comms, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals,
+    InstanceId, Limits, Log, Source, Standard, StartState,
+};
+use standstill_blocks::BlockInstance;
+use standstill_fb::{AnyInstance, Context, Value};
+
+/// Sample time (s).
+const CYCLE: f64 = 0.001;
+
+/// The axis the blocks are wired to.
+pub const AXIS: AxisId = AxisId::new(0);
+
+#[derive(Clone)]
+pub struct Bench {
+    pub axes: [Axis; 2],
+    pub log: Log,
+    drives: [DriveCommand; 2],
+    pub scan: u64,
+}
+
+impl Bench {
+    /// Two axes in Standstill at 0.
+    pub fn new() -> Self {
+        Self::started(StartState::Standstill)
+    }
+
+    pub fn started(start: StartState) -> Self {
+        let limits = Limits {
+            velocity: 10.0,
+            acceleration: 100.0,
+            deceleration: 100.0,
+            jerk: 5000.0,
+            snap: 500_000.0,
+        };
+        let config = AxisConfig {
+            start,
+            ..AxisConfig::new(limits)
+        };
+        let on = start == StartState::Standstill;
+        let drive = DriveCommand {
+            request: if on {
+                DriveRequest::Enable
+            } else {
+                DriveRequest::Off
+            },
+            position: DrivePosition::Units(0.0),
+            velocity: 0.0,
+            rename: None,
+        };
+        Self {
+            axes: [0, 1].map(|id| Axis::new(AxisId::new(id), config, Standard::new(CYCLE)).unwrap()),
+            log: Log::default(),
+            drives: [drive; 2],
+            scan: 0,
+        }
+    }
+
+    /// An instance of the block, wired to the first axis, with values a motion can start with.
+    pub fn block(&self, name: &str) -> BlockInstance {
+        let mut block = BlockInstance::new(name).unwrap();
+        let good = [
+            ("Axis", Value::Axis(AXIS)),
+            ("Position", Value::Lreal(1.0)),
+            ("Distance", Value::Lreal(1.0)),
+            ("Velocity", Value::Lreal(5.0)),
+            ("VelocityDiff", Value::Lreal(1.0)),
+        ];
+        for (pin, value) in good {
+            if let Some((index, _)) = block.info().pin(pin)
+                && index < block.info().input_count()
+            {
+                block.set(index, value).unwrap();
+            }
+        }
+        block
+    }
+
+    pub fn set(&self, block: &mut BlockInstance, pin: &str, value: Value) {
+        let (index, _) = block.info().pin(pin).unwrap();
+        block.set(index, value).unwrap();
+    }
+
+    pub fn get(&self, block: &BlockInstance, pin: &str) -> Option<Value> {
+        block.get(block.info().pin(pin)?.0)
+    }
+
+    /// The BOOL at a pin; FALSE if the block has no such pin.
+    pub fn flag(&self, block: &BlockInstance, pin: &str) -> bool {
+        self.get(block, pin) == Some(Value::Bool(true))
+    }
+
+    /// ErrorID, 0 if the block has none.
+    pub fn error(&self, block: &BlockInstance) -> u16 {
+        match self.get(block, "ErrorID") {
+            Some(Value::Word(number)) => number,
+            _ => 0,
+        }
+    }
+
+    pub fn source(&self) -> Source {
+        Source {
+            scan: self.scan,
+            instance: InstanceId(0),
+        }
+    }
+
+    /// Feedback is latched.
+    pub fn latch(&mut self) {
+        for (axis, drive) in self.axes.iter_mut().zip(&self.drives) {
+            let feedback = DriveFeedback {
+                enabled: drive.request == DriveRequest::Enable,
+                voltage: true,
+                fault: None,
+                position: drive.position,
+                comms: Comms::Ok,
+                signals: DriveSignals::default(),
+            };
+            axis.follow_feedback(&feedback, self.scan, &mut self.log);
+        }
+    }
+
+    pub fn call(&mut self, block: &mut BlockInstance) {
+        block.call(&mut Context {
+            now_ns: self.scan as i64 * 1_000_000,
+            scan: self.scan,
+            instance: InstanceId(0),
+            axes: &mut self.axes,
+            log: &mut self.log,
+        });
+    }
+
+    /// Both axes move on, and stay finite.
+    pub fn advance(&mut self) {
+        for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
+            axis.advance(self.scan, &mut self.log);
+            assert!(axis.setpoint().is_finite(), "scan {}", self.scan);
+            *drive = axis.drive_command();
+            if let Some(name) = drive.rename {
+                drive.position = name;
+            }
+        }
+        self.scan += 1;
+    }
+
+    /// A whole scan with these blocks in this order.
+    pub fn scan(&mut self, blocks: &mut [&mut BlockInstance]) {
+        self.latch();
+        for block in blocks {
+            self.call(block);
+        }
+        self.advance();
+    }
+}

@@ -1,0 +1,56 @@
+//! Every block wired to no axis, or to one that does not exist.
+
+use crate::bench::{AXIS, Bench};
+use crate::{same_motion, trigger};
+use standstill_axis::{AxisId, ErrorId};
+use standstill_blocks::REGISTRY;
+use standstill_fb::Value;
+
+/// Covers: R38, R55, R57, T39f
+#[test]
+fn an_axis_that_does_not_exist_is_an_error_until_the_next_edge() {
+    for info in REGISTRY.iter().filter(|info| info.pin("Axis").is_some()) {
+        for nowhere in [AxisId::NONE, AxisId::new(2)] {
+            let mut bench = Bench::new();
+            let mut without = bench.clone();
+            let mut block = bench.block(info.name);
+            let trigger = trigger(&block).unwrap();
+            bench.set(&mut block, "Axis", Value::Axis(nowhere));
+            bench.scan(&mut [&mut block]);
+            assert!(
+                !bench.flag(&block, "Error"),
+                "{}: not asked for anything",
+                info.name
+            );
+            bench.set(&mut block, trigger, Value::Bool(true));
+            for _ in 0..3 {
+                bench.scan(&mut [&mut block]);
+                assert!(bench.flag(&block, "Error"), "{}", info.name);
+                assert_eq!(
+                    bench.error(&block),
+                    ErrorId::AxisUnknown.number(),
+                    "{}",
+                    info.name
+                );
+                for pin in ["Busy", "Valid", "Active", "Done", "Status"] {
+                    assert!(!bench.flag(&block, pin), "{}.{pin}", info.name);
+                }
+            }
+            for _ in 0..4 {
+                without.scan(&mut []);
+            }
+            assert!(same_motion(&bench, &without, 0) && same_motion(&bench, &without, 1));
+            bench.set(&mut block, "Axis", Value::Axis(AXIS));
+            bench.set(&mut block, trigger, Value::Bool(false));
+            bench.scan(&mut [&mut block]);
+            assert!(
+                !bench.flag(&block, "Error") && bench.error(&block) == 0,
+                "{}",
+                info.name
+            );
+            bench.set(&mut block, trigger, Value::Bool(true));
+            bench.scan(&mut [&mut block]);
+            assert!(!bench.flag(&block, "Error"), "{}", info.name);
+        }
+    }
+}

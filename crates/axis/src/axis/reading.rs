@@ -1,0 +1,286 @@
+//! What reading blocks ask of an axis: actual values, what its motion is doing, what its drive reports.
+//!
+//! Source: PLCopen Motion Control Part 1, sections on MC_ReadMotionState, MC_ReadAxisInfo and
+//! MC_ReadActualVelocity; V12b. Nothing here changes the axis.
+
+use super::queue::Work;
+use super::{Axis, Motion};
+use crate::{Comms, DriveSignals, ErrorId, Raw, ValueSource};
+use standstill_planner::turns::split;
+use standstill_planner::{Plan, Planner, Setpoint};
+
+/// Part of the lower of the acceleration limits below which a change of the actual velocity counts as none.
+const CONSTANT_WINDOW: f64 = 0.01;
+
+/// Rounding of one difference of positions, in units of the last place of the position.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// What happens to the magnitude of a velocity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pace {
+    /// It stays, at 0 too.
+    #[default]
+    Constant,
+    /// It grows.
+    Accelerating,
+    /// It shrinks.
+    Decelerating,
+}
+
+/// Where a position goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Way {
+    /// It stays.
+    #[default]
+    Rest,
+    /// It grows.
+    Positive,
+    /// It shrinks.
+    Negative,
+}
+
+impl Way {
+    fn of(difference: f64) -> Self {
+        if difference > 0.0 {
+            Self::Positive
+        } else if difference < 0.0 {
+            Self::Negative
+        } else {
+            Self::Rest
+        }
+    }
+}
+
+/// What a motion is doing, see [`Axis::motion_state`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MotionState {
+    /// What happens to the magnitude of the velocity.
+    pub pace: Pace,
+    /// Where the position goes.
+    pub way: Way,
+}
+
+/// The actual positions of the two scans before, and what keeps them from being comparable with the newest.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Past {
+    /// Of the scan before (u).
+    before: f64,
+    /// Of the scan before that (u).
+    earlier: f64,
+    seam: Option<Seam>,
+}
+
+/// Between the last latched position and the next one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seam {
+    /// Nothing was latched yet.
+    first: bool,
+    /// Scans without a fresh position.
+    lost: u32,
+    /// Until now so called (u), from now on so (u).
+    renamed: Option<(f64, f64)>,
+}
+
+impl Past {
+    /// Before the first scan.
+    pub fn new(position: f64) -> Self {
+        Self {
+            before: position,
+            earlier: position,
+            seam: Some(Seam {
+                first: true,
+                ..Seam::default()
+            }),
+        }
+    }
+
+    fn seam(&mut self) -> &mut Seam {
+        self.seam.get_or_insert_default()
+    }
+
+    /// Names what came before as it lies nearest to what came after it, on an axis with turns of `length` (u).
+    #[inline(never)]
+    fn come_round(&mut self, actual: f64, length: f64) {
+        let nearest = |place: f64, to: f64| {
+            let (_, ahead) = split(place - to, length);
+            to + if ahead > length / 2.0 {
+                ahead - length
+            } else {
+                ahead
+            }
+        };
+        self.before = nearest(self.before, actual);
+        self.earlier = nearest(self.earlier, self.before);
+    }
+
+    /// Makes what came before the seam comparable with `actual` (u).
+    #[cold]
+    #[inline(never)]
+    fn mend(&mut self, actual: f64) {
+        let seam = self.seam.take().unwrap_or_default();
+        if seam.first {
+            // Before the first scan the axis stood still, wherever it was.
+            (self.before, self.earlier) = (actual, actual);
+        }
+        if let Some((old, name)) = seam.renamed {
+            // What stood at the old name takes the new one exactly, without rounding a shift.
+            let shifted = |place: f64| {
+                if place == old { name } else { place + (name - old) }
+            };
+            (self.before, self.earlier) = (shifted(self.before), shifted(self.earlier));
+        }
+        if seam.lost > 0 {
+            // The mean over the scans without feedback.
+            let step = (actual - self.before) / (f64::from(seam.lost) + 1.0);
+            (self.before, self.earlier) = (actual - step, actual - 2.0 * step);
+        }
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// Takes over this scan's actual position (u).
+    #[inline]
+    pub(super) fn latch(&mut self, position: f64) {
+        self.past.earlier = self.past.before;
+        self.past.before = self.actual;
+        self.actual = position;
+        if self.past.seam.is_some() {
+            self.past.mend(position);
+        }
+        if let Some(modulo) = &self.modulo {
+            self.past.come_round(position, modulo.length);
+        }
+    }
+
+    /// This scan has no fresh actual position.
+    pub(super) fn latch_nothing(&mut self) {
+        let seam = self.past.seam();
+        seam.lost = seam.lost.saturating_add(1);
+    }
+
+    /// From the next feedback on, what is called `old` (u) is called `name` (u); no motion.
+    pub(super) fn rename_actual(&mut self, old: f64, name: f64) {
+        let latched = |position: f64| match self.config.scaling {
+            Some(scaling) => scaling.to_units(scaling.to_increments(position)),
+            None => position,
+        };
+        let renamed = (latched(old), latched(name));
+        self.past.seam().renamed = Some(renamed);
+    }
+
+    /// The actual position (u) if it is fresh.
+    ///
+    /// # Errors
+    /// [`ErrorId::CommunicationLost`] if it was not latched in this scan.
+    pub fn fresh_position(&self) -> Result<f64, ErrorId> {
+        match self.power.comms {
+            Comms::Ok => Ok(self.actual),
+            Comms::Lost => Err(ErrorId::CommunicationLost),
+        }
+    }
+
+    /// The actual velocity (u/s): the difference of the actual positions of this scan and the one before,
+    /// divided by the cycle; after a loss of communication the mean since the last fresh position. A new name
+    /// of the position is no motion. Resolution: that of the position, divided by the cycle.
+    ///
+    /// # Errors
+    /// [`ErrorId::CommunicationLost`] if the position was not latched in this scan.
+    pub fn actual_velocity(&self) -> Result<f64, ErrorId> {
+        Ok((self.fresh_position()? - self.past.before) / self.planner.cycle())
+    }
+
+    /// What the motion is doing, by the values `source` names.
+    ///
+    /// - Commanded values are those the active command asks for. They change in jumps only, so the pace is
+    ///   constant; the way is that from the set position to the target, or that of the velocity asked for.
+    /// - Set values: pace and way by the plan's acceleration and velocity at the set-point last published,
+    ///   not by differences (V12b).
+    /// - Actual values: by differences of latched positions. The velocity counts as constant while it changes
+    ///   by no more than a hundredth of the lower acceleration limit, and what the resolution of the
+    ///   position hides.
+    ///
+    /// # Errors
+    /// [`ErrorId::SourceInvalid`] if the number names no source, [`ErrorId::CommunicationLost`] if actual values
+    /// are asked for and not fresh.
+    pub fn motion_state(&self, source: Raw<ValueSource>) -> Result<MotionState, ErrorId> {
+        match source.get().ok_or(ErrorId::SourceInvalid)? {
+            ValueSource::Commanded => Ok(MotionState {
+                pace: Pace::Constant,
+                way: self.commanded_way(),
+            }),
+            ValueSource::Set => Ok(planned_state(&self.setpoint)),
+            ValueSource::Actual => {
+                let actual = self.fresh_position()?;
+                Ok(self.measured_state(actual))
+            }
+        }
+    }
+
+    fn commanded_way(&self) -> Way {
+        let Motion::Run { plan, .. } = &self.motion else {
+            return Way::Rest;
+        };
+        let goal = plan.at(u64::from(plan.scans()));
+        match self.owner.as_ref().map(|owner| &owner.work) {
+            Some(Work::Position(_) | Work::Distance(_)) => Way::of(goal.position - self.setpoint.position),
+            Some(Work::Velocity { .. }) => Way::of(goal.velocity),
+            Some(Work::Halt | Work::Stop | Work::Home(_)) | None => Way::Rest,
+        }
+    }
+
+    fn measured_state(&self, actual: f64) -> MotionState {
+        let (limits, cycle) = (&self.config.limits, self.planner.cycle());
+        let step = actual - self.past.before;
+        let step_before = self.past.before - self.past.earlier;
+        let resolution = match self.config.scaling {
+            // Each of the positions is off by half an increment at most, their second difference by two.
+            Some(scaling) => 2.0 * f64::from(scaling.units()) / f64::from(scaling.increments()),
+            None => 0.0,
+        };
+        let window = CONSTANT_WINDOW * limits.lower_acceleration() * cycle * cycle
+            + resolution
+            + ROUNDING * actual.abs();
+        let change = step.abs() - step_before.abs();
+        MotionState {
+            pace: if change > window {
+                Pace::Accelerating
+            } else if change < -window {
+                Pace::Decelerating
+            } else {
+                Pace::Constant
+            },
+            way: Way::of(step),
+        }
+    }
+
+    /// The communication with the drive is up.
+    pub fn is_communicating(&self) -> bool {
+        self.power.comms == Comms::Ok
+    }
+
+    /// Nothing known keeps the power stage from being on: communication and supply are there, no fault pends.
+    pub fn is_ready_for_power(&self) -> bool {
+        self.is_communicating() && self.power.voltage && self.power.fault.is_none()
+    }
+
+    /// What the drive reports beside its position.
+    pub fn drive_signals(&self) -> DriveSignals {
+        self.signals
+    }
+}
+
+/// By the phase of the profile: in a phase of constant velocity the acceleration of a plan is exactly 0.
+fn planned_state(setpoint: &Setpoint) -> MotionState {
+    let (velocity, acceleration) = (setpoint.velocity, setpoint.acceleration);
+    let pace = if acceleration == 0.0 {
+        Pace::Constant
+    } else if velocity == 0.0 || (velocity > 0.0) == (acceleration > 0.0) {
+        Pace::Accelerating
+    } else {
+        Pace::Decelerating
+    };
+    MotionState {
+        pace,
+        way: Way::of(velocity),
+    }
+}

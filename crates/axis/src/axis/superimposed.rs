@@ -1,0 +1,433 @@
+//! A second motion on top of the owner's: what MC_MoveSuperimposed adds and MC_HaltSuperimposed ends.
+//!
+//! The owner's set-point and what is added are planned apart and published as their sum, so the owner keeps
+//! its time and path. What is added must leave the sum inside the limits of the axis: it is taken as asked,
+//! slower, or it waits until the owner's motion leaves room (docs/superimposed.md, docs/decisions/0006).
+//!
+//! Source: PLCopen Motion Control Part 1, sections MC_MoveSuperimposed and MC_HaltSuperimposed; R51, R64 to
+//! R66, S9, V14, V14a.
+
+mod plan;
+
+use super::queue::Work;
+use super::{Axis, Motion, Source};
+use crate::{AxisEvent, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, Log, Superimpose};
+use standstill_planner::{Limits, Plan, Planner, Setpoint};
+
+/// What a superimposed command does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Adds {
+    /// MC_MoveSuperimposed, in the coordinate of what is added.
+    Distance {
+        /// As commanded (u).
+        distance: f64,
+        /// Where it took over (u).
+        origin: f64,
+        /// Where it ends (u).
+        target: f64,
+    },
+    /// MC_HaltSuperimposed.
+    Halt,
+}
+
+/// A superimposed command.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Added {
+    pub id: CommandId,
+    instance: InstanceId,
+    adds: Adds,
+    /// As commanded.
+    limits: Limits,
+    /// The motion added is this command's; else it waits for room and the one before it comes to its end.
+    planned: bool,
+    /// That motion is slower than asked for.
+    lowered: bool,
+}
+
+/// The second motion and what it lies on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layer<Plan> {
+    /// Set-point of the owner alone.
+    pub base: Setpoint,
+    /// What is added; its position counts from where the layer began.
+    pub added: Setpoint,
+    /// What of `added.position` the positions of `base` contain already (u).
+    taken: f64,
+    /// How `added` moves; never [`Motion::Follow`].
+    motion: Motion<Plan>,
+    /// Limits of that motion.
+    in_force: Limits,
+    command: Option<Added>,
+    /// Scan of the owner's plan from which on a command that waits or was lowered may find more room.
+    retry: u64,
+}
+
+impl<P: Plan> Layer<P> {
+    fn on(base: Setpoint, limits: &Limits) -> Self {
+        Self {
+            base,
+            added: Setpoint::default(),
+            taken: 0.0,
+            motion: Motion::Hold,
+            in_force: *limits,
+            command: None,
+            retry: 0,
+        }
+    }
+
+    fn moves(&self) -> bool {
+        matches!(self.motion, Motion::Run { .. })
+    }
+
+    /// Whether something is yet to be added. A halt that finds nothing in motion adds nothing.
+    fn is_busy(&self) -> bool {
+        self.moves() || matches!(&self.command, Some(command) if command.adds != Adds::Halt)
+    }
+
+    /// What is yet to be added (u).
+    fn left(&self) -> f64 {
+        let end = match (&self.command, &self.motion) {
+            (
+                Some(Added {
+                    adds: Adds::Distance { target, .. },
+                    ..
+                }),
+                _,
+            ) => *target,
+            (_, Motion::Run { plan, .. }) => plan.at(u64::from(plan.scans())).position,
+            (_, Motion::Hold | Motion::Follow) => self.added.position,
+        };
+        end - self.added.position
+    }
+
+    /// The owner's plan starts anew at `start` (u), `passed` scans later than it did; returns the sum's position.
+    pub fn bring_back(&mut self, start: f64, passed: u64) -> f64 {
+        self.base.position = start;
+        if self.retry != u64::MAX {
+            // 0 stands for a command that was not tried yet.
+            self.retry = self.retry.saturating_sub(passed).max(1);
+        }
+        self.sum().position
+    }
+
+    fn sum(&self) -> Setpoint {
+        let (base, added) = (&self.base, &self.added);
+        Setpoint {
+            position: base.position + (added.position - self.taken),
+            velocity: base.velocity + added.velocity,
+            acceleration: base.acceleration + added.acceleration,
+            jerk: base.jerk + added.jerk,
+            snap: base.snap + added.snap,
+        }
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// Takes MC_MoveSuperimposed, or refuses it without any effect (R38). It aborts only a superimposed
+    /// command before it (R66) and takes over from its motion.
+    ///
+    /// Cost: at most [`plan::PROPOSALS`] plans, each laid over the owner's.
+    ///
+    /// # Errors
+    /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit. Lack of room
+    /// under the axis limits is none: the command waits.
+    pub fn superimpose(
+        &mut self,
+        request: &Superimpose,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<CommandId, ErrorId> {
+        self.admit_superimposed(request)
+            .map_err(|(pin, error)| self.refuse(pin, f64::NAN, f64::NAN, error, source, log))?;
+        let limits = self.superimposed_limits(&request.dynamics, source, log)?;
+        let layer = self.layer.unwrap_or_else(|| Layer::on(self.setpoint, &limits));
+        let (distance, origin) = (request.distance, layer.added.position);
+        let target = origin + distance;
+        let end = self.base_end(&layer) + (target - layer.taken);
+        // NaN where the owner has no end.
+        if !target.is_finite() || end.is_infinite() {
+            return Err(self.refuse(
+                "Distance",
+                distance,
+                f64::NAN,
+                ErrorId::PositionInvalid,
+                source,
+                log,
+            ));
+        }
+        self.allowed(end).map_err(|error| {
+            let limit = self.broken_software_limit(end);
+            self.refuse("Distance", distance, limit, error, source, log)
+        })?;
+        let command = Added {
+            id: self.new_id(),
+            instance: source.instance,
+            adds: Adds::Distance {
+                distance,
+                origin,
+                target,
+            },
+            limits,
+            planned: false,
+            lowered: false,
+        };
+        let proposed = self
+            .propose(&layer, &command)
+            .map_err(|error| self.refuse("Distance", distance, f64::NAN, error, source, log))?;
+        if self.state == AxisState::Standstill {
+            self.enter(AxisEvent::StartDiscrete);
+        }
+        self.end_superimposed_command(Fate::Aborted);
+        let layer = self.layer.get_or_insert(layer);
+        layer.command = Some(command);
+        self.add(proposed, source.scan, log);
+        Ok(command.id)
+    }
+
+    /// Takes MC_HaltSuperimposed: the superimposed command is aborted and its motion comes to rest; the owner
+    /// goes on. With nothing superimposed it completes without effect, in every state (V14a). The velocity and
+    /// acceleration of `dynamics` are not read.
+    ///
+    /// # Errors
+    /// The [`ErrorId`] of a pin; nothing changes then.
+    pub fn halt_superimposed(
+        &mut self,
+        dynamics: &crate::Dynamics,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<CommandId, ErrorId> {
+        let limits = self.resolve(dynamics, source, log)?;
+        let layer = self.layer.unwrap_or_else(|| Layer::on(self.setpoint, &limits));
+        let command = Added {
+            id: self.new_id(),
+            instance: source.instance,
+            adds: Adds::Halt,
+            limits,
+            planned: !layer.moves(),
+            lowered: false,
+        };
+        let proposed = if layer.moves() {
+            self.propose(&layer, &command).map_err(|error| {
+                self.refuse("Deceleration", limits.deceleration, f64::NAN, error, source, log)
+            })?
+        } else {
+            None
+        };
+        self.end_superimposed_command(Fate::Aborted);
+        self.layer.get_or_insert(layer).command = Some(command);
+        if !command.planned {
+            self.add(proposed, source.scan, log);
+        }
+        Ok(command.id)
+    }
+
+    /// The distance superimposed command `id` has added so far (u); kept for the last one that ended.
+    pub fn covered_distance(&self, id: CommandId) -> Option<f64> {
+        if let Some(layer) = &self.layer
+            && let Some(command) = &layer.command
+            && command.id == id
+        {
+            return Some(match command.adds {
+                Adds::Distance { origin, .. } => layer.added.position - origin,
+                Adds::Halt => 0.0,
+            });
+        }
+        self.covered
+            .filter(|(ended, _)| *ended == id)
+            .map(|(_, covered)| covered)
+    }
+
+    /// What became of superimposed command `id`, if it is the present one.
+    pub(super) fn superimposed_fate(&self, id: CommandId) -> Option<Fate> {
+        let command = self.layer.as_ref()?.command.as_ref()?;
+        (command.id == id).then_some(if command.planned {
+            Fate::Active { reached: false }
+        } else {
+            Fate::Waiting
+        })
+    }
+
+    /// Whether something is yet to be superimposed.
+    pub(super) fn is_superimposing(&self) -> bool {
+        self.layer.as_ref().is_some_and(Layer::is_busy)
+    }
+
+    /// What is yet to be superimposed (u).
+    pub(super) fn superimposed_left(&self) -> f64 {
+        self.layer.as_ref().map_or(0.0, Layer::left)
+    }
+
+    /// The states it may start in (R64, S9).
+    fn admit_superimposed(&self, request: &Superimpose) -> Result<(), (&'static str, ErrorId)> {
+        if request.continuous_update {
+            return Err(("ContinuousUpdate", ErrorId::ContinuousUpdateUnsupported));
+        }
+        if self.power.going_off {
+            return Err(("", ErrorId::PoweringOff));
+        }
+        match self.state {
+            AxisState::Disabled => Err(("", ErrorId::NotPowered)),
+            AxisState::ErrorStop => Err(("", ErrorId::InErrorStop)),
+            AxisState::Stopping => Err(("", ErrorId::InStopping)),
+            AxisState::Homing => Err(("", ErrorId::InHoming)),
+            AxisState::Standstill
+            | AxisState::DiscreteMotion
+            | AxisState::ContinuousMotion
+            | AxisState::SynchronizedMotion => Ok(()),
+        }
+    }
+
+    /// Where the owner will stand (u); NaN if it does not come to rest by itself.
+    fn base_end(&self, layer: &Layer<P::Plan>) -> f64 {
+        match (&self.motion, self.owner.as_ref().map(|owner| owner.work)) {
+            (Motion::Run { .. }, Some(Work::Velocity { .. })) => f64::NAN,
+            (Motion::Run { plan, .. }, _) => plan.at(u64::from(plan.scans())).position,
+            (Motion::Hold | Motion::Follow, _) => layer.base.position,
+        }
+    }
+
+    /// Ends the superimposed command, if there is one; what it set in motion is left to the caller.
+    fn end_superimposed_command(&mut self, fate: Fate) {
+        let Some(layer) = &mut self.layer else { return };
+        let moves = layer.moves();
+        let Some(command) = layer.command.take() else {
+            return;
+        };
+        let fate = match command.adds {
+            Adds::Distance { distance, .. } if fate == Fate::Done => {
+                self.covered = Some((command.id, distance));
+                fate
+            }
+            Adds::Distance { origin, .. } => {
+                self.covered = Some((command.id, layer.added.position - origin));
+                fate
+            }
+            // It has nothing left to do.
+            Adds::Halt if !moves => Fate::Done,
+            Adds::Halt => fate,
+        };
+        self.fates.record(command.id, fate);
+    }
+
+    /// Everything ends (R65): from now on there is one motion, that of the sum.
+    pub(super) fn end_superimposed(&mut self, fate: Fate) {
+        if self.layer.is_some() {
+            self.drop_superimposed(fate);
+        }
+    }
+
+    #[cold]
+    fn drop_superimposed(&mut self, fate: Fate) {
+        self.in_force = self.limits_before(&self.in_force);
+        self.end_superimposed_command(fate);
+        self.layer = None;
+    }
+
+    /// [`Axis::advance`] with something superimposed: both motions advance, their sum is published.
+    #[inline(never)]
+    pub(super) fn advance_both(&mut self, scan: u64, log: &mut Log) {
+        let Some(layer) = &mut self.layer else { return };
+        layer.base = match &mut self.motion {
+            Motion::Follow => Setpoint::at_rest(self.actual),
+            Motion::Hold => Setpoint::at_rest(layer.base.position),
+            Motion::Run { plan, elapsed, .. } => {
+                *elapsed = elapsed.saturating_add(1);
+                plan.at(*elapsed)
+            }
+        };
+        if let Motion::Run { plan, elapsed, .. } = &mut layer.motion {
+            *elapsed = elapsed.saturating_add(1);
+            layer.added = plan.at(*elapsed);
+        }
+        let next = layer.sum();
+        if !next.is_finite() {
+            self.fail(ErrorId::SetpointBroken, scan, log);
+        } else if self.sum_would_leave(&next) {
+            self.fail(ErrorId::SoftwareLimitReached, scan, log);
+        } else {
+            self.publish(next);
+        }
+        if self.modulo.is_some() {
+            self.bring_back();
+        }
+        if self.goal_reached() {
+            self.settle(scan, log);
+        }
+        self.settle_superimposed(scan, log);
+    }
+
+    /// As [`Axis::would_leave_from`] for the sum; where a motion ends was checked when it was taken, and that
+    /// it does not turn outside when it was planned.
+    fn sum_would_leave(&self, next: &Setpoint) -> bool {
+        match (self.config.software_limits, &self.motion) {
+            (Some(limits), Motion::Run { .. }) => self.would_leave_from(next, limits),
+            _ => false,
+        }
+    }
+
+    /// Completion of what is superimposed, and a new attempt of a command that waits or was lowered.
+    fn settle_superimposed(&mut self, scan: u64, log: &mut Log) {
+        let Some(layer) = &mut self.layer else { return };
+        let reached = match &layer.motion {
+            Motion::Run { elapsed, scans, .. } => elapsed >= scans,
+            Motion::Hold | Motion::Follow => true,
+        };
+        if reached {
+            layer.added = Setpoint::at_rest(layer.added.position);
+            let stopped = layer.moves();
+            layer.motion = Motion::Hold;
+            match layer.command {
+                Some(Added { planned, adds, .. }) if planned || adds == Adds::Halt => {
+                    self.end_superimposed_command(Fate::Done);
+                }
+                // It stands now, from where more may fit.
+                Some(_) if stopped => layer.retry = 0,
+                Some(_) | None => {}
+            }
+        }
+        self.try_again(scan, log);
+        let still = !matches!(self.motion, Motion::Run { .. });
+        if still && self.layer.as_ref().is_some_and(|layer| layer.command.is_none()) {
+            self.layer = None;
+            if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
+                self.enter(AxisEvent::MotionDone);
+                self.hand_over(scan, log);
+            }
+        }
+    }
+
+    /// A command given with nothing under it but a superimposed motion starts beside that at once.
+    pub(super) fn start_beside(&mut self, scan: u64, log: &mut Log) {
+        if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
+            self.hand_over(scan, log);
+        }
+    }
+
+    /// For [`crate::Outlook`]: the command, the scans its motion has left as for the owner, whether it waits
+    /// for room, and the bits of where both motions are.
+    pub(super) fn superimposed_outlook(&self) -> Option<super::Beside> {
+        self.layer.as_ref().map(|layer| super::Beside {
+            command: layer.command.as_ref().map(|command| {
+                let kind = match command.adds {
+                    Adds::Distance { .. } => "superimposed",
+                    Adds::Halt => "halt superimposed",
+                };
+                (command.id, kind, command.planned)
+            }),
+            scans_left: layer.motion.scans_left().unwrap_or(0),
+            tried_in: match (&layer.command, &self.motion) {
+                (Some(command), Motion::Run { elapsed, .. }) if !command.planned || command.lowered => {
+                    u32::try_from(layer.retry.saturating_sub(*elapsed)).unwrap_or(u32::MAX)
+                }
+                _ => 0,
+            },
+            base: (layer.base.position.to_bits(), layer.base.velocity.to_bits()),
+            added: (layer.added.position.to_bits(), layer.left().to_bits()),
+        })
+    }
+
+    fn record_as(&self, command: &Added, event: Event, scan: u64, log: &mut Log) {
+        let instance = command.instance;
+        self.record(event, Source { scan, instance }, log);
+    }
+}

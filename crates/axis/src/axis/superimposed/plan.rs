@@ -1,0 +1,335 @@
+//! Finding a superimposed motion that leaves the sum inside the axis limits.
+
+use super::{Added, Adds, Layer};
+use crate::axis::accept::refusal;
+use crate::axis::queue::{Entry, Work};
+use crate::axis::{Axis, Motion, Source};
+use crate::{Dynamics, ErrorId, Event, Log};
+use standstill_planner::{Limits, Plan, Planner, Setpoint};
+
+/// Motions tried, one after the other, until one fits.
+pub(super) const PROPOSALS: usize = 7;
+
+/// From the fourth on the motion asked for is tried this much slower: the same path in longer time.
+const SLOWER: [f64; PROPOSALS - 3] = [0.75, 0.5, 0.25, 0.125];
+
+/// A motion that fits.
+pub(super) struct Proposal<Plan> {
+    plan: Plan,
+    limits: Limits,
+    /// It is not the one asked for.
+    lowered: bool,
+}
+
+fn min(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
+}
+
+/// What the owner's motion leaves free all the time.
+struct Room {
+    limits: Limits,
+    /// It goes on as it is: what it leaves now is all there will be.
+    endless: bool,
+}
+
+impl Room {
+    /// `asked` or what is free of it. `None` if that is nothing, or less than the slowest proposal takes while
+    /// the owner's motion will end: then waiting is faster.
+    fn of(&self, asked: f64, free: f64, least: f64) -> Option<f64> {
+        let least = if self.endless { 0.0 } else { least * asked };
+        (free >= asked || (free > 0.0 && free >= least)).then_some(min(asked, free))
+    }
+}
+
+/// `limits` for the same path in a time longer by `1 / rate`.
+fn slower(limits: &Limits, rate: f64) -> Limits {
+    let square = rate * rate;
+    Limits {
+        velocity: limits.velocity * rate,
+        acceleration: limits.acceleration * square,
+        deceleration: limits.deceleration * square,
+        jerk: limits.jerk * (square * rate),
+        snap: limits.snap * (square * square),
+    }
+}
+
+/// The limits of proposal `index`: as asked; at most the velocity that is free all the time; at most
+/// everything that is free all the time; slower and slower. `None` if there is no such proposal.
+fn limits_of(index: usize, asked: &Limits, room: &Room) -> Option<Limits> {
+    const LEAST: f64 = SLOWER[SLOWER.len() - 1];
+    const LEAST_2: f64 = LEAST * LEAST;
+    let free = &room.limits;
+    match index {
+        0 => Some(*asked),
+        1 => Some(Limits {
+            velocity: room.of(asked.velocity, free.velocity, LEAST)?,
+            ..*asked
+        }),
+        2 => Some(Limits {
+            velocity: room.of(asked.velocity, free.velocity, LEAST)?,
+            acceleration: room.of(asked.acceleration, free.acceleration, LEAST_2)?,
+            deceleration: room.of(asked.deceleration, free.deceleration, LEAST_2)?,
+            jerk: room.of(asked.jerk, free.jerk, LEAST_2 * LEAST)?,
+            snap: room.of(asked.snap, free.snap, LEAST_2 * LEAST_2)?,
+        }),
+        _ => Some(slower(asked, *SLOWER.get(index.checked_sub(3)?)?)),
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// The values at the pins of MC_MoveSuperimposed.
+    pub(super) fn superimposed_limits(
+        &self,
+        dynamics: &Dynamics,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<Limits, ErrorId> {
+        let velocity = self.positive_velocity("VelocityDiff", dynamics.velocity, source, log)?;
+        Ok(Limits {
+            velocity,
+            ..self.resolve(dynamics, source, log)?
+        })
+    }
+
+    /// The owner's plan as far as it is not over.
+    fn rest_of_base(&self) -> Option<(&P::Plan, u64)> {
+        match &self.motion {
+            Motion::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
+            Motion::Hold | Motion::Follow => None,
+        }
+    }
+
+    /// The software limits in the sum of the plans' own positions.
+    fn range(&self, taken: f64) -> Option<(f64, f64)> {
+        self.config
+            .software_limits
+            .map(|(min, max)| (min + taken, max + taken))
+    }
+
+    /// The first proposal for `command` from the state of `layer` that fits the owner's motion; `Ok(None)` if
+    /// none does for now.
+    ///
+    /// # Errors
+    /// The planner refuses the command as it is asked for.
+    pub(super) fn propose(
+        &self,
+        layer: &Layer<P::Plan>,
+        command: &Added,
+    ) -> Result<Option<Proposal<P::Plan>>, ErrorId> {
+        let axis = &self.config.limits;
+        let base = self.rest_of_base();
+        let room = Room {
+            limits: base.map_or(*axis, |rest| self.planner.room(rest, axis)),
+            endless: base.is_some_and(|(plan, _)| plan.at(u64::from(plan.scans())).velocity != 0.0),
+        };
+        let mut last = None;
+        for index in 0..PROPOSALS {
+            let limits = limits_of(index, &command.limits, &room);
+            let Some(limits) = limits.filter(|limits| last != Some(*limits)) else {
+                continue;
+            };
+            last = Some(limits);
+            let before = if layer.moves() { &layer.in_force } else { &limits };
+            let planned = match command.adds {
+                Adds::Distance { target, .. } => {
+                    let profile = self.config.profile;
+                    self.planner
+                        .move_to(profile, &layer.added, target, &limits, before)
+                }
+                Adds::Halt => self.planner.ramp_to(&layer.added, 0.0, &limits, before),
+            };
+            match planned {
+                Ok(plan) => {
+                    // Alone it exceeds the axis limits only where it takes over from a motion in a way that
+                    // its own limits are too low for. That motion may go on instead.
+                    let motion = Motion::along(plan);
+                    let range = self.range(layer.taken);
+                    let fits = !self.exceeds(&motion, &limits)
+                        && base.is_none_or(|rest| self.planner.fits(rest, (&plan, 0), axis, range));
+                    if fits {
+                        return Ok(Some(Proposal {
+                            plan,
+                            limits,
+                            lowered: index > 0,
+                        }));
+                    }
+                }
+                Err(error) if index == 0 => return Err(refusal(error)),
+                // Slower is longer still.
+                Err(_) => break,
+            }
+        }
+        Ok(None)
+    }
+
+    /// Sets the layer's command in motion as proposed, or lets it wait; what moves already is left as it is if
+    /// the proposal is not faster.
+    pub(super) fn add(&mut self, proposed: Option<Proposal<P::Plan>>, scan: u64, log: &mut Log) {
+        let next_switch = self
+            .rest_of_base()
+            .map(|rest| (self.planner.next_switch(rest), rest.1));
+        let Some(layer) = &mut self.layer else { return };
+        let Some(command) = &mut layer.command else { return };
+        let first = layer.retry == 0;
+        layer.retry = match next_switch {
+            Some((switch, now)) if switch > now => switch,
+            // Nothing changes until the owner does.
+            _ => u64::MAX,
+        };
+        let left = match &layer.motion {
+            Motion::Run { elapsed, scans, .. } if command.planned => scans.saturating_sub(*elapsed),
+            Motion::Run { .. } | Motion::Hold | Motion::Follow => u64::MAX,
+        };
+        match proposed.filter(|proposal| u64::from(proposal.plan.scans()) < left) {
+            Some(Proposal {
+                plan,
+                limits,
+                lowered,
+            }) => {
+                command.planned = true;
+                command.lowered = lowered;
+                let command = *command;
+                layer.in_force = limits;
+                layer.motion = Motion::along(plan);
+                self.record_lowered(&command, &limits, scan, log);
+                let scans = plan.scans();
+                let distance = match command.adds {
+                    Adds::Distance { distance, .. } => Some(distance),
+                    Adds::Halt => None,
+                };
+                self.record_as(&command, Event::Superimposed { distance, scans }, scan, log);
+            }
+            None if first && !command.planned => {
+                let command = *command;
+                self.record_as(&command, Event::RoomAwaited, scan, log);
+            }
+            None => {}
+        }
+    }
+
+    /// Tells which pins ask for more than there is room for.
+    fn record_lowered(&self, command: &Added, used: &Limits, scan: u64, log: &mut Log) {
+        let asked = &command.limits;
+        let pins = [
+            ("VelocityDiff", asked.velocity, used.velocity),
+            ("Acceleration", asked.acceleration, used.acceleration),
+            ("Deceleration", asked.deceleration, used.deceleration),
+            ("Jerk", asked.jerk, used.jerk),
+            ("Snap", asked.snap, used.snap),
+        ];
+        for (pin, value, limit) in pins {
+            if limit < value && (pin != "VelocityDiff" || command.adds != Adds::Halt) {
+                self.record_as(command, Event::Clamped { pin, value, limit }, scan, log);
+            }
+        }
+    }
+
+    /// A command that waits or was lowered is tried again when the owner's motion has changed.
+    pub(super) fn try_again(&mut self, scan: u64, log: &mut Log) {
+        let Some(layer) = &self.layer else { return };
+        let Some(command) = &layer.command else { return };
+        let due = match &self.motion {
+            Motion::Run { elapsed, .. } => *elapsed >= layer.retry,
+            Motion::Hold | Motion::Follow => true,
+        };
+        if (command.planned && !command.lowered) || !due {
+            return;
+        }
+        // What the planner took once it takes again; if not, everything stays as it is.
+        let proposed = self.propose(layer, command).unwrap_or(None);
+        self.add(proposed, scan, log);
+    }
+
+    /// The limits that hold for the state published last: those of the motion in progress, both together if
+    /// there are two, but never more than the axis has; `own` if there is none.
+    pub(in crate::axis) fn limits_before(&self, own: &Limits) -> Limits {
+        let base = matches!(self.motion, Motion::Run { .. }).then_some(&self.in_force);
+        let Some(layer) = self.layer.as_ref().filter(|layer| layer.moves()) else {
+            return *base.unwrap_or(own);
+        };
+        let (axis, added) = (&self.config.limits, &layer.in_force);
+        let both = |of: fn(&Limits) -> f64| min(of(axis), of(added) + base.map_or(0.0, of));
+        Limits {
+            velocity: both(|limits| limits.velocity),
+            acceleration: both(|limits| limits.acceleration),
+            deceleration: both(|limits| limits.deceleration),
+            jerk: both(|limits| limits.jerk),
+            snap: both(|limits| limits.snap),
+        }
+    }
+
+    /// Plans a waiting command that becomes the owner, on top of which a superimposed motion may go on;
+    /// `Ok(None)` if it must wait for that motion.
+    ///
+    /// It starts at the real set position. If what is added leaves room for it, it starts with the velocity
+    /// its predecessor alone has. If not, the velocity of what is added passes to it, and what is left of the
+    /// added distance starts again from rest when there is room.
+    pub(in crate::axis) fn plan_next(&mut self, entry: &Entry) -> Result<Option<Motion<P::Plan>>, ErrorId> {
+        match self.layer {
+            None => self.plan_for(entry).map(Some),
+            // MC_Home names a position at rest.
+            Some(_) if matches!(entry.work, Work::Home(_)) && self.is_superimposing() => Ok(None),
+            Some(layer) => self.plan_under(layer, entry),
+        }
+    }
+
+    #[inline(never)]
+    fn plan_under(
+        &mut self,
+        mut layer: Layer<P::Plan>,
+        entry: &Entry,
+    ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
+        let start = Setpoint {
+            position: self.setpoint.position,
+            ..layer.base
+        };
+        let in_force = if matches!(self.motion, Motion::Run { .. }) {
+            self.in_force
+        } else {
+            entry.limits
+        };
+        let taken = layer.added.position;
+        let mut motion = self.plan_from(entry, &start, &in_force)?;
+        if let (Motion::Run { plan, .. }, false) = (&motion, entry.is_endless()) {
+            self.allowed(plan.at(u64::from(plan.scans())).position + layer.left())?;
+        }
+        layer.base = start;
+        if let (
+            Motion::Run { plan, .. },
+            Motion::Run {
+                plan: added, elapsed, ..
+            },
+        ) = (&motion, &layer.motion)
+        {
+            let (axis, range) = (&self.config.limits, self.range(taken));
+            if !self.planner.fits((plan, 0), (added, *elapsed), axis, range) {
+                motion = self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))?;
+                if self.exceeds(&motion, &entry.limits) {
+                    // It cannot take this velocity over either; soon there is less of it.
+                    return Ok(None);
+                }
+                layer.base = self.setpoint;
+                layer.motion = Motion::Hold;
+                layer.added = Setpoint::at_rest(taken);
+                if let Some(command) = &mut layer.command {
+                    command.planned = command.adds == Adds::Halt;
+                    command.lowered = false;
+                }
+            }
+        }
+        layer.taken = taken;
+        layer.retry = 0;
+        self.layer = Some(layer);
+        Ok(Some(motion))
+    }
+
+    /// Whether a plan within `limits` must exceed those of the axis.
+    fn exceeds(&self, motion: &Motion<P::Plan>, limits: &Limits) -> bool {
+        let Motion::Run { plan, .. } = motion else {
+            return false;
+        };
+        plan.excess()
+            .and_then(|excess| self.beyond_axis(excess, limits))
+            .is_some()
+    }
+}

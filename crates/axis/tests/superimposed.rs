@@ -1,0 +1,342 @@
+//! Superimposed motions at random: the sum keeps the limits of the axis, the motion under it does not notice,
+//! and both targets are met to the bit.
+//!
+//! Every case runs two axes with the same commands; one of them is also given superimposed ones, at random
+//! times, in both directions, halted or given again on the way.
+
+use standstill_axis::{
+    Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Fate, Limits,
+    Log, Plan, Raw, Request, Setpoint, Source, Standard, StartState, Superimpose,
+};
+
+const CYCLE: f64 = 0.01;
+const CASES: u64 = 10_000;
+/// A case that takes longer is a motion that never ends.
+const MOST_SCANS: u64 = 40_000;
+
+/// Random numbers: a linear congruential generator, whose high bits suffice here.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, count: u64) -> u64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % count
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.below(1 << 20) as f64 / f64::from(1 << 20))
+    }
+
+    /// One of the axis limits: all of it, most of it, or some of it.
+    fn share(&mut self, limit: f64) -> f64 {
+        match self.below(3) {
+            0 => 0.0,
+            1 => limit * 0.8,
+            _ => limit * self.between(0.05, 1.0),
+        }
+    }
+
+    fn dynamics(&mut self, limits: &Limits) -> Dynamics {
+        let velocity = match self.below(3) {
+            0 => limits.velocity,
+            _ => limits.velocity * self.between(0.05, 1.0),
+        };
+        let bounded = |share: f64| if share.is_finite() { share } else { 0.0 };
+        let acceleration = self.share(limits.acceleration);
+        Dynamics {
+            velocity,
+            acceleration,
+            deceleration: if self.below(2) == 0 {
+                acceleration
+            } else {
+                self.share(limits.deceleration)
+            },
+            jerk: bounded(self.share(limits.jerk)),
+            snap: bounded(self.share(limits.snap)),
+        }
+    }
+
+    fn limits(&mut self) -> Limits {
+        let order = self.below(3);
+        let acceleration = self.between(200.0, 2000.0);
+        let deceleration = if self.below(3) == 0 {
+            self.between(200.0, 2000.0)
+        } else {
+            acceleration
+        };
+        Limits {
+            velocity: self.between(20.0, 200.0),
+            acceleration,
+            deceleration,
+            jerk: if order > 0 {
+                self.between(5e3, 5e4)
+            } else {
+                f64::INFINITY
+            },
+            snap: if order > 1 {
+                self.between(2e5, 2e6)
+            } else {
+                f64::INFINITY
+            },
+        }
+    }
+}
+
+fn axis(limits: Limits) -> Axis {
+    let config = AxisConfig {
+        start: StartState::Standstill,
+        ..AxisConfig::new(limits)
+    };
+    Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).unwrap()
+}
+
+/// The last published positions, newest first, and what they say of the derivatives.
+struct Seen([f64; 5]);
+
+impl Seen {
+    fn check(&mut self, now: &Setpoint, limits: &Limits, what: &str) {
+        self.0.rotate_right(1);
+        self.0[0] = now.position;
+        let acceleration = limits.acceleration.max(limits.deceleration);
+        let bounds = [limits.velocity, acceleration, limits.jerk, limits.snap];
+        let derivatives = [now.velocity, now.acceleration, now.jerk, now.snap];
+        let mut differences = self.0;
+        // How far f64 positions resolve a difference of each order.
+        let mut grain = 4.0 * f64::EPSILON * self.0.iter().fold(1.0, |most: f64, p| most.max(p.abs()));
+        for (order, (bound, derivative)) in bounds.iter().zip(derivatives).enumerate() {
+            assert!(
+                derivative.abs() <= bound * (1.0 + 1e-9),
+                "{what}: derivative {} is {derivative}, limit {bound}",
+                order + 1
+            );
+            for place in 0..4 - order {
+                differences[place] = (differences[place] - differences[place + 1]) / CYCLE;
+            }
+            grain *= 2.0 / CYCLE;
+            assert!(
+                differences[0].abs() <= bound * (1.0 + 1e-9) + grain,
+                "{what}: difference {} is {}, limit {bound}",
+                order + 1,
+                differences[0]
+            );
+        }
+    }
+}
+
+fn bits(setpoint: &Setpoint) -> [u64; 4] {
+    [
+        setpoint.position,
+        setpoint.velocity,
+        setpoint.acceleration,
+        setpoint.jerk,
+    ]
+    .map(f64::to_bits)
+}
+
+struct Case {
+    limits: Limits,
+    random: Random,
+    with: Axis,
+    without: Axis,
+    log: Log,
+    scan: u64,
+}
+
+impl Case {
+    fn new(seed: u64) -> Self {
+        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        let limits = random.limits();
+        Self {
+            limits,
+            random,
+            with: axis(limits),
+            without: axis(limits),
+            log: Log::default(),
+            scan: 0,
+        }
+    }
+
+    fn source(&self) -> Source {
+        Source {
+            scan: self.scan,
+            ..Source::default()
+        }
+    }
+
+    /// The same command to both axes.
+    fn command(&mut self, request: &Request) -> (CommandId, CommandId) {
+        let source = self.source();
+        let with = self.with.command(request, source, &mut self.log).unwrap();
+        let without = self.without.command(request, source, &mut self.log).unwrap();
+        (with, without)
+    }
+
+    fn base(&mut self) -> (Command, Option<f64>) {
+        let dynamics = self.random.dynamics(&self.limits);
+        if self.random.below(4) == 0 {
+            let direction: Raw<Direction> = Direction::Positive.into();
+            let signed = if self.random.below(2) == 0 { 1.0 } else { -1.0 };
+            let dynamics = Dynamics {
+                velocity: signed * dynamics.velocity,
+                ..dynamics
+            };
+            return (Command::MoveVelocity { dynamics, direction }, None);
+        }
+        let position = self.random.between(-150.0, 150.0);
+        let direction: Raw<Direction> = Direction::Unset.into();
+        (
+            Command::MoveAbsolute {
+                position,
+                dynamics,
+                direction,
+            },
+            Some(position),
+        )
+    }
+
+    fn superimpose(&mut self) -> (CommandId, f64) {
+        let distance = self.random.between(-60.0, 60.0);
+        let request = Superimpose {
+            distance,
+            dynamics: self.random.dynamics(&self.limits),
+            continuous_update: false,
+        };
+        let id = self
+            .with
+            .superimpose(&request, self.source(), &mut self.log)
+            .unwrap();
+        (id, distance)
+    }
+}
+
+/// One superimposed motion on one command: the command's own set-points and its end are the same to the bit,
+/// and the axis ends on target plus distance.
+fn one_on_one(seed: u64) {
+    let mut case = Case::new(seed);
+    let (base, target) = case.base();
+    let (with, without) = case.command(&Request::aborting(base));
+    let at = case.random.below(150);
+    let mut added = None;
+    let mut seen = Seen([0.0; 5]);
+    for scan in 0..MOST_SCANS {
+        case.scan = scan;
+        if scan == at {
+            // Beside a move that is over by now there is nothing to compare.
+            added = Some(case.superimpose());
+        }
+        assert_eq!(
+            case.with.fate(with),
+            case.without.fate(without),
+            "seed {seed}, scan {scan}"
+        );
+        case.with.advance(scan, &mut case.log);
+        case.without.advance(scan, &mut case.log);
+        let now = case.with.setpoint();
+        seen.check(&now, &case.limits, &format!("seed {seed}, scan {scan}"));
+        let twin = case.without.setpoint();
+        if let Some((plan, elapsed)) = case.with.plan() {
+            assert_eq!(bits(&plan.at(elapsed)), bits(&twin), "seed {seed}, scan {scan}");
+        }
+        let Some((id, distance)) = added else { continue };
+        if case.with.fate(id) == Fate::Done && case.without.fate(without) != (Fate::Active { reached: false })
+        {
+            assert_eq!(case.with.covered_distance(id), Some(distance), "seed {seed}");
+            match target {
+                Some(target) => {
+                    assert_eq!(case.with.state(), AxisState::Standstill, "seed {seed}");
+                    // A move that was over took its distance from where it stood: the same sum.
+                    assert_eq!(now.position, target + distance, "seed {seed}");
+                }
+                None => assert_eq!(now.velocity, twin.velocity, "seed {seed}"),
+            }
+            return;
+        }
+        // An endless motion at the velocity limit never leaves room, or next to none.
+        if target.is_none() && scan > 20_000 {
+            assert!(twin.velocity.abs() > 0.99 * case.limits.velocity, "seed {seed}");
+            return;
+        }
+        assert!(
+            !matches!(case.with.fate(id), Fate::Aborted | Fate::Failed(_)),
+            "seed {seed}"
+        );
+    }
+    panic!("seed {seed}: {:?}", case.with.outlook());
+}
+
+/// Anything on anything: more superimposed motions, halts, and buffered moves under them. The sum keeps the
+/// limits, nothing fails, and everything comes to an end.
+fn many_on_many(seed: u64) {
+    let mut case = Case::new(seed);
+    let mut seen = Seen([0.0; 5]);
+    let (mut last, mut halted) = (None, false);
+    for scan in 0..MOST_SCANS {
+        case.scan = scan;
+        if scan < 400 && case.random.below(40) == 0 {
+            match case.random.below(5) {
+                0 | 1 => last = Some(case.superimpose().0),
+                2 => {
+                    let dynamics = case.random.dynamics(&case.limits);
+                    let source = case.source();
+                    last = Some(
+                        case.with
+                            .halt_superimposed(&dynamics, source, &mut case.log)
+                            .unwrap(),
+                    );
+                }
+                _ => {
+                    let request = Request {
+                        buffer_mode: BufferMode::Buffered.into(),
+                        ..Request::aborting(case.base().0)
+                    };
+                    // A full buffer refuses.
+                    let source = case.source();
+                    let _ = case.with.command(&request, source, &mut case.log);
+                }
+            }
+        }
+        if scan >= 400 && !halted {
+            let request = Request {
+                buffer_mode: BufferMode::Buffered.into(),
+                ..Request::aborting(Command::Halt {
+                    dynamics: Dynamics::default(),
+                })
+            };
+            let source = case.source();
+            halted = case.with.command(&request, source, &mut case.log).is_ok();
+        }
+        case.with.advance(scan, &mut case.log);
+        let now = case.with.setpoint();
+        seen.check(&now, &case.limits, &format!("seed {seed}, scan {scan}"));
+        assert_ne!(
+            case.with.state(),
+            AxisState::ErrorStop,
+            "seed {seed}, scan {scan}"
+        );
+        if scan > 400 && halted && case.with.state() == AxisState::Standstill {
+            assert_eq!(case.with.outlook().superimposed, None, "seed {seed}");
+            assert!(now.is_at_rest(), "seed {seed}");
+            let ended = last.is_none_or(|id| matches!(case.with.fate(id), Fate::Done | Fate::Aborted));
+            assert!(ended, "seed {seed}");
+            return;
+        }
+    }
+    panic!("seed {seed}: {:?}", case.with.outlook());
+}
+
+#[test]
+fn the_move_under_it_keeps_its_bits_and_the_sum_its_limits() {
+    for seed in 0..CASES {
+        one_on_one(seed);
+    }
+}
+
+#[test]
+fn any_sequence_of_commands_keeps_the_limits_and_ends() {
+    for seed in 0..CASES {
+        many_on_many(seed);
+    }
+}

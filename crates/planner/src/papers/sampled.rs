@@ -1,0 +1,85 @@
+//! A profile of a paper at scan ends: what an axis needs of one.
+
+use super::{Profile, SCurve, ShortPath, ShortPathPolicy, Trapezoid};
+use crate::{Field, Limits, PlanError, Setpoint};
+
+/// A [`Profile`] asked for by scan count.
+///
+/// The profile keeps its limits in continuous time, so its samples do (docs/planner.md, eq. 24).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampledPlan {
+    profile: Profile,
+    cycle: f64,
+    scans: u32,
+}
+
+impl SampledPlan {
+    /// `profile` with sample time `cycle` (s).
+    ///
+    /// # Errors
+    /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, [`PlanError::TooLong`] for
+    /// more than 2^31 - 1 scans.
+    pub fn new(profile: &Profile, cycle: f64) -> Result<Self, PlanError> {
+        if !(cycle > 0.0 && cycle.is_finite()) {
+            return Err(super::invalid(Field::Cycle, cycle));
+        }
+        let scans = profile.scans(cycle).ok_or(PlanError::TooLong {
+            field: Field::Target,
+            value: profile.end().position,
+        })?;
+        Ok(Self {
+            profile: *profile,
+            cycle,
+            scans,
+        })
+    }
+
+    /// As [`SCurve::new`], from rest at `start` to rest at `target` (u).
+    ///
+    /// # Errors
+    /// As there and [`SampledPlan::new`].
+    pub fn s_curve(start: f64, target: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
+        Self::new(SCurve::new(start, target, limits)?.profile(), cycle)
+    }
+
+    /// As [`Trapezoid::new`], from rest at `start` to rest at `target` (u).
+    ///
+    /// # Errors
+    /// As there and [`SampledPlan::new`].
+    pub fn trapezoid(start: f64, target: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
+        Self::new(Trapezoid::new(start, target, limits)?.profile(), cycle)
+    }
+
+    /// As [`ShortPath::new`] with the policy `Nearest`, from the position and velocity of `start` to rest at
+    /// `target` (u).
+    ///
+    /// # Errors
+    /// As there and [`SampledPlan::new`].
+    pub fn short_path(start: &Setpoint, target: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
+        let policy = ShortPathPolicy::Nearest;
+        let plan = ShortPath::new(start.position, start.velocity, target, 0.0, limits, policy)?;
+        Self::new(plan.profile(), cycle)
+    }
+
+    /// The move in continuous time.
+    pub const fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
+    /// Number of scans until the target; 0 if there is nothing to do.
+    pub const fn scans(&self) -> u32 {
+        self.scans
+    }
+
+    /// The set-point `scan` cycles after the start, in closed form: at most
+    /// [`MAX_SEGMENTS`](super::MAX_SEGMENTS) comparisons.
+    ///
+    /// From [`SampledPlan::scans`] on it is the end of the profile, and a move that ends at rest stays there.
+    pub fn at(&self, scan: u64) -> Setpoint {
+        let end = self.profile.end();
+        if scan >= u64::from(self.scans) && end.velocity == 0.0 {
+            return end;
+        }
+        self.profile.at(scan as f64 * self.cycle)
+    }
+}

@@ -1,0 +1,334 @@
+//! Two motions at once: whether their sum keeps the limits.
+//!
+//! What stands here: two plans laid over each other piece by piece, and the head room one leaves. What does
+//! not: how the second motion is chosen. Between two switches of either plan the sum is a polynomial of
+//! constant snap, so its extremes are those of [`extremes`](crate::ramp::path::Path::extremes) (R20).
+
+use crate::ramp::excess;
+use crate::ramp::path::{Path, moved};
+use crate::{Limits, Order, Plan, Segment, Setpoint, StandardPlan};
+
+/// Most switches of two plans: a path, a wait and a grid plan each.
+const MAX_SWITCHES: usize = 96;
+
+/// Shorter pieces of the sum are rounding, not motion, relative to a cycle: where two switches that belong
+/// to the same scan end do not coincide to the bit.
+const GRAIN: f64 = 1e-9;
+
+/// How far a turning point may lie beyond the end of a range, relative to its numbers: rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A plan, so many scans after its start.
+pub type Part<'a> = (&'a StandardPlan, u64);
+
+/// The rest of a plan, followed piece by piece.
+struct Walk<I> {
+    segments: I,
+    /// State now; the position is that of the plan.
+    state: Setpoint,
+    /// Time until the next switch (s); infinite from the end of the plan on.
+    left: f64,
+    /// Velocity from the end of the plan on (u/s).
+    goal: f64,
+}
+
+impl<I: Iterator<Item = Segment>> Walk<I> {
+    fn new(segments: I, (plan, elapsed): Part<'_>, cycle: f64) -> Self {
+        let mut walk = Self {
+            segments,
+            state: Setpoint::default(),
+            left: 0.0,
+            goal: plan.at(u64::from(plan.scans())).velocity,
+        };
+        walk.turn();
+        let mut skip = elapsed as f64 * cycle;
+        for _ in 0..MAX_SWITCHES {
+            // A switch that is over but for rounding is over.
+            if skip < walk.left - GRAIN * cycle {
+                break;
+            }
+            skip -= walk.left;
+            walk.left = 0.0;
+            walk.turn();
+        }
+        if walk.left.is_finite() {
+            walk.go(skip.max(0.0));
+        }
+        walk.state.position = plan.at(elapsed).position;
+        walk
+    }
+
+    /// Enters the next piece if the present one is over.
+    fn turn(&mut self) {
+        if self.left > 0.0 {
+            return;
+        }
+        let position = self.state.position;
+        (self.left, self.state) = match self.segments.next() {
+            Some(segment) => (
+                segment.duration,
+                Setpoint {
+                    position,
+                    velocity: segment.velocity,
+                    acceleration: segment.acceleration,
+                    jerk: segment.jerk,
+                    snap: segment.snap,
+                },
+            ),
+            None => (
+                f64::INFINITY,
+                Setpoint {
+                    velocity: self.goal,
+                    ..Setpoint::at_rest(position)
+                },
+            ),
+        };
+    }
+
+    fn go(&mut self, time: f64) {
+        self.state = moved(&self.state, time);
+        self.left -= time;
+        self.turn();
+    }
+}
+
+fn sum(a: &Setpoint, b: &Setpoint) -> Setpoint {
+    Setpoint {
+        position: a.position + b.position,
+        velocity: a.velocity + b.velocity,
+        acceleration: a.acceleration + b.acceleration,
+        jerk: a.jerk + b.jerk,
+        snap: a.snap + b.snap,
+    }
+}
+
+/// Whether the sum of two plans keeps `limits` from now until both have ended, and does not turn outside
+/// `range` (u), given in the sum of their positions.
+///
+/// A sum that starts or ends outside `range` is not held against it: whoever asks has decided on both ends.
+/// Limits hold to 1e-9 of each, positions to 1e-9 of the range's numbers. Bounded by [`MAX_SWITCHES`] pieces
+/// with at most two roots each.
+pub(crate) fn fits(
+    first: Part<'_>,
+    second: Part<'_>,
+    limits: &Limits,
+    range: Option<(f64, f64)>,
+    cycle: f64,
+) -> bool {
+    let mut one = Walk::new(first.0.segments(), first, cycle);
+    let mut two = Walk::new(second.0.segments(), second, cycle);
+    let range = range.map(|range| widened(range, first, second));
+    for _ in 0..MAX_SWITCHES {
+        let state = sum(&one.state, &two.state);
+        let length = if one.left < two.left { one.left } else { two.left };
+        if !length.is_finite() {
+            return state.velocity.abs() <= limits.velocity * (1.0 + ROUNDING);
+        }
+        if length > GRAIN * cycle && !piece_fits(&state, length, limits, range) {
+            return false;
+        }
+        one.go(length);
+        two.go(length);
+    }
+    false
+}
+
+/// `range` with both ends of the motion inside, and rounding.
+fn widened((min, max): (f64, f64), first: Part<'_>, second: Part<'_>) -> (f64, f64) {
+    let end = |(plan, _): Part<'_>| plan.at(u64::from(plan.scans())).position;
+    let from = first.0.at(first.1).position + second.0.at(second.1).position;
+    let to = end(first) + end(second);
+    let small = |bound: f64| {
+        if bound.is_finite() {
+            ROUNDING * bound.abs()
+        } else {
+            0.0
+        }
+    };
+    (
+        min.min(from).min(to) - small(min),
+        max.max(from).max(to) + small(max),
+    )
+}
+
+fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, range: Option<(f64, f64)>) -> bool {
+    if state.snap.abs() > limits.snap * (1.0 + ROUNDING) {
+        return false;
+    }
+    let path = Path::<1>::follow(Order::Four, state, core::iter::once((length, state.snap)));
+    if excess::excess(&path, 0.0, None, limits).is_some() {
+        return false;
+    }
+    let Some((min, max)) = range else { return true };
+    let mut inside = true;
+    path.extremes(0.0, |state, direction| {
+        let turns = direction.is_none() || state.velocity == 0.0;
+        inside &= !turns || (min <= state.position && state.position <= max);
+    });
+    inside
+}
+
+/// What the rest of a plan leaves of `limits`: the limits less its largest magnitudes, 0 where it leaves
+/// nothing. Acceleration and deceleration are less the larger of the two.
+///
+/// A motion within it keeps `limits` together with the plan whatever their times. Bounded by
+/// [`MAX_SWITCHES`] pieces.
+pub(crate) fn room(part: Part<'_>, limits: &Limits, cycle: f64) -> Limits {
+    let mut walk = Walk::new(part.0.segments(), part, cycle);
+    let mut peak = Setpoint {
+        velocity: walk.goal.abs(),
+        ..Setpoint::default()
+    };
+    for _ in 0..MAX_SWITCHES {
+        if !walk.left.is_finite() {
+            break;
+        }
+        if walk.left > GRAIN * cycle {
+            let path = Path::<1>::follow(
+                Order::Four,
+                &walk.state,
+                core::iter::once((walk.left, walk.state.snap)),
+            );
+            path.extremes(f64::INFINITY, |state, _| {
+                peak.velocity = peak.velocity.max(state.velocity.abs());
+                peak.acceleration = peak.acceleration.max(state.acceleration.abs());
+                peak.jerk = peak.jerk.max(state.jerk.abs());
+                peak.snap = peak.snap.max(state.snap.abs());
+            });
+        }
+        walk.go(walk.left);
+    }
+    let less = |limit: f64, peak: f64| {
+        let rest = limit - peak;
+        if rest > ROUNDING * limit || rest == f64::INFINITY {
+            rest
+        } else {
+            0.0
+        }
+    };
+    Limits {
+        velocity: less(limits.velocity, peak.velocity),
+        acceleration: less(limits.acceleration, peak.acceleration),
+        deceleration: less(limits.deceleration, peak.acceleration),
+        jerk: less(limits.jerk, peak.jerk),
+        snap: less(limits.snap, peak.snap),
+    }
+}
+
+/// The first scan after `elapsed` at or after the end of the piece in force at `elapsed`; `elapsed` itself
+/// from the end of the plan on.
+pub(crate) fn next_switch((plan, elapsed): Part<'_>, cycle: f64) -> u64 {
+    let walk = Walk::new(plan.segments(), (plan, elapsed), cycle);
+    if !walk.left.is_finite() {
+        return elapsed;
+    }
+    let scans = crate::ramp::scans(walk.left, cycle).unwrap_or(u32::MAX);
+    elapsed.saturating_add(u64::from(scans.max(1)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{MoveProfile, Planner, Standard};
+
+    const CYCLE: f64 = 0.01;
+    const LIMITS: Limits = Limits {
+        velocity: 100.0,
+        acceleration: 1000.0,
+        deceleration: 1000.0,
+        jerk: f64::INFINITY,
+        snap: f64::INFINITY,
+    };
+
+    /// A move over `distance` whose ramps take 10 scans at `velocity`.
+    fn plan(from: f64, distance: f64, velocity: f64) -> StandardPlan {
+        let limits = Limits {
+            velocity,
+            acceleration: velocity * 10.0,
+            deceleration: velocity * 10.0,
+            ..LIMITS
+        };
+        let standard = Standard::new(CYCLE);
+        standard
+            .move_to(
+                MoveProfile::Overlapped,
+                &Setpoint::at_rest(from),
+                from + distance,
+                &limits,
+                &limits,
+            )
+            .unwrap()
+    }
+
+    #[test]
+    fn a_sum_at_the_limit_fits_and_one_above_does_not() {
+        let base = plan(0.0, 60.0, 60.0);
+        for (velocity, fit) in [(40.0, true), (40.001, false)] {
+            let added = plan(0.0, velocity, velocity);
+            // Velocity breaks the limit while both cruise, acceleration while both speed up.
+            assert_eq!(
+                fits((&base, 0), (&added, 0), &LIMITS, None, CYCLE),
+                fit,
+                "{velocity}"
+            );
+            assert_eq!(
+                fits((&base, 20), (&added, 0), &LIMITS, None, CYCLE),
+                fit,
+                "{velocity}"
+            );
+        }
+        // In the other direction the sum is the smaller one, until the base is over.
+        let added = plan(0.0, -100.0, 100.0);
+        assert!(fits((&base, 0), (&added, 0), &LIMITS, None, CYCLE));
+        assert!(
+            !fits((&base, 105), (&added, 0), &LIMITS, None, CYCLE),
+            "1.6 ramps at once"
+        );
+        assert!(fits((&base, 110), (&added, 0), &LIMITS, None, CYCLE));
+    }
+
+    #[test]
+    fn a_turning_point_outside_the_range_does_not_fit() {
+        let (base, added) = (plan(0.0, -30.0, 10.0), plan(0.0, 60.0, 60.0));
+        let highest = (0..400)
+            .map(|scan| base.at(scan).position + added.at(scan).position)
+            .fold(0.0, f64::max);
+        let within = |max: f64| fits((&base, 0), (&added, 0), &LIMITS, Some((-1.0, max)), CYCLE);
+        assert!(within(highest + 0.01) && !within(highest - 0.01), "{highest}");
+        // Both ends are the caller's business.
+        let (base, added) = (plan(0.0, 30.0, 10.0), plan(0.0, 60.0, 60.0));
+        assert!(fits((&base, 0), (&added, 0), &LIMITS, Some((1.0, 2.0)), CYCLE));
+    }
+
+    #[test]
+    fn room_is_what_the_rest_of_a_plan_leaves() {
+        let base = plan(0.0, 60.0, 60.0);
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+        let all = room((&base, 0), &LIMITS, CYCLE);
+        assert!(
+            near(all.velocity, 40.0) && near(all.acceleration, 400.0),
+            "{all:?}"
+        );
+        assert_eq!(all.jerk, f64::INFINITY);
+        let ended = room((&base, 110), &LIMITS, CYCLE);
+        assert_eq!((ended.velocity, ended.acceleration), (100.0, 1000.0));
+        assert_eq!(room((&plan(0.0, 100.0, 100.0), 50), &LIMITS, CYCLE).velocity, 0.0);
+    }
+
+    #[test]
+    fn the_next_switch_is_the_end_of_the_piece() {
+        let base = plan(0.0, 60.0, 60.0);
+        let switches = [
+            (0, 10),
+            (9, 10),
+            (10, 100),
+            (99, 100),
+            (100, 110),
+            (110, 110),
+            (500, 500),
+        ];
+        for (elapsed, switch) in switches {
+            assert_eq!(next_switch((&base, elapsed), CYCLE), switch, "{elapsed}");
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! The last rung of the ladder, and the caps: what must not fail does not, and nothing is cut short.
+
+use super::support::{self, ORDERS, Random, integrate};
+use standstill_planner::kernel::MAX_STEPS;
+use standstill_planner::online::{MAX_SOLVES, Rung};
+use standstill_planner::{Limits, OnlinePlan, Setpoint};
+
+/// Limits, others, and a state on a plan under the others: often outside the first.
+fn outside(random: &mut Random, case: usize) -> (Limits, Limits, Setpoint, f64) {
+    let before = support::limits(random, ORDERS[case % 3]);
+    let cycle = 0.01 * before.velocity / before.acceleration;
+    let rest = Setpoint::at_rest(random.between(-1.0, 1.0));
+    let way = before.velocity * cycle * random.between(-300.0, 300.0);
+    let plan = OnlinePlan::new(&rest, rest.position + way, &before, &before, cycle).expect("a plan");
+    let start = plan.at(random.below(u64::from(plan.scans()) + 1));
+    let mut part = || random.between(0.3, 1.0);
+    let now = Limits {
+        velocity: before.velocity * part(),
+        acceleration: before.acceleration * part(),
+        deceleration: before.deceleration * part(),
+        jerk: before.jerk * part(),
+        snap: before.snap * part(),
+    };
+    (now, before, start, cycle)
+}
+
+/// The most ramps solved, steps of a root and pieces of plans from rung `first` on, to targets at rest and
+/// passed, also the present position.
+fn hardest(first: Rung, seed: u64, count: usize) -> (u32, u32, usize) {
+    let mut random = Random(seed);
+    let mut most = (0, 0, 0);
+    for case in 0..count {
+        let (limits, before, start, cycle) = outside(&mut random, case);
+        let target = match random.below(4) {
+            0 => start.position,
+            _ => start.position + limits.velocity * cycle * random.between(-300.0, 300.0),
+        };
+        let end_velocity = match random.below(3) {
+            0 => 0.0,
+            1 => limits.velocity * random.between(-1.0, 1.0),
+            _ => limits.velocity * random.log(1e-9, 1.0),
+        };
+        let plan = OnlinePlan::with(first, &start, target, end_velocity, &limits, &before, cycle)
+            .unwrap_or_else(|error| {
+                panic!("case {case}: {error} {start:?} {target} {end_velocity} {limits:?} {before:?} {cycle}")
+            });
+        assert!(plan.solves() < MAX_SOLVES && plan.steps() < MAX_STEPS, "{plan:?}");
+        let origin = Setpoint {
+            position: 0.0,
+            ..start
+        };
+        let seen = integrate(&origin, &plan, limits.order());
+        let miss = (seen.end.position - (target - start.position)).abs();
+        let resolved = 32.0 * f64::EPSILON * (start.position.abs() + target.abs());
+        assert!(
+            miss <= resolved + 1e-9 * plan.peaks().velocity * plan.duration(),
+            "case {case}: {miss:e} {plan:?}"
+        );
+        most.0 = most.0.max(plan.solves());
+        most.1 = most.1.max(plan.steps());
+        most.2 = most.2.max(plan.segments().count());
+    }
+    most
+}
+
+#[test]
+fn the_last_rung_has_a_plan_for_every_state() {
+    println!("ramps, steps, pieces: {:?}", hardest(Rung::Brake, 77, 6000));
+}
+
+#[test]
+fn no_cap_is_reached_from_outside_the_limits() {
+    println!(
+        "ramps, steps, pieces: {:?}",
+        hardest(Rung::PushThenStop, 79, 6000)
+    );
+}
+
+/// `cargo test --release -p standstill-planner --features std --test online_plans -- --ignored --nocapture`
+#[test]
+#[ignore = "a minute in release"]
+fn millions_of_plans_reach_no_cap() {
+    for rung in Rung::ALL {
+        println!(
+            "{rung:?}: ramps, steps, pieces: {:?}",
+            hardest(rung, 78, 1_000_000)
+        );
+    }
+}
+
+/// A position passed where the axis is, with a velocity it has not: back, and through it again.
+#[test]
+fn the_present_position_can_be_passed_with_another_velocity() {
+    let limits = Limits {
+        velocity: 0.03828521217795212,
+        acceleration: 0.018846312884366185,
+        deceleration: 0.03805165195768225,
+        jerk: 0.019092483913020108,
+        snap: 0.007167337987682951,
+    };
+    let start = Setpoint {
+        velocity: limits.velocity,
+        ..Setpoint::at_rest(-0.2)
+    };
+    let pass = |end_velocity: f64| {
+        OnlinePlan::passing(&start, start.position, end_velocity, &limits, &limits, 0.15).expect("a plan")
+    };
+    let plan = pass(0.025);
+    assert_eq!(plan.rung(), Rung::PushThenStop);
+    let first = plan.segments().next().expect("a segment");
+    assert!(first.snap < 0.0, "{first:?}");
+    assert!((0..u64::from(plan.scans())).any(|scan| plan.at(scan).velocity < 0.0));
+    // With the velocity it has it is there already.
+    let there = pass(limits.velocity);
+    assert_eq!((there.scans(), there.duration()), (0, 0.0));
+}

@@ -1,0 +1,57 @@
+//! `docs/bad-input.md` from the tables that `blocks/tests/bad_input` holds the blocks against.
+
+use crate::{Generated, NOTICE, root};
+use standstill_axis::ErrorId;
+use std::fmt::Write;
+
+pub fn page() -> Generated {
+    let mut text = format!(
+        "{NOTICE}# Bad input\n\n\
+         What every block does with values it cannot use. A test tries each of them and fails for a pin or a\n\
+         block that has no row. *ok*: accepted. *clamp*: lowered to the axis limit and recorded; an axis set to\n\
+         `above_limit` `error` refuses instead. A number is the [ErrorID](error-ids.md) in the call that sees\n\
+         the value. The axis and other instances stay as they are; blocks with Execute show the error until\n\
+         Execute falls and take good values at the next edge, blocks with Enable mend as soon as the value does.\n\n\
+         An `Axis` that does not exist is error {} of every block; blocks with Enable then need a new edge, too.\n\n\
+         ## Numbers\n\n\
+         | block | pin | NaN | +infinity | -infinity | 0 | -1 | 1e300 |\n\
+         | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+        ErrorId::AxisUnknown.number()
+    );
+    let pins = table("pins");
+    rows(&mut text, &pins, 6);
+    text.push_str(
+        "\n## Integers and times\n\n| block | pin | 0 | -1 | largest |\n| --- | --- | --- | --- | --- |\n",
+    );
+    rows(&mut text, &pins, 3);
+    text.push_str("\n## Undefined enumeration numbers\n\n| block | pin | any |\n| --- | --- | --- |\n");
+    rows(&mut text, &pins, 1);
+    text.push_str(
+        "\n## States\n\n\
+         The last column is the ramp on the way to Disabled, in state Stopping.\n\n\
+         | block | BufferMode | Disabled | Standstill | Homing | Stopping | DiscreteMotion | ContinuousMotion | ErrorStop | switching off |\n\
+         | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+    );
+    rows(&mut text, &table("states"), 8);
+    Generated {
+        path: "docs/bad-input.md".into(),
+        text,
+    }
+}
+
+/// The rows of a table, split into words.
+fn table(name: &str) -> Vec<Vec<String>> {
+    let path = root().join(format!("blocks/tests/bad_input/{name}.txt"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    text.lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| line.split_whitespace().map(Into::into).collect())
+        .collect()
+}
+
+/// Writes those with `cells` cells.
+fn rows(text: &mut String, table: &[Vec<String>], cells: usize) {
+    for row in table.iter().filter(|row| row.len() == cells + 2) {
+        let _ = writeln!(text, "| {} |", row.join(" | "));
+    }
+}
