@@ -103,6 +103,9 @@ error_ids! {
     PositionOutsideModulo = 119, "The position is not in the first turn of a modulo axis.",
         "Give a position from 0 to below the length of a turn, or move by a distance.";
 
+    ExecutionModeInvalid = 120, "ExecutionMode is not a number of MC_EXECUTION_MODE.",
+        "Use mcImmediately (0) or mcQueued (1).";
+
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";
     InErrorStop = 202, "The axis is in ErrorStop.",
@@ -120,6 +123,9 @@ error_ids! {
 
     BufferFull = 301, "All places of the command buffer are taken.",
         "Wait for a buffered command to become active, or enlarge the queue of the axis.";
+
+    RemovedFromBuffer = 302, "The queued command was removed from the buffer before its turn.",
+        "Give it again, or behind commands that nothing interrupts.";
 
     AxisFault = 401, "The axis reported a fault.",
         "Remove its cause, then call MC_Reset.";

@@ -23,8 +23,8 @@ mod state;
 
 pub use axis::{Axis, Beside, MotionState, Outlook, Pace, Source, Way};
 pub use command::{
-    AxisId, BufferMode, Command, CommandId, Direction, Dynamics, IecEnum, InstanceId, QUEUE_MAX, Raw,
-    Request, Superimpose, ValueSource,
+    AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,
+    QUEUE_MAX, Raw, Request, Superimpose, ValueSource,
 };
 pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, MODULO_MAX, PowerOff, StartState};
 pub use drive::{

@@ -141,6 +141,9 @@ pub trait Plan: Copy + core::fmt::Debug {
         None
     }
 
+    /// The same motion in coordinates moved by `by` (u): every position of the plan is that much larger.
+    fn shift(&mut self, by: f64);
+
     /// Where `scan` is past the goal of an endless motion: the same motion with that scan as its start, and
     /// whole `length`s (u) taken off its position so that it starts within one. Returns how many; `None`, and
     /// the plan as it is, for any other scan or plan.
@@ -365,6 +368,16 @@ impl Plan for StandardPlan {
         match self {
             Self::Grid(_) | Self::Unequal(_) | Self::Ramp(_) | Self::Sampled(_) => None,
             Self::Online(plan) => Some(plan.rung()),
+        }
+    }
+
+    fn shift(&mut self, by: f64) {
+        match self {
+            Self::Grid(grid) => grid.shift(by),
+            Self::Unequal(grid) => grid.shift(by),
+            Self::Ramp(ramp) => ramp.shift(by),
+            Self::Online(plan) => plan.shift(by),
+            Self::Sampled(plan) => plan.shift(by),
         }
     }
 

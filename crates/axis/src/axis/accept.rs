@@ -28,7 +28,7 @@ fn direction_of(command: &Command) -> Direction {
 
 /// When an admitted command starts.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Way {
+pub(super) enum Way {
     Now,
     Wait,
 }
@@ -159,7 +159,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    fn wait(&self) -> Result<Way, (&'static str, ErrorId)> {
+    pub(super) fn wait(&self) -> Result<Way, (&'static str, ErrorId)> {
         if self.queue.len() < self.config.queue {
             Ok(Way::Wait)
         } else {
@@ -248,7 +248,13 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    fn finite(&self, pin: &'static str, value: f64, source: Source, log: &mut Log) -> Result<f64, ErrorId> {
+    pub(super) fn finite(
+        &self,
+        pin: &'static str,
+        value: f64,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<f64, ErrorId> {
         if value.is_finite() {
             return Ok(value);
         }
@@ -322,7 +328,7 @@ impl<P: Planner> Axis<P> {
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
             Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
-            Work::Home(_) => return Ok(Motion::Hold),
+            Work::Home(_) | Work::SetPosition { .. } => return Ok(Motion::Hold),
         };
         match planned {
             Ok(plan) => Ok(Motion::along(plan)),
@@ -350,7 +356,7 @@ impl<P: Planner> Axis<P> {
             Work::Distance(distance) => ("Distance", distance),
             Work::Velocity { velocity, .. } => ("Velocity", velocity),
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),
-            Work::Home(position) => ("Position", position),
+            Work::Home(position) | Work::SetPosition { position, .. } => ("Position", position),
         };
         let limit = match self.config.software_limits {
             Some((_, max)) if error == ErrorId::TargetOutsideSoftwareLimits && self.target(entry) > max => {
@@ -381,7 +387,9 @@ impl<P: Planner> Axis<P> {
         let target = match entry.work {
             Work::Position(target) => target,
             Work::Distance(distance) => self.setpoint.position + distance,
-            Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) => self.setpoint.position,
+            Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } => {
+                self.setpoint.position
+            }
         };
         target + self.superimposed_left()
     }
@@ -444,7 +452,7 @@ impl<P: Planner> Axis<P> {
             Work::Position(_) | Work::Distance(_) | Work::Halt => AxisEvent::StartDiscrete,
             Work::Velocity { .. } => AxisEvent::StartContinuous,
             Work::Stop => AxisEvent::Stop,
-            Work::Home(_) => AxisEvent::StartHoming,
+            Work::Home(_) | Work::SetPosition { .. } => AxisEvent::StartHoming,
         });
         self.in_force = entry.limits;
         self.motion = motion;

@@ -1,11 +1,12 @@
 //! One axis: what it knows and what others may ask.
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
-//! on commands, [`step`] moves and hands over, [`modulo`] counts turns and finds the way round, [`superimposed`]
+//! on commands, [`step`] moves and hands over, [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`superimposed`]
 //! adds a second motion, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading
 //! blocks ask.
 
 mod accept;
+mod coordinates;
 mod dynamics;
 mod modulo;
 mod power;
@@ -200,7 +201,13 @@ pub struct Axis<P: Planner = Standard> {
     cause_present: bool,
     reset: Option<power::Reset>,
     homed: bool,
+    /// What the drive's present commanded position is called from now on (u); none for drives that count
+    /// increments.
     rename: Option<f64>,
+    /// What positions are called more than increments say (u); 0 for drives that speak units.
+    shift: f64,
+    /// A queued MC_SetPosition takes effect at the next latch.
+    shift_due: bool,
 }
 
 impl<P: Planner> Axis<P> {
@@ -252,6 +259,8 @@ impl<P: Planner> Axis<P> {
             reset: None,
             homed: false,
             rename: None,
+            shift: 0.0,
+            shift_due: false,
         })
     }
 
@@ -333,9 +342,12 @@ impl<P: Planner> Axis<P> {
                 Work::Velocity { .. } => Fate::Active {
                     reached: self.goal_reached(),
                 },
-                Work::Position(_) | Work::Distance(_) | Work::Halt | Work::Stop | Work::Home(_) => {
-                    Fate::Active { reached: false }
-                }
+                Work::Position(_)
+                | Work::Distance(_)
+                | Work::Halt
+                | Work::Stop
+                | Work::Home(_)
+                | Work::SetPosition { .. } => Fate::Active { reached: false },
             };
         }
         self.fate_of_other(id)
@@ -385,18 +397,15 @@ impl<P: Planner> Axis<P> {
     /// The drive's command for this scan.
     #[inline]
     pub fn drive_command(&mut self) -> DriveCommand {
-        let rename = match self.rename {
-            Some(position) => {
-                self.rename = None;
-                Some(position_at_drive(&self.config, position))
-            }
-            None => None,
-        };
+        let rename = self.rename;
+        if rename.is_some() {
+            self.rename = None;
+        }
         DriveCommand {
             request: self.drive_request(),
             position: match &self.modulo {
-                None => position_at_drive(&self.config, self.setpoint.position),
-                Some(modulo) => modulo.at_drive(&self.config, self.setpoint.position),
+                None => position_at_drive(&self.config, self.setpoint.position - self.shift),
+                Some(modulo) => modulo.at_drive(&self.config, self.setpoint.position - self.shift),
             },
             velocity: self.setpoint.velocity,
             rename,

@@ -70,7 +70,7 @@ impl Modulo {
 
     /// The actual position (u) in the first turn.
     #[inline(never)]
-    pub fn latch(&mut self, config: &AxisConfig, feedback: DrivePosition) -> f64 {
+    pub fn latch(&mut self, config: &AxisConfig, feedback: DrivePosition, shift: f64) -> f64 {
         let (turns, position) = match (feedback, config.scaling, &self.turn) {
             (DrivePosition::Increments(increments), Some(scaling), Some(turn)) => {
                 Scaling::to_units_turned(&scaling, turn, self.length, increments)
@@ -79,7 +79,8 @@ impl Modulo {
             // A drive that counts increments needs a scaling; take one increment as one unit.
             (DrivePosition::Increments(increments), ..) => split(increments as f64, self.length),
         };
-        self.actual_turns = turns;
+        let (further, position) = split(position + shift, self.length);
+        self.actual_turns = turns.saturating_add(further);
         position
     }
 }
@@ -89,13 +90,6 @@ impl<P: Planner> Axis<P> {
     pub(super) fn count_actual_turns(&mut self) {
         if let Some(modulo) = &mut self.modulo {
             modulo.turns = modulo.actual_turns;
-        }
-    }
-
-    /// The drive counts from the present position on (MC_Home).
-    pub(super) fn forget_turns(&mut self) {
-        if let Some(modulo) = &mut self.modulo {
-            modulo.turns = 0;
         }
     }
 
@@ -174,7 +168,9 @@ impl<P: Planner> Axis<P> {
                 (turns.saturating_add(further), target)
             }
             Work::Position(target) => (self.turns_to(target, start, here, length, entry, before)?, target),
-            Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) => (0, here),
+            Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } => {
+                (0, here)
+            }
         };
         let (whole, error) = two_product(turns as f64, length);
         let position = (here - whole) - error;

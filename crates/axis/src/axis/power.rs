@@ -53,6 +53,7 @@ impl<P: Planner> Axis<P> {
             && feedback.fault.is_none()
             && feedback.comms == Comms::Ok
             && self.reset.is_none()
+            && !self.shift_due
             && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop)
     }
 
@@ -62,14 +63,14 @@ impl<P: Planner> Axis<P> {
         match (feedback.position, &mut self.modulo) {
             (DrivePosition::Units(units), None) => units,
             (DrivePosition::Increments(increments), None) => self.position_at_increment(increments),
-            (position, Some(modulo)) => modulo.latch(&self.config, position),
+            (position, Some(modulo)) => modulo.latch(&self.config, position, self.shift),
         }
     }
 
     #[inline(never)]
     fn position_at_increment(&self, increments: i64) -> f64 {
         match self.config.scaling {
-            Some(scaling) => scaling.to_units(increments),
+            Some(scaling) => scaling.to_units(increments) + self.shift,
             // A drive that counts increments needs a scaling; take one increment as one unit.
             None => increments as f64,
         }
@@ -88,6 +89,9 @@ impl<P: Planner> Axis<P> {
             let position = self.position_of(feedback);
             self.latch(position);
             self.follow_power(feedback, scan, log);
+            if self.shift_due {
+                self.take_queued_shifts(scan, log);
+            }
         }
         self.finish_reset();
     }

@@ -18,6 +18,8 @@ pub(super) enum Work {
     Stop,
     /// The present position gets a name (u).
     Home(f64),
+    /// The coordinates move: the actual position becomes this, or grows by it (u).
+    SetPosition { position: f64, relative: bool },
 }
 
 impl Work {
@@ -29,6 +31,7 @@ impl Work {
             Self::Halt => "halt",
             Self::Stop => "stop",
             Self::Home(_) => "home",
+            Self::SetPosition { .. } => "set position",
         }
     }
 }

@@ -160,12 +160,14 @@ impl<P: Planner> Axis<P> {
 
     /// From the next feedback on, what is called `old` (u) is called `name` (u); no motion.
     pub(super) fn rename_actual(&mut self, old: f64, name: f64) {
-        let latched = |position: f64| match self.config.scaling {
-            Some(scaling) => scaling.to_units(scaling.to_increments(position)),
-            None => position,
-        };
-        let renamed = (latched(old), latched(name));
-        self.past.seam().renamed = Some(renamed);
+        self.past.seam().renamed = Some((old, name));
+    }
+
+    /// Every actual position so far, the present one included, is called `by` (u) more; no motion.
+    pub(super) fn shift_actual(&mut self, by: f64) {
+        self.actual += by;
+        self.past.before += by;
+        self.past.earlier += by;
     }
 
     /// The actual position (u) if it is fresh.
@@ -224,7 +226,7 @@ impl<P: Planner> Axis<P> {
         match self.owner.as_ref().map(|owner| &owner.work) {
             Some(Work::Position(_) | Work::Distance(_)) => Way::of(goal.position - self.setpoint.position),
             Some(Work::Velocity { .. }) => Way::of(goal.velocity),
-            Some(Work::Halt | Work::Stop | Work::Home(_)) | None => Way::Rest,
+            Some(Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. }) | None => Way::Rest,
         }
     }
 

@@ -125,7 +125,9 @@ impl<P: Planner> Axis<P> {
             Some(Work::Velocity { .. }) => true,
             Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan() + self.superimposed_left()),
             // Targets were checked when the command was taken.
-            Some(Work::Position(_) | Work::Distance(_) | Work::Home(_)) | None => false,
+            Some(Work::Position(_) | Work::Distance(_) | Work::Home(_) | Work::SetPosition { .. }) | None => {
+                false
+            }
         };
         leaving
             && leaves(
@@ -161,10 +163,7 @@ impl<P: Planner> Axis<P> {
         match owner.work {
             Work::Position(_) | Work::Distance(_) | Work::Halt => self.complete(scan, log),
             Work::Home(position) => {
-                self.rename_actual(self.setpoint.position, position);
-                self.setpoint = Setpoint::at_rest(position);
-                self.forget_turns();
-                self.rename = Some(position);
+                self.call_set_position(position);
                 self.homed = true;
                 self.complete(scan, log);
             }
@@ -180,6 +179,8 @@ impl<P: Planner> Axis<P> {
             }
             // An endless motion gives way when it has reached its velocity.
             Work::Velocity { .. } => self.hand_over(scan, log),
+            // It never owns the axis.
+            Work::SetPosition { .. } => {}
         }
     }
 
@@ -203,6 +204,9 @@ impl<P: Planner> Axis<P> {
             let Some(next) = self.queue.first().copied() else {
                 return;
             };
+            if self.queue_waits_for_shift() {
+                return;
+            }
             let planned = self.plan_next(&next);
             if let Ok(None) = planned {
                 return;

@@ -166,6 +166,15 @@ impl OnlinePlan {
         }
     }
 
+    /// The same motion in coordinates moved by `by` (u).
+    pub(crate) fn shift(&mut self, by: f64) {
+        self.start.position += by;
+        self.target += by;
+        if let Some(tail) = &mut self.found.tail {
+            tail.grid.shift(by);
+        }
+    }
+
     /// The motion with the end velocity alone, as a plan of its own with the same count of scans; none before
     /// `scan` is at its end, or if it ends at rest.
     pub(crate) fn cruise(&self, scan: u64) -> Option<RampPlan> {

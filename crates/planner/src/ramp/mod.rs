@@ -165,6 +165,12 @@ impl RampPlan {
         })
     }
 
+    /// The same motion in coordinates moved by `by` (u).
+    pub(crate) fn shift(&mut self, by: f64) {
+        self.start.position += by;
+        self.path.shift(by);
+    }
+
     /// The constant `velocity` (u/s) from `position` (u) on.
     pub(crate) fn cruising(position: f64, velocity: f64, order: Order, cycle: f64) -> Self {
         Self {

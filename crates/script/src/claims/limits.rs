@@ -92,7 +92,7 @@ fn resolved(rows: &Rows<'_>, axis: usize) -> [f64; 4] {
             break;
         };
         position = match turn {
-            Some(_) => position + rows.way(axis, now - before),
+            Some(_) => position + rows.way(axis, scan, 0, now - before),
             None => now,
         };
         if position.is_finite() {

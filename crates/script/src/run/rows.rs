@@ -12,6 +12,17 @@ pub(crate) struct Rows<'a> {
     pub(crate) script: &'a Script,
     pub(crate) layout: &'a Layout,
     pub(crate) trace: &'a Trace,
+    /// In order of scans.
+    pub(crate) shifts: &'a [Shift],
+}
+
+/// The coordinates of an axis moved in a scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shift {
+    pub(crate) scan: u64,
+    pub(crate) axis: usize,
+    /// By how much its positions are called more from then on (u).
+    pub(crate) by: f64,
 }
 
 impl<'a> Rows<'a> {
@@ -49,7 +60,7 @@ impl<'a> Rows<'a> {
 
     /// Backward difference of published positions of this order (1 to 4) at `scan` over cycle^order, after
     /// the one of the same order one scan earlier: [before, now]. On a modulo axis it is the difference of the
-    /// unwrapped positions.
+    /// unwrapped positions, and coordinates that move are no motion.
     ///
     /// Subtracts neighbours `order` times rather than weighing positions with binomial coefficients:
     /// neighbours are close, so nearly every subtraction is exact.
@@ -61,7 +72,7 @@ impl<'a> Rows<'a> {
         let mut newer = self.position(axis, scan, 0)?;
         for (back, value) in (1..).zip(used.iter_mut()) {
             let older = self.position(axis, scan, back)?;
-            *value = self.way(axis, newer - older);
+            *value = self.way(axis, scan + 1, back, newer - older);
             newer = older;
         }
         let cycle = self.script.cycle_ns as f64 / 1e9;
@@ -80,13 +91,31 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The way of a difference of positions: on a modulo axis the shorter way round, since no axis goes half a
-    /// turn in a scan.
-    pub(crate) fn way(&self, axis: usize, difference: f64) -> f64 {
-        match self.script.axes.get(axis).and_then(|axis| axis.config.modulo) {
-            Some(turn) if difference > turn / 2.0 => difference - turn,
-            Some(turn) if difference < -turn / 2.0 => difference + turn,
-            _ => difference,
+    /// The way of a difference of positions, the later of which is that of `back` scans before `scan`: without
+    /// what the coordinates moved in that scan, and on a modulo axis the shorter way round, since no axis goes
+    /// half a turn in a scan.
+    pub(crate) fn way(&self, axis: usize, scan: u64, back: u64, difference: f64) -> f64 {
+        let mut difference = difference;
+        if let Some(scan) = scan.checked_sub(back) {
+            let first = self.shifts.partition_point(|shift| shift.scan < scan);
+            let there = self.shifts.get(first..).unwrap_or(&[]).iter();
+            for shift in there.take_while(|shift| shift.scan == scan) {
+                if shift.axis == axis {
+                    difference -= shift.by;
+                }
+            }
+        }
+        let Some(turn) = self.script.axes.get(axis).and_then(|axis| axis.config.modulo) else {
+            return difference;
+        };
+        if difference.abs() <= turn / 2.0 {
+            return difference;
+        }
+        let difference = difference.rem_euclid(turn);
+        if difference > turn / 2.0 {
+            difference - turn
+        } else {
+            difference
         }
     }
 
