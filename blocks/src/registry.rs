@@ -132,6 +132,7 @@ mod tests {
                 "MC_BUFFER_MODE" => (0..=5).collect(),
                 "MC_DIRECTION" => (0..=4).collect(),
                 "MC_SOURCE" => (0..=2).collect(),
+                "MC_EXECUTION_MODE" => (0..=1).collect(),
                 _ => panic!("state the numbers of {name} here"),
             }
         };

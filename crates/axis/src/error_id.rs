@@ -106,6 +106,9 @@ error_ids! {
     ExecutionModeInvalid = 120, "ExecutionMode is not a number of MC_EXECUTION_MODE.",
         "Use mcImmediately (0) or mcQueued (1).";
 
+    OutwardFromSoftwareLimit = 121, "The axis stands at or beyond a software limit and the endless motion would lead further out.",
+        "Move back inside: the other way, or to a target inside.";
+
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";
     InErrorStop = 202, "The axis is in ErrorStop.",
@@ -129,7 +132,7 @@ error_ids! {
 
     AxisFault = 401, "The axis reported a fault.",
         "Remove its cause, then call MC_Reset.";
-    SoftwareLimitReached = 402, "An endless motion would have left the software limits; the axis stopped inside.",
+    SoftwareLimitReached = 402, "A motion would have left the software limits; the axis stopped inside.",
         "Call MC_Reset, then move away from the limit.";
     CauseStillPresent = 403, "MC_Reset found the cause of the axis error still present.",
         "Remove the cause, then give MC_Reset a new rising edge.";

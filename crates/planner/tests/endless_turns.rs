@@ -1,7 +1,7 @@
 //! Endless motions brought back by whole turns: where they are after a thousand million turns, against exact
 //! integer arithmetic.
 
-use standstill_planner::{Limits, OnlinePlan, Plan, Planner, RampPlan, Setpoint, Standard};
+use standstill_planner::{Limits, MoveProfile, OnlinePlan, Plan, Planner, RampPlan, Setpoint, Standard};
 
 /// One cycle is 2^-10 s, so that every product below is a whole number of 2^-60 u.
 const CYCLE: f64 = 1.0 / 1024.0;
@@ -84,7 +84,9 @@ fn only_an_endless_motion_past_its_goal_is_brought_back() {
     assert_eq!(ramp.scans(), 0);
     assert!((before - turns as f64 * 0.001 - ramp.at(0).position).abs() < 1e-15);
     assert_eq!(ramp.at(0).velocity, 10.0);
-    let mut grid = planner.move_to(&rest, 10.0, &limits, &limits).unwrap();
+    let mut grid = planner
+        .move_to(MoveProfile::default(), &rest, 10.0, &limits, &limits)
+        .unwrap();
     assert_eq!(grid.bring_back(1 << 20, 1.0), None);
 
     let mut passing = standstill_planner::StandardPlan::Online(

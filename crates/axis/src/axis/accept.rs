@@ -325,6 +325,7 @@ impl<P: Planner> Axis<P> {
                 } else {
                     velocity
                 };
+                self.not_outward(start.position, velocity)?;
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
             Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
@@ -333,13 +334,6 @@ impl<P: Planner> Axis<P> {
         match planned {
             Ok(plan) => Ok(Motion::along(plan)),
             Err(error) => Err(refusal(error)),
-        }
-    }
-
-    pub(super) fn allowed(&self, target: f64) -> Result<f64, ErrorId> {
-        match self.config.software_limits {
-            Some((min, max)) if target < min || target > max => Err(ErrorId::TargetOutsideSoftwareLimits),
-            _ => Ok(target),
         }
     }
 
@@ -358,28 +352,13 @@ impl<P: Planner> Axis<P> {
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),
             Work::Home(position) | Work::SetPosition { position, .. } => ("Position", position),
         };
-        let limit = match self.config.software_limits {
-            Some((_, max)) if error == ErrorId::TargetOutsideSoftwareLimits && self.target(entry) > max => {
-                max
+        let limit = match error {
+            ErrorId::TargetOutsideSoftwareLimits | ErrorId::OutwardFromSoftwareLimit => {
+                self.broken_software_limit(self.target(entry))
             }
-            Some((min, _)) if error == ErrorId::TargetOutsideSoftwareLimits => min,
             _ => f64::NAN,
         };
         self.refuse(pin, value, limit, error, source, log)
-    }
-
-    /// The software limit `target` is beyond (u).
-    pub(super) fn broken_software_limit(&self, target: f64) -> f64 {
-        match self.config.software_limits {
-            Some((min, max)) => {
-                if target > max {
-                    max
-                } else {
-                    min
-                }
-            }
-            None => f64::NAN,
-        }
     }
 
     /// Where a positioning command ends (u).
@@ -459,6 +438,7 @@ impl<P: Planner> Axis<P> {
         if self.modulo.is_some() {
             self.start_of_plan();
         }
+        self.watched = self.needs_watching(&entry);
         self.owner = Some(entry);
     }
 }

@@ -161,6 +161,7 @@ impl<P: Planner> Axis<P> {
             // Out of operation the drive stands at its actual position, where it may have been pushed to.
             self.rename = Some(self.setpoint().position);
         }
+        self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
         self.record(Event::Shifted { by }, source, log);
         Ok(())
     }

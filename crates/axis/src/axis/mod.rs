@@ -12,6 +12,7 @@ mod modulo;
 mod power;
 mod queue;
 mod reading;
+mod software_limits;
 mod step;
 mod superimposed;
 
@@ -206,6 +207,8 @@ pub struct Axis<P: Planner = Standard> {
     rename: Option<f64>,
     /// What positions are called more than increments say (u); 0 for drives that speak units.
     shift: f64,
+    /// The owner's motion may leave the software limits, so every set-point is looked at.
+    watched: bool,
     /// A queued MC_SetPosition takes effect at the next latch.
     shift_due: bool,
 }
@@ -260,6 +263,7 @@ impl<P: Planner> Axis<P> {
             homed: false,
             rename: None,
             shift: 0.0,
+            watched: false,
             shift_due: false,
         })
     }

@@ -202,6 +202,8 @@ impl<P: Planner> Axis<P> {
 
     /// Plans a ramp to rest with the stop dynamics.
     fn ramp_down(&mut self, source: Source, log: &mut Log) {
+        // Nothing stops sooner than this.
+        self.watched = false;
         // Only a plan leaves a set-point that is not at rest.
         if self.setpoint.is_at_rest() {
             self.motion = Motion::Hold;

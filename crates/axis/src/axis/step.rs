@@ -39,7 +39,7 @@ impl<P: Planner> Axis<P> {
         let next = plan.at(*elapsed);
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
-        } else if self.would_leave() {
+        } else if self.watched && self.would_leave(&next) {
             self.fail(ErrorId::SoftwareLimitReached, scan, log);
         } else {
             self.publish(next);
@@ -97,56 +97,6 @@ impl<P: Planner> Axis<P> {
             Motion::Follow | Motion::Hold => Setpoint::at_rest(self.setpoint.position),
         };
         self.publish(next);
-    }
-
-    /// Whether this is the last scan in which the stop dynamics can keep a motion that would leave the
-    /// software limits inside them.
-    #[inline]
-    fn would_leave(&self) -> bool {
-        match self.config.software_limits {
-            Some(limits) => self.would_leave_within(limits),
-            None => false,
-        }
-    }
-
-    /// The same for limits `min` and `max` (u).
-    fn would_leave_within(&self, limits: (f64, f64)) -> bool {
-        match &self.motion {
-            Motion::Run { plan, elapsed, .. } => self.would_leave_from(&plan.at(*elapsed), limits),
-            Motion::Follow | Motion::Hold => false,
-        }
-    }
-
-    /// The same for the next set-point.
-    #[inline(never)]
-    pub(super) fn would_leave_from(&self, next: &Setpoint, (min, max): (f64, f64)) -> bool {
-        let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
-        let leaving = match self.owner.as_ref().map(|owner| &owner.work) {
-            Some(Work::Velocity { .. }) => true,
-            Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan() + self.superimposed_left()),
-            // Targets were checked when the command was taken.
-            Some(Work::Position(_) | Work::Distance(_) | Work::Home(_) | Work::SetPosition { .. }) | None => {
-                false
-            }
-        };
-        leaving
-            && leaves(
-                match self
-                    .planner
-                    .ramp_to(next, 0.0, &self.stop_limits(), &self.in_force)
-                {
-                    Ok(ramp) => ramp.at(u64::from(ramp.scans())).position,
-                    Err(_) => next.position,
-                },
-            )
-    }
-
-    /// Where the running plan has its goal (u).
-    fn end_of_plan(&self) -> f64 {
-        match &self.motion {
-            Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
-            Motion::Follow | Motion::Hold => self.setpoint.position,
-        }
     }
 
     /// Completion and hand-over, at the goal.

@@ -342,7 +342,7 @@ impl<P: Planner> Axis<P> {
         let next = layer.sum();
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
-        } else if self.sum_would_leave(&next) {
+        } else if self.config.software_limits.is_some() && self.would_leave(&next) {
             self.fail(ErrorId::SoftwareLimitReached, scan, log);
         } else {
             self.publish(next);
@@ -354,15 +354,6 @@ impl<P: Planner> Axis<P> {
             self.settle(scan, log);
         }
         self.settle_superimposed(scan, log);
-    }
-
-    /// As [`Axis::would_leave_from`] for the sum; where a motion ends was checked when it was taken, and that
-    /// it does not turn outside when it was planned.
-    fn sum_would_leave(&self, next: &Setpoint) -> bool {
-        match (self.config.software_limits, &self.motion) {
-            (Some(limits), Motion::Run { .. }) => self.would_leave_from(next, limits),
-            _ => false,
-        }
     }
 
     /// Completion of what is superimposed, and a new attempt of a command that waits or was lowered.

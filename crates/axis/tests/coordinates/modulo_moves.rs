@@ -2,9 +2,7 @@
 //! axis does it: what the whole way is, that nothing turns back that must not, and that the target is met to
 //! the bit.
 
-mod rig;
-
-use rig::{CYCLE, Random, Rig};
+use crate::rig::{CYCLE, Random, Rig};
 use standstill_axis::{
     AxisConfig, BufferMode, Command, Direction, DrivePosition, Dynamics, Fate, IdealDrive, Limits, Request,
     Scaling, StartState,

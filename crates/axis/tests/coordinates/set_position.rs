@@ -1,8 +1,6 @@
 //! Coordinates that move under random motions: increments go on as if nothing had happened, and velocities too.
 
-mod rig;
-
-use rig::{CYCLE, Random, Rig};
+use crate::rig::{CYCLE, Random, Rig};
 use standstill_axis::{
     AxisConfig, Command, Direction, Dynamics, ExecutionMode, Fate, Limits, Scaling, StartState,
 };
