@@ -9,8 +9,9 @@ use crate::administrative::{
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
     mc_halt::McHalt, mc_halt_superimposed::McHaltSuperimposed, mc_move_absolute::McMoveAbsolute,
-    mc_move_relative::McMoveRelative, mc_move_superimposed::McMoveSuperimposed,
-    mc_move_velocity::McMoveVelocity, mc_stop::McStop,
+    mc_move_additive::McMoveAdditive, mc_move_continuous_absolute::McMoveContinuousAbsolute,
+    mc_move_continuous_relative::McMoveContinuousRelative, mc_move_relative::McMoveRelative,
+    mc_move_superimposed::McMoveSuperimposed, mc_move_velocity::McMoveVelocity, mc_stop::McStop,
 };
 use crate::standard::{
     ctd::Ctd, ctu::Ctu, ctud::Ctud, f_trig::FTrig, r_trig::RTrig, rs::Rs, sr::Sr, tof::Tof, ton::Ton, tp::Tp,
@@ -62,7 +63,8 @@ registry! {
     McPower McReset McReadStatus McReadMotionState McReadAxisInfo McReadAxisError
     McReadActualPosition McReadActualVelocity McSetPosition
     McHome
-    McStop McHalt McMoveAbsolute McMoveRelative McMoveVelocity McMoveSuperimposed McHaltSuperimposed
+    McStop McHalt McMoveAbsolute McMoveRelative McMoveAdditive McMoveVelocity
+    McMoveContinuousAbsolute McMoveContinuousRelative McMoveSuperimposed McHaltSuperimposed
     RTrig FTrig Sr Rs Ctu Ctd Ctud Ton Tof Tp
 }
 

@@ -3,6 +3,9 @@
 pub mod mc_halt;
 pub mod mc_halt_superimposed;
 pub mod mc_move_absolute;
+pub mod mc_move_additive;
+pub mod mc_move_continuous_absolute;
+pub mod mc_move_continuous_relative;
 pub mod mc_move_relative;
 pub mod mc_move_superimposed;
 pub mod mc_move_velocity;

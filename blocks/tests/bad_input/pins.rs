@@ -4,7 +4,7 @@ use crate::bench::Bench;
 use crate::{Cell, rows, same_motion, trigger};
 use standstill_axis::{Event, Record};
 use standstill_blocks::{BlockInstance, REGISTRY};
-use standstill_fb::{PinType, Value};
+use standstill_fb::{AnyInstance, PinType, Value};
 
 /// The values tried at a pin of this type, in the order of the cells; one list for each cell.
 fn values(ty: PinType) -> Vec<Vec<Value>> {

@@ -1,7 +1,7 @@
 //! A planner that only counts: every change takes two scans. At velocity 2 a move takes two scans even to
 //! where it is: what is superimposed must not make the positions many.
 
-use standstill_axis::{Excess, Limits, MoveProfile, Plan, PlanError, Planner, Setpoint};
+use standstill_axis::{Excess, Limits, MoveProfile, Passage, Plan, PlanError, Planner, Setpoint};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Countdown;
@@ -56,6 +56,37 @@ impl Planner for Countdown {
             },
             false,
         ))
+    }
+
+    fn pass(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        velocity: f64,
+        _: &Limits,
+        _: &Limits,
+    ) -> Result<Count, PlanError> {
+        let goal = Setpoint {
+            velocity,
+            ..Setpoint::at_rest(target)
+        };
+        Ok(Count::to(start, goal, false))
+    }
+
+    fn blend(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        passage: &Passage,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<Option<Count>, PlanError> {
+        let velocity = passage.wanted.copysign(target - start.position);
+        self.pass(start, target, velocity, limits, before).map(Some)
+    }
+
+    fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits) -> f64 {
+        wanted
     }
 
     /// Two motions fit unless the one below has just begun: so a command waits, and a hand-over finds no room.

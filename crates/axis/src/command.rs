@@ -89,7 +89,7 @@ impl<E: IecEnum> Raw<E> {
 macro_rules! iec_enum {
     ($(#[$meta:meta])* $name:ident = $iec:literal { $($(#[$doc:meta])* $element:ident = $text:literal, $number:literal;)* }) => {
         $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum $name { $($(#[$doc])* $element = $number,)* }
 
         impl IecEnum for $name {
@@ -204,6 +204,34 @@ pub enum Command {
     MoveRelative {
         /// Distance (u), signed.
         distance: f64,
+        /// Dynamic values.
+        dynamics: Dynamics,
+    },
+    /// By a distance from the last commanded target, or from the set position where there is none; the
+    /// velocity must be positive.
+    MoveAdditive {
+        /// Distance (u), signed.
+        distance: f64,
+        /// Dynamic values.
+        dynamics: Dynamics,
+    },
+    /// To an absolute position and on from there without end; the velocity must be positive.
+    MoveContinuousAbsolute {
+        /// Target (u).
+        position: f64,
+        /// Velocity at the target and from there on (u/s), signed.
+        end_velocity: f64,
+        /// Dynamic values.
+        dynamics: Dynamics,
+        /// Way round on a modulo axis; ignored on a linear one.
+        direction: Raw<Direction>,
+    },
+    /// The same by a distance from the set position at the start.
+    MoveContinuousRelative {
+        /// Distance (u), signed.
+        distance: f64,
+        /// Velocity at the target and from there on (u/s), signed.
+        end_velocity: f64,
         /// Dynamic values.
         dynamics: Dynamics,
     },

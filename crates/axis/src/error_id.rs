@@ -99,14 +99,18 @@ error_ids! {
         "Choose a target inside them or change the axis configuration.";
     SourceInvalid = 118, "Source is not a number of MC_SOURCE.",
         "Use mcCommandedValue (0), mcSetValue (1) or mcActualValue (2).";
+    EndVelocityInvalid = 120, "EndVelocity is NaN or infinite, or its magnitude is above Velocity.",
+        "Give a finite number not above Velocity; its sign is the direction of motion at the target.";
+    EndVelocityAboveLimit = 121, "EndVelocity is above the axis limit and the axis is set to refuse that.",
+        "Lower EndVelocity, raise the limit, or set above_limit to clamp.";
 
     PositionOutsideModulo = 119, "The position is not in the first turn of a modulo axis.",
         "Give a position from 0 to below the length of a turn, or move by a distance.";
 
-    ExecutionModeInvalid = 120, "ExecutionMode is not a number of MC_EXECUTION_MODE.",
+    ExecutionModeInvalid = 122, "ExecutionMode is not a number of MC_EXECUTION_MODE.",
         "Use mcImmediately (0) or mcQueued (1).";
 
-    OutwardFromSoftwareLimit = 121, "The axis stands at or beyond a software limit and the endless motion would lead further out.",
+    OutwardFromSoftwareLimit = 123, "The axis stands at or beyond a software limit and the endless motion would lead further out.",
         "Move back inside: the other way, or to a target inside.";
 
     NotPowered = 201, "The axis is Disabled.",
@@ -145,8 +149,6 @@ error_ids! {
     CommunicationLost = 601, "The communication with the drive was lost.",
         "Restore it, then call MC_Reset.";
 
-    BlendingUnsupported = 701, "Blending buffer modes are not supported yet.",
-        "Use mcAborting or mcBuffered.";
     ContinuousUpdateUnsupported = 702, "ContinuousUpdate is not supported yet.",
         "Leave ContinuousUpdate FALSE and give a new command instead.";
     DirectionEnableUnsupported = 703, "EnablePositive and EnableNegative are not supported yet.",
@@ -159,6 +161,9 @@ error_ids! {
     PlanRefused = 903, "The planner refused inputs that the axis had accepted.",
         "This is a defect of standstill: please report the trace.";
 }
+
+/// Numbers that earlier versions showed and no version will show again, each with what it said.
+pub const RETIRED: &[(u16, &str)] = &[(701, "Blending buffer modes were not supported.")];
 
 // Deriving it needs an attribute on a variant that the table above writes.
 #[allow(clippy::derivable_impls)]
@@ -200,6 +205,13 @@ mod tests {
     use super::*;
 
     /// Covers: V27, R73
+    #[test]
+    fn retired_numbers_are_not_used_again() {
+        for (number, _) in RETIRED {
+            assert_eq!(ErrorId::from_number(*number), None);
+        }
+    }
+
     #[test]
     fn numbers_rise_and_every_error_says_what_to_do() {
         for pair in ErrorId::ALL.windows(2) {

@@ -30,12 +30,12 @@ pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, MODULO_MAX, Powe
 pub use drive::{
     Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals, Fault,
 };
-pub use error_id::{ErrorClass, ErrorId};
+pub use error_id::{ErrorClass, ErrorId, RETIRED};
 pub use fate::{FATES_KEPT, Fate};
 pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
 pub use log::{Event, Goal, LOG_KEPT, Log, Record};
 pub use scaling::{Scaling, Turn};
 pub use standstill_planner::{
-    Excess, Limits, MoveProfile, Order, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
+    Excess, Limits, MoveProfile, Order, Passage, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
 };
 pub use state::{ARROWS, Arrow, AxisEvent, AxisState, Refused, next};

@@ -13,6 +13,13 @@ pub enum Goal {
     Position(f64),
     /// A constant velocity (u/s).
     Velocity(f64),
+    /// A position passed with a velocity.
+    Passing {
+        /// The position (u).
+        position: f64,
+        /// The velocity there (u/s), signed.
+        velocity: f64,
+    },
 }
 
 /// What is worth recording.

@@ -30,7 +30,7 @@ pub mod turns;
 pub use error::{Field, PlanError};
 pub use grid::{GridPlan, Method, UnequalPlan};
 pub use limits::{Limits, Order};
-pub use online::{OnlinePlan, Rung};
+pub use online::{OnlinePlan, Passage, Rung};
 pub use papers::SampledPlan;
 pub use planner::{MoveProfile, Plan, Planner, Standard, StandardPlan};
 pub use ramp::{Excess, Peaks, RampPlan, Segment};

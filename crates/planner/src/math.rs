@@ -28,17 +28,25 @@ pub fn min(a: f64, b: f64) -> f64 {
 /// From here on every `f64` is whole.
 const WHOLE: f64 = (1_u64 << 52) as f64;
 
+/// The nearest whole number to `x` >= 0: from [`WHOLE`] on a sum has no room for a fraction. Two additions,
+/// where a conversion to an integer and back also guards against what does not fit.
+#[inline]
+fn nearest(x: f64) -> f64 {
+    if x < WHOLE { (x + WHOLE) - WHOLE } else { x }
+}
+
 /// The largest whole number <= `x`, for `x` >= 0.
 #[inline]
 pub fn floor(x: f64) -> f64 {
-    if x < WHOLE { x as i64 as f64 } else { x }
+    let nearest = nearest(x);
+    if nearest > x { nearest - 1.0 } else { nearest }
 }
 
 /// The smallest whole number >= `x`, for `x` >= 0.
 #[inline]
 pub fn ceil(x: f64) -> f64 {
-    let floor = floor(x);
-    if floor < x { floor + 1.0 } else { floor }
+    let nearest = nearest(x);
+    if nearest < x { nearest + 1.0 } else { nearest }
 }
 
 /// Cube root of a normal `x` > 0 within 6 %, a start for Newton's steps.

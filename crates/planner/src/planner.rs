@@ -2,8 +2,8 @@
 
 use crate::grid::Family;
 use crate::{
-    Excess, GridPlan, Limits, Method, OnlinePlan, PlanError, RampPlan, Rung, SampledPlan, Segment, Setpoint,
-    UnequalPlan, sum,
+    Excess, GridPlan, Limits, Method, OnlinePlan, Passage, PlanError, RampPlan, Rung, SampledPlan, Segment,
+    Setpoint, UnequalPlan, online, sum,
 };
 
 /// Plans moves for an axis.
@@ -45,6 +45,40 @@ pub trait Planner {
         limits: &Limits,
         before: &Limits,
     ) -> Result<Self::Plan, PlanError>;
+
+    /// A move from `start` that has the `velocity` (u/s, signed, at most that of `limits`) when it is at
+    /// `target` (u), and keeps it from there on; `before` as in [`Planner::move_to`]. Against the direction
+    /// in which the target lies it passes, turns, and is there again.
+    ///
+    /// # Errors
+    /// [`PlanError`] if an input is not usable or the move too long.
+    fn pass(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        velocity: f64,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<Self::Plan, PlanError>;
+
+    /// A move that passes `target` (u) as `passage` says, with the wanted speed or the nearest that needs no
+    /// overshoot and no reversal; `None` if there is none. The wanted speed may be above that of `limits`,
+    /// which then holds until just before the target; `before` as in [`Planner::move_to`].
+    ///
+    /// # Errors
+    /// [`PlanError`] if an input is not usable or the move too long.
+    fn blend(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        passage: &Passage,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<Option<Self::Plan>, PlanError>;
+
+    /// The largest speed (u/s), at most `wanted`, at which a move over `distance` (u, not negative) can
+    /// begin up to one scan late and still pass its end with no more than the speed `exit`.
+    fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits) -> f64;
 
     /// Whether two plans, each so many scans after its start, keep `limits` together from now on and do not
     /// turn outside `range` (u), which is one of the sum of their positions.
@@ -293,6 +327,33 @@ impl Planner for Standard {
         before: &Limits,
     ) -> Result<StandardPlan, PlanError> {
         RampPlan::new(start, velocity, limits, before, self.cycle).map(StandardPlan::Ramp)
+    }
+
+    fn pass(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        velocity: f64,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<StandardPlan, PlanError> {
+        OnlinePlan::passing(start, target, velocity, limits, before, self.cycle).map(StandardPlan::Online)
+    }
+
+    fn blend(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        passage: &Passage,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Result<Option<StandardPlan>, PlanError> {
+        OnlinePlan::blending(start, target, passage, limits, before, self.cycle)
+            .map(|plan| plan.map(StandardPlan::Online))
+    }
+
+    fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits) -> f64 {
+        online::entry_speed(wanted, distance, exit, limits, self.cycle)
     }
 
     fn fits(

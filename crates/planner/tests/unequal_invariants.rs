@@ -360,25 +360,34 @@ fn the_grid_costs_a_few_scans_over_the_online_plan() {
                 OnlinePlan::new(&rest, request.target, limits, limits, request.cycle).expect("valid");
             assert!(grid >= online.scans(), "{request:?}: {grid} {}", online.scans());
             more.push(grid - online.scans());
-            shares.push(f64::from(grid) / f64::from(online.scans()) - 1.0);
+            // A few scans more are any share of very few.
+            if online.scans() >= 50 {
+                shares.push(f64::from(grid) / f64::from(online.scans()) - 1.0);
+            }
             scans += u64::from(online.scans());
         }
         more.sort_unstable();
         shares.sort_by(f64::total_cmp);
         let sum: u32 = more.iter().sum();
-        let at = |share: usize| (more[more.len() * share / 100], shares[shares.len() * share / 100]);
+        let scan = |share: usize| more[more.len() * share / 100];
+        let share = |share: usize| shares[shares.len() * share / 100];
         println!(
-            "two rates: {two_rates}, {} moves: the same in {}, median {:?}, 95 % {:?}, 99 % {:?}, most {:?} {:?}; {:.2} % in all",
+            "two rates: {two_rates}, {} moves, {} the same, scans more: median {}, 95 % {}, 99 % {}, most {:?}; {:.2} % in all; \
+             from 50 scans on: median {:.4}, 95 % {:.4}, 99 % {:.4}, most {:?}",
             more.len(),
             more.iter().filter(|more| **more == 0).count(),
-            at(50),
-            at(95),
-            at(99),
+            scan(50),
+            scan(95),
+            scan(99),
             more.last(),
-            shares.last(),
-            100.0 * f64::from(sum) / scans as f64
+            100.0 * f64::from(sum) / scans as f64,
+            share(50),
+            share(95),
+            share(99),
+            shares.last()
         );
-        assert!(at(50).0 <= 1 && at(95).0 <= 10 && shares.last().is_some_and(|most| *most <= 1.0));
+        assert!(scan(50) <= 1 && scan(95) <= 7);
+        assert!(shares.last().is_some_and(|most| *most <= 0.04));
     }
 }
 

@@ -4,7 +4,7 @@
 
 use standstill_axis::{
     AxisConfig, AxisId, Command, Direction, DrivePosition, Dynamics, Excess, IdealDrive, Limits, MoveProfile,
-    Plan, PlanError, Planner, Raw, Request, Setpoint, StartState,
+    Passage, Plan, PlanError, Planner, Raw, Request, Setpoint, StartState,
 };
 use standstill_fb::Context;
 use standstill_scan::{
@@ -41,6 +41,25 @@ impl Planner for Noting {
 
     fn ramp_to(&self, _: &Setpoint, _: f64, _: &Limits, _: &Limits) -> Result<Note, PlanError> {
         Ok(Note(self.0))
+    }
+
+    fn pass(&self, _: &Setpoint, _: f64, _: f64, _: &Limits, _: &Limits) -> Result<Note, PlanError> {
+        Ok(Note(self.0))
+    }
+
+    fn blend(
+        &self,
+        _: &Setpoint,
+        _: f64,
+        _: &Passage,
+        _: &Limits,
+        _: &Limits,
+    ) -> Result<Option<Note>, PlanError> {
+        Ok(None)
+    }
+
+    fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits) -> f64 {
+        wanted
     }
 
     fn fits(&self, _: (&Note, u64), _: (&Note, u64), _: &Limits, _: Option<(f64, f64)>) -> bool {

@@ -64,7 +64,9 @@ pub mod prelude {
     };
     pub use standstill_blocks::homing::mc_home::McHome;
     pub use standstill_blocks::single_axis::{
-        mc_halt::McHalt, mc_move_absolute::McMoveAbsolute, mc_move_relative::McMoveRelative,
+        mc_halt::McHalt, mc_move_absolute::McMoveAbsolute, mc_move_additive::McMoveAdditive,
+        mc_move_continuous_absolute::McMoveContinuousAbsolute,
+        mc_move_continuous_relative::McMoveContinuousRelative, mc_move_relative::McMoveRelative,
         mc_move_velocity::McMoveVelocity, mc_stop::McStop,
     };
     pub use standstill_blocks::{BlockInstance, REGISTRY};

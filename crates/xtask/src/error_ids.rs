@@ -1,7 +1,7 @@
 //! `docs/error-ids.md` from the table of errors.
 
 use crate::{Generated, NOTICE};
-use standstill_axis::ErrorId;
+use standstill_axis::{ErrorId, RETIRED};
 use std::fmt::Write;
 
 pub fn page() -> Generated {
@@ -22,6 +22,10 @@ pub fn page() -> Generated {
             id.cause(),
             id.remedy()
         );
+    }
+    text.push_str("\n## Out of use\n\n| ErrorID | what it said |\n| ---: | --- |\n");
+    for (number, meaning) in RETIRED {
+        let _ = writeln!(text, "| {number} | {meaning} |");
     }
     Generated {
         path: "docs/error-ids.md".into(),

@@ -3,26 +3,37 @@
 //! Source: PLCopen Motion Control Part 1, state diagram and sections on aborting and buffered commands; the
 //! table "state x command" with the choices V6, V6a, V7a, V11.
 
-use super::queue::{Entry, Work};
+use super::queue::{Entry, Place, Work};
 use super::{Axis, Motion, Source};
 use crate::{
     AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Event, Fate, Goal,
     Log, Raw, Request,
 };
-use standstill_planner::{Excess, Field, Limits, Plan, PlanError, Planner, Setpoint};
+use standstill_planner::{Excess, Field, Limits, Passage, Plan, PlanError, Planner, Setpoint};
 
 /// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
 const ROUNDING: f64 = 1e-9;
 
-/// The Direction pin of a command to a position; the checks refuse undefined numbers.
-fn direction_of(command: &Command) -> Direction {
+/// At its end a command comes to rest.
+pub(super) const REST: Passage = Passage {
+    wanted: 0.0,
+    most: 0.0,
+};
+
+/// The Direction pin of a command to a position; the checks refuse undefined numbers. MC_MoveAdditive leads to a
+/// position of the frame.
+fn direction_of(command: &Command) -> Option<Direction> {
     match command {
-        Command::MoveAbsolute { direction, .. } => direction.get().unwrap_or(Direction::Unset),
-        Command::MoveRelative { .. }
+        Command::MoveAbsolute { direction, .. } | Command::MoveContinuousAbsolute { direction, .. } => {
+            direction.get()
+        }
+        Command::MoveAdditive { .. }
+        | Command::MoveRelative { .. }
+        | Command::MoveContinuousRelative { .. }
         | Command::MoveVelocity { .. }
         | Command::Halt { .. }
         | Command::Stop { .. }
-        | Command::Home { .. } => Direction::Unset,
+        | Command::Home { .. } => None,
     }
 }
 
@@ -51,7 +62,8 @@ pub(super) fn refusal(error: PlanError) -> ErrorId {
 impl<P: Planner> Axis<P> {
     /// Takes a command, or refuses it without any effect on the axis or the queue (R38).
     ///
-    /// Cost: at most one plan.
+    /// Cost: at most one plan; a blended command that waits costs a ramp, at most a root of ramps, for each
+    /// that waits, and the owner's plan with a blended end.
     ///
     /// # Errors
     /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit.
@@ -61,7 +73,7 @@ impl<P: Planner> Axis<P> {
         source: Source,
         log: &mut Log,
     ) -> Result<CommandId, ErrorId> {
-        let way = self.admit(request).map_err(|(pin, error)| {
+        let (mode, way) = self.admit(request).map_err(|(pin, error)| {
             let value = if pin == "BufferMode" {
                 f64::from(request.buffer_mode.number())
             } else {
@@ -69,21 +81,27 @@ impl<P: Planner> Axis<P> {
             };
             self.refuse(pin, value, f64::NAN, error, source, log)
         })?;
-        let (work, limits) = self.check(&request.command, source, log)?;
-        let entry = Entry {
+        let (work, limits) = self.check(&request.command, way, source, log)?;
+        let mut entry = Entry {
             id: self.new_id(),
             instance: source.instance,
             work,
             limits,
             direction: direction_of(&request.command),
+            turns: 0,
+            mode,
+            end: None,
+            passage: REST,
             held: work == Work::Stop,
         };
         match way {
             Way::Wait => {
                 self.queue.push(entry);
+                self.arm(mode, source.scan, log);
                 self.start_beside(source.scan, log);
             }
             Way::Now => {
+                self.aim(&mut entry, self.setpoint.position);
                 let motion = self
                     .plan_for(&entry)
                     .map_err(|error| self.refuse_plan(&entry, error, source, log))?;
@@ -108,18 +126,15 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The rules of the axis state.
-    fn admit(&self, request: &Request) -> Result<Way, (&'static str, ErrorId)> {
-        let buffered = match request.buffer_mode.get() {
-            Some(BufferMode::Aborting) => false,
-            Some(BufferMode::Buffered) => true,
-            Some(
-                BufferMode::BlendingLow
-                | BufferMode::BlendingPrevious
-                | BufferMode::BlendingNext
-                | BufferMode::BlendingHigh,
-            ) => return Err(("BufferMode", ErrorId::BlendingUnsupported)),
-            None => return Err(("BufferMode", ErrorId::BufferModeInvalid)),
+    fn admit(&self, request: &Request) -> Result<(BufferMode, Way), (&'static str, ErrorId)> {
+        let Some(mode) = request.buffer_mode.get() else {
+            return Err(("BufferMode", ErrorId::BufferModeInvalid));
         };
+        self.way(request, mode != BufferMode::Aborting)
+            .map(|way| (mode, way))
+    }
+
+    fn way(&self, request: &Request, buffered: bool) -> Result<Way, (&'static str, ErrorId)> {
         if request.continuous_update {
             return Err(("ContinuousUpdate", ErrorId::ContinuousUpdateUnsupported));
         }
@@ -170,46 +185,58 @@ impl<P: Planner> Axis<P> {
     /// Whether a command that waits now would follow a motion without an end, so not start at rest.
     fn predecessor_is_endless(&self) -> bool {
         let last = self.queue.last().or(self.owner.as_ref());
-        last.is_some_and(|entry| matches!(entry.work, Work::Velocity { .. }))
+        last.is_some_and(Entry::is_endless)
     }
 
     /// The values at the pins.
-    fn check(&self, command: &Command, source: Source, log: &mut Log) -> Result<(Work, Limits), ErrorId> {
+    fn check(
+        &self,
+        command: &Command,
+        way: Way,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(Work, Limits), ErrorId> {
         match *command {
             Command::MoveAbsolute {
                 position,
                 ref dynamics,
                 direction,
             } => {
-                if direction.get().is_none() {
-                    let number = f64::from(direction.number());
-                    return Err(self.refuse(
-                        "Direction",
-                        number,
-                        4.0,
-                        ErrorId::DirectionInvalid,
-                        source,
-                        log,
-                    ));
-                }
-                let position = self.finite("Position", position, source, log)?;
-                self.in_first_turn(position).map_err(|(length, error)| {
-                    self.refuse("Position", position, length, error, source, log)
-                })?;
-                self.allowed(position).map_err(|error| {
-                    self.refuse(
-                        "Position",
-                        position,
-                        self.broken_software_limit(position),
-                        error,
-                        source,
-                        log,
-                    )
-                })?;
-                if self.config.needs_homed && !self.homed {
-                    return Err(self.refuse("Position", position, f64::NAN, ErrorId::NotHomed, source, log));
-                }
+                let position = self.absolute(position, direction, source, log)?;
                 Ok((Work::Position(position), self.positioning(dynamics, source, log)?))
+            }
+            Command::MoveContinuousAbsolute {
+                position,
+                end_velocity,
+                ref dynamics,
+                direction,
+            } => {
+                let to = Place::At(self.absolute(position, direction, source, log)?);
+                self.through(to, end_velocity, dynamics, source, log)
+            }
+            Command::MoveContinuousRelative {
+                distance,
+                end_velocity,
+                ref dynamics,
+            } => {
+                let to = Place::By(self.finite("Distance", distance, source, log)?);
+                self.through(to, end_velocity, dynamics, source, log)
+            }
+            Command::MoveAdditive {
+                distance,
+                ref dynamics,
+            } => {
+                let distance = self.finite("Distance", distance, source, log)?;
+                let work = match self.commanded_target() {
+                    // Waiting, it counts from the end of the one before it, which is the last commanded target.
+                    Some(target) if way == Way::Now => {
+                        let position = self.finite("Distance", target + distance, source, log)?;
+                        self.inside("Distance", position, source, log)?;
+                        Work::Position(position)
+                    }
+                    _ => Work::Distance(distance),
+                };
+                Ok((work, self.positioning(dynamics, source, log)?))
             }
             Command::MoveRelative {
                 distance,
@@ -245,6 +272,68 @@ impl<P: Planner> Axis<P> {
                 })?;
                 Ok((Work::Home(position), self.config.limits))
             }
+        }
+    }
+
+    /// The target of an absolute move.
+    fn absolute(
+        &self,
+        position: f64,
+        direction: Raw<Direction>,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<f64, ErrorId> {
+        if direction.get().is_none() {
+            let number = f64::from(direction.number());
+            return Err(self.refuse("Direction", number, 4.0, ErrorId::DirectionInvalid, source, log));
+        }
+        let position = self.finite("Position", position, source, log)?;
+        self.in_first_turn(position)
+            .map_err(|(length, error)| self.refuse("Position", position, length, error, source, log))?;
+        self.inside("Position", position, source, log)?;
+        if self.config.needs_homed && !self.homed {
+            return Err(self.refuse("Position", position, f64::NAN, ErrorId::NotHomed, source, log));
+        }
+        Ok(position)
+    }
+
+    /// Refuses a target outside the software limits.
+    fn inside(&self, pin: &'static str, target: f64, source: Source, log: &mut Log) -> Result<(), ErrorId> {
+        match self.allowed(target) {
+            Ok(_) => Ok(()),
+            Err(error) => {
+                let limit = self.broken_software_limit(target);
+                Err(self.refuse(pin, target, limit, error, source, log))
+            }
+        }
+    }
+
+    /// A motion by way of a place.
+    fn through(
+        &self,
+        to: Place,
+        end_velocity: f64,
+        dynamics: &Dynamics,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(Work, Limits), ErrorId> {
+        let limits = self.positioning(dynamics, source, log)?;
+        let end_velocity = self.end_velocity(end_velocity, limits.velocity, source, log)?;
+        Ok((Work::Through { to, end_velocity }, limits))
+    }
+
+    /// Where the owner of a discrete motion leads (u): its target, or where the ramp of MC_Halt comes to
+    /// rest (V13, V13b).
+    fn commanded_target(&self) -> Option<f64> {
+        let owner = self.owner.as_ref()?;
+        match owner.work {
+            Work::Position(_) | Work::Distance(_) => owner.end,
+            Work::Halt => Some(self.end_of_plan()),
+            Work::Through { .. }
+            | Work::Velocity { .. }
+            | Work::Stop
+            | Work::Home(_)
+            | Work::SetPosition { .. } => None,
         }
     }
 
@@ -300,24 +389,27 @@ impl<P: Planner> Axis<P> {
         start: &Setpoint,
         before: &Limits,
     ) -> Result<Motion<P::Plan>, ErrorId> {
-        let profile = self.config.profile;
+        let framed = self.in_frame_of(entry, start);
+        let start = framed.as_ref().unwrap_or(start);
+        let end = match entry.end {
+            Some(end) if !end.is_finite() => return Err(ErrorId::PositionInvalid),
+            Some(end) => self.allowed(end)?,
+            None => start.position,
+        };
+        let to_rest = || {
+            let profile = self.config.profile;
+            self.planner.move_to(profile, start, end, &entry.limits, before)
+        };
         let planned = match entry.work {
-            Work::Position(_) | Work::Distance(_) if self.modulo.is_some() => {
-                let (start, target) = self.way_round(entry, start, before)?;
-                self.planner
-                    .move_to(profile, &start, target, &entry.limits, before)
-            }
-            Work::Position(target) => {
-                self.planner
-                    .move_to(profile, start, self.allowed(target)?, &entry.limits, before)
-            }
-            Work::Distance(distance) => {
-                let target = start.position + distance;
-                if !target.is_finite() {
-                    return Err(ErrorId::PositionInvalid);
-                }
-                self.planner
-                    .move_to(profile, start, self.allowed(target)?, &entry.limits, before)
+            Work::Position(_) | Work::Distance(_) => match self.blended(entry, start, end, before) {
+                Some(plan) => Ok(plan),
+                None => to_rest(),
+            },
+            Work::Through {
+                end_velocity: 0.0, ..
+            } => to_rest(),
+            Work::Through { end_velocity, .. } => {
+                self.planner.pass(start, end, end_velocity, &entry.limits, before)
             }
             Work::Velocity { velocity, along } => {
                 let velocity = if along {
@@ -346,31 +438,28 @@ impl<P: Planner> Axis<P> {
         log: &mut Log,
     ) -> ErrorId {
         let (pin, value) = match entry.work {
-            Work::Position(target) => ("Position", target),
-            Work::Distance(distance) => ("Distance", distance),
+            Work::Position(target)
+            | Work::Through {
+                to: Place::At(target),
+                ..
+            } => ("Position", target),
+            Work::Distance(distance)
+            | Work::Through {
+                to: Place::By(distance),
+                ..
+            } => ("Distance", distance),
             Work::Velocity { velocity, .. } => ("Velocity", velocity),
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),
             Work::Home(position) | Work::SetPosition { position, .. } => ("Position", position),
         };
         let limit = match error {
             ErrorId::TargetOutsideSoftwareLimits | ErrorId::OutwardFromSoftwareLimit => {
-                self.broken_software_limit(self.target(entry))
+                let end = entry.end.unwrap_or(self.setpoint.position);
+                self.broken_software_limit(end + self.superimposed_left())
             }
             _ => f64::NAN,
         };
         self.refuse(pin, value, limit, error, source, log)
-    }
-
-    /// Where a positioning command ends (u).
-    fn target(&self, entry: &Entry) -> f64 {
-        let target = match entry.work {
-            Work::Position(target) => target,
-            Work::Distance(distance) => self.setpoint.position + distance,
-            Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } => {
-                self.setpoint.position
-            }
-        };
-        target + self.superimposed_left()
     }
 
     /// What of an excess over a command's limits is beyond those of the axis as well, rounding apart. A faster
@@ -407,10 +496,13 @@ impl<P: Planner> Axis<P> {
         let positioning = matches!(entry.work, Work::Position(_) | Work::Distance(_));
         if let Motion::Run { plan, .. } = &motion {
             let end = plan.at(u64::from(plan.scans()));
-            let goal = if positioning {
-                Goal::Position(end.position)
-            } else {
-                Goal::Velocity(end.velocity)
+            let goal = match entry.end {
+                Some(position) if end.velocity != 0.0 || !positioning => Goal::Passing {
+                    position,
+                    velocity: end.velocity,
+                },
+                Some(_) => Goal::Position(end.position),
+                None => Goal::Velocity(end.velocity),
             };
             self.record(
                 Event::Planned {
@@ -429,11 +521,11 @@ impl<P: Planner> Axis<P> {
         }
         self.enter(match entry.work {
             Work::Position(_) | Work::Distance(_) | Work::Halt => AxisEvent::StartDiscrete,
-            Work::Velocity { .. } => AxisEvent::StartContinuous,
+            Work::Velocity { .. } | Work::Through { .. } => AxisEvent::StartContinuous,
             Work::Stop => AxisEvent::Stop,
             Work::Home(_) | Work::SetPosition { .. } => AxisEvent::StartHoming,
         });
-        self.in_force = entry.limits;
+        self.take_over(entry.limits, &motion);
         self.motion = motion;
         if self.modulo.is_some() {
             self.start_of_plan();

@@ -6,10 +6,11 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_SetPosition; V15, T39 i.
 
-use super::queue::{Entry, Work};
+use super::accept::REST;
+use super::queue::{Entry, Place, Work};
 use super::{Axis, Motion, Source};
 use crate::{
-    AxisState, CommandId, Direction, ErrorId, Event, ExecutionMode, Fate, Goal, Log, QUEUE_MAX, Raw,
+    AxisState, BufferMode, CommandId, ErrorId, Event, ExecutionMode, Fate, Goal, Log, QUEUE_MAX, Raw,
 };
 use standstill_planner::turns::split;
 use standstill_planner::{Plan, Planner, Setpoint};
@@ -59,7 +60,11 @@ impl<P: Planner> Axis<P> {
                 instance: source.instance,
                 work: Work::SetPosition { position, relative },
                 limits: self.config.limits,
-                direction: Direction::Unset,
+                direction: None,
+                turns: 0,
+                mode: BufferMode::Buffered,
+                end: None,
+                passage: REST,
                 held: false,
             };
             self.queue.push(entry);
@@ -116,7 +121,7 @@ impl<P: Planner> Axis<P> {
             };
             self.fates.record(entry.id, fate);
         }
-        self.hand_over(scan, log);
+        self.hand_over(self.setpoint.position, scan, log);
     }
 
     fn move_coordinates(
@@ -169,18 +174,25 @@ impl<P: Planner> Axis<P> {
     /// The motion in progress in coordinates moved by `by` (u): an absolute move is planned anew to the same
     /// number, every other one goes on as it is.
     fn move_motion(&mut self, by: f64, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
-        let Motion::Run { plan, .. } = &mut self.motion else {
+        let Motion::Run { plan, elapsed, scans } = &mut self.motion else {
             return Ok(());
         };
-        let absolute = self.owner.filter(|owner| matches!(owner.work, Work::Position(_)));
-        let Some(owner) = absolute else {
+        let absolute = |owner: &Entry| matches!(owner.place(), Some(Place::At(_)));
+        let Some(mut owner) = self.owner.filter(absolute).filter(|_| elapsed < scans) else {
             plan.shift(by);
+            if let Some(Entry { end: Some(end), .. }) = &mut self.owner {
+                *end += by;
+            }
             return Ok(());
         };
+        let start = self.aim(&mut owner, self.setpoint.position);
+        owner.passage = self.passage(&owner, start, 0);
         // With something superimposed it may find no room just now.
-        self.motion = self.plan_next(&owner)?.ok_or(ErrorId::InMotion)?;
-        self.in_force = owner.limits;
+        let motion = self.plan_next(&owner)?.ok_or(ErrorId::InMotion)?;
+        self.take_over(owner.limits, &motion);
+        self.motion = motion;
         self.start_of_plan();
+        self.owner = Some(owner);
         if let Motion::Run { plan, scans, .. } = &self.motion {
             let planned = Event::Planned {
                 goal: Goal::Position(plan.at(*scans).position),

@@ -104,6 +104,27 @@ impl<P: Planner> Axis<P> {
         self.within("Velocity", value, limit, ErrorId::VelocityAboveLimit, source, log)
     }
 
+    /// The end velocity of a continuous move: signed, at most `velocity` in magnitude.
+    pub(super) fn end_velocity(
+        &self,
+        value: f64,
+        velocity: f64,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<f64, ErrorId> {
+        let invalid = ErrorId::EndVelocityInvalid;
+        if !value.is_finite() {
+            return Err(self.refuse("EndVelocity", value, f64::NAN, invalid, source, log));
+        }
+        let limit = self.config.limits.velocity;
+        // Above the axis limit Velocity has been clamped to it, or the command refused.
+        if value.abs().min(limit) > velocity {
+            return Err(self.refuse("EndVelocity", value, velocity, invalid, source, log));
+        }
+        let above = ErrorId::EndVelocityAboveLimit;
+        self.within("EndVelocity", value, limit, above, source, log)
+    }
+
     /// Limits of a ramp nobody commanded: power-off, ErrorStop.
     pub(super) fn stop_limits(&self) -> Limits {
         let limits = self.config.limits;

@@ -1,11 +1,13 @@
 //! One axis: what it knows and what others may ask.
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
-//! on commands, [`step`] moves and hands over, [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`superimposed`]
-//! adds a second motion, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading
-//! blocks ask.
+//! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
+//! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
+//! motions inside, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
+//! ask.
 
 mod accept;
+mod blend;
 mod coordinates;
 mod dynamics;
 mod modulo;
@@ -18,8 +20,9 @@ mod superimposed;
 
 use crate::fate::Fates;
 use crate::{
-    AxisConfig, AxisEvent, AxisId, AxisState, CommandId, Comms, ConfigError, DriveCommand, DrivePosition,
-    DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState, state,
+    AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, Comms, ConfigError, DriveCommand,
+    DrivePosition, DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState,
+    state,
 };
 use modulo::Modulo;
 use queue::{Entry, Queue, Work};
@@ -104,8 +107,8 @@ pub struct Outlook {
     pub owner: Option<(CommandId, &'static str, bool)>,
     /// MC_Stop has come to rest and is held.
     pub stop_held: bool,
-    /// Commands that wait, in order.
-    pub waiting: [Option<(CommandId, &'static str)>; QUEUE_MAX],
+    /// Commands that wait, in order, with how they follow the one before.
+    pub waiting: [Option<(CommandId, &'static str, BufferMode)>; QUEUE_MAX],
     /// MC_Power.Enable.
     pub power_wanted: bool,
     /// Operation is enabled.
@@ -151,7 +154,7 @@ impl Outlook {
         if let Some((id, ..)) = &mut self.owner {
             *id = NUMBERLESS;
         }
-        for (id, _) in self.waiting.iter_mut().flatten() {
+        for (id, ..) in self.waiting.iter_mut().flatten() {
             *id = NUMBERLESS;
         }
         self.reset = self.reset.map(|_| NUMBERLESS);
@@ -187,6 +190,8 @@ pub struct Axis<P: Planner = Standard> {
     covered: Option<(CommandId, f64)>,
     /// Limits of the present motion, for whoever takes over from it.
     in_force: Limits,
+    /// Limits of the motion the owner took over from, for planning the owner anew.
+    before: Limits,
     /// The last velocity that was not zero (u/s): its sign is mcCurrentDirection.
     last_velocity: f64,
     owner: Option<Entry>,
@@ -239,6 +244,7 @@ impl<P: Planner> Axis<P> {
             layer: None,
             covered: None,
             in_force: config.limits,
+            before: config.limits,
             last_velocity: 1.0,
             owner: None,
             stop_held: false,
@@ -343,7 +349,7 @@ impl<P: Planner> Axis<P> {
         {
             return match owner.work {
                 Work::Stop if self.stop_held => Fate::Done,
-                Work::Velocity { .. } => Fate::Active {
+                Work::Velocity { .. } | Work::Through { .. } => Fate::Active {
                     reached: self.goal_reached(),
                 },
                 Work::Position(_)
@@ -374,7 +380,7 @@ impl<P: Planner> Axis<P> {
     pub fn outlook(&self) -> Outlook {
         let mut waiting = [None; QUEUE_MAX];
         for (slot, entry) in waiting.iter_mut().zip(self.queue.iter()) {
-            *slot = Some((entry.id, entry.work.kind()));
+            *slot = Some((entry.id, entry.work.kind(), entry.mode));
         }
         Outlook {
             state: self.state,

@@ -7,11 +7,11 @@
 //! Source: PLCopen Motion Control Part 1, MC_MoveAbsolute and MC_DIRECTION; B8; the rule for Direction is that of
 //! docs/modulo.md.
 
-use super::queue::{Entry, Work};
+use super::queue::{Entry, Place, Work};
 use super::{Axis, Motion};
 use crate::{AxisConfig, Direction, DrivePosition, ErrorId, Scaling, Turn};
 use standstill_planner::turns::{split, two_product};
-use standstill_planner::{Limits, Plan, Planner, Setpoint};
+use standstill_planner::{Plan, Planner, Setpoint};
 
 /// How far, relative to the way a stop takes, a target may lie before its end and still be met: rounding, and
 /// no visible way back.
@@ -119,6 +119,10 @@ impl<P: Planner> Axis<P> {
             *scans = u64::from(plan.scans());
             let start = plan.at(0).position;
             modulo.turns = modulo.turns.saturating_add(turns);
+            // Its end is left behind, in another frame.
+            if let Some(owner) = &mut self.owner {
+                owner.end = None;
+            }
             self.setpoint.position = match &mut self.layer {
                 Some(layer) => layer.bring_back(start, passed),
                 None => start,
@@ -142,98 +146,156 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Start and target of a positioning command on a modulo axis, in a frame whose first turn holds the
-    /// target.
+    /// Where `entry` ends, now that it is its turn, and how far its frame is from the present one. Distances
+    /// count from `from` (u), and so does the way to a target. Returns where it starts in its frame (u).
     ///
-    /// Cost: at most one ramp.
-    #[inline(never)]
-    pub(super) fn way_round(
-        &self,
-        entry: &Entry,
-        start: &Setpoint,
-        before: &Limits,
-    ) -> Result<(Setpoint, f64), ErrorId> {
-        let length = self.modulo.as_ref().map_or(f64::INFINITY, |modulo| modulo.length);
-        let (_, here) = split(start.position, length);
-        let (turns, target) = match entry.work {
-            Work::Distance(distance) => {
-                // Whole turns apart, so that they do not cost the rest its last bits.
-                let (turns, rest) = split(distance.abs(), length);
-                let (turns, rest) = if distance < 0.0 {
-                    (-turns, -rest)
-                } else {
-                    (turns, rest)
-                };
-                let (further, target) = split(here + rest, length);
-                (turns.saturating_add(further), target)
+    /// Cost: on a modulo axis at most one ramp.
+    #[inline]
+    pub(super) fn aim(&self, entry: &mut Entry, from: f64) -> f64 {
+        let start = self.setpoint.position;
+        match &self.modulo {
+            Some(modulo) => self.aim_round(entry, from, modulo.length),
+            None => {
+                entry.end = entry.work.end(from);
+                start
             }
-            Work::Position(target) => (self.turns_to(target, start, here, length, entry, before)?, target),
-            Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } => {
-                (0, here)
-            }
-        };
-        let (whole, error) = two_product(turns as f64, length);
-        let position = (here - whole) - error;
-        if !position.is_finite() {
-            return Err(ErrorId::PositionInvalid);
         }
-        Ok((Setpoint { position, ..*start }, target))
     }
 
-    /// How many turns on `target` is met, both it and `here` in the first one.
-    fn turns_to(
-        &self,
-        target: f64,
-        start: &Setpoint,
-        here: f64,
-        length: f64,
-        entry: &Entry,
-        before: &Limits,
-    ) -> Result<i64, ErrorId> {
-        let forward = match entry.direction {
-            Direction::Unset | Direction::ShortestWay => {
-                let ahead = if target >= here {
-                    target - here
-                } else {
-                    target - here + length
-                };
-                let forward = ahead <= length / 2.0;
-                return Ok(match forward {
-                    true if target < here => 1,
-                    false if target > here => -1,
-                    true | false => 0,
-                });
+    #[inline(never)]
+    fn aim_round(&self, entry: &mut Entry, from: f64, length: f64) -> f64 {
+        let start = Setpoint {
+            position: self.setpoint.position,
+            ..self.base()
+        };
+        (entry.turns, entry.end) = match (entry.place(), entry.direction) {
+            (None, _) => (split(start.position, length).0, None),
+            (Some(Place::At(target)), Some(direction)) => {
+                let turns = turns_to(
+                    target,
+                    from,
+                    length,
+                    self.heading(direction, self.last_velocity > 0.0),
+                );
+                (
+                    self.never_back(entry, &start, target, turns, length),
+                    Some(target),
+                )
             }
-            Direction::Positive => true,
-            Direction::Negative => false,
-            Direction::Current => self.last_velocity > 0.0,
+            (Some(Place::At(target)), None) => {
+                let (turns, target) = split(target, length);
+                (turns, Some(target))
+            }
+            (Some(Place::By(distance)), _) => {
+                let (turns, target) = beyond(from, distance, length);
+                (turns, Some(target))
+            }
         };
-        let turns = match forward {
-            true if target < here => 1,
-            false if target > here => -1,
-            true | false => 0,
+        back_by(start.position, entry.turns, length)
+    }
+
+    /// Where a command of a chain ends, counted from `from` (u) in the frame of that, after a motion that went
+    /// `forward` or not; `None` if it leads nowhere.
+    pub(super) fn end_of_leg(&self, entry: &Entry, from: f64, forward: bool) -> Option<f64> {
+        let (Some(modulo), Some(Place::At(target)), Some(direction)) =
+            (&self.modulo, entry.place(), entry.direction)
+        else {
+            return entry.work.end(from);
         };
-        if start.is_at_rest() {
-            return Ok(turns);
+        let turns = turns_to(target, from, modulo.length, self.heading(direction, forward));
+        Some(target + turns as f64 * modulo.length)
+    }
+
+    /// `start` in the frame `entry` was aimed in, if that is another one.
+    #[inline]
+    pub(super) fn in_frame_of(&self, entry: &Entry, start: &Setpoint) -> Option<Setpoint> {
+        match &self.modulo {
+            Some(modulo) if entry.turns != 0 => Some(Setpoint {
+                position: back_by(start.position, entry.turns, modulo.length),
+                ..*start
+            }),
+            _ => None,
         }
-        // A motion that cannot stop before the target goes on to its next repetition.
-        let stop = self
-            .planner
-            .ramp_to(start, 0.0, &entry.limits, before)
-            .map_err(|_| ErrorId::PlanRefused)?;
-        let way = stop.at(u64::from(stop.scans())).position - start.position;
-        let to_target = target + turns as f64 * length - here;
+    }
+
+    /// The direction a move must take: `None` for the shortest way.
+    fn heading(&self, direction: Direction, forward: bool) -> Option<bool> {
+        match direction {
+            Direction::Unset | Direction::ShortestWay => None,
+            Direction::Positive => Some(true),
+            Direction::Negative => Some(false),
+            Direction::Current => Some(forward),
+        }
+    }
+
+    /// `turns`, and as many more as a motion from `start` that must not turn back needs to slow down (B8).
+    fn never_back(&self, entry: &Entry, start: &Setpoint, target: f64, turns: i64, length: f64) -> i64 {
+        let heading = entry
+            .direction
+            .and_then(|direction| self.heading(direction, self.last_velocity > 0.0));
+        let Some(forward) = heading else { return turns };
+        if start.is_at_rest() {
+            return turns;
+        }
+        // What passes its target in the same direction need not stop before it.
+        let velocity = match entry.work {
+            Work::Through { end_velocity, .. } if (end_velocity > 0.0) == forward => end_velocity,
+            _ => 0.0,
+        };
+        let before = self.limits_before(&entry.limits);
+        // What cannot be planned to stop cannot be planned to go there; planning it tells why.
+        let Ok(ramp) = self.planner.ramp_to(start, velocity, &entry.limits, &before) else {
+            return turns;
+        };
+        let way = ramp.at(u64::from(ramp.scans())).position - start.position;
+        let to_target = target - back_by(start.position, turns, length);
         let missing = if forward { way - to_target } else { to_target - way };
         let missing = missing - ROUNDING * way.abs();
         if missing <= 0.0 {
-            return Ok(turns);
+            return turns;
         }
         let whole = (missing / length) as i64;
         let further = whole.saturating_add(i64::from(whole as f64 * length < missing));
-        Ok(if forward {
+        if forward {
             turns.saturating_add(further)
         } else {
             turns.saturating_sub(further)
-        })
+        }
     }
+}
+
+/// `position` (u) in a frame `turns` whole turns further on.
+fn back_by(position: f64, turns: i64, length: f64) -> f64 {
+    let (whole, error) = two_product(turns as f64, length);
+    (position - whole) - error
+}
+
+/// Turns and target of a way `distance` (u) from `from`: whole turns apart, so that they do not cost the rest
+/// its last bits.
+fn beyond(from: f64, distance: f64, length: f64) -> (i64, f64) {
+    let (from_turns, here) = split(from, length);
+    let (turns, rest) = split(distance.abs(), length);
+    let (turns, rest) = if distance < 0.0 {
+        (-turns, -rest)
+    } else {
+        (turns, rest)
+    };
+    let (further, target) = split(here + rest, length);
+    (from_turns.saturating_add(turns).saturating_add(further), target)
+}
+
+/// How many turns on `target`, of the first turn, is met from `from` (u), `forward` or not, or the shortest way.
+fn turns_to(target: f64, from: f64, length: f64, forward: Option<bool>) -> i64 {
+    let (turns, here) = split(from, length);
+    let ahead = if target >= here {
+        target - here
+    } else {
+        target - here + length
+    };
+    let further = match forward.unwrap_or(ahead <= length / 2.0) {
+        true if target < here => 1,
+        false if target > here => -1,
+        true | false => 0,
+    };
+    turns.saturating_add(further)
 }

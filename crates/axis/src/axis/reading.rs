@@ -219,15 +219,24 @@ impl<P: Planner> Axis<P> {
     }
 
     fn commanded_way(&self) -> Way {
-        let Motion::Run { plan, .. } = &self.motion else {
-            return Way::Rest;
+        let owner = self.owner.as_ref().map(|owner| &owner.work);
+        let left = match (&self.motion, owner) {
+            (Motion::Run { plan, .. }, Some(Work::Velocity { .. })) => {
+                return Way::of(plan.at(u64::from(plan.scans())).velocity);
+            }
+            (Motion::Run { plan, .. }, Some(Work::Through { .. })) if self.goal_reached() => {
+                return Way::of(plan.at(u64::from(plan.scans())).velocity);
+            }
+            (
+                Motion::Run { plan, .. },
+                Some(Work::Position(_) | Work::Distance(_) | Work::Through { .. }),
+            ) => {
+                let place = self.layer.as_ref().map_or(&self.setpoint, |layer| &layer.base);
+                plan.at(u64::from(plan.scans())).position - place.position
+            }
+            (_, Some(_) | None) => 0.0,
         };
-        let goal = plan.at(u64::from(plan.scans()));
-        match self.owner.as_ref().map(|owner| &owner.work) {
-            Some(Work::Position(_) | Work::Distance(_)) => Way::of(goal.position - self.setpoint.position),
-            Some(Work::Velocity { .. }) => Way::of(goal.velocity),
-            Some(Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. }) | None => Way::Rest,
-        }
+        Way::of(left + self.superimposed_left())
     }
 
     fn measured_state(&self, actual: f64) -> MotionState {

@@ -52,9 +52,10 @@ impl<P: Planner> Axis<P> {
         let outside = |rest: f64| rest < min || rest > max;
         match entry.work {
             Work::Velocity { .. } => true,
+            Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
             Work::Halt | Work::Stop => outside(self.end_of_plan()),
             // From rest the way leads straight to the target, from motion perhaps past it.
-            Work::Position(_) | Work::Distance(_) => {
+            Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
                 outside(self.end_of_plan())
                     || (!self.setpoint.is_at_rest() && outside(self.rest(&self.setpoint, &entry.limits)))
             }
@@ -74,11 +75,12 @@ impl<P: Planner> Axis<P> {
         let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
         let leaving = match owner.work {
             Work::Velocity { .. } => true,
+            Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
             Work::Halt | Work::Stop => leaves(self.end_of_plan() + self.superimposed_left()),
             // With something superimposed, ends and turns were checked when it was planned.
-            Work::Position(_) | Work::Distance(_) if !self.watched => false,
+            Work::Position(_) | Work::Distance(_) | Work::Through { .. } if !self.watched => false,
             // It turns back where it stops, or its end has another name since it began.
-            Work::Position(_) | Work::Distance(_) => {
+            Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
                 leaves(self.end_of_plan()) || leaves(self.rest(next, &owner.limits))
             }
             Work::Home(_) | Work::SetPosition { .. } => false,
@@ -95,7 +97,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Where the running plan has its goal (u).
-    fn end_of_plan(&self) -> f64 {
+    pub(super) fn end_of_plan(&self) -> f64 {
         match &self.motion {
             Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
             Motion::Follow | Motion::Hold => self.setpoint.position,

@@ -106,7 +106,7 @@ impl<P: Planner> Axis<P> {
                 && !self.queue.is_empty()
             {
                 // MC_Stop released the axis in this scan (note 6), or a command waits for a superimposed motion.
-                self.hand_over(scan, log);
+                self.hand_over(self.setpoint.position, scan, log);
             }
             return;
         };
@@ -125,38 +125,43 @@ impl<P: Planner> Axis<P> {
                 self.motion = Motion::Hold;
                 self.end_owner(Fate::Done);
                 self.enter(AxisEvent::StopReleased);
-                self.hand_over(scan, log);
+                self.hand_over(self.setpoint.position, scan, log);
             }
             // An endless motion gives way when it has reached its velocity.
-            Work::Velocity { .. } => self.hand_over(scan, log),
+            Work::Velocity { .. } | Work::Through { .. } => self.hand_over(self.passed_end(), scan, log),
             // It never owns the axis.
             Work::SetPosition { .. } => {}
         }
     }
 
-    /// The owner has completed at rest.
+    /// The owner has completed, at rest or passing its end on to a blended successor.
     #[cold]
     fn complete(&mut self, scan: u64, log: &mut Log) {
+        if self.base().velocity != 0.0 {
+            return self.pass_on(scan, log);
+        }
         self.motion = Motion::Hold;
         self.end_owner(Fate::Done);
         // The motion is not over while something is superimposed (V14).
         if !self.is_superimposing() {
             self.enter(AxisEvent::MotionDone);
         }
-        self.hand_over(scan, log);
+        self.hand_over(self.setpoint.position, scan, log);
     }
 
     /// The next waiting command that can be planned becomes the owner; those that cannot fail (R79). An
-    /// endless owner stays if there is none.
+    /// endless owner stays if there is none. Distances count from `from` (B10).
     #[inline(never)]
-    pub(super) fn hand_over(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn hand_over(&mut self, from: f64, scan: u64, log: &mut Log) {
         for _ in 0..QUEUE_MAX {
-            let Some(next) = self.queue.first().copied() else {
+            let Some(mut next) = self.queue.first().copied() else {
                 return;
             };
             if self.queue_waits_for_shift() {
                 return;
             }
+            let passage_from = self.aim(&mut next, from);
+            next.passage = self.passage(&next, passage_from, 1);
             let planned = self.plan_next(&next);
             if let Ok(None) = planned {
                 return;
@@ -165,7 +170,7 @@ impl<P: Planner> Axis<P> {
             match planned {
                 Ok(None) => {}
                 Ok(Some(motion)) => {
-                    self.end_owner(Fate::Aborted);
+                    self.end_owner(self.fate_at_hand_over());
                     self.begin(next, motion, scan, log);
                     return;
                 }

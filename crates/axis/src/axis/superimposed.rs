@@ -280,7 +280,7 @@ impl<P: Planner> Axis<P> {
     /// Where the owner will stand (u); NaN if it does not come to rest by itself.
     fn base_end(&self, layer: &Layer<P::Plan>) -> f64 {
         match (&self.motion, self.owner.as_ref().map(|owner| owner.work)) {
-            (Motion::Run { .. }, Some(Work::Velocity { .. })) => f64::NAN,
+            (Motion::Run { .. }, Some(Work::Velocity { .. } | Work::Through { .. })) => f64::NAN,
             (Motion::Run { plan, .. }, _) => plan.at(u64::from(plan.scans())).position,
             (Motion::Hold | Motion::Follow, _) => layer.base.position,
         }
@@ -382,7 +382,7 @@ impl<P: Planner> Axis<P> {
             self.layer = None;
             if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
                 self.enter(AxisEvent::MotionDone);
-                self.hand_over(scan, log);
+                self.hand_over(self.setpoint.position, scan, log);
             }
         }
     }
@@ -390,7 +390,7 @@ impl<P: Planner> Axis<P> {
     /// A command given with nothing under it but a superimposed motion starts beside that at once.
     pub(super) fn start_beside(&mut self, scan: u64, log: &mut Log) {
         if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
-            self.hand_over(scan, log);
+            self.hand_over(self.setpoint.position, scan, log);
         }
     }
 

@@ -61,7 +61,7 @@ impl GridPlan {
         limits: &Limits,
         cycle: f64,
     ) -> Result<Self, PlanError> {
-        Self::new_counted(method, start, target, limits, cycle).map(|(plan, _)| plan)
+        Self::with_work(method, start, target, limits, cycle, &mut Work::default())
     }
 
     /// As [`GridPlan::new`], with the work the search took.
@@ -80,41 +80,58 @@ impl GridPlan {
         limits: &Limits,
         cycle: f64,
     ) -> Result<(Self, Work), PlanError> {
+        let mut work = Work::default();
+        let plan = Self::with_work(method, start, target, limits, cycle, &mut work)?;
+        Ok((plan, work))
+    }
+
+    fn with_work(
+        method: Method,
+        start: f64,
+        target: f64,
+        limits: &Limits,
+        cycle: f64,
+        work: &mut Work,
+    ) -> Result<Self, PlanError> {
         let distance = checked_distance(start, target, limits, cycle)?;
-        let mut plan = Self {
+        let order = limits.order();
+        // Built in one go: fields written one by one and then copied would wait for their stores.
+        let plan = |boxes, scans, scale, wide, cruise| Self {
             start,
             target,
             cycle,
-            scale: [0.0; 5],
-            boxes: [0; 4],
-            scans: 0,
-            order: limits.order(),
+            scale,
+            boxes,
+            scans,
+            order,
             method,
-            wide: false,
-            cruise: Cruise::NONE,
+            wide,
+            cruise,
         };
         if distance == 0.0 {
-            return Ok((plan, Work::default()));
+            return Ok(plan([0; 4], 0, [0.0; 5], false, Cruise::NONE));
         }
         let length = distance.abs();
         let problem = Problem::new(length, limits, cycle)?;
-        let (boxes, work) = choose(method, &problem, length, limits, cycle);
+        let (boxes, searched) = choose(method, &problem, length, limits, cycle);
+        *work = searched;
         let scans = sum(&boxes);
         if !(1..=LONGEST).contains(&scans) {
             return Err(problem.too_long(limits));
         }
-        plan.scans = scans as u32;
         let [n1, n2, n3, n4] = boxes;
-        plan.boxes = match plan.order {
+        let boxes = match order {
             Order::Four => [n1, n2, n3, n4],
             Order::Three => [n2, n3, n4, 0],
             Order::Two => [n3, n4, 0, 0],
         };
-        (plan.scale, plan.wide) = profile::scale(plan.order, plan.product(), distance, cycle);
-        if !plan.wide {
-            plan.cruise = Cruise::new(plan.order, plan.boxes, &plan.scale);
-        }
-        Ok((plan, work))
+        let (scale, wide) = profile::scale(order, product(order, boxes), distance, cycle);
+        let cruise = if wide {
+            Cruise::NONE
+        } else {
+            Cruise::new(order, boxes, &scale)
+        };
+        Ok(plan(boxes, scans as u32, scale, wide, cruise))
     }
 
     /// The same move in coordinates moved by `by` (u).
@@ -166,12 +183,7 @@ impl GridPlan {
 
     /// Product of the box lengths: the whole number the distance is divided by (docs/planner.md, eq. 4).
     pub fn product(&self) -> u128 {
-        let [a, b, c, d] = self.boxes.map(u64::from);
-        match self.order {
-            Order::Four => u128::from(a * b) * u128::from(c * d),
-            Order::Three => u128::from(a * b) * u128::from(c),
-            Order::Two => u128::from(a * b),
-        }
+        product(self.order, self.boxes)
     }
 
     /// The published planner's segment durations; none for [`Method::Overlapped`], whose cruise may be
@@ -202,6 +214,16 @@ impl GridPlan {
             Order::Three => jerk,
             Order::Two => acceleration,
         }
+    }
+}
+
+/// Product of the boxes of a plan.
+fn product(order: Order, boxes: [u32; 4]) -> u128 {
+    let [a, b, c, d] = boxes.map(u64::from);
+    match order {
+        Order::Four => u128::from(a * b) * u128::from(c * d),
+        Order::Three => u128::from(a * b) * u128::from(c),
+        Order::Two => u128::from(a * b),
     }
 }
 

@@ -83,10 +83,10 @@ impl Problem {
             let p2 = n2 * p3;
             return p3 >= self.k3 && p2 >= self.k2 && n1 * p2 >= self.k1;
         }
-        let [n1, n2, n3, n4] = [n1, n2, n3, n4].map(|n| n as u128);
+        let [n1, n2, n3, n4] = [n1, n2, n3, n4].map(|n| n as u64);
         let p3 = n3 * n4;
-        let p2 = n2 * p3;
-        p3 >= self.k3 as u128 && p2 >= self.k2 as u128 && n1 * p2 >= self.k1 as u128
+        let p2 = u128::from(n2) * u128::from(p3);
+        p3 >= self.k3 as u64 && p2 >= self.k2 as u128 && u128::from(n1) * p2 >= self.k1 as u128
     }
 
     /// The refusal of a move no bound alone makes too long, but all together do: names the bound that alone

@@ -267,11 +267,14 @@ impl Search<'_> {
 ///
 /// Asks for a root of at least max(p, q).
 fn cubic_root(p: f64, q: f64, m: f64) -> f64 {
-    let mut n = math::rough_cbrt(0.5 * m) - (p + q) / 3.0;
+    // With t = n + mean there is no square left: t^3 - slope t = rest. That makes the steps short.
+    let (mean, pq, half) = ((p + q) / 3.0, p * q, 0.5 * m);
+    let slope = 3.0 * mean * mean - pq;
+    let rest = half + mean * (pq - 2.0 * mean * mean);
+    let mut t = math::rough_cbrt(half);
     for _ in 0..NEWTON_STEPS {
-        let value = 2.0 * n * (n + p) * (n + q) - m;
-        let slope = 2.0 * (3.0 * n * n + 2.0 * (p + q) * n + p * q);
-        n -= value / slope;
+        let square = t * t;
+        t = (2.0 * t * square + rest) / (3.0 * square - slope);
     }
-    n
+    t - mean
 }

@@ -93,8 +93,14 @@ struct Climb<'a> {
 
 impl OnlinePlan {
     /// Finds the first candidate from rung `first` on that keeps the limits and arrives (O8), for a plan of
-    /// which nothing is found yet.
-    pub(super) fn climb(&mut self, first: Rung, limits: &Limits, wider: &Limits) -> Result<(), PlanError> {
+    /// which nothing is found yet; before its last ramp it goes for the velocity `top`.
+    pub(super) fn climb(
+        &mut self,
+        first: Rung,
+        top: f64,
+        limits: &Limits,
+        wider: &Limits,
+    ) -> Result<(), PlanError> {
         let Self {
             start,
             target,
@@ -115,6 +121,7 @@ impl OnlinePlan {
                 &ramps,
                 ramps.inward(distance, 0),
                 ramps.inward(end_velocity, 1),
+                ramps.inward(top, 1),
                 resolution,
             ),
             ramps: &ramps,

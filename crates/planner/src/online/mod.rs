@@ -4,13 +4,16 @@
 //! ramps it is made of are those of [`ramp`](mod@crate::ramp), their maths that of [`kernel`](mod@crate::kernel).
 //! What does not: which move an axis makes next. Equations (O1) and on are in `docs/planner-online.md`.
 
+mod blend;
 mod ladder;
 mod search;
 
+pub use blend::{BLEND_STEPS, Passage, entry_speed};
 pub use ladder::Rung;
 pub use search::MAX_SOLVES;
 
 use crate::grid::GridPlan;
+use crate::kernel::ON_LIMIT;
 use crate::ramp::excess::{self, Excess, Peaks};
 use crate::ramp::{self, Segment};
 use crate::{Field, Limits, PlanError, RampPlan, Setpoint};
@@ -99,6 +102,23 @@ impl OnlinePlan {
         before: &Limits,
         cycle: f64,
     ) -> Result<Self, PlanError> {
+        let top = limits.velocity;
+        Self::cruising(first, start, target, end_velocity, top, limits, before, cycle)
+    }
+
+    /// As [`OnlinePlan::with`], but until its last ramp the plan goes for the velocity `top` (u/s), at most
+    /// that of `limits`; so an `end_velocity` above `top` is reached at the end and not before.
+    #[expect(clippy::too_many_arguments, reason = "a problem, as it was given")]
+    fn cruising(
+        first: Rung,
+        start: &Setpoint,
+        target: f64,
+        end_velocity: f64,
+        top: f64,
+        limits: &Limits,
+        before: &Limits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
         check(start, target, end_velocity, limits, before, cycle)?;
         let wider = ramp::wider(limits, before);
         let mut plan = Self {
@@ -109,7 +129,7 @@ impl OnlinePlan {
             scans: 0,
             found: Found::nothing(limits.order()),
         };
-        plan.climb(first, limits, &wider)?;
+        plan.climb(first, top, limits, &wider)?;
         let too_long = PlanError::TooLong {
             field: Field::Target,
             value: target,
@@ -160,6 +180,12 @@ impl OnlinePlan {
             return Setpoint::at_rest(self.target);
         }
         let since = scan as f64 * self.cycle - self.duration();
+        // On the target in a scan is on it, whatever rounding says of the duration.
+        let since = if since.abs() <= ON_LIMIT * self.cycle {
+            0.0
+        } else {
+            since
+        };
         Setpoint {
             velocity: self.end_velocity,
             ..Setpoint::at_rest(self.target + self.end_velocity * since)

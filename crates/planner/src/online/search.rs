@@ -31,6 +31,8 @@ pub(super) struct Search<'a> {
     ramps: &'a Ramps,
     target: f64,
     end_velocity: f64,
+    /// The velocity a push goes for and a cruise keeps; that of the limits, or less.
+    top: f64,
     /// What the positions of start and target may be off by.
     resolution: f64,
     /// Ramps solved so far.
@@ -60,12 +62,20 @@ impl Stop {
 }
 
 impl<'a> Search<'a> {
-    /// A search for moves of `target`, which end with `end_velocity`; positions are off by `resolution`.
-    pub(super) const fn new(ramps: &'a Ramps, target: f64, end_velocity: f64, resolution: f64) -> Self {
+    /// A search for moves of `target`, which go for the velocity `top` and end with `end_velocity`;
+    /// positions are off by `resolution`.
+    pub(super) const fn new(
+        ramps: &'a Ramps,
+        target: f64,
+        end_velocity: f64,
+        top: f64,
+        resolution: f64,
+    ) -> Self {
         Self {
             ramps,
             target,
             end_velocity,
+            top,
             resolution,
             solves: Cell::new(0),
             steps: Cell::new(0),
@@ -106,7 +116,7 @@ impl<'a> Search<'a> {
             return spans;
         }
         let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
-        let top = side * self.ramps.velocity();
+        let top = side * self.top;
         let push = self.ramp(start, top);
         let mut way = Way::new(self.ramps.order(), start);
         let mut from = stop.ahead(0.0, side);
@@ -142,7 +152,7 @@ impl<'a> Search<'a> {
         let mut spans = Spans::new();
         let stop = self.stop(start);
         let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
-        let top = side * self.ramps.velocity();
+        let top = side * self.top;
         let through = |peak: f64| {
             let ramp = self.ramp(start, peak);
             let state = steady(&follow(self.ramps.order(), start, &ramp), peak);
@@ -189,7 +199,7 @@ impl<'a> Search<'a> {
         let ramp = self.ramp(start, 0.0);
         let state = steady(&follow(self.ramps.order(), start, &ramp), 0.0);
         let even = self.ramps.even();
-        let search = Search::new(&even, self.target, self.end_velocity, self.resolution);
+        let search = Search::new(&even, self.target, self.end_velocity, self.top, self.resolution);
         spans.extend(&ramp);
         spans.extend(&search.push_then_stop(&state));
         self.solves.set(self.solves.get() + search.solves());
@@ -209,9 +219,28 @@ impl<'a> Search<'a> {
         self.ramps.ramp(start, velocity, heading, Course::Free)
     }
 
+    /// The speed between `near`, from which the ramp alone ends short of the target, and `far`, from which
+    /// it ends beyond, where it ends on the target (O11); `None` if they do not bracket it. Speeds are those
+    /// towards the side `side`.
+    pub(super) fn speed_on_target(&self, start: &Setpoint, side: f64, near: f64, far: f64) -> Option<f64> {
+        let at = |speed: f64| self.ramp_to(start, side * speed).ahead(speed, side);
+        let (low, high) = (at(near), at(far));
+        (low.value <= 0.0 && high.value > 0.0).then(|| self.zero(low, high, at).at)
+    }
+
+    /// Whether the ramp alone to `speed` towards the side `side` ends on the target or short of it.
+    pub(super) fn ends_short(&self, start: &Setpoint, side: f64, speed: f64) -> bool {
+        let end = self.ramp_to(start, side * speed);
+        side * end.beyond <= end.noise.max(self.resolution)
+    }
+
     /// The ramp from `start` to the end velocity.
     fn stop(&self, start: &Setpoint) -> Stop {
-        let spans = self.ramp(start, self.end_velocity);
+        self.ramp_to(start, self.end_velocity)
+    }
+
+    fn ramp_to(&self, start: &Setpoint, velocity: f64) -> Stop {
+        let spans = self.ramp(start, velocity);
         let end = follow(self.ramps.order(), start, &spans);
         let added_up = start.position.abs() + self.target.abs() + spans.duration() * start.velocity.abs();
         Stop {
@@ -229,7 +258,7 @@ impl<'a> Search<'a> {
 
     /// Appends what is left at the velocity bound.
     fn cruise(&self, spans: &mut Candidate, left: f64) {
-        spans.push(left.max(0.0) / self.ramps.velocity(), 0.0);
+        spans.push(left.max(0.0) / self.top, 0.0);
     }
 }
 
@@ -242,7 +271,7 @@ fn steady(state: &Setpoint, velocity: f64) -> Setpoint {
 }
 
 /// The end of `spans` from `start`.
-fn follow<const N: usize>(order: Order, start: &Setpoint, spans: &Spans<N>) -> Setpoint {
+pub(super) fn follow<const N: usize>(order: Order, start: &Setpoint, spans: &Spans<N>) -> Setpoint {
     let mut way = Way::new(order, start);
     way.follow(spans);
     way.state

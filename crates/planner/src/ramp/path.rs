@@ -209,6 +209,18 @@ impl<const N: usize> Path<N> {
         }
     }
 
+    /// Whether the velocity towards `side` (1 or -1) never comes below `-small`.
+    pub(crate) fn keeps_side(&self, side: f64, small: f64) -> bool {
+        self.stretches().all(|(stretch, first)| {
+            let length = stretch.end - stretch.begin;
+            let within = |time: f64| if time > 0.0 && time < length { time } else { length };
+            let [one, other] = zeros(first.acceleration, first.jerk, first.snap).map(within);
+            [0.0, one, other, length]
+                .into_iter()
+                .all(|time| side * moved(&first, time).velocity >= -small)
+        })
+    }
+
     /// Whether no extreme of velocity, acceleration and jerk can be beyond these bounds. What takes more than
     /// a look at the ends of the pieces is not decided: then it is `false`, and [`Path::extremes`] tells.
     pub(crate) fn is_surely_within(&self, velocity: f64, acceleration: f64, jerk: f64) -> bool {

@@ -1,5 +1,6 @@
 //! Plans from any moving state to a position: fewest scans, limits kept, targets met.
 
+mod blend;
 mod chains;
 mod last;
 mod scans;

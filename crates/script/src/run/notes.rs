@@ -117,6 +117,9 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
             let goal = match goal {
                 Goal::Position(position) => format!("position {}", shortest(position)),
                 Goal::Velocity(velocity) => format!("velocity {}", shortest(velocity)),
+                Goal::Passing { position, velocity } => {
+                    format!("velocity {} at {}", shortest(velocity), shortest(position))
+                }
             };
             let by = instance_name(script, record).map_or_else(String::new, |name| format!(" for {name}"));
             let how = plan.map_or_else(String::new, |plan| format!("; {}", plan_text(plan)));

@@ -1,0 +1,96 @@
+//! `MC_MoveAdditive`: one axis by a distance added to where it was last sent.
+//!
+//! Source: PLCopen Motion Control Part 1, section of that name.
+
+use standstill_axis::{AxisId, BufferMode, Command, Dynamics, ErrorId, Planner, Raw, Request};
+use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
+
+pins! {
+    in_outs {
+        /// The axis to move.
+        Axis => axis: AxisId;
+    }
+    inputs {
+        /// A rising edge starts the move with the values of that call.
+        Execute => execute: bool = false, "";
+        /// Apply later input changes to the running motion; not supported yet, must be FALSE.
+        ContinuousUpdate => continuous_update: bool = false, "";
+        /// Signed distance from the last commanded target; finite. From the set position at the start where there
+        /// is no such target: in Standstill and behind or during an endless motion.
+        Distance => distance: f64 = 0.0, "u";
+        /// Largest velocity, above 0; not necessarily reached.
+        Velocity => velocity: f64 = 0.0, "u/s";
+        /// Rate while the speed grows; 0 takes the axis default.
+        Acceleration => acceleration: f64 = 0.0, "u/s^2";
+        /// Rate while the speed falls; 0 takes the axis default.
+        Deceleration => deceleration: f64 = 0.0, "u/s^2";
+        /// Jerk; 0 takes the axis default, and no limit if there is none.
+        Jerk => jerk: f64 = 0.0, "u/s^3";
+        /// How the command follows the one before it.
+        BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
+    }
+    vendor_inputs {
+        /// Snap; 0 takes the axis default, and no limit if there is none.
+        Snap => snap: f64 = 0.0, "u/s^4";
+    }
+    outputs {
+        /// The distance is covered.
+        Done => done: bool, "";
+        /// Not finished.
+        Busy => busy: bool, "";
+        /// The block controls the axis.
+        Active => active: bool, "";
+        /// Interrupted by another command.
+        CommandAborted => command_aborted: bool, "";
+        /// Refused, or ended by an error.
+        Error => error: bool, "";
+        /// Why; 0 without an error.
+        ErrorID => error_id: ErrorId, "";
+    }
+    vendor_outputs {}
+}
+
+/// State kept between calls.
+#[doc(alias = "MC_MoveAdditive")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct McMoveAdditive {
+    core: ExecuteCore,
+}
+
+impl Block for McMoveAdditive {
+    const NAME: &'static str = "MC_MoveAdditive";
+    const GROUP: Group = Group::SingleAxis;
+    const DOC: &'static str = "Moves one axis by a distance from its last commanded target.";
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+
+    fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
+        let phase = self.core.scan(inputs.execute, context, |context, replaces| {
+            let (axis, log, source) = context.axis(inputs.axis)?;
+            let request = Request {
+                command: Command::MoveAdditive {
+                    distance: inputs.distance,
+                    dynamics: Dynamics {
+                        velocity: inputs.velocity,
+                        acceleration: inputs.acceleration,
+                        deceleration: inputs.deceleration,
+                        jerk: inputs.jerk,
+                        snap: inputs.snap,
+                    },
+                },
+                buffer_mode: inputs.buffer_mode,
+                continuous_update: inputs.continuous_update,
+                replaces,
+            };
+            axis.command(&request, source, log).map(|id| (inputs.axis, id))
+        });
+        Outputs {
+            done: phase.is_done(),
+            busy: phase.is_busy(),
+            active: phase.is_active(),
+            command_aborted: phase.is_aborted(),
+            error: phase.is_error(),
+            error_id: phase.error_id(),
+        }
+    }
+}

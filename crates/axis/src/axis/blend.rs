@@ -1,0 +1,228 @@
+//! Blending: how fast a positioning command passes its end when a blended one waits behind it.
+//!
+//! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; rules B1 to B17. What the
+//! standard leaves open is told in `docs/buffering.md`. The maths is the planner's.
+
+use super::accept::REST;
+use super::power::Reaction;
+use super::queue::{Entry, Work};
+use super::{Axis, Motion};
+use crate::{BufferMode, ErrorId, Event, Fate, Goal, Log, QUEUE_MAX};
+use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};
+
+/// A command of a chain: the owner to be, or one that waits.
+#[derive(Clone, Copy)]
+struct Leg<'a> {
+    entry: &'a Entry,
+    /// How far it leads (u), with its direction as the sign; `None` if it leads nowhere.
+    way: Option<f64>,
+}
+
+impl<P: Planner> Axis<P> {
+    /// A command has been queued with `mode`: if it is to blend, the owner may have to pass its end at
+    /// another speed, and is planned anew from the last set-point (B15). Failing that, its plan stays.
+    pub(super) fn arm(&mut self, mode: BufferMode, scan: u64, log: &mut Log) {
+        if matches!(mode, BufferMode::Aborting | BufferMode::Buffered) {
+            return;
+        }
+        let Some(mut owner) = self.owner else { return };
+        let passage = self.passage(&owner, self.setpoint.position, 0);
+        let Some(end) = owner.end else { return };
+        if passage == owner.passage || !matches!(self.motion, Motion::Run { .. }) {
+            return;
+        }
+        owner.passage = passage;
+        if let Some(plan) = self.blended(&owner, &self.setpoint, end, &self.before) {
+            self.in_force = raised(&owner.limits, &plan);
+            let event = Event::Planned {
+                goal: Goal::Passing {
+                    position: end,
+                    velocity: plan.at(u64::from(plan.scans())).velocity,
+                },
+                scans: plan.scans(),
+            };
+            self.record(event, self.owner_source(scan), log);
+            self.motion = Motion::along(plan);
+            self.owner = Some(owner);
+        }
+    }
+
+    /// The plan that passes `end` as `entry` is to; `None` if it is to come to rest there, or can't help it.
+    pub(super) fn blended(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        end: f64,
+        before: &Limits,
+    ) -> Option<P::Plan> {
+        if entry.passage.wanted <= 0.0 {
+            return None;
+        }
+        let planned = self
+            .planner
+            .blend(start, end, &entry.passage, &entry.limits, before);
+        // What can't be planned blended is planned as a move to rest, whose error would be the same.
+        planned
+            .ok()
+            .flatten()
+            .filter(|plan| plan.at(u64::from(plan.scans())).velocity != 0.0)
+    }
+
+    /// Notes whose limits hold from now on, and which did for the motion taken over from.
+    pub(super) fn take_over(&mut self, limits: Limits, motion: &Motion<P::Plan>) {
+        self.before = self.limits_before(&limits);
+        self.in_force = match motion {
+            Motion::Run { plan, .. } => raised(&limits, plan),
+            Motion::Follow | Motion::Hold => limits,
+        };
+    }
+
+    /// The owner has passed its end in motion: Done, and the next takes over from the set-point (B2). Should
+    /// the next have to wait for a superimposed motion, so does the owner, with the velocity it has.
+    pub(super) fn pass_on(&mut self, scan: u64, log: &mut Log) {
+        self.hand_over(self.passed_end(), scan, log);
+        if self.queue.is_empty() && self.base().velocity != 0.0 && self.goal_reached() && self.passes_on() {
+            // Those that waited were checked when the owner was told to pass on, and yet all failed.
+            self.end_owner(Fate::Done);
+            self.trip(ErrorId::PlanRefused, 0, Reaction::Ramp, scan, log);
+        }
+    }
+
+    /// What becomes of the owner when another takes over in motion: what has an end has passed it.
+    pub(super) fn fate_at_hand_over(&self) -> Fate {
+        if self.passes_on() {
+            Fate::Done
+        } else {
+            Fate::Aborted
+        }
+    }
+
+    fn passes_on(&self) -> bool {
+        self.owner
+            .as_ref()
+            .is_some_and(|owner| matches!(owner.work, Work::Position(_) | Work::Distance(_)))
+    }
+
+    /// The set-point of the owner alone.
+    pub(super) fn base(&self) -> Setpoint {
+        self.layer.as_ref().map_or(self.setpoint, |layer| layer.base)
+    }
+
+    /// Where distances of the next command count from (u): the owner's end if it was passed in this scan, with
+    /// what is superimposed there, else the set position (B10).
+    pub(super) fn passed_end(&self) -> f64 {
+        let now = self.setpoint.position;
+        let end = self.owner.as_ref().and_then(|owner| owner.end);
+        match (&self.motion, end) {
+            (Motion::Run { elapsed, scans, .. }, Some(end)) if elapsed == scans && self.layer.is_none() => {
+                end
+            }
+            (Motion::Run { elapsed, scans, .. }, Some(end)) if elapsed == scans => {
+                end + (now - self.base().position)
+            }
+            _ => now,
+        }
+    }
+
+    /// How `first`, which leads from `start` (u) to a known end, is to pass it, with the queue behind it, of which `skip` have had
+    /// their turn: from the last to the first, because no command may begin faster than it can end. While
+    /// something is superimposed all ends are passed at rest: where the axis is then, is not where they are.
+    ///
+    /// Cost: at most one ramp or root of ramps for each command that waits.
+    pub(super) fn passage(&self, first: &Entry, start: f64, skip: usize) -> Passage {
+        if self.layer.is_some() {
+            return REST;
+        }
+        const NONE: Option<Leg<'_>> = None;
+        let mut legs = [NONE; QUEUE_MAX];
+        let mut from = first.end;
+        let mut forward = from.is_none_or(|end| end > start);
+        for (leg, entry) in legs.iter_mut().zip(self.queue.iter().skip(skip)) {
+            let end = from.and_then(|from| self.end_of_leg(entry, from, forward));
+            *leg = Some(Leg {
+                entry,
+                way: end
+                    .zip(from)
+                    .map(|(end, from)| end - from)
+                    .filter(|way| way.is_finite() && end.is_some_and(|end| self.allowed(end).is_ok())),
+            });
+            forward = end.zip(from).map_or(forward, |(end, from)| end > from);
+            from = end;
+        }
+        let mut passage = REST;
+        let mut legs = legs.iter().flatten().rev().peekable();
+        while let Some(next) = legs.next() {
+            let leg = match legs.peek() {
+                Some(leg) => **leg,
+                None => Leg {
+                    entry: first,
+                    way: first.end.map(|end| end - start),
+                },
+            };
+            passage = self.between(&leg, next, &passage);
+        }
+        passage
+    }
+
+    /// How `leg` is to pass its end, if `next` passes its own as `after` says.
+    fn between(&self, leg: &Leg<'_>, next: &Leg<'_>, after: &Passage) -> Passage {
+        let (entry, mode) = (leg.entry, next.entry.mode);
+        let direction = match (&entry.work, leg.way) {
+            (Work::Position(_) | Work::Distance(_), Some(way)) if way != 0.0 => way.signum(),
+            // Anything else comes to rest, or hands over with the velocity it has (B12).
+            _ => return REST,
+        };
+        let limits = &next.entry.limits;
+        // What is commanded next, and the speed it passes its end with; None if it has no end to overshoot.
+        let (towards, velocity, exit) = match next.entry.work {
+            Work::Position(_) | Work::Distance(_) => match next.way {
+                Some(way) => (way, limits.velocity, Some(after.wanted)),
+                None => return REST,
+            },
+            Work::Through { end_velocity, .. } => match next.way {
+                Some(way) => {
+                    let onwards = end_velocity * way >= 0.0;
+                    (way, limits.velocity, onwards.then_some(end_velocity.abs()))
+                }
+                None => return REST,
+            },
+            Work::Velocity { velocity, along } => {
+                let towards = if along { velocity * direction } else { velocity };
+                (towards, velocity.abs(), None)
+            }
+            Work::Halt => (direction, 0.0, None),
+            Work::Stop | Work::Home(_) | Work::SetPosition { .. } => return REST,
+        };
+        // Reversed, or nowhere: at rest (B13). To the velocity 0 leads no direction.
+        if towards * direction <= 0.0 && velocity != 0.0 {
+            return REST;
+        }
+        let first = entry.limits.velocity;
+        let wanted = match mode {
+            BufferMode::Aborting | BufferMode::Buffered => 0.0,
+            BufferMode::BlendingLow => first.min(velocity),
+            BufferMode::BlendingPrevious => first,
+            BufferMode::BlendingNext => velocity,
+            BufferMode::BlendingHigh => first.max(velocity),
+        };
+        match exit {
+            Some(exit) => {
+                let most = self.planner.entry_speed(wanted, towards.abs(), exit, limits);
+                Passage { wanted: most, most }
+            }
+            None => Passage {
+                wanted,
+                most: f64::INFINITY,
+            },
+        }
+    }
+}
+
+/// `limits` with the velocity `plan` ends with, should it be larger (B3).
+fn raised<P: Plan>(limits: &Limits, plan: &P) -> Limits {
+    let end = plan.at(u64::from(plan.scans())).velocity.abs();
+    Limits {
+        velocity: limits.velocity.max(end),
+        ..*limits
+    }
+}

@@ -1,0 +1,241 @@
+//! Moves that pass their target with a wanted speed, or the nearest there is without turning.
+//!
+//! What stands here: the choice of that speed, and the largest one the next move can begin with. What does
+//! not: buffer modes, queues, which velocity is wanted. Equations (O11) to (O13) are in
+//! `docs/planner-online.md`.
+
+use super::search::{Search, follow};
+use super::{OnlinePlan, Rung, check};
+use crate::kernel::{NOISE, ON_LIMIT, Point, zero};
+use crate::ramp::solve::{Course, Ramps, heading};
+use crate::ramp::wider;
+use crate::{Limits, PlanError, Setpoint};
+
+/// Halvings of the search for a speed below the wanted one; the speed is found to 2^-24 of it.
+pub const BLEND_STEPS: u32 = 24;
+
+/// How far a speed on the border of what can be reached is moved inside until a plan agrees, as parts of the
+/// way to the speed that certainly can be.
+const INSIDE: [f64; 5] = [0.0, 1e-12, 1e-9, 1e-6, 1.0];
+
+/// How a target is to be passed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passage {
+    /// The speed towards the target to pass it with (u/s), 0 or more.
+    pub wanted: f64,
+    /// The speed from which what comes after the target can still be done (u/s); exceeded only if every way
+    /// without turning exceeds it.
+    pub most: f64,
+}
+
+impl OnlinePlan {
+    /// Passes `target` with the speed of `passage`, or with the nearest one that needs no overshoot and no
+    /// reversal; `None` if there is none but zero, or if the start is on the target.
+    ///
+    /// A motion away from the target turns first, as soon as it can. The velocity of `limits` is what the
+    /// move keeps on its way; a larger speed at the target is reached with the last ramp, not before.
+    /// Everything else as in [`OnlinePlan::passing`], which is what the plan is.
+    ///
+    /// The nearest speed is found so: the wanted one is tried. Failing that, the one at which the ramp alone
+    /// ends on the target, between the wanted one and the one the start comes to when its acceleration goes
+    /// to zero (O11). If that is faster than wanted, because the braking comes late, a slower one is looked
+    /// for by halving between zero and the wanted one (O12), and the nearer of the two is taken.
+    ///
+    /// Bounded work: one plan, in the worst case [`BLEND_STEPS`] + 7 and a root of ramps.
+    ///
+    /// # Errors
+    /// As [`OnlinePlan::passing`].
+    pub fn blending(
+        start: &Setpoint,
+        target: f64,
+        passage: &Passage,
+        limits: &Limits,
+        before: &Limits,
+        cycle: f64,
+    ) -> Result<Option<Self>, PlanError> {
+        let distance = target - start.position;
+        let wanted = passage.wanted;
+        check(start, target, 0.0, limits, before, cycle)?;
+        if distance == 0.0 {
+            return Ok(None);
+        }
+        // One pair of limits for all speeds tried: a start that is inside for one is inside for all.
+        let raised = Limits {
+            velocity: limits.velocity.max(wanted),
+            ..*limits
+        };
+        let ramps = Ramps::new(&raised, &wider(&raised, before));
+        let way = Way {
+            start,
+            target,
+            side: if distance < 0.0 { -1.0 } else { 1.0 },
+            top: limits.velocity,
+            raised: &raised,
+            before,
+            cycle,
+            ramps: &ramps,
+        };
+        if let Some(plan) = way.with(wanted)? {
+            return Ok(Some(plan));
+        }
+        let arrested = way.arrested();
+        let fast = match way.search().speed_on_target(
+            &way.inward(),
+            way.side,
+            ramps.inward(arrested, 1),
+            ramps.inward(wanted, 1),
+        ) {
+            Some(border) => way.near(way.outward(border), arrested)?,
+            None => None,
+        };
+        if arrested <= wanted {
+            return Ok(fast);
+        }
+        let slow = way.below(wanted)?;
+        Ok(match (slow, fast) {
+            (Some(slow), Some(fast)) => {
+                let (below, above) = (slow.end_velocity.abs(), fast.end_velocity.abs());
+                let nearer = above <= passage.most && above - wanted < wanted - below;
+                Some(if nearer { fast } else { slow })
+            }
+            (slow, fast) => slow.or(fast),
+        })
+    }
+}
+
+/// A target to pass.
+struct Way<'a> {
+    start: &'a Setpoint,
+    target: f64,
+    side: f64,
+    top: f64,
+    raised: &'a Limits,
+    before: &'a Limits,
+    cycle: f64,
+    ramps: &'a Ramps,
+}
+
+impl Way<'_> {
+    /// The plan that passes with `speed`, if it goes no way that it need not go.
+    fn with(&self, speed: f64) -> Result<Option<OnlinePlan>, PlanError> {
+        let limits = self.raised;
+        let plan = OnlinePlan::cruising(
+            Rung::PushThenStop,
+            self.start,
+            self.target,
+            self.side * speed,
+            self.top,
+            limits,
+            self.before,
+            self.cycle,
+        )?;
+        // A push towards the target turns only what has to be turned; any other may not turn at all.
+        let small = ON_LIMIT * limits.velocity;
+        let straight = || plan.found.tail.is_none() && plan.found.path.keeps_side(self.side, small);
+        let pushes = plan.found.rung == Rung::PushThenStop
+            && self
+                .search()
+                .ends_short(&self.inward(), self.side, self.ramps.inward(speed, 1));
+        Ok((pushes || straight()).then_some(plan))
+    }
+
+    /// As [`Way::with`] for a speed on the `border` of what can be reached, moved towards `inside` if it must.
+    fn near(&self, border: f64, inside: f64) -> Result<Option<OnlinePlan>, PlanError> {
+        for part in INSIDE {
+            if let Some(plan) = self.with(border + (inside - border) * part)? {
+                return Ok(Some(plan));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The largest speed up to `wanted` that halving from zero finds (O12).
+    fn below(&self, wanted: f64) -> Result<Option<OnlinePlan>, PlanError> {
+        let mut found = self.with(0.0)?;
+        if found.is_none() {
+            return Ok(None);
+        }
+        let (mut low, mut high) = (0.0, wanted);
+        for _ in 0..BLEND_STEPS {
+            let middle = 0.5 * (low + high);
+            match self.with(middle)? {
+                Some(plan) => (found, low) = (Some(plan), middle),
+                None => high = middle,
+            }
+        }
+        Ok(found)
+    }
+
+    /// The speed the start comes to when its acceleration goes to zero (u/s).
+    fn arrested(&self) -> f64 {
+        let arrested = self.side * self.ramps.arrested(&self.inward());
+        self.outward(arrested.clamp(0.0, self.ramps.velocity()))
+    }
+
+    /// A search for ramps that end on the target, in the kernel's units.
+    fn search(&self) -> Search<'_> {
+        let distance = self.ramps.inward(self.target - self.start.position, 0);
+        let added_up = self.start.position.abs() + self.target.abs();
+        let resolution = NOISE * self.ramps.inward(added_up, 0);
+        Search::new(self.ramps, distance, 0.0, self.ramps.velocity(), resolution)
+    }
+
+    /// The start in the kernel's units, at position 0.
+    fn inward(&self) -> Setpoint {
+        let origin = Setpoint {
+            position: 0.0,
+            ..*self.start
+        };
+        self.ramps.state_inward(&origin)
+    }
+
+    /// A speed out of the kernel's units (u/s).
+    fn outward(&self, speed: f64) -> f64 {
+        speed / self.ramps.inward(1.0, 1)
+    }
+}
+
+/// The largest speed (u/s), `wanted` at most, at which a move over `distance` (u, 0 or more) can begin, one
+/// scan of that speed late, and still come down to the speed `exit` at its end without overshoot (O13).
+///
+/// `limits` are those of the move, and hold alone: what it takes over from may allow more, but helps a slower
+/// start less than a faster one. Every move takes two scans at least: the speed is at most half of
+/// `distance / cycle`.
+///
+/// Bounded work: one ramp if `wanted` will do, else one root of ramps.
+pub fn entry_speed(wanted: f64, distance: f64, exit: f64, limits: &Limits, cycle: f64) -> f64 {
+    let wanted = wanted.min(0.5 * distance / cycle);
+    if wanted <= exit {
+        return wanted;
+    }
+    let limits = Limits {
+        velocity: limits.velocity.max(exit),
+        ..*limits
+    };
+    let ramps = Ramps::new(&limits, &limits);
+    let goal = ramps.inward(exit, 1);
+    let way = ramps.inward(distance, 0);
+    let beyond = |speed: f64| {
+        let start = Setpoint {
+            velocity: ramps.inward(speed, 1),
+            ..Setpoint::default()
+        };
+        let heading = heading(&start, goal, ramps.velocity(), ramps.order());
+        let ramp = ramps.ramp(&start, goal, heading, Course::Free);
+        let end = follow(ramps.order(), &start, &ramp.spans).position;
+        Point {
+            at: speed,
+            value: end + ramps.inward(speed * cycle, 0) - way,
+            noise: NOISE * way,
+        }
+    };
+    let fastest = beyond(wanted);
+    if fastest.value <= 0.0 {
+        return wanted;
+    }
+    let slowest = beyond(exit);
+    if slowest.value > 0.0 {
+        return exit;
+    }
+    zero(slowest, fastest, beyond).0.at
+}
