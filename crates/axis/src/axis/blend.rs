@@ -26,7 +26,7 @@ impl<P: Planner> Axis<P> {
             return;
         }
         let Some(mut owner) = self.owner else { return };
-        let passage = self.passage(&owner, 0);
+        let passage = self.passage(&owner, self.setpoint.position, 0);
         let Some(end) = owner.end else { return };
         if passage == owner.passage || !matches!(self.motion, Motion::Run { .. }) {
             return;
@@ -130,20 +130,21 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// How `first`, whose end is known, is to pass it, with the queue behind it, of which `skip` have had
+    /// How `first`, which leads from `start` (u) to a known end, is to pass it, with the queue behind it, of which `skip` have had
     /// their turn: from the last to the first, because no command may begin faster than it can end. While
     /// something is superimposed all ends are passed at rest: where the axis is then, is not where they are.
     ///
     /// Cost: at most one ramp or root of ramps for each command that waits.
-    pub(super) fn passage(&self, first: &Entry, skip: usize) -> Passage {
+    pub(super) fn passage(&self, first: &Entry, start: f64, skip: usize) -> Passage {
         if self.layer.is_some() {
             return REST;
         }
         const NONE: Option<Leg<'_>> = None;
         let mut legs = [NONE; QUEUE_MAX];
         let mut from = first.end;
+        let mut forward = from.is_none_or(|end| end > start);
         for (leg, entry) in legs.iter_mut().zip(self.queue.iter().skip(skip)) {
-            let end = from.and_then(|from| entry.work.end(from));
+            let end = from.and_then(|from| self.end_of_leg(entry, from, forward));
             *leg = Some(Leg {
                 entry,
                 way: end
@@ -151,6 +152,7 @@ impl<P: Planner> Axis<P> {
                     .map(|(end, from)| end - from)
                     .filter(|way| way.is_finite() && end.is_some_and(|end| self.allowed(end).is_ok())),
             });
+            forward = end.zip(from).map_or(forward, |(end, from)| end > from);
             from = end;
         }
         let mut passage = REST;
@@ -160,7 +162,7 @@ impl<P: Planner> Axis<P> {
                 Some(leg) => **leg,
                 None => Leg {
                     entry: first,
-                    way: first.end.map(|end| end - self.setpoint.position),
+                    way: first.end.map(|end| end - start),
                 },
             };
             passage = self.between(&leg, next, &passage);
@@ -195,7 +197,7 @@ impl<P: Planner> Axis<P> {
                 (towards, velocity.abs(), None)
             }
             Work::Halt => (direction, 0.0, None),
-            Work::Stop | Work::Home(_) => return REST,
+            Work::Stop | Work::Home(_) | Work::SetPosition { .. } => return REST,
         };
         // Reversed, or nowhere: at rest (B13). To the velocity 0 leads no direction.
         if towards * direction <= 0.0 && velocity != 0.0 {
