@@ -1,6 +1,8 @@
 //! The third-order kernel by itself: from any state, inside its bounds or not, it arrives; fast.
 
-use standstill_planner::kernel::{Bounds, MAX_STEPS, Profile, Sides, second, third};
+use standstill_planner::kernel::{
+    Bounds, MAX_STEPS, Point, Profile, Sides, falling_root, second, third, zero,
+};
 
 /// splitmix64, as a number in 0..1.
 struct Random(u64);
@@ -33,6 +35,7 @@ impl Random {
     }
 }
 
+#[derive(Debug)]
 struct Case {
     x: f64,
     v: f64,
@@ -147,6 +150,44 @@ fn every_state_arrives() {
     assert!(steps < MAX_STEPS / 2);
 }
 
+/// Bounds that are all just touched at once, or not quite: the switches lie at the ends of their brackets.
+#[test]
+fn where_every_bound_is_just_touched_it_arrives() {
+    let mut random = Random(57);
+    let mut worst = 0.0f64;
+    for _ in 0..60_000 {
+        let near = |random: &mut Random| match (3.0 * random.unit()) as u32 {
+            0 => 1.0,
+            1 => 1.0 + random.signed() * random.log(1e-16, 1e-6),
+            _ => 1.0 + 1e-9 * random.signed(),
+        };
+        // A jerk up and down again reaches `rate * rate`, and twice that the distance.
+        let rate = random.log(0.1, 10.0);
+        let top = rate * rate * near(&mut random);
+        let distance = 2.0 * rate * rate * rate * near(&mut random);
+        let case = Case {
+            x: 0.5 * distance,
+            v: 0.0,
+            a: 0.0,
+            target: -0.5 * distance,
+            bounds: Bounds {
+                v: Sides::both(top),
+                a: Sides::both(rate),
+            },
+        };
+        let profile = solve(&case);
+        let ([x, v, a], out_v, out_a) = follow(&case, &profile);
+        let error = ((x - case.target) / distance)
+            .abs()
+            .max(v.abs() / top)
+            .max(a.abs() / rate);
+        assert!(error <= 1e-12, "{error:e} {case:?} {profile:?}");
+        assert!(out_v <= 1e-9 && out_a <= 1e-9, "{out_v:e} {out_a:e} {case:?}");
+        worst = worst.max(error);
+    }
+    println!("worst end {worst:e}");
+}
+
 /// A push of any length to either side and a profile from there is never faster than the profile at once.
 #[test]
 fn no_detour_is_faster() {
@@ -184,6 +225,65 @@ fn no_detour_is_faster() {
             );
         }
     }
+}
+
+/// A bracket of a few neighbouring numbers, and functions that are hard to interpolate: the root ends by itself.
+#[test]
+fn a_root_needs_no_cap() {
+    let up = |x: f64, ulps: u64| f64::from_bits(x.to_bits() + ulps);
+    for ulps in 1..40 {
+        for at in 1..=ulps {
+            let (root, steps) =
+                falling_root(3.0, up(3.0, ulps), |x| if x < up(3.0, at) { 1.0 } else { -1.0 });
+            assert_eq!(root, up(3.0, at));
+            assert!(steps <= 12, "{ulps} {at} {steps}");
+        }
+    }
+    let mut most = 0;
+    for exponent in 0..300 {
+        let at = 1.0 / f64::from(exponent + 1).powi(5);
+        for power in [1, 3, 9] {
+            let (root, steps) = falling_root(0.0, 1.0, |x| (at - x).powi(power));
+            assert!(root >= at && root - at <= 1e-14, "{at} {power} {root}");
+            most = most.max(steps);
+        }
+    }
+    println!("{most} steps of {MAX_STEPS}");
+    assert!(most <= 94);
+}
+
+/// Functions that jump over zero, which no step comes near to, and steep ones.
+#[test]
+fn a_zero_needs_no_cap() {
+    let mut random = Random(59);
+    let mut most = 0;
+    for case in 0..20_000 {
+        let root = match case % 3 {
+            0 => 0.0,
+            1 => random.signed() * random.log(1e-300, 1.0),
+            _ => random.signed(),
+        };
+        let (up, down) = (random.log(1e-12, 1.0), random.log(1e-12, 1.0));
+        let function = |at: f64| Point {
+            at,
+            value: match case % 2 {
+                0 if at < root => -down,
+                0 => up,
+                _ => (at - root).cbrt(),
+            },
+            noise: 0.0,
+        };
+        let (point, steps) = zero(
+            function(-1.0 - random.unit()),
+            function(1.0 + random.unit()),
+            function,
+        );
+        // At a jump any point is as good as another.
+        assert!(case % 2 == 0 || (point.at - root).abs() <= 1e-15, "{root} {point:?}");
+        most = most.max(steps);
+    }
+    println!("{most} steps of {MAX_STEPS}");
+    assert!(most <= 114, "{most}");
 }
 
 /// `cargo test --release -p standstill-planner --features std --test ramp_kernel -- --ignored --nocapture`

@@ -109,7 +109,7 @@ fn the_top_level_holds_what_a_newcomer_expects() {
 #[test]
 fn layers_depend_only_downwards() {
     // Package and what it may depend on, from bottom to top (docs/architecture.md).
-    let layers: [(&str, &str, &[&str]); 10] = [
+    let layers: [(&str, &str, &[&str]); 11] = [
         ("crates/planner", "standstill-planner", &[]),
         ("crates/axis", "standstill-axis", &["standstill-planner"]),
         ("crates/fb", "standstill-fb", &["standstill-axis"]),
@@ -147,6 +147,7 @@ fn layers_depend_only_downwards() {
                 "standstill-trace",
             ],
         ),
+        ("crates/soak", "standstill-soak", &["standstill-planner"]),
         (
             "crates/cli",
             "standstill-cli",
@@ -155,6 +156,7 @@ fn layers_depend_only_downwards() {
                 "standstill-fb",
                 "standstill-planner",
                 "standstill-script",
+                "standstill-soak",
                 "standstill-trace",
             ],
         ),

@@ -4,16 +4,12 @@
 //! batches saw is added up in their order, so the figures depend neither on how many threads there are nor
 //! on where a run was interrupted.
 
-mod cases;
-mod follow;
-mod judge;
-mod random;
 mod state;
 mod tally;
 
 use crate::exit::{Exit, Failure};
 use crate::progress::Progress;
-use cases::Chain;
+use standstill_soak::{Chain, judge};
 use state::State;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -138,7 +134,7 @@ fn chain(seed: u64, number: u64, links: u64) -> Tally {
         let case = chain.next();
         let judged = case.plan().map_err(|error| error.to_string()).and_then(|plan| {
             let scan = chain.leave(&plan);
-            let measured = judge::judge(&case, &plan, scan)?;
+            let measured = judge(&case, &plan, scan)?;
             chain.follow(&plan, scan, measured.keeps);
             Ok((plan, measured))
         });
@@ -155,10 +151,10 @@ fn chain(seed: u64, number: u64, links: u64) -> Tally {
 
 #[cfg(test)]
 mod tests {
-    use super::cases::{Case, Goal, Plan};
     use super::*;
     use crate::plan;
     use standstill_planner::Limits;
+    use standstill_soak::{Case, Goal, Plan};
 
     /// The replans of some chains with their plans, and the scans at which they are left.
     fn replans(chains: u64) -> Vec<(Case, Plan, u64)> {
@@ -212,7 +208,7 @@ mod tests {
                 before: all(1.0 - 1e-6),
                 ..case
             };
-            noticed[0] += u32::from(judge::judge(&slower, &plan, scan).is_err());
+            noticed[0] += u32::from(judge(&slower, &plan, scan).is_err());
             let way = case.limits.velocity * plan.duration();
             let elsewhere = match case.goal {
                 Goal::Grid(target) => Goal::Grid(target + 1e-6 * way),
@@ -224,10 +220,10 @@ mod tests {
                 goal: elsewhere,
                 ..case
             };
-            noticed[1] += u32::from(judge::judge(&missed, &plan, scan).is_err());
+            noticed[1] += u32::from(judge(&missed, &plan, scan).is_err());
             let mut jumping = case;
             jumping.start.velocity += 1e-6 * case.limits.velocity;
-            noticed[2] += u32::from(judge::judge(&jumping, &plan, scan).is_err());
+            noticed[2] += u32::from(judge(&jumping, &plan, scan).is_err());
         }
         // Most plans touch some limit; all have one goal and one start.
         assert!(noticed[0] > 300 && noticed[1] > 400, "{noticed:?}");

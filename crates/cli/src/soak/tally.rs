@@ -1,9 +1,8 @@
 //! What came of the replans so far.
 
-use super::cases::{Case, Goal, Plan};
-use super::judge::Measured;
 use serde::{Deserialize, Serialize};
 use standstill_planner::Rung;
+use standstill_soak::{Case, Goal, Measured, Plan};
 use std::fmt;
 
 /// Failing lines that are kept for each kind of goal; further ones are only counted.

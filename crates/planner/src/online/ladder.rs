@@ -19,7 +19,7 @@ pub enum Rung {
     TwoPhase,
     /// Acceleration and jerk to zero, then push and stop.
     Arrest,
-    /// To rest, then on from there: on the grid, or, with an end velocity, push and ramp.
+    /// To rest, then on from there: on the grid, or, with an end velocity, two ramps and a cruise.
     Brake,
 }
 
@@ -143,7 +143,7 @@ impl OnlinePlan {
                 Rung::TwoPhase => climb.verify(found, &climb.search.two_phase(&from)),
                 Rung::Arrest => climb.verify(found, &climb.search.arrest_then_push(&from)),
                 Rung::Brake if end_velocity != 0.0 => {
-                    climb.verify(found, &climb.search.rest_then_push(&from))
+                    climb.verify(found, &climb.search.rest_then_run_up(&from))
                 }
                 Rung::Brake => {
                     climb.brake_to_grid(found, start.position, target, cycle)?;

@@ -20,8 +20,11 @@ const PARTS: usize = 8;
 /// those around them.
 const MAX_PUSH_SOLVES: u32 = (PARTS * RAMP_SPANS) as u32 + MAX_STEPS + 6;
 
+/// How often a velocity is halved on the last rung: what is left is rounding beside the bound.
+const HALVINGS: u32 = 64;
+
 /// Most ramps a plan may solve, on all rungs together.
-pub const MAX_SOLVES: u32 = 3 * MAX_PUSH_SOLVES + 2 * (MAX_STEPS + 3) + 5;
+pub const MAX_SOLVES: u32 = 2 * MAX_PUSH_SOLVES + 2 * (MAX_STEPS + 3) + 2 * (HALVINGS + 1) + 5;
 
 /// Spans of a whole move.
 type Candidate = Spans<CANDIDATE_SPANS>;
@@ -190,20 +193,50 @@ impl<'a> Search<'a> {
         spans
     }
 
-    /// To rest, then push and stop, both with the lower one of acceleration and deceleration.
+    /// To rest, and to the end velocity, which is not 0, by way of a velocity that is held for as long as it
+    /// takes (O15).
     ///
-    /// With one bound for both, nothing changes where the velocity passes zero, so the place where a ramp
-    /// ends is continuous all along the push, and the root is exact.
-    pub(super) fn rest_then_push(&self, start: &Setpoint) -> Candidate {
-        let mut spans = Spans::new();
-        let ramp = self.ramp(start, 0.0);
-        let state = steady(&follow(self.ramps.order(), start, &ramp), 0.0);
+    /// It is the highest of ever halved ones with which the move does not go too far: forwards, or, where the
+    /// ramp from rest would end beyond the target, backwards. So nothing has to be met by a root.
+    pub(super) fn rest_then_run_up(&self, start: &Setpoint) -> Candidate {
+        let brake = self.ramp(start, 0.0);
+        let rest = steady(&follow(self.ramps.order(), start, &brake), 0.0);
         let even = self.ramps.even();
         let search = Search::new(&even, self.target, self.end_velocity, self.top, self.resolution);
-        spans.extend(&ramp);
-        spans.extend(&search.push_then_stop(&state));
+        let mut spans = Spans::new();
+        spans.extend(&brake);
+        spans.extend(&search.run_up(&rest));
         self.solves.set(self.solves.get() + search.solves());
         self.steps.set(self.steps.get().max(search.steps()));
+        spans
+    }
+
+    /// From `rest` to the end velocity.
+    fn run_up(&self, rest: &Setpoint) -> Candidate {
+        let mut spans = Spans::new();
+        let direct = self.stop(rest);
+        let ahead = direct.ahead(0.0, self.end_velocity.signum());
+        let (way, least) = if ahead.value > ahead.noise {
+            (-self.end_velocity.signum(), 0.0)
+        } else {
+            (self.end_velocity.signum(), self.end_velocity.abs())
+        };
+        let mut held = self.top;
+        for _ in 0..HALVINGS {
+            let first = self.ramp(rest, way * held);
+            let state = steady(&follow(self.ramps.order(), rest, &first), way * held);
+            let last = self.stop(&state);
+            let left = -way * last.beyond;
+            if left >= 0.0 {
+                spans.extend(&first);
+                spans.push(left / held, 0.0);
+                spans.extend(&last.spans);
+                return spans;
+            }
+            held = (0.5 * held).max(least);
+        }
+        // What is left is rounding.
+        spans.extend(&direct.spans);
         spans
     }
 

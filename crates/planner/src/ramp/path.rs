@@ -79,11 +79,15 @@ impl<const N: usize> Path<N> {
             }
             way.go(duration);
         }
+        let order = self.order;
         if let Some(last) = self.last_mut() {
-            last.state = Setpoint {
-                snap: last.state.snap,
-                ..way.state
+            // The input of its own: that of `way` may be that of a span too short to have a piece.
+            let input = match order {
+                Order::Four => last.state.snap,
+                Order::Three => last.state.jerk,
+                Order::Two => last.state.acceleration,
             };
+            last.state = with_input(&way.state, order, input);
         }
         way.state
     }

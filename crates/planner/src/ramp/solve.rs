@@ -77,7 +77,8 @@ impl Ramps {
         }
     }
 
-    /// The same with the lower one of acceleration and deceleration for both, in the same units.
+    /// The same with the lower one of acceleration and deceleration for both, in the same units: a ramp that
+    /// passes zero velocity then has fewer spans.
     pub(crate) fn even(&self) -> Self {
         let lower = self.acceleration.min(self.deceleration);
         Self {

@@ -104,7 +104,7 @@ impl Ramps {
     }
 
     /// The legs that brake with the deceleration, are back at the acceleration limit, which is lower, just
-    /// when the velocity is zero, and go on from there (O11).
+    /// when the velocity is zero, and go on from there (O14).
     ///
     /// They come back with the jerk of [`Ramps::arrival`]. Where even a release at once is too late for
     /// that, with the least that is early enough: a stop is on such a release, so a start that could still

@@ -114,3 +114,56 @@ fn the_present_position_can_be_passed_with_another_velocity() {
     let there = pass(limits.velocity);
     assert_eq!((there.scans(), there.duration()), (0, 0.0));
 }
+
+/// A last span too short to move the clock: what it would have done does not rub off on the one before it.
+#[test]
+fn a_span_too_short_for_the_clock_leaves_no_trace() {
+    for (jerk, snap) in [
+        (f64::INFINITY, f64::INFINITY),
+        (1e15, f64::INFINITY),
+        (1e15, 1e21),
+    ] {
+        let limits = Limits {
+            velocity: 95450.50494123837,
+            acceleration: 2024861011.1706011,
+            deceleration: 6591331420.376002,
+            jerk,
+            snap,
+        };
+        let start = Setpoint::at_rest(6.3);
+        // One unit in the last place below the limit.
+        let end_velocity = f64::from_bits(limits.velocity.to_bits() - 1);
+        let plan = OnlinePlan::passing(&start, 134.98, end_velocity, &limits, &limits, 1e-5).expect("a plan");
+        assert_eq!((plan.rung(), plan.excess()), (Rung::PushThenStop, None));
+        let last = plan.segments().last().expect("a segment");
+        assert_eq!((last.acceleration, last.jerk, last.snap), (0.0, 0.0, 0.0));
+    }
+}
+
+/// Where the first rungs have a root that no number is near enough to: a target as good as where the turn to
+/// nearly the opposite velocity ends.
+#[test]
+fn a_root_between_two_numbers_is_no_refusal() {
+    let limits = Limits {
+        velocity: 4826061.544148344,
+        acceleration: 709697782968.1647,
+        deceleration: 709697782968.1647,
+        jerk: 7.096969063479478e17,
+        snap: 1.1752384962276695e24,
+    };
+    let start = Setpoint {
+        velocity: limits.velocity,
+        ..Setpoint::at_rest(22.713484468049487)
+    };
+    let plan = OnlinePlan::passing(
+        &start,
+        22.71348443522261,
+        -4826061.267729214,
+        &limits,
+        &limits,
+        6.8e-7,
+    )
+    .expect("a plan");
+    assert_eq!(plan.excess(), None);
+    assert!(plan.duration() < 1e-3, "{plan:?}");
+}

@@ -1,19 +1,39 @@
 //! Random numbers that are the same on every machine.
 
-/// splitmix64 (Steele, Lea, Flood 2014): a counter and a mixing function.
+use std::vec::IntoIter;
+
+/// splitmix64 (Steele, Lea, Flood 2014): a counter and a mixing function. A fuzzer can say what comes first.
 #[derive(Debug)]
-pub struct Random(u64);
+pub struct Random {
+    given: IntoIter<u64>,
+    counter: u64,
+}
 
 impl Random {
     /// Independent streams for every `seed` and `stream`.
     pub fn new(seed: u64, stream: u64) -> Self {
-        let mut seeded = Self(seed);
-        Self(seeded.bits() ^ Self(stream).bits())
+        let counter = |counter| Self {
+            given: Vec::new().into_iter(),
+            counter,
+        };
+        counter(counter(seed).bits() ^ counter(stream).bits())
+    }
+
+    /// Eight bytes are a number each; what is not given is the stream 0 of seed 0.
+    pub fn of_bytes(bytes: &[u8]) -> Self {
+        let given = bytes.as_chunks().0.iter().map(|word| u64::from_le_bytes(*word));
+        Self {
+            given: given.collect::<Vec<_>>().into_iter(),
+            ..Self::new(0, 0)
+        }
     }
 
     fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
+        if let Some(bits) = self.given.next() {
+            return bits;
+        }
+        self.counter = self.counter.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.counter;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)

@@ -1,7 +1,6 @@
 //! Random replans that follow each other, and how to write one as a line of `standstill plan`.
 
-use super::random::Random;
-use crate::json::{Object, number, string};
+use crate::random::Random;
 use standstill_planner::{
     Excess, GridPlan, Limits, Method, OnlinePlan, Order, Peaks, PlanError, RampPlan, Segment, Setpoint,
 };
@@ -40,8 +39,11 @@ pub struct Case {
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::large_enum_variant, reason = "one exists at a time")]
 pub enum Plan {
+    /// From rest to rest on the sample grid.
     Grid(GridPlan),
+    /// To a position.
     Online(OnlinePlan),
+    /// To a velocity.
     Ramp(RampPlan),
 }
 
@@ -87,34 +89,46 @@ impl Case {
             ..
         } = self.start;
         let takes_before = method != "overlapped" && self.before != self.limits;
-        Object::new()
-            .with("id", string(id))
-            .with("method", string(method))
-            .with("Ts", number(self.cycle))
-            .with("position", number(position))
-            .with("velocity", number(velocity))
-            .with("acceleration", number(acceleration))
-            .with("jerk", number(jerk))
-            .with_some("target", target.map(number))
-            .with_some("end_velocity", end_velocity.map(number))
-            .with("limits", object(&self.limits))
-            .with_some("limits_before", takes_before.then(|| object(&self.before)))
-            .text()
+        let bound = |(_, value): &(&str, Option<f64>)| value.is_some_and(f64::is_finite);
+        let object = |members: &[(&str, Option<f64>)]| {
+            let members = members.iter().filter(|member| bound(member));
+            // Adding 0.0 takes the sign off zero.
+            let members = members.map(|(key, value)| format!("\"{key}\":{:?}", value.unwrap_or(0.0) + 0.0));
+            members.collect::<Vec<_>>().join(",")
+        };
+        let state = object(&[
+            ("Ts", Some(self.cycle)),
+            ("position", Some(position)),
+            ("velocity", Some(velocity)),
+            ("acceleration", Some(acceleration)),
+            ("jerk", Some(jerk)),
+            ("target", target),
+            ("end_velocity", end_velocity),
+        ]);
+        let bounds = |limits: &Limits| {
+            object(&[
+                ("velocity", Some(limits.velocity)),
+                ("acceleration", Some(limits.acceleration)),
+                ("deceleration", Some(limits.deceleration)),
+                ("jerk", Some(limits.jerk)),
+                ("snap", Some(limits.snap)),
+            ])
+        };
+        let before = if takes_before {
+            format!(",\"limits_before\":{{{}}}", bounds(&self.before))
+        } else {
+            String::new()
+        };
+        // `id` is plain text, which Rust and JSON quote alike.
+        format!(
+            "{{\"id\":{id:?},\"method\":\"{method}\",{state},\"limits\":{{{}}}{before}}}",
+            bounds(&self.limits)
+        )
     }
 }
 
-fn object(limits: &Limits) -> String {
-    let bound = |value: f64| value.is_finite().then(|| number(value));
-    Object::new()
-        .with_some("velocity", bound(limits.velocity))
-        .with_some("acceleration", bound(limits.acceleration))
-        .with_some("deceleration", bound(limits.deceleration))
-        .with_some("jerk", bound(limits.jerk))
-        .with_some("snap", bound(limits.snap))
-        .text()
-}
-
 impl Plan {
+    /// Scans until the goal.
     pub fn scans(&self) -> u32 {
         match self {
             Self::Grid(plan) => plan.scans(),
@@ -123,6 +137,7 @@ impl Plan {
         }
     }
 
+    /// The set-point of a scan.
     pub fn at(&self, scan: u64) -> Setpoint {
         match self {
             Self::Grid(plan) => plan.at(scan),
@@ -131,6 +146,7 @@ impl Plan {
         }
     }
 
+    /// Time until the goal (s).
     pub fn duration(&self) -> f64 {
         match self {
             Self::Grid(plan) => plan.duration(),
@@ -139,6 +155,7 @@ impl Plan {
         }
     }
 
+    /// What the plan tells of exceeding.
     pub fn excess(&self) -> Option<Excess> {
         match self {
             Self::Grid(_) => None,
@@ -147,6 +164,7 @@ impl Plan {
         }
     }
 
+    /// The largest magnitudes the plan tells of.
     pub fn peaks(&self) -> Peaks {
         match self {
             Self::Grid(plan) => {
@@ -163,6 +181,7 @@ impl Plan {
         }
     }
 
+    /// The stretches of constant highest derivative.
     pub fn segments(&self) -> Vec<Segment> {
         match self {
             Self::Grid(plan) => plan
@@ -209,7 +228,11 @@ pub struct Chain {
 impl Chain {
     /// The chain of this number, at rest at first.
     pub fn new(seed: u64, number: u64) -> Self {
-        let mut random = Random::new(seed, number);
+        Self::of(Random::new(seed, number))
+    }
+
+    /// The chain these numbers make.
+    pub fn of(mut random: Random) -> Self {
         let order = [Order::Two, Order::Three, Order::Four][random.below(3) as usize];
         let widest = limits(&mut random, order);
         let change = [Change::Never, Change::Velocity, Change::All][random.below(3) as usize];

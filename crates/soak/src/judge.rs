@@ -1,15 +1,18 @@
 //! Holds a plan against what is claimed of plans.
 
-use super::cases::{Case, Goal, Plan};
-use super::follow::{Followed, follow, state_at};
+use crate::cases::{Case, Goal, Plan};
+use crate::follow::{Followed, follow, state_at};
+use standstill_planner::kernel::MAX_STEPS;
+use standstill_planner::online::MAX_SOLVES;
 use standstill_planner::{Excess, Order, Setpoint};
 
 /// How far a limit may be exceeded, a target missed, a derivative jump: relative to the limit, to the way at
 /// the velocity limit, to the limit.
 const RELATIVE: f64 = 1e-9;
 
-/// Speeds below this part of the limit have a direction only by rounding.
-const STILL: f64 = 1e-12;
+/// Speeds up to this part of the limit count as none: the derivatives tell the direction
+/// (docs/planner-ramps.md, section 4), and either bound of the acceleration may hold.
+const STILL: f64 = 1e-9;
 
 /// What sums of positions resolve, relative to them.
 const RESOLVED: f64 = 32.0 * f64::EPSILON;
@@ -40,6 +43,9 @@ pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
     if let Some(segment) = segments.iter().find(|segment| !(segment.duration > 0.0)) {
         return Err(format!("a segment of {:e} s", segment.duration));
     }
+    if let Some(what) = cut_short(plan) {
+        return Err(what);
+    }
     let followed = follow(&case.start, &segments, order, STILL * case.limits.velocity);
     let time = scan as f64 * case.cycle;
     let scale = Scale::new(case, &followed, time);
@@ -66,6 +72,17 @@ pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
         Some((what, value)) => Err(format!("{what} by {value:e}")),
         None => Ok(measured),
     }
+}
+
+/// A search that ran into its cap.
+fn cut_short(plan: &Plan) -> Option<String> {
+    let (solves, steps) = match plan {
+        Plan::Grid(_) => (0, 0),
+        Plan::Online(plan) => (plan.solves(), plan.steps()),
+        Plan::Ramp(plan) => (0, plan.steps()),
+    };
+    let cut = solves >= MAX_SOLVES || steps >= MAX_STEPS;
+    cut.then(|| format!("{solves} ramps solved, {steps} steps of a root"))
 }
 
 /// What differences are relative to.
@@ -210,17 +227,15 @@ fn limits(case: &Case, plan: &Plan, followed: &Followed, measured: &mut Measured
     if case.viable && (case.goal != Goal::Velocity(0.0) || told != reversal) {
         return Err(format!("an excess is told of that is none: {told:?}"));
     }
-    let accelerations = acceleration.map(|(value, bound)| over(value, bound));
+    let beyond = |value: f64, bound: f64, told: f64| over(over(value, bound), told) / (bound + told);
     let untold = [
-        (velocity, told.velocity, limits.velocity),
-        (
-            accelerations.into_iter().fold(0.0, f64::max),
-            told.acceleration,
-            limits.lower_acceleration(),
-        ),
-        (jerk, told.jerk, limits.jerk),
+        beyond(followed.speed(), limits.velocity, told.velocity),
+        acceleration
+            .map(|(value, bound)| beyond(value, bound, told.acceleration))
+            .into_iter()
+            .fold(0.0, f64::max),
+        beyond(followed.jerk, limits.jerk, told.jerk),
     ];
-    let untold = untold.map(|(value, told, bound)| over(value, told) / (bound + told));
     if let Some((name, value)) = worst(&untold) {
         return Err(format!("{name} exceeds what is told of by {value:e}"));
     }

@@ -1,0 +1,38 @@
+//! Random replans, and what is claimed of plans held against them.
+//!
+//! What stands here: chains of replans from numbers, the plans of each, an integrator that shares no code with
+//! the planner, and the judge. What does not: running them by the million, which is `standstill soak`, and
+//! choosing the numbers so that they reach every branch, which is the fuzz target in `fuzz/`.
+
+#![forbid(unsafe_code)]
+
+mod cases;
+mod follow;
+mod judge;
+mod random;
+
+pub use cases::{Case, Chain, Goal, Plan};
+pub use judge::{Measured, judge};
+pub use random::Random;
+
+/// Replans of a chain that a fuzzer's bytes make.
+const FUZZED: u32 = 6;
+
+/// Plans and judges the chain that `bytes` make.
+///
+/// # Errors
+/// What is wrong with the first plan that fails, and its replan as a line of `standstill plan`.
+pub fn fuzz(bytes: &[u8]) -> Result<(), String> {
+    let mut chain = Chain::of(Random::of_bytes(bytes));
+    for link in 0..FUZZED {
+        let case = chain.next();
+        let judged = case.plan().map_err(|error| error.to_string()).and_then(|plan| {
+            let scan = chain.leave(&plan);
+            let measured = judge(&case, &plan, scan)?;
+            chain.follow(&plan, scan, measured.keeps);
+            Ok(())
+        });
+        judged.map_err(|what| case.line(&format!("replan {link}: {what}")))?;
+    }
+    Ok(())
+}
