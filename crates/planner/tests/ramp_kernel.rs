@@ -279,7 +279,10 @@ fn a_zero_needs_no_cap() {
             function,
         );
         // At a jump any point is as good as another.
-        assert!(case % 2 == 0 || (point.at - root).abs() <= 1e-15, "{root} {point:?}");
+        assert!(
+            case % 2 == 0 || (point.at - root).abs() <= 1e-15,
+            "{root} {point:?}"
+        );
         most = most.max(steps);
     }
     println!("{most} steps of {MAX_STEPS}");
