@@ -139,10 +139,8 @@ impl Bench {
         for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
             axis.advance(self.scan, &mut self.log);
             assert!(axis.setpoint().is_finite(), "scan {}", self.scan);
+            // It is there at once, in the coordinates of the command.
             *drive = axis.drive_command();
-            if let Some(name) = drive.rename {
-                drive.position = name;
-            }
         }
         self.scan += 1;
     }

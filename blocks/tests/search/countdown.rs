@@ -124,6 +124,11 @@ impl Plan for Count {
         }
     }
 
+    fn shift(&mut self, by: f64) {
+        self.start.position += by;
+        self.goal.position += by;
+    }
+
     fn excess(&self) -> Option<Excess> {
         None
     }

@@ -159,6 +159,16 @@ iec_enum! {
     }
 }
 
+iec_enum! {
+    /// When an administrative command takes effect (MC_EXECUTION_MODE).
+    ExecutionMode = "MC_EXECUTION_MODE" {
+        /// In the call that gives it.
+        Immediately = "mcImmediately", 0;
+        /// Like a buffered motion: when what was commanded before has finished.
+        Queued = "mcQueued", 1;
+    }
+}
+
 /// Most commands that can wait behind the active one; the configured queue is at most this.
 pub const QUEUE_MAX: usize = 16;
 

@@ -62,6 +62,8 @@ pub struct AxisConfig {
     pub start: StartState,
     /// Drive increments, or `None` if the drive speaks user units.
     pub scaling: Option<Scaling>,
+    /// Length of one turn (u): positions are in [0, this) and come round. `None` for a linear axis.
+    pub modulo: Option<f64>,
     /// Lowest and highest position (u) a move may end at.
     pub software_limits: Option<(f64, f64)>,
     /// What happens to values above the limits.
@@ -94,6 +96,7 @@ impl AxisConfig {
             position: 0.0,
             start: StartState::Disabled,
             scaling: None,
+            modulo: None,
             software_limits: None,
             above_limit: AboveLimit::Clamp,
             profile: MoveProfile::Overlapped,
@@ -163,6 +166,9 @@ impl AxisConfig {
                 value: self.position,
             });
         }
+        if let Some(length) = self.modulo {
+            self.check_modulo(length)?;
+        }
         if let Some((min, max)) = self.software_limits {
             for (key, value) in [("software_limits.min", min), ("software_limits.max", max)] {
                 if value.is_nan() {
@@ -201,7 +207,29 @@ impl AxisConfig {
             None => Ok(()),
         }
     }
+
+    fn check_modulo(&self, length: f64) -> Result<(), ConfigError> {
+        if !(length > 0.0 && length <= MODULO_MAX) {
+            return Err(ConfigError::Modulo { value: length });
+        }
+        if !(self.position >= 0.0 && self.position < length) {
+            return Err(ConfigError::PositionOutsideModulo {
+                value: self.position,
+                length,
+            });
+        }
+        if self.software_limits.is_some() {
+            return Err(ConfigError::ModuloWithSoftwareLimits);
+        }
+        if self.scaling.is_some_and(|scaling| scaling.turn(length).is_none()) {
+            return Err(ConfigError::ModuloNotRational { value: length });
+        }
+        Ok(())
+    }
 }
+
+/// Longest turn (u): from there on positions resolve no more than a whole unit.
+pub const MODULO_MAX: f64 = 9_007_199_254_740_992.0;
 
 /// Why an axis was not set up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -237,6 +265,25 @@ pub enum ConfigError {
         /// Upper limit (u).
         max: f64,
     },
+    /// A turn that is not above 0, or longer than [`MODULO_MAX`].
+    Modulo {
+        /// Length (u).
+        value: f64,
+    },
+    /// The start position is not in the first turn.
+    PositionOutsideModulo {
+        /// Position (u).
+        value: f64,
+        /// Length of a turn (u).
+        length: f64,
+    },
+    /// Software limits on an axis whose positions come round.
+    ModuloWithSoftwareLimits,
+    /// A turn is no fraction of drive increments with parts below 2^63.
+    ModuloNotRational {
+        /// Length (u).
+        value: f64,
+    },
     /// The queue is longer than [`QUEUE_MAX`].
     Queue {
         /// Places asked for.
@@ -268,6 +315,9 @@ impl ConfigError {
         match self {
             Self::NotPositive { key, .. } | Self::NotFinite { key, .. } | Self::AboveLimit { key, .. } => key,
             Self::SoftwareLimits { .. } => "software_limits",
+            Self::Modulo { .. } | Self::ModuloNotRational { .. } => "modulo",
+            Self::PositionOutsideModulo { .. } => "position",
+            Self::ModuloWithSoftwareLimits => "software_limits",
             Self::Queue { .. } => "queue",
             Self::Profile { .. } => "profile",
             Self::Scaling { .. } => "scaling",
@@ -297,6 +347,22 @@ impl fmt::Display for ConfigError {
                     "software_limits.min is {min:?} and max {max:?}: min must be below max"
                 )
             }
+            Self::Modulo { value } => write!(
+                f,
+                "modulo is {value:?}: the length of a turn must be above 0 and at most {MODULO_MAX:?}"
+            ),
+            Self::PositionOutsideModulo { value, length } => write!(
+                f,
+                "position is {value:?}: on a modulo axis it must be from 0 to below the length of a turn, {length:?}"
+            ),
+            Self::ModuloWithSoftwareLimits => write!(
+                f,
+                "software_limits on a modulo axis: its positions come round, so nothing lies outside; leave them out, or modulo"
+            ),
+            Self::ModuloNotRational { value } => write!(
+                f,
+                "modulo is {value:?}: with this scaling a turn is no fraction of increments with parts below 2^63; choose a unit of which a turn is a whole number"
+            ),
             Self::Queue { value } => write!(f, "queue is {value}: at most {QUEUE_MAX} commands can wait"),
             Self::Profile { profile, key, limit } => write!(
                 f,

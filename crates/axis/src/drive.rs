@@ -85,9 +85,10 @@ pub struct DriveCommand {
     pub position: DrivePosition,
     /// Velocity feed-forward (u/s).
     pub velocity: f64,
-    /// From now on the drive's present commanded position is called this (MC_Home); actual and commanded
-    /// position shift by the same amount.
-    pub rename: Option<DrivePosition>,
+    /// For drives that speak units: from now on the present commanded position, that of the command before, is
+    /// called this (u), and every other position moves by as much (MC_Home, MC_SetPosition). Increments never
+    /// change their names.
+    pub rename: Option<f64>,
 }
 
 /// A drive. `read` then `write`, each exactly once a scan.

@@ -104,6 +104,15 @@ error_ids! {
     EndVelocityAboveLimit = 121, "EndVelocity is above the axis limit and the axis is set to refuse that.",
         "Lower EndVelocity, raise the limit, or set above_limit to clamp.";
 
+    PositionOutsideModulo = 119, "The position is not in the first turn of a modulo axis.",
+        "Give a position from 0 to below the length of a turn, or move by a distance.";
+
+    ExecutionModeInvalid = 122, "ExecutionMode is not a number of MC_EXECUTION_MODE.",
+        "Use mcImmediately (0) or mcQueued (1).";
+
+    OutwardFromSoftwareLimit = 123, "The axis stands at or beyond a software limit and the endless motion would lead further out.",
+        "Move back inside: the other way, or to a target inside.";
+
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";
     InErrorStop = 202, "The axis is in ErrorStop.",
@@ -122,9 +131,12 @@ error_ids! {
     BufferFull = 301, "All places of the command buffer are taken.",
         "Wait for a buffered command to become active, or enlarge the queue of the axis.";
 
+    RemovedFromBuffer = 302, "The queued command was removed from the buffer before its turn.",
+        "Give it again, or behind commands that nothing interrupts.";
+
     AxisFault = 401, "The axis reported a fault.",
         "Remove its cause, then call MC_Reset.";
-    SoftwareLimitReached = 402, "An endless motion would have left the software limits; the axis stopped inside.",
+    SoftwareLimitReached = 402, "A motion would have left the software limits; the axis stopped inside.",
         "Call MC_Reset, then move away from the limit.";
     CauseStillPresent = 403, "MC_Reset found the cause of the axis error still present.",
         "Remove the cause, then give MC_Reset a new rising edge.";

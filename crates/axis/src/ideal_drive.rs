@@ -112,22 +112,19 @@ impl IdealDrive {
     }
 
     /// Calls the newest commanded position `name` and shifts what is on its way by as much.
-    fn rename(&mut self, name: DrivePosition) {
-        let newest = self.line.get(self.head).copied().unwrap_or(name);
+    fn rename(&mut self, name: f64) {
+        let Some(&DrivePosition::Units(newest)) = self.line.get(self.head) else {
+            return;
+        };
         for place in &mut self.line {
-            *place = match (*place, newest, name) {
+            if let DrivePosition::Units(old) = place {
                 // What already arrived takes the name exactly, without rounding a shift.
-                (old, newest, name) if old == newest => name,
-                (DrivePosition::Units(old), DrivePosition::Units(newest), DrivePosition::Units(name)) => {
-                    DrivePosition::Units(old + (name - newest))
-                }
-                (
-                    DrivePosition::Increments(old),
-                    DrivePosition::Increments(newest),
-                    DrivePosition::Increments(name),
-                ) => DrivePosition::Increments(old.wrapping_add(name.wrapping_sub(newest))),
-                (_, _, name) => name,
-            };
+                *old = if *old == newest {
+                    name
+                } else {
+                    *old + (name - newest)
+                };
+            }
         }
     }
 }

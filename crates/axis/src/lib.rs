@@ -23,10 +23,10 @@ mod state;
 
 pub use axis::{Axis, Beside, MotionState, Outlook, Pace, Source, Way};
 pub use command::{
-    AxisId, BufferMode, Command, CommandId, Direction, Dynamics, IecEnum, InstanceId, QUEUE_MAX, Raw,
-    Request, Superimpose, ValueSource,
+    AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,
+    QUEUE_MAX, Raw, Request, Superimpose, ValueSource,
 };
-pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, PowerOff, StartState};
+pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, MODULO_MAX, PowerOff, StartState};
 pub use drive::{
     Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals, Fault,
 };
@@ -34,7 +34,7 @@ pub use error_id::{ErrorClass, ErrorId, RETIRED};
 pub use fate::{FATES_KEPT, Fate};
 pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
 pub use log::{Event, Goal, LOG_KEPT, Log, Record};
-pub use scaling::Scaling;
+pub use scaling::{Scaling, Turn};
 pub use standstill_planner::{
     Excess, Limits, MoveProfile, Order, Passage, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
 };

@@ -47,6 +47,11 @@ pub enum Event {
     },
     /// The start state forces the plan out of its limits by this much.
     Unavoidable(Excess),
+    /// The coordinates were moved: from this scan on the same place is called this much more (u). No motion.
+    Shifted {
+        /// By how much (u).
+        by: f64,
+    },
     /// A plan was accepted.
     Planned {
         /// Where it leads.

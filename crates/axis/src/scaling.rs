@@ -2,6 +2,7 @@
 
 use crate::ConfigError;
 use core::num::NonZero;
+use standstill_planner::turns::split;
 
 /// `increments` drive increments are `units` user units.
 ///
@@ -63,6 +64,12 @@ impl Scaling {
     /// of their whole part.
     #[inline(never)]
     pub fn to_increments(&self, position: f64) -> i64 {
+        let (whole, small) = self.parts(position);
+        nearest(whole, small)
+    }
+
+    /// `position` (u) in increments: whole ones, and a rest of a few.
+    fn parts(&self, position: f64) -> (i128, f64) {
         let position = if self.invert {
             self.offset - position
         } else {
@@ -76,8 +83,7 @@ impl Scaling {
         let quotient = scaled.div_euclid(units);
         let rest = scaled.rem_euclid(units) as f64;
         let small = (rest + fraction * increments) / f64::from(self.units.get());
-        let nearest = (if small < 0.0 { small - 0.5 } else { small + 0.5 }) as i64;
-        (quotient + i128::from(nearest)).clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
+        (quotient, small)
     }
 
     /// The position (u) of `increments`.
@@ -93,6 +99,117 @@ impl Scaling {
         } else {
             distance + self.offset
         }
+    }
+}
+
+/// The whole number nearest to `whole + small`, half away from `whole`; saturates at the range of `i64`.
+fn nearest(whole: i128, small: f64) -> i64 {
+    let nearest = (if small < 0.0 { small - 0.5 } else { small + 0.5 }) as i64;
+    (whole + i128::from(nearest)).clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
+}
+
+/// One turn of a modulo axis in increments: a fraction, so that turns can be counted without rounding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Turn {
+    increments: NonZero<u64>,
+    turns: NonZero<u64>,
+}
+
+impl Turn {
+    /// Largest part of the fraction: with turns or increments of 63 bits the products fit 127.
+    const LARGEST: u128 = i64::MAX as u128;
+
+    /// So many increments ..
+    pub const fn increments(&self) -> u64 {
+        self.increments.get()
+    }
+
+    /// .. are so many turns; the two have no common divisor.
+    pub const fn turns(&self) -> u64 {
+        self.turns.get()
+    }
+}
+
+impl Scaling {
+    /// One turn of `length` (u) in increments, exactly; `None` if `length` is not above 0 and finite, or if
+    /// the fraction's parts do not fit 63 bits.
+    ///
+    /// Bounded: at most 186 steps of Euclid's algorithm.
+    pub fn turn(&self, length: f64) -> Option<Turn> {
+        if !(length > 0.0 && length.is_finite()) {
+            return None;
+        }
+        // length = mantissa * 2^exponent
+        let bits = length.to_bits();
+        let (fraction, biased) = (bits & ((1 << 52) - 1), (bits >> 52) as i32);
+        let (mantissa, exponent) = if biased == 0 {
+            (fraction, -1074)
+        } else {
+            (fraction | (1 << 52), biased - 1075)
+        };
+        let zeros = mantissa.trailing_zeros();
+        let (mantissa, exponent) = (mantissa >> zeros, exponent + zeros.cast_signed());
+        let shifted = |value: u128, by: i32| {
+            let by = u32::try_from(by).ok()?;
+            (by <= value.leading_zeros()).then(|| value << by)
+        };
+        let increments = u128::from(mantissa) * u128::from(self.increments.get());
+        let turns = u128::from(self.units.get());
+        let (increments, turns) = if exponent >= 0 {
+            (shifted(increments, exponent)?, turns)
+        } else {
+            (increments, shifted(turns, exponent.checked_neg()?)?)
+        };
+        let (mut divisor, mut rest) = (increments, turns);
+        while let Some(next) = divisor.checked_rem(rest) {
+            (divisor, rest) = (rest, next);
+        }
+        let part = |value: u128| {
+            let reduced = value.checked_div(divisor).filter(|part| *part <= Turn::LARGEST)?;
+            NonZero::new(u64::try_from(reduced).ok()?)
+        };
+        Some(Turn {
+            increments: part(increments)?,
+            turns: part(turns)?,
+        })
+    }
+
+    /// The increments nearest to `turns` whole turns and `position` (u); saturates at the range of `i64`.
+    ///
+    /// Turns are counted in integers: 10^9 of them are as exact as one.
+    #[inline(never)]
+    pub fn to_increments_turned(&self, turn: &Turn, turns: i64, position: f64) -> i64 {
+        let turns = if self.invert {
+            -i128::from(turns)
+        } else {
+            i128::from(turns)
+        };
+        let scaled = turns * i128::from(turn.increments.get());
+        let per_turn = i128::from(turn.turns.get());
+        let rest = scaled.rem_euclid(per_turn) as f64 / turn.turns.get() as f64;
+        let (whole, small) = self.parts(position);
+        nearest(whole + scaled.div_euclid(per_turn), small + rest)
+    }
+
+    /// The whole turns of `length` (u) in `increments`, and the position (u) in [0, `length`) left.
+    #[inline(never)]
+    pub fn to_units_turned(&self, turn: &Turn, length: f64, increments: i64) -> (i64, f64) {
+        let increments = if self.invert {
+            -i128::from(increments)
+        } else {
+            i128::from(increments)
+        };
+        // In increments over turn.turns, all whole numbers.
+        let scaled = increments * i128::from(turn.turns.get());
+        let per_turn = i128::from(turn.increments.get());
+        let turns = scaled.div_euclid(per_turn) as i64;
+        let scaled = scaled.rem_euclid(per_turn) * i128::from(self.units.get());
+        // Both factors are above 0 and their product is below 2^95.
+        let ratio = (i128::from(self.increments.get()) * i128::from(turn.turns.get())).max(1);
+        let whole = scaled.div_euclid(ratio);
+        let rest = scaled.rem_euclid(ratio) as f64 / ratio as f64;
+        let (further, position) = split(whole as f64 + rest + self.offset, length);
+        (turns.saturating_add(further), position)
     }
 }
 

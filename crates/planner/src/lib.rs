@@ -25,6 +25,7 @@ mod planner;
 pub mod ramp;
 mod setpoint;
 mod sum;
+pub mod turns;
 
 pub use error::{Field, PlanError};
 pub use grid::{GridPlan, Method, UnequalPlan};

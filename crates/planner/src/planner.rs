@@ -174,6 +174,19 @@ pub trait Plan: Copy + core::fmt::Debug {
     fn rung(&self) -> Option<Rung> {
         None
     }
+
+    /// The same motion in coordinates moved by `by` (u): every position of the plan is that much larger.
+    fn shift(&mut self, by: f64);
+
+    /// Where `scan` is past the goal of an endless motion: the same motion with that scan as its start, and
+    /// whole `length`s (u) taken off its position so that it starts within one. Returns how many; `None`, and
+    /// the plan as it is, for any other scan or plan.
+    ///
+    /// However often a motion is brought back, its position is off by a rounding or two, not by one for each
+    /// time.
+    fn bring_back(&mut self, _scan: u64, _length: f64) -> Option<i64> {
+        None
+    }
 }
 
 /// The planner of the product: moves to a position by [`MoveProfile`], ramps for velocities.
@@ -416,6 +429,29 @@ impl Plan for StandardPlan {
         match self {
             Self::Grid(_) | Self::Unequal(_) | Self::Ramp(_) | Self::Sampled(_) => None,
             Self::Online(plan) => Some(plan.rung()),
+        }
+    }
+
+    fn shift(&mut self, by: f64) {
+        match self {
+            Self::Grid(grid) => grid.shift(by),
+            Self::Unequal(grid) => grid.shift(by),
+            Self::Ramp(ramp) => ramp.shift(by),
+            Self::Online(plan) => plan.shift(by),
+            Self::Sampled(plan) => plan.shift(by),
+        }
+    }
+
+    fn bring_back(&mut self, scan: u64, length: f64) -> Option<i64> {
+        match self {
+            Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) => None,
+            Self::Ramp(ramp) => ramp.bring_back(scan, length),
+            Self::Online(plan) => {
+                let mut cruise = plan.cruise(scan)?;
+                let turns = cruise.bring_back(scan, length);
+                *self = Self::Ramp(cruise);
+                turns
+            }
         }
     }
 }

@@ -85,6 +85,8 @@ impl Plan for Note {
         Setpoint::at_rest(scan as f64)
     }
 
+    fn shift(&mut self, _: f64) {}
+
     fn excess(&self) -> Option<Excess> {
         None
     }

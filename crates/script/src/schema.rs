@@ -194,7 +194,7 @@ fn axis_key(key: &str) -> Value {
             }),
         ),
         "defaults" => object(&shape::DEFAULTS, |_| of("positive")),
-        "stop_deceleration" | "stop_jerk" => of("positive"),
+        "stop_deceleration" | "stop_jerk" | "modulo" => of("positive"),
         "state" => words(&START_STATES),
         "scaling" => required(
             &["increments", "units"],

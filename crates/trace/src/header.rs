@@ -60,6 +60,9 @@ pub struct Axis {
     /// What it must stay within.
     #[serde(default)]
     pub limits: Limits,
+    /// Length of a turn (u) of an axis whose positions come round; absent on a linear one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub modulo: Option<f64>,
     /// How units become drive increments; absent if the drive speaks units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scaling: Option<Scaling>,

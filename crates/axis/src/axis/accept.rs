@@ -20,9 +20,26 @@ pub(super) const REST: Passage = Passage {
     most: 0.0,
 };
 
+/// The Direction pin of a command to a position; the checks refuse undefined numbers. MC_MoveAdditive leads to a
+/// position of the frame.
+fn direction_of(command: &Command) -> Option<Direction> {
+    match command {
+        Command::MoveAbsolute { direction, .. } | Command::MoveContinuousAbsolute { direction, .. } => {
+            direction.get()
+        }
+        Command::MoveAdditive { .. }
+        | Command::MoveRelative { .. }
+        | Command::MoveContinuousRelative { .. }
+        | Command::MoveVelocity { .. }
+        | Command::Halt { .. }
+        | Command::Stop { .. }
+        | Command::Home { .. } => None,
+    }
+}
+
 /// When an admitted command starts.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Way {
+pub(super) enum Way {
     Now,
     Wait,
 }
@@ -65,13 +82,15 @@ impl<P: Planner> Axis<P> {
             self.refuse(pin, value, f64::NAN, error, source, log)
         })?;
         let (work, limits) = self.check(&request.command, way, source, log)?;
-        let entry = Entry {
+        let mut entry = Entry {
             id: self.new_id(),
             instance: source.instance,
             work,
             limits,
+            direction: direction_of(&request.command),
+            turns: 0,
             mode,
-            end: work.end(self.setpoint.position),
+            end: None,
             passage: REST,
             held: work == Work::Stop,
         };
@@ -82,6 +101,7 @@ impl<P: Planner> Axis<P> {
                 self.start_beside(source.scan, log);
             }
             Way::Now => {
+                self.aim(&mut entry, self.setpoint.position);
                 let motion = self
                     .plan_for(&entry)
                     .map_err(|error| self.refuse_plan(&entry, error, source, log))?;
@@ -154,7 +174,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    fn wait(&self) -> Result<Way, (&'static str, ErrorId)> {
+    pub(super) fn wait(&self) -> Result<Way, (&'static str, ErrorId)> {
         if self.queue.len() < self.config.queue {
             Ok(Way::Wait)
         } else {
@@ -245,10 +265,13 @@ impl<P: Planner> Axis<P> {
             }
             Command::Halt { ref dynamics } => Ok((Work::Halt, self.resolve(dynamics, source, log)?)),
             Command::Stop { ref dynamics } => Ok((Work::Stop, self.resolve(dynamics, source, log)?)),
-            Command::Home { position } => Ok((
-                Work::Home(self.finite("Position", position, source, log)?),
-                self.config.limits,
-            )),
+            Command::Home { position } => {
+                let position = self.finite("Position", position, source, log)?;
+                self.in_first_turn(position).map_err(|(length, error)| {
+                    self.refuse("Position", position, length, error, source, log)
+                })?;
+                Ok((Work::Home(position), self.config.limits))
+            }
         }
     }
 
@@ -265,6 +288,8 @@ impl<P: Planner> Axis<P> {
             return Err(self.refuse("Direction", number, 4.0, ErrorId::DirectionInvalid, source, log));
         }
         let position = self.finite("Position", position, source, log)?;
+        self.in_first_turn(position)
+            .map_err(|(length, error)| self.refuse("Position", position, length, error, source, log))?;
         self.inside("Position", position, source, log)?;
         if self.config.needs_homed && !self.homed {
             return Err(self.refuse("Position", position, f64::NAN, ErrorId::NotHomed, source, log));
@@ -304,11 +329,21 @@ impl<P: Planner> Axis<P> {
         match owner.work {
             Work::Position(_) | Work::Distance(_) => owner.end,
             Work::Halt => Some(self.end_of_plan()),
-            Work::Through { .. } | Work::Velocity { .. } | Work::Stop | Work::Home(_) => None,
+            Work::Through { .. }
+            | Work::Velocity { .. }
+            | Work::Stop
+            | Work::Home(_)
+            | Work::SetPosition { .. } => None,
         }
     }
 
-    fn finite(&self, pin: &'static str, value: f64, source: Source, log: &mut Log) -> Result<f64, ErrorId> {
+    pub(super) fn finite(
+        &self,
+        pin: &'static str,
+        value: f64,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<f64, ErrorId> {
         if value.is_finite() {
             return Ok(value);
         }
@@ -344,7 +379,13 @@ impl<P: Planner> Axis<P> {
 
     /// Plans a command from the present set-point. Nothing changes.
     pub(super) fn plan_for(&self, entry: &Entry) -> Result<Motion<P::Plan>, ErrorId> {
-        self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))
+        let before = if self.passes_its_end() {
+            // From a blended end on the limits of the second command hold, and no others (B5).
+            entry.limits
+        } else {
+            self.limits_before(&entry.limits)
+        };
+        self.plan_from(entry, &self.setpoint, &before)
     }
 
     /// Plans a command from `start`, whose motion was within `before`.
@@ -354,6 +395,8 @@ impl<P: Planner> Axis<P> {
         start: &Setpoint,
         before: &Limits,
     ) -> Result<Motion<P::Plan>, ErrorId> {
+        let framed = self.in_frame_of(entry, start);
+        let start = framed.as_ref().unwrap_or(start);
         let end = match entry.end {
             Some(end) if !end.is_finite() => return Err(ErrorId::PositionInvalid),
             Some(end) => self.allowed(end)?,
@@ -380,21 +423,15 @@ impl<P: Planner> Axis<P> {
                 } else {
                     velocity
                 };
+                self.not_outward(start.position, velocity)?;
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
             Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
-            Work::Home(_) => return Ok(Motion::Hold),
+            Work::Home(_) | Work::SetPosition { .. } => return Ok(Motion::Hold),
         };
         match planned {
             Ok(plan) => Ok(Motion::along(plan)),
             Err(error) => Err(refusal(error)),
-        }
-    }
-
-    pub(super) fn allowed(&self, target: f64) -> Result<f64, ErrorId> {
-        match self.config.software_limits {
-            Some((min, max)) if target < min || target > max => Err(ErrorId::TargetOutsideSoftwareLimits),
-            _ => Ok(target),
         }
     }
 
@@ -419,33 +456,16 @@ impl<P: Planner> Axis<P> {
             } => ("Distance", distance),
             Work::Velocity { velocity, .. } => ("Velocity", velocity),
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),
-            Work::Home(position) => ("Position", position),
+            Work::Home(position) | Work::SetPosition { position, .. } => ("Position", position),
         };
-        let limit = match self.config.software_limits {
-            Some((_, max))
-                if error == ErrorId::TargetOutsideSoftwareLimits
-                    && entry.end.is_some_and(|end| end + self.superimposed_left() > max) =>
-            {
-                max
+        let limit = match error {
+            ErrorId::TargetOutsideSoftwareLimits | ErrorId::OutwardFromSoftwareLimit => {
+                let end = entry.end.unwrap_or(self.setpoint.position);
+                self.broken_software_limit(end + self.superimposed_left())
             }
-            Some((min, _)) if error == ErrorId::TargetOutsideSoftwareLimits => min,
             _ => f64::NAN,
         };
         self.refuse(pin, value, limit, error, source, log)
-    }
-
-    /// The software limit `target` is beyond (u).
-    pub(super) fn broken_software_limit(&self, target: f64) -> f64 {
-        match self.config.software_limits {
-            Some((min, max)) => {
-                if target > max {
-                    max
-                } else {
-                    min
-                }
-            }
-            None => f64::NAN,
-        }
     }
 
     /// What of an excess over a command's limits is beyond those of the axis as well, rounding apart. A faster
@@ -509,10 +529,14 @@ impl<P: Planner> Axis<P> {
             Work::Position(_) | Work::Distance(_) | Work::Halt => AxisEvent::StartDiscrete,
             Work::Velocity { .. } | Work::Through { .. } => AxisEvent::StartContinuous,
             Work::Stop => AxisEvent::Stop,
-            Work::Home(_) => AxisEvent::StartHoming,
+            Work::Home(_) | Work::SetPosition { .. } => AxisEvent::StartHoming,
         });
         self.take_over(entry.limits, &motion);
         self.motion = motion;
+        if self.modulo.is_some() {
+            self.start_of_plan();
+        }
+        self.watched = self.needs_watching(&entry);
         self.owner = Some(entry);
     }
 }

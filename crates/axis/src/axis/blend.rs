@@ -26,13 +26,16 @@ impl<P: Planner> Axis<P> {
             return;
         }
         let Some(mut owner) = self.owner else { return };
-        let passage = self.passage(&owner, 0);
+        let passage = self.passage(&owner, self.setpoint.position, 0);
         let Some(end) = owner.end else { return };
         if passage == owner.passage || !matches!(self.motion, Motion::Run { .. }) {
             return;
         }
         owner.passage = passage;
-        if let Some(plan) = self.blended(&owner, &self.setpoint, end, &self.before) {
+        let planned = self.blended(&owner, &self.setpoint, end, &self.before);
+        // Should it have to come to rest all the same, it does so as planned.
+        let planned = planned.filter(|plan| plan.at(u64::from(plan.scans())).velocity != 0.0);
+        if let Some(plan) = planned {
             self.in_force = raised(&owner.limits, &plan);
             let event = Event::Planned {
                 goal: Goal::Passing {
@@ -47,7 +50,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The plan that passes `end` as `entry` is to; `None` if it is to come to rest there, or can't help it.
+    /// The plan that passes `end` as `entry` is to; `None` if it is to come to rest there from where it need not
+    /// be blended, or can't do without turning.
     pub(super) fn blended(
         &self,
         entry: &Entry,
@@ -55,17 +59,14 @@ impl<P: Planner> Axis<P> {
         end: f64,
         before: &Limits,
     ) -> Option<P::Plan> {
-        if entry.passage.wanted <= 0.0 {
+        if entry.passage.wanted <= 0.0 && !self.passes_its_end() {
             return None;
         }
         let planned = self
             .planner
             .blend(start, end, &entry.passage, &entry.limits, before);
         // What can't be planned blended is planned as a move to rest, whose error would be the same.
-        planned
-            .ok()
-            .flatten()
-            .filter(|plan| plan.at(u64::from(plan.scans())).velocity != 0.0)
+        planned.ok().flatten()
     }
 
     /// Notes whose limits hold from now on, and which did for the motion taken over from.
@@ -86,6 +87,11 @@ impl<P: Planner> Axis<P> {
             self.end_owner(Fate::Done);
             self.trip(ErrorId::PlanRefused, 0, Reaction::Ramp, scan, log);
         }
+    }
+
+    /// Whether the owner is at its end in motion, for the next to take over.
+    pub(super) fn passes_its_end(&self) -> bool {
+        self.goal_reached() && self.passes_on() && self.setpoint.velocity != 0.0
     }
 
     /// What becomes of the owner when another takes over in motion: what has an end has passed it.
@@ -124,20 +130,21 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// How `first`, whose end is known, is to pass it, with the queue behind it, of which `skip` have had
+    /// How `first`, which leads from `start` (u) to a known end, is to pass it, with the queue behind it, of which `skip` have had
     /// their turn: from the last to the first, because no command may begin faster than it can end. While
     /// something is superimposed all ends are passed at rest: where the axis is then, is not where they are.
     ///
     /// Cost: at most one ramp or root of ramps for each command that waits.
-    pub(super) fn passage(&self, first: &Entry, skip: usize) -> Passage {
+    pub(super) fn passage(&self, first: &Entry, start: f64, skip: usize) -> Passage {
         if self.layer.is_some() {
             return REST;
         }
         const NONE: Option<Leg<'_>> = None;
         let mut legs = [NONE; QUEUE_MAX];
         let mut from = first.end;
+        let mut forward = from.is_none_or(|end| end > start);
         for (leg, entry) in legs.iter_mut().zip(self.queue.iter().skip(skip)) {
-            let end = from.and_then(|from| entry.work.end(from));
+            let end = from.and_then(|from| self.end_of_leg(entry, from, forward));
             *leg = Some(Leg {
                 entry,
                 way: end
@@ -145,6 +152,7 @@ impl<P: Planner> Axis<P> {
                     .map(|(end, from)| end - from)
                     .filter(|way| way.is_finite() && end.is_some_and(|end| self.allowed(end).is_ok())),
             });
+            forward = end.zip(from).map_or(forward, |(end, from)| end > from);
             from = end;
         }
         let mut passage = REST;
@@ -154,7 +162,7 @@ impl<P: Planner> Axis<P> {
                 Some(leg) => **leg,
                 None => Leg {
                     entry: first,
-                    way: first.end.map(|end| end - self.setpoint.position),
+                    way: first.end.map(|end| end - start),
                 },
             };
             passage = self.between(&leg, next, &passage);
@@ -189,7 +197,7 @@ impl<P: Planner> Axis<P> {
                 (towards, velocity.abs(), None)
             }
             Work::Halt => (direction, 0.0, None),
-            Work::Stop | Work::Home(_) => return REST,
+            Work::Stop | Work::Home(_) | Work::SetPosition { .. } => return REST,
         };
         // Reversed, or nowhere: at rest (B13). To the velocity 0 leads no direction.
         if towards * direction <= 0.0 && velocity != 0.0 {

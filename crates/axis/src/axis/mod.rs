@@ -2,14 +2,19 @@
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
-//! [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks ask.
+//! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
+//! motions inside, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
+//! ask.
 
 mod accept;
 mod blend;
+mod coordinates;
 mod dynamics;
+mod modulo;
 mod power;
 mod queue;
 mod reading;
+mod software_limits;
 mod step;
 mod superimposed;
 
@@ -19,6 +24,7 @@ use crate::{
     DrivePosition, DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState,
     state,
 };
+use modulo::Modulo;
 use queue::{Entry, Queue, Work};
 pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
@@ -170,8 +176,10 @@ pub struct Axis<P: Planner = Standard> {
     config: AxisConfig,
     planner: P,
     state: AxisState,
+    /// On a modulo axis its position may be some turns away from the one shown.
     setpoint: Setpoint,
     actual: f64,
+    modulo: Option<Modulo>,
     past: reading::Past,
     /// What the drive reported last beside its position.
     signals: DriveSignals,
@@ -199,7 +207,15 @@ pub struct Axis<P: Planner = Standard> {
     cause_present: bool,
     reset: Option<power::Reset>,
     homed: bool,
+    /// What the drive's present commanded position is called from now on (u); none for drives that count
+    /// increments.
     rename: Option<f64>,
+    /// What positions are called more than increments say (u); 0 for drives that speak units.
+    shift: f64,
+    /// The owner's motion may leave the software limits, so every set-point is looked at.
+    watched: bool,
+    /// A queued MC_SetPosition takes effect at the next latch.
+    shift_due: bool,
 }
 
 impl<P: Planner> Axis<P> {
@@ -221,6 +237,7 @@ impl<P: Planner> Axis<P> {
             },
             setpoint: Setpoint::at_rest(config.position),
             actual: config.position,
+            modulo: Modulo::new(&config),
             past: reading::Past::new(config.position),
             signals: DriveSignals::default(),
             motion: if powered { Motion::Hold } else { Motion::Follow },
@@ -251,6 +268,9 @@ impl<P: Planner> Axis<P> {
             reset: None,
             homed: false,
             rename: None,
+            shift: 0.0,
+            watched: false,
+            shift_due: false,
         })
     }
 
@@ -269,9 +289,13 @@ impl<P: Planner> Axis<P> {
         self.state
     }
 
-    /// The set-point last published.
+    /// The set-point last published; on a modulo axis its position is in the first turn.
+    #[inline]
     pub fn setpoint(&self) -> Setpoint {
-        self.setpoint
+        match &self.modulo {
+            None => self.setpoint,
+            Some(modulo) => modulo.shown(&self.setpoint),
+        }
     }
 
     /// Actual position (u), as last latched.
@@ -328,9 +352,12 @@ impl<P: Planner> Axis<P> {
                 Work::Velocity { .. } | Work::Through { .. } => Fate::Active {
                     reached: self.goal_reached(),
                 },
-                Work::Position(_) | Work::Distance(_) | Work::Halt | Work::Stop | Work::Home(_) => {
-                    Fate::Active { reached: false }
-                }
+                Work::Position(_)
+                | Work::Distance(_)
+                | Work::Halt
+                | Work::Stop
+                | Work::Home(_)
+                | Work::SetPosition { .. } => Fate::Active { reached: false },
             };
         }
         self.fate_of_other(id)
@@ -380,16 +407,16 @@ impl<P: Planner> Axis<P> {
     /// The drive's command for this scan.
     #[inline]
     pub fn drive_command(&mut self) -> DriveCommand {
-        let rename = match self.rename {
-            Some(position) => {
-                self.rename = None;
-                Some(position_at_drive(&self.config, position))
-            }
-            None => None,
-        };
+        let rename = self.rename;
+        if rename.is_some() {
+            self.rename = None;
+        }
         DriveCommand {
             request: self.drive_request(),
-            position: position_at_drive(&self.config, self.setpoint.position),
+            position: match &self.modulo {
+                None => position_at_drive(&self.config, self.setpoint.position - self.shift),
+                Some(modulo) => modulo.at_drive(&self.config, self.setpoint.position - self.shift),
+            },
             velocity: self.setpoint.velocity,
             rename,
         }

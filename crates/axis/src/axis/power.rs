@@ -36,7 +36,8 @@ impl<P: Planner> Axis<P> {
         // In most scans nothing but the position changes.
         if self.is_steady(feedback) {
             debug_assert!(self.power.fault.is_none() && self.power.comms == Comms::Ok);
-            self.latch(self.position_of(feedback));
+            let position = self.position_of(feedback);
+            self.latch(position);
             self.signals = feedback.signals;
             self.power.voltage = feedback.voltage;
         } else {
@@ -52,22 +53,24 @@ impl<P: Planner> Axis<P> {
             && feedback.fault.is_none()
             && feedback.comms == Comms::Ok
             && self.reset.is_none()
+            && !self.shift_due
             && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop)
     }
 
     /// The actual position (u).
     #[inline]
-    fn position_of(&self, feedback: &DriveFeedback) -> f64 {
-        match feedback.position {
-            DrivePosition::Units(units) => units,
-            DrivePosition::Increments(increments) => self.position_at_increment(increments),
+    fn position_of(&mut self, feedback: &DriveFeedback) -> f64 {
+        match (feedback.position, &mut self.modulo) {
+            (DrivePosition::Units(units), None) => units,
+            (DrivePosition::Increments(increments), None) => self.position_at_increment(increments),
+            (position, Some(modulo)) => modulo.latch(&self.config, position, self.shift),
         }
     }
 
     #[inline(never)]
     fn position_at_increment(&self, increments: i64) -> f64 {
         match self.config.scaling {
-            Some(scaling) => scaling.to_units(increments),
+            Some(scaling) => scaling.to_units(increments) + self.shift,
             // A drive that counts increments needs a scaling; take one increment as one unit.
             None => increments as f64,
         }
@@ -83,8 +86,12 @@ impl<P: Planner> Axis<P> {
             self.latch_nothing();
             self.trip(ErrorId::CommunicationLost, 0, Reaction::Ramp, scan, log);
         } else {
-            self.latch(self.position_of(feedback));
+            let position = self.position_of(feedback);
+            self.latch(position);
             self.follow_power(feedback, scan, log);
+            if self.shift_due {
+                self.take_queued_shifts(scan, log);
+            }
         }
         self.finish_reset();
     }
@@ -121,6 +128,7 @@ impl<P: Planner> Axis<P> {
     /// The set-point takes over where the feedback is: enabling never makes it step.
     fn hold_at_actual(&mut self) {
         self.setpoint = standstill_planner::Setpoint::at_rest(self.actual);
+        self.count_actual_turns();
         self.motion = Motion::Hold;
     }
 
@@ -194,6 +202,8 @@ impl<P: Planner> Axis<P> {
 
     /// Plans a ramp to rest with the stop dynamics.
     fn ramp_down(&mut self, source: Source, log: &mut Log) {
+        // Nothing stops sooner than this.
+        self.watched = false;
         // Only a plan leaves a set-point that is not at rest.
         if self.setpoint.is_at_rest() {
             self.motion = Motion::Hold;

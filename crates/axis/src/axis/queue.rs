@@ -1,6 +1,6 @@
 //! Commands that were accepted: the owner and those that wait.
 
-use crate::{BufferMode, CommandId, InstanceId, QUEUE_MAX};
+use crate::{BufferMode, CommandId, Direction, InstanceId, QUEUE_MAX};
 use standstill_planner::{Limits, Passage};
 
 /// Where a motion leads.
@@ -29,6 +29,8 @@ pub(super) enum Work {
     Stop,
     /// The present position gets a name (u).
     Home(f64),
+    /// The coordinates move: the actual position becomes this, or grows by it (u).
+    SetPosition { position: f64, relative: bool },
 }
 
 impl Work {
@@ -45,7 +47,9 @@ impl Work {
                 to: Place::By(distance),
                 ..
             } => Some(from + distance),
-            Self::Velocity { .. } | Self::Halt | Self::Stop | Self::Home(_) => None,
+            Self::Velocity { .. } | Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } => {
+                None
+            }
         }
     }
 
@@ -58,6 +62,7 @@ impl Work {
             Self::Halt => "halt",
             Self::Stop => "stop",
             Self::Home(_) => "home",
+            Self::SetPosition { .. } => "set position",
         }
     }
 }
@@ -69,6 +74,10 @@ pub(super) struct Entry {
     pub instance: InstanceId,
     pub work: Work,
     pub limits: Limits,
+    /// Way round to a position on a modulo axis; `None` where the position is one of the frame, some turns on.
+    pub direction: Option<Direction>,
+    /// Whole turns the frame of a modulo axis moves on by when it begins.
+    pub turns: i64,
     /// How it follows the command before it.
     pub mode: BufferMode,
     /// Where it ends (u), once it is known: when the command is planned.
@@ -80,6 +89,18 @@ pub(super) struct Entry {
 }
 
 impl Entry {
+    /// Where it leads, if anywhere.
+    pub fn place(&self) -> Option<Place> {
+        match self.work {
+            Work::Position(position) => Some(Place::At(position)),
+            Work::Distance(distance) => Some(Place::By(distance)),
+            Work::Through { to, .. } => Some(to),
+            Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } => {
+                None
+            }
+        }
+    }
+
     /// Whether it goes on until another command takes over.
     pub fn is_endless(&self) -> bool {
         matches!(self.work, Work::Velocity { .. } | Work::Through { .. })

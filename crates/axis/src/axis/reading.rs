@@ -6,6 +6,7 @@
 use super::queue::Work;
 use super::{Axis, Motion};
 use crate::{Comms, DriveSignals, ErrorId, Raw, ValueSource};
+use standstill_planner::turns::split;
 use standstill_planner::{Plan, Planner, Setpoint};
 
 /// Part of the lower of the acceleration limits below which a change of the actual velocity counts as none.
@@ -97,6 +98,21 @@ impl Past {
         self.seam.get_or_insert_default()
     }
 
+    /// Names what came before as it lies nearest to what came after it, on an axis with turns of `length` (u).
+    #[inline(never)]
+    fn come_round(&mut self, actual: f64, length: f64) {
+        let nearest = |place: f64, to: f64| {
+            let (_, ahead) = split(place - to, length);
+            to + if ahead > length / 2.0 {
+                ahead - length
+            } else {
+                ahead
+            }
+        };
+        self.before = nearest(self.before, actual);
+        self.earlier = nearest(self.earlier, self.before);
+    }
+
     /// Makes what came before the seam comparable with `actual` (u).
     #[cold]
     #[inline(never)]
@@ -131,6 +147,9 @@ impl<P: Planner> Axis<P> {
         if self.past.seam.is_some() {
             self.past.mend(position);
         }
+        if let Some(modulo) = &self.modulo {
+            self.past.come_round(position, modulo.length);
+        }
     }
 
     /// This scan has no fresh actual position.
@@ -141,12 +160,14 @@ impl<P: Planner> Axis<P> {
 
     /// From the next feedback on, what is called `old` (u) is called `name` (u); no motion.
     pub(super) fn rename_actual(&mut self, old: f64, name: f64) {
-        let latched = |position: f64| match self.config.scaling {
-            Some(scaling) => scaling.to_units(scaling.to_increments(position)),
-            None => position,
-        };
-        let renamed = (latched(old), latched(name));
-        self.past.seam().renamed = Some(renamed);
+        self.past.seam().renamed = Some((old, name));
+    }
+
+    /// Every actual position so far, the present one included, is called `by` (u) more; no motion.
+    pub(super) fn shift_actual(&mut self, by: f64) {
+        self.actual += by;
+        self.past.before += by;
+        self.past.earlier += by;
     }
 
     /// The actual position (u) if it is fresh.

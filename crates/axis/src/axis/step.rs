@@ -39,7 +39,7 @@ impl<P: Planner> Axis<P> {
         let next = plan.at(*elapsed);
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
-        } else if self.would_leave() {
+        } else if self.watched && self.would_leave(&next) {
             self.fail(ErrorId::SoftwareLimitReached, scan, log);
         } else {
             self.publish(next);
@@ -60,9 +60,15 @@ impl<P: Planner> Axis<P> {
             return;
         }
         match &mut self.motion {
-            Motion::Follow => self.publish(Setpoint::at_rest(self.actual)),
+            Motion::Follow => {
+                self.publish(Setpoint::at_rest(self.actual));
+                self.count_actual_turns();
+            }
             Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
             Motion::Run { .. } => self.step_along_plan(scan, log),
+        }
+        if self.modulo.is_some() {
+            self.bring_back();
         }
         if self.goal_reached() {
             self.settle(scan, log);
@@ -93,56 +99,6 @@ impl<P: Planner> Axis<P> {
         self.publish(next);
     }
 
-    /// Whether this is the last scan in which the stop dynamics can keep a motion that would leave the
-    /// software limits inside them.
-    #[inline]
-    fn would_leave(&self) -> bool {
-        match self.config.software_limits {
-            Some(limits) => self.would_leave_within(limits),
-            None => false,
-        }
-    }
-
-    /// The same for limits `min` and `max` (u).
-    fn would_leave_within(&self, limits: (f64, f64)) -> bool {
-        match &self.motion {
-            Motion::Run { plan, elapsed, .. } => self.would_leave_from(&plan.at(*elapsed), limits),
-            Motion::Follow | Motion::Hold => false,
-        }
-    }
-
-    /// The same for the next set-point.
-    #[inline(never)]
-    pub(super) fn would_leave_from(&self, next: &Setpoint, (min, max): (f64, f64)) -> bool {
-        let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
-        let leaving = match self.owner.as_ref().map(|owner| &owner.work) {
-            Some(Work::Velocity { .. }) => true,
-            // One that ends at rest does so at its target, which was checked.
-            Some(Work::Through { end_velocity, .. }) => *end_velocity != 0.0,
-            Some(Work::Halt | Work::Stop) => leaves(self.end_of_plan() + self.superimposed_left()),
-            // Targets were checked when the command was taken.
-            Some(Work::Position(_) | Work::Distance(_) | Work::Home(_)) | None => false,
-        };
-        leaving
-            && leaves(
-                match self
-                    .planner
-                    .ramp_to(next, 0.0, &self.stop_limits(), &self.in_force)
-                {
-                    Ok(ramp) => ramp.at(u64::from(ramp.scans())).position,
-                    Err(_) => next.position,
-                },
-            )
-    }
-
-    /// Where the running plan has its goal (u).
-    pub(super) fn end_of_plan(&self) -> f64 {
-        match &self.motion {
-            Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
-            Motion::Follow | Motion::Hold => self.setpoint.position,
-        }
-    }
-
     /// Completion and hand-over, at the goal.
     pub(super) fn settle(&mut self, scan: u64, log: &mut Log) {
         let Some(owner) = &self.owner else {
@@ -157,9 +113,7 @@ impl<P: Planner> Axis<P> {
         match owner.work {
             Work::Position(_) | Work::Distance(_) | Work::Halt => self.complete(scan, log),
             Work::Home(position) => {
-                self.rename_actual(self.setpoint.position, position);
-                self.setpoint = Setpoint::at_rest(position);
-                self.rename = Some(position);
+                self.call_set_position(position);
                 self.homed = true;
                 self.complete(scan, log);
             }
@@ -175,6 +129,8 @@ impl<P: Planner> Axis<P> {
             }
             // An endless motion gives way when it has reached its velocity.
             Work::Velocity { .. } | Work::Through { .. } => self.hand_over(self.passed_end(), scan, log),
+            // It never owns the axis.
+            Work::SetPosition { .. } => {}
         }
     }
 
@@ -201,8 +157,11 @@ impl<P: Planner> Axis<P> {
             let Some(mut next) = self.queue.first().copied() else {
                 return;
             };
-            next.end = next.work.end(from);
-            next.passage = self.passage(&next, 1);
+            if self.queue_waits_for_shift() {
+                return;
+            }
+            let passage_from = self.aim(&mut next, from);
+            next.passage = self.passage(&next, passage_from, 1);
             let planned = self.plan_next(&next);
             if let Ok(None) = planned {
                 return;
@@ -211,8 +170,12 @@ impl<P: Planner> Axis<P> {
             match planned {
                 Ok(None) => {}
                 Ok(Some(motion)) => {
+                    let blended = self.passes_its_end();
                     self.end_owner(self.fate_at_hand_over());
                     self.begin(next, motion, scan, log);
+                    if blended {
+                        self.before = next.limits;
+                    }
                     return;
                 }
                 Err(error) => {

@@ -100,6 +100,16 @@ impl<P: Plan> Layer<P> {
         end - self.added.position
     }
 
+    /// The owner's plan starts anew at `start` (u), `passed` scans later than it did; returns the sum's position.
+    pub fn bring_back(&mut self, start: f64, passed: u64) -> f64 {
+        self.base.position = start;
+        if self.retry != u64::MAX {
+            // 0 stands for a command that was not tried yet.
+            self.retry = self.retry.saturating_sub(passed).max(1);
+        }
+        self.sum().position
+    }
+
     fn sum(&self) -> Setpoint {
         let (base, added) = (&self.base, &self.added);
         Setpoint {
@@ -332,24 +342,18 @@ impl<P: Planner> Axis<P> {
         let next = layer.sum();
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
-        } else if self.sum_would_leave(&next) {
+        } else if self.config.software_limits.is_some() && self.would_leave(&next) {
             self.fail(ErrorId::SoftwareLimitReached, scan, log);
         } else {
             self.publish(next);
+        }
+        if self.modulo.is_some() {
+            self.bring_back();
         }
         if self.goal_reached() {
             self.settle(scan, log);
         }
         self.settle_superimposed(scan, log);
-    }
-
-    /// As [`Axis::would_leave_from`] for the sum; where a motion ends was checked when it was taken, and that
-    /// it does not turn outside when it was planned.
-    fn sum_would_leave(&self, next: &Setpoint) -> bool {
-        match (self.config.software_limits, &self.motion) {
-            (Some(limits), Motion::Run { .. }) => self.would_leave_from(next, limits),
-            _ => false,
-        }
     }
 
     /// Completion of what is superimposed, and a new attempt of a command that waits or was lowered.

@@ -134,6 +134,12 @@ impl GridPlan {
         Ok(plan(boxes, scans as u32, scale, wide, cruise))
     }
 
+    /// The same move in coordinates moved by `by` (u).
+    pub(crate) fn shift(&mut self, by: f64) {
+        self.start += by;
+        self.target += by;
+    }
+
     /// Where the move starts (u).
     pub const fn start(&self) -> f64 {
         self.start

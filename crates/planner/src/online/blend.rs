@@ -59,16 +59,20 @@ impl OnlinePlan {
         if distance == 0.0 {
             return Ok(None);
         }
-        // One pair of limits for all speeds tried: a start that is inside for one is inside for all.
+        let side = if distance < 0.0 { -1.0 } else { 1.0 };
+        // One velocity for all speeds tried, so that a start faster than the limit is not brought inside first
+        // for one and not for another: the push goes for the limit anyway.
+        let ramps = Ramps::new(limits, limits);
+        let arrested = side * ramps.arrested(&ramps.state_inward(start)) / ramps.inward(1.0, 1);
         let raised = Limits {
-            velocity: limits.velocity.max(wanted),
+            velocity: limits.velocity.max(wanted).max(arrested),
             ..*limits
         };
         let ramps = Ramps::new(&raised, &wider(&raised, before));
         let way = Way {
             start,
             target,
-            side: if distance < 0.0 { -1.0 } else { 1.0 },
+            side,
             top: limits.velocity,
             raised: &raised,
             before,
@@ -78,7 +82,7 @@ impl OnlinePlan {
         if let Some(plan) = way.with(wanted)? {
             return Ok(Some(plan));
         }
-        let arrested = way.arrested();
+        let arrested = arrested.max(0.0);
         let fast = match way.search().speed_on_target(
             &way.inward(),
             way.side,
@@ -166,12 +170,6 @@ impl Way<'_> {
         Ok(found)
     }
 
-    /// The speed the start comes to when its acceleration goes to zero (u/s).
-    fn arrested(&self) -> f64 {
-        let arrested = self.side * self.ramps.arrested(&self.inward());
-        self.outward(arrested.clamp(0.0, self.ramps.velocity()))
-    }
-
     /// A search for ramps that end on the target, in the kernel's units.
     fn search(&self) -> Search<'_> {
         let distance = self.ramps.inward(self.target - self.start.position, 0);
@@ -202,17 +200,28 @@ impl Way<'_> {
 /// start less than a faster one. Every move takes two scans at least: the speed is at most half of
 /// `distance / cycle`.
 ///
-/// Bounded work: one ramp if `wanted` will do, else one root of ramps.
+/// Bounded work: one ramp if `wanted` will do, else two roots of ramps.
 pub fn entry_speed(wanted: f64, distance: f64, exit: f64, limits: &Limits, cycle: f64) -> f64 {
     let wanted = wanted.min(0.5 * distance / cycle);
     if wanted <= exit {
         return wanted;
     }
     let limits = Limits {
-        velocity: limits.velocity.max(exit),
+        velocity: limits.velocity.max(wanted),
         ..*limits
     };
     let ramps = Ramps::new(&limits, &limits);
+    let down_to = |exit| fastest_down_to(wanted, distance, exit, &ramps, cycle);
+    let entry = down_to(exit);
+    if entry >= wanted || exit == 0.0 {
+        return entry;
+    }
+    // To brake less takes more way where jerk and snap bind, so coming to rest may be shorter.
+    entry.max(down_to(0.0))
+}
+
+/// The same for exactly the speed `exit`.
+fn fastest_down_to(wanted: f64, distance: f64, exit: f64, ramps: &Ramps, cycle: f64) -> f64 {
     let goal = ramps.inward(exit, 1);
     let way = ramps.inward(distance, 0);
     let beyond = |speed: f64| {

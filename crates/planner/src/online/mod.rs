@@ -16,7 +16,7 @@ use crate::grid::GridPlan;
 use crate::kernel::ON_LIMIT;
 use crate::ramp::excess::{self, Excess, Peaks};
 use crate::ramp::{self, Segment};
-use crate::{Field, Limits, PlanError, Setpoint};
+use crate::{Field, Limits, PlanError, RampPlan, Setpoint};
 use ladder::{Found, Tail};
 
 /// Most pieces of a plan.
@@ -190,6 +190,30 @@ impl OnlinePlan {
             velocity: self.end_velocity,
             ..Setpoint::at_rest(self.target + self.end_velocity * since)
         }
+    }
+
+    /// The same motion in coordinates moved by `by` (u).
+    pub(crate) fn shift(&mut self, by: f64) {
+        self.start.position += by;
+        self.target += by;
+        if let Some(tail) = &mut self.found.tail {
+            tail.grid.shift(by);
+        }
+    }
+
+    /// The motion with the end velocity alone, as a plan of its own with the same count of scans; none before
+    /// `scan` is at its end, or if it ends at rest.
+    pub(crate) fn cruise(&self, scan: u64) -> Option<RampPlan> {
+        if scan < u64::from(self.scans) || self.end_velocity == 0.0 {
+            return None;
+        }
+        let start = self.target - self.end_velocity * self.duration();
+        Some(RampPlan::cruising(
+            start,
+            self.end_velocity,
+            self.found.path.order(),
+            self.cycle,
+        ))
     }
 
     /// By how much the start state forced the plan out of its limits, if it did by more than 1e-9 of them.

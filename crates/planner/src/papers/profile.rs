@@ -37,6 +37,15 @@ pub struct Profile {
 }
 
 impl Profile {
+    /// The same motion in coordinates moved by `by` (u).
+    pub(super) fn shift(&mut self, by: f64) {
+        self.start.position += by;
+        self.end.position += by;
+        for piece in &mut self.pieces {
+            piece.first.position += by;
+        }
+    }
+
     /// Lays `spans` of (seconds, jerk or at order 2 acceleration) from `start` on; they must end at `target`
     /// (u) with `end_velocity` (u/s), up to rounding, which the last piece takes up.
     ///

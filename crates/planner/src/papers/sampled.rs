@@ -14,6 +14,11 @@ pub struct SampledPlan {
 }
 
 impl SampledPlan {
+    /// The same motion in coordinates moved by `by` (u).
+    pub(crate) fn shift(&mut self, by: f64) {
+        self.profile.shift(by);
+    }
+
     /// `profile` with sample time `cycle` (s).
     ///
     /// # Errors

@@ -13,7 +13,8 @@ mod turn;
 
 pub use excess::{Excess, Peaks};
 
-use crate::{Field, Limits, PlanError, Setpoint};
+use crate::turns::{split, two_product, two_sum};
+use crate::{Field, Limits, Order, PlanError, Setpoint};
 use path::Path;
 use solve::{Course, Ramp, Ramps, heading};
 
@@ -31,6 +32,8 @@ const GRID_SLACK: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RampPlan {
     start: Setpoint,
+    /// What of the start's position f64 does not hold (u); not 0 only in a motion that was brought back.
+    carry: f64,
     goal: f64,
     cycle: f64,
     scans: u32,
@@ -123,6 +126,7 @@ impl RampPlan {
             .unwrap_or_else(|| proposed(Course::Kept));
         Ok(Self {
             start: *start,
+            carry: 0.0,
             goal: velocity,
             cycle,
             scans: scans(path.duration(), cycle).ok_or(PlanError::TooLong {
@@ -159,6 +163,55 @@ impl RampPlan {
             velocity: self.goal,
             ..Setpoint::default()
         })
+    }
+
+    /// The same motion in coordinates moved by `by` (u).
+    pub(crate) fn shift(&mut self, by: f64) {
+        self.start.position += by;
+        self.path.shift(by);
+    }
+
+    /// The constant `velocity` (u/s) from `position` (u) on.
+    pub(crate) fn cruising(position: f64, velocity: f64, order: Order, cycle: f64) -> Self {
+        Self {
+            start: Setpoint {
+                velocity,
+                ..Setpoint::at_rest(position)
+            },
+            carry: 0.0,
+            goal: velocity,
+            cycle,
+            scans: 0,
+            steps: 0,
+            path: Path::follow(order, &Setpoint::default(), core::iter::empty()),
+            excess: None,
+        }
+    }
+
+    /// From `scan` on, if the goal velocity is reached there: the same motion with `scan` as its start, and
+    /// whole `length`s (u) taken off its position so that it starts within one. Returns how many.
+    ///
+    /// The new start is computed to about 106 bits and what f64 does not hold of it is kept, so that a motion
+    /// brought back a thousand million times is where it would have been without.
+    pub fn bring_back(&mut self, scan: u64, length: f64) -> Option<i64> {
+        if scan < u64::from(self.scans) {
+            return None;
+        }
+        let (time, time_error) = two_product(scan as f64, self.cycle);
+        let (since, since_error) = two_sum(time, -self.duration());
+        let (way, way_error) = two_product(self.goal, since);
+        let way_error = way_error + self.goal * (time_error + since_error);
+        let (position, position_error) = two_sum(self.end_position(), way);
+        let (position, rest) = two_sum(position, position_error + way_error + self.carry);
+        let (turns, _) = split(position, length);
+        let (whole, whole_error) = two_product(turns as f64, length);
+        let (position, error) = two_sum(position, -whole);
+        let (position, carry) = two_sum(position, error + (rest - whole_error));
+        *self = Self {
+            carry,
+            ..Self::cruising(position, self.goal, self.path.order(), self.cycle)
+        };
+        Some(turns)
     }
 
     /// By how much the start state forced the plan out of its limits, if it did by more than 1e-9 of them.

@@ -111,6 +111,13 @@ impl<const N: usize> Path<N> {
         self.len.checked_sub(1).and_then(|i| self.pieces.get_mut(i))
     }
 
+    /// Moves every position by `by` (u).
+    pub(crate) fn shift(&mut self, by: f64) {
+        for piece in &mut self.pieces {
+            piece.state.position += by;
+        }
+    }
+
     /// When the last piece ends (s).
     pub(crate) fn duration(&self) -> f64 {
         self.last().map_or(0.0, |piece| piece.end)

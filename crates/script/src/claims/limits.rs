@@ -81,14 +81,24 @@ fn limits(rows: &Rows<'_>, axis: usize, derivatives: &Derivatives) -> [f64; 4] {
 }
 
 /// What positions resolve in d1 to d4: 2^k units in the last place of the run's largest position, over
-/// cycle^k.
+/// cycle^k. On a modulo axis it is the largest one of the unwrapped positions, and no less than a turn: from
+/// there and back to the first turn a plan may lead.
 fn resolved(rows: &Rows<'_>, axis: usize) -> [f64; 4] {
-    let largest = (0..rows.count())
-        .filter_map(|scan| rows.position(axis, scan, 0))
-        .chain(rows.position(axis, 0, 1))
-        .map(f64::abs)
-        .filter(|position| position.is_finite())
-        .fold(0.0, f64::max);
+    let turn = rows.script.axes.get(axis).and_then(|axis| axis.config.modulo);
+    let mut position = rows.position(axis, 0, 1).unwrap_or(0.0);
+    let mut largest = position.abs().max(turn.unwrap_or(0.0));
+    for scan in 0..rows.count() {
+        let (Some(now), Some(before)) = (rows.position(axis, scan, 0), rows.position(axis, scan, 1)) else {
+            break;
+        };
+        position = match turn {
+            Some(_) => position + rows.way(axis, scan, 0, now - before),
+            None => now,
+        };
+        if position.is_finite() {
+            largest = largest.max(position.abs());
+        }
+    }
     let unit = largest.next_up() - largest;
     let cycle = rows.script.cycle_ns as f64 / 1e9;
     let mut slack = [0.0; 4];

@@ -5,7 +5,7 @@ mod judge;
 mod limits;
 
 use crate::model::{ClaimKind, Script, Span};
-use crate::run::{Layout, Rows};
+use crate::run::{Layout, Rows, Shift};
 use standstill_trace::Trace;
 
 /// A claim, judged.
@@ -48,12 +48,13 @@ impl std::fmt::Display for Failure {
 /// Judges every claim of a script on the trace of its run, in file order.
 ///
 /// Cost: a claim looks at each scan a constant number of times.
-pub fn judge(script: &Script, trace: &Trace) -> Vec<Verdict> {
+pub(crate) fn judge(script: &Script, trace: &Trace, shifts: &[Shift]) -> Vec<Verdict> {
     let layout = Layout::new(script);
     let rows = Rows {
         script,
         layout: &layout,
         trace,
+        shifts,
     };
     script
         .claims

@@ -61,6 +61,7 @@ impl Reader {
             ));
             return None;
         }
+        self.check_turn(&fields, &config)?;
         Some(Axis {
             name: key.text.clone(),
             unit: unit?.to_owned(),
@@ -145,6 +146,7 @@ impl Reader {
             .get("needs_homed")
             .map_or(Some(false), |node| self.boolean(node, "`needs_homed`"));
         let scaling = self.scaling(fields);
+        let modulo = self.optional(fields, "modulo", "`modulo`");
         let software_limits = self.software_limits(fields);
 
         config.defaults = defaults?;
@@ -158,6 +160,7 @@ impl Reader {
         config.queue = usize::try_from(queue?).ok()?;
         config.needs_homed = needs_homed?;
         config.scaling = scaling?;
+        config.modulo = modulo?;
         config.software_limits = software_limits?;
         Some(())
     }
@@ -239,6 +242,26 @@ impl Reader {
             min.unwrap_or(f64::NEG_INFINITY),
             max.unwrap_or(f64::INFINITY),
         )))
+    }
+
+    /// An axis that goes half a turn in a scan could have gone either way.
+    fn check_turn(&mut self, axis: &Fields<'_>, config: &AxisConfig) -> Option<()> {
+        let (Some(node), Some(length), Some(cycle_ns)) = (axis.get("modulo"), config.modulo, self.cycle_ns)
+        else {
+            return Some(());
+        };
+        let way = config.limits.velocity * (cycle_ns as f64 / 1e9);
+        if way < length / 2.0 {
+            return Some(());
+        }
+        let message = format!(
+            "`modulo` is {length:?}, and at its velocity limit the axis goes {way:?} in a cycle: half a turn or more, so positions would not tell which way"
+        );
+        self.report(
+            Diagnostic::new(Code::BadValue, node.span, message)
+                .help("lower `limits.velocity`, or give a longer turn or a shorter `cycle`"),
+        );
+        None
     }
 
     fn drive(&mut self, axis: &Fields<'_>) -> Option<IdealDriveSetup> {

@@ -50,6 +50,7 @@ pub(crate) const AXIS: Shape = Shape {
         "position",
         "state",
         "scaling",
+        "modulo",
         "software_limits",
         "above_limit",
         "profile",
@@ -61,7 +62,7 @@ pub(crate) const AXIS: Shape = Shape {
         "drive",
         "note",
     ],
-    later: &["modulo", "in_position", "max_following_error"],
+    later: &["in_position", "max_following_error"],
 };
 pub(crate) const LIMITS: Shape = shape(
     "`limits`",

@@ -4,7 +4,7 @@ use super::RunError;
 use super::cells::{self, Undefined};
 use super::layout::Layout;
 use super::notes::Notes;
-use super::rows::Rows;
+use super::rows::{Rows, Shift};
 use super::schedule::Schedule;
 use super::values::Values;
 use crate::model::{Action, FaultKind, Point, Script, Wire};
@@ -75,6 +75,8 @@ pub(crate) struct Bench<'a> {
     states: Vec<AxisState>,
     notes: Notes,
     trace: Trace,
+    /// Where coordinates moved, for differences of positions.
+    shifts: Vec<Shift>,
     /// Last scan of the run, once `stop_when` has held.
     last_scan: Option<u64>,
     /// What ended the run early. The executor's hooks return nothing, so it waits here.
@@ -99,6 +101,7 @@ impl<'a> Bench<'a> {
             states: Vec::with_capacity(script.axes.len()),
             notes: Notes::default(),
             trace,
+            shifts: Vec::new(),
             last_scan: None,
             error: None,
         })
@@ -114,8 +117,8 @@ impl<'a> Bench<'a> {
         self.last_scan.is_some_and(|last| scan >= last)
     }
 
-    pub(crate) fn into_trace(self) -> Trace {
-        self.trace
+    pub(crate) fn into_trace(self) -> (Trace, Vec<Shift>) {
+        (self.trace, self.shifts)
     }
 
     /// Ends the run after this scan; the first reason counts.
@@ -247,11 +250,13 @@ impl Programs<Standard, IdealDrive> for Bench<'_> {
 
     fn published(&mut self, time: ScanTime, machine: &ScriptMachine) {
         self.push_row(machine);
-        self.notes.take(self.script, machine, &mut self.trace);
+        self.notes
+            .take(self.script, machine, &mut self.trace, &mut self.shifts);
         let rows = Rows {
             script: self.script,
             layout: self.layout,
             trace: &self.trace,
+            shifts: &self.shifts,
         };
         self.schedule.look(&rows, time.scan);
         if self.last_scan.is_none()

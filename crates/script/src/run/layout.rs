@@ -73,6 +73,7 @@ pub(crate) fn header(script: &Script) -> trace::Header {
                     Order::Four => 4,
                 },
                 limits: limits(&axis.config),
+                modulo: axis.config.modulo,
                 scaling: axis.config.scaling.map(|scaling| trace::Scaling {
                     increments: scaling.increments().into(),
                     units: scaling.units().into(),

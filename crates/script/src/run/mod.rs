@@ -9,7 +9,7 @@ mod schedule;
 mod values;
 
 pub(crate) use layout::Layout;
-pub(crate) use rows::{Derivatives, Rows};
+pub(crate) use rows::{Derivatives, Rows, Shift};
 
 use crate::CELLS_MAX;
 use crate::claims::{self, Verdict};
@@ -111,8 +111,8 @@ pub fn run_with(script: &Script, mut progress: impl FnMut(u64)) -> Result<Outcom
             columns,
         });
     }
-    let mut trace = record(script, &layout, Trace::new(header), &mut progress)?;
-    let verdicts = claims::judge(script, &trace);
+    let (mut trace, shifts) = record(script, &layout, Trace::new(header), &mut progress)?;
+    let verdicts = claims::judge(script, &trace, &shifts);
     trace.set_claims(verdicts.iter().map(told).collect());
     Ok(Outcome { trace, verdicts })
 }
@@ -135,7 +135,7 @@ fn record(
     layout: &Layout,
     trace: Trace,
     progress: &mut impl FnMut(u64),
-) -> Result<Trace, RunError> {
+) -> Result<(Trace, Vec<Shift>), RunError> {
     let mut machine = bench::machine(script)?;
     let mut executor = executor(script)?;
     let mut bench = Bench::new(script, layout, trace)?;

@@ -1,6 +1,7 @@
 //! What the axes recorded, as notes in the trace.
 
 use super::bench::{ScriptMachine, instance_id};
+use super::rows::Shift;
 use crate::model::Script;
 use standstill_axis::{Event, Excess, Goal, LOG_KEPT, Order, Record, StandardPlan};
 use standstill_trace::{Note, Trace, shortest};
@@ -13,7 +14,13 @@ pub(crate) struct Notes {
 
 impl Notes {
     /// Takes this scan's records into the trace.
-    pub(crate) fn take(&mut self, script: &Script, machine: &ScriptMachine, trace: &mut Trace) {
+    pub(crate) fn take(
+        &mut self,
+        script: &Script,
+        machine: &ScriptMachine,
+        trace: &mut Trace,
+        shifts: &mut Vec<Shift>,
+    ) {
         let log = machine.log();
         let lost = (log.total() - self.taken).saturating_sub(LOG_KEPT as u64);
         let records: Vec<_> = log.since(self.taken).collect();
@@ -27,6 +34,13 @@ impl Notes {
             });
         }
         for (index, record) in records.iter().enumerate() {
+            if let Event::Shifted { by } = record.event {
+                shifts.push(Shift {
+                    scan: record.scan,
+                    axis: record.axis.index(),
+                    by,
+                });
+            }
             // Only the last plan of an axis in a scan is still there to be told in full.
             let replaced = records
                 .iter()
@@ -65,7 +79,9 @@ fn subject(script: &Script, record: &Record) -> String {
         Event::Refused { .. } | Event::Clamped { .. } | Event::Superimposed { .. } | Event::RoomAwaited => {
             instance_name(script, record).map_or_else(|| axis_name(script, record), str::to_owned)
         }
-        Event::Unavoidable(_) | Event::Planned { .. } | Event::Fault { .. } => axis_name(script, record),
+        Event::Unavoidable(_) | Event::Planned { .. } | Event::Fault { .. } | Event::Shifted { .. } => {
+            axis_name(script, record)
+        }
     }
 }
 
@@ -81,7 +97,7 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
             let value = match pin {
                 "" => String::new(),
                 // Numbers of an enumeration.
-                "BufferMode" | "Direction" => format!(", {pin} {value}"),
+                "BufferMode" | "Direction" | "ExecutionMode" => format!(", {pin} {value}"),
                 // A BOOL: its name says it.
                 "ContinuousUpdate" => format!(", {pin}"),
                 pin => format!(", {pin} {}", shortest(value)),
@@ -120,6 +136,7 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
             format!("superimposed motion to rest in {scans} scans")
         }
         Event::RoomAwaited => "waits for room below the axis limits".to_owned(),
+        Event::Shifted { by } => format!("coordinates moved by {}", shortest(by)),
         Event::Fault { error, code } => {
             format!("fault {} {}, code {code}", error.number(), error.name())
         }

@@ -12,6 +12,17 @@ pub(crate) struct Rows<'a> {
     pub(crate) script: &'a Script,
     pub(crate) layout: &'a Layout,
     pub(crate) trace: &'a Trace,
+    /// In order of scans.
+    pub(crate) shifts: &'a [Shift],
+}
+
+/// The coordinates of an axis moved in a scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shift {
+    pub(crate) scan: u64,
+    pub(crate) axis: usize,
+    /// By how much its positions are called more from then on (u).
+    pub(crate) by: f64,
 }
 
 impl<'a> Rows<'a> {
@@ -48,21 +59,25 @@ impl<'a> Rows<'a> {
     }
 
     /// Backward difference of published positions of this order (1 to 4) at `scan` over cycle^order, after
-    /// the one of the same order one scan earlier: [before, now].
+    /// the one of the same order one scan earlier: [before, now]. On a modulo axis it is the difference of the
+    /// unwrapped positions, and coordinates that move are no motion.
     ///
     /// Subtracts neighbours `order` times rather than weighing positions with binomial coefficients:
     /// neighbours are close, so nearly every subtraction is exact.
     fn differences(&self, axis: usize, scan: u64, order: u8) -> Option<[f64; 2]> {
         let order = usize::from(order);
-        // Newest first; order + 2 of them give two differences.
-        let mut values = [0.0; 6];
-        let used = values.get_mut(..order + 2)?;
-        for (back, value) in used.iter_mut().enumerate() {
-            *value = self.position(axis, scan, back as u64)?;
+        // Newest first; order + 2 positions have order + 1 first differences and give two of the last.
+        let mut values = [0.0; 5];
+        let used = values.get_mut(..=order)?;
+        let mut newer = self.position(axis, scan, 0)?;
+        for (back, value) in (1..).zip(used.iter_mut()) {
+            let older = self.position(axis, scan, back)?;
+            *value = self.way(axis, scan + 1, back, newer - older);
+            newer = older;
         }
         let cycle = self.script.cycle_ns as f64 / 1e9;
-        let mut unit = 1.0;
-        for length in (0..order).map(|done| order + 1 - done) {
+        let mut unit = cycle;
+        for length in (1..order).map(|done| order + 1 - done) {
             unit *= cycle;
             for index in 0..length {
                 if let [newer, older] = &mut used[index..index + 2] {
@@ -73,6 +88,34 @@ impl<'a> Rows<'a> {
         match used {
             [now, before, ..] => Some([*before / unit, *now / unit]),
             _ => None,
+        }
+    }
+
+    /// The way of a difference of positions, the later of which is that of `back` scans before `scan`: without
+    /// what the coordinates moved in that scan, and on a modulo axis the shorter way round, since no axis goes
+    /// half a turn in a scan.
+    pub(crate) fn way(&self, axis: usize, scan: u64, back: u64, difference: f64) -> f64 {
+        let mut difference = difference;
+        if let Some(scan) = scan.checked_sub(back) {
+            let first = self.shifts.partition_point(|shift| shift.scan < scan);
+            let there = self.shifts.get(first..).unwrap_or(&[]).iter();
+            for shift in there.take_while(|shift| shift.scan == scan) {
+                if shift.axis == axis {
+                    difference -= shift.by;
+                }
+            }
+        }
+        let Some(turn) = self.script.axes.get(axis).and_then(|axis| axis.config.modulo) else {
+            return difference;
+        };
+        if difference.abs() <= turn / 2.0 {
+            return difference;
+        }
+        let difference = difference.rem_euclid(turn);
+        if difference > turn / 2.0 {
+            difference - turn
+        } else {
+            difference
         }
     }
 

@@ -76,6 +76,7 @@ pub fn header() -> Header {
                 snap: Some(500_000.0),
                 ..Limits::default()
             },
+            modulo: None,
             scaling: None,
         }],
         inputs: vec![Input {

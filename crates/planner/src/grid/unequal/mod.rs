@@ -52,6 +52,12 @@ pub struct UnequalPlan {
 const _: () = assert!(size_of::<UnequalPlan>() <= 176);
 
 impl UnequalPlan {
+    /// The same move in coordinates moved by `by` (u).
+    pub(crate) fn shift(&mut self, by: f64) {
+        self.start += by;
+        self.target += by;
+    }
+
     /// Plans from rest at `start` to rest at `target` (u) with sample time `cycle` (s): the fewest scans in
     /// `family`, where the speed grows with `limits.acceleration` at most and falls with
     /// `limits.deceleration` at most. Never longer than [`GridPlan`](super::GridPlan) with the lower one of both.

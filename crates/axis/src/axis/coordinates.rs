@@ -1,0 +1,216 @@
+//! Coordinates that move: MC_SetPosition, and the new name MC_Home gives.
+//!
+//! The axis stays where it is and goes on as it goes; what changes is what its places are called. Set and actual
+//! position move by the same amount, so neither the following error nor the velocity has a step, and a drive
+//! that counts increments gets the same increments as before.
+//!
+//! Source: PLCopen Motion Control Part 1, MC_SetPosition; V15, T39 i.
+
+use super::accept::REST;
+use super::queue::{Entry, Place, Work};
+use super::{Axis, Motion, Source};
+use crate::{
+    AxisState, BufferMode, CommandId, ErrorId, Event, ExecutionMode, Fate, Goal, Log, QUEUE_MAX, Raw,
+};
+use standstill_planner::turns::split;
+use standstill_planner::{Plan, Planner, Setpoint};
+
+impl<P: Planner> Axis<P> {
+    /// MC_SetPosition: the actual position becomes `position` (u), or with `relative` grows by it; the set
+    /// position moves by the same amount. In every state, at rest and in motion, and never changing the state.
+    ///
+    /// A running absolute move keeps the number of its target, so its way left changes: it is planned anew
+    /// from the present state. All other motions go on as they are. With `mcQueued` it waits like a buffered
+    /// command while the axis has an owner.
+    ///
+    /// Cost: at most one plan.
+    ///
+    /// # Errors
+    /// The [`ErrorId`] the block shows: a position that is not finite or outside the first turn of a modulo
+    /// axis, an undefined mode, a full buffer, or a move that could not be planned anew. Nothing changes then.
+    pub fn set_position(
+        &mut self,
+        position: f64,
+        relative: bool,
+        mode: Raw<ExecutionMode>,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<CommandId, ErrorId> {
+        let Some(defined) = mode.get() else {
+            let number = f64::from(mode.number());
+            return Err(self.refuse(
+                "ExecutionMode",
+                number,
+                1.0,
+                ErrorId::ExecutionModeInvalid,
+                source,
+                log,
+            ));
+        };
+        self.finite("Position", position, source, log)?;
+        if !relative {
+            self.in_first_turn(position)
+                .map_err(|(length, error)| self.refuse("Position", position, length, error, source, log))?;
+        }
+        if defined == ExecutionMode::Queued && self.is_owned() {
+            self.wait()
+                .map_err(|(_, error)| self.refuse("ExecutionMode", 1.0, f64::NAN, error, source, log))?;
+            let entry = Entry {
+                id: self.new_id(),
+                instance: source.instance,
+                work: Work::SetPosition { position, relative },
+                limits: self.config.limits,
+                direction: None,
+                turns: 0,
+                mode: BufferMode::Buffered,
+                end: None,
+                passage: REST,
+                held: false,
+            };
+            self.queue.push(entry);
+            return Ok(entry.id);
+        }
+        self.move_coordinates(position, relative, source, log)
+            .map_err(|error| self.refuse("Position", position, f64::NAN, error, source, log))?;
+        let id = self.new_id();
+        self.fates.record(id, Fate::Done);
+        Ok(id)
+    }
+
+    /// Whether something is there that a queued command waits for.
+    fn is_owned(&self) -> bool {
+        match self.state {
+            AxisState::Disabled | AxisState::ErrorStop => false,
+            AxisState::Standstill
+            | AxisState::Homing
+            | AxisState::Stopping
+            | AxisState::DiscreteMotion
+            | AxisState::ContinuousMotion
+            | AxisState::SynchronizedMotion => self.owner.is_some() || !self.queue.is_empty(),
+        }
+    }
+
+    /// Whether the next command in the buffer moves the coordinates. It does so at the next latch, so that
+    /// this scan still publishes what it was about to.
+    pub(super) fn queue_waits_for_shift(&mut self) -> bool {
+        self.shift_due = self
+            .queue
+            .first()
+            .is_some_and(|entry| matches!(entry.work, Work::SetPosition { .. }));
+        self.shift_due
+    }
+
+    /// The coordinates move as the commands at the head of the buffer say, then the next one has its turn.
+    #[cold]
+    pub(super) fn take_queued_shifts(&mut self, scan: u64, log: &mut Log) {
+        for _ in 0..QUEUE_MAX {
+            if !self.queue_waits_for_shift() {
+                break;
+            }
+            let Some(entry) = self.queue.pop() else { break };
+            let Work::SetPosition { position, relative } = entry.work else {
+                break;
+            };
+            let source = Source {
+                scan,
+                instance: entry.instance,
+            };
+            let fate = match self.move_coordinates(position, relative, source, log) {
+                Ok(()) => Fate::Done,
+                Err(error) => Fate::Failed(self.refuse("Position", position, f64::NAN, error, source, log)),
+            };
+            self.fates.record(entry.id, fate);
+        }
+        self.hand_over(self.setpoint.position, scan, log);
+    }
+
+    fn move_coordinates(
+        &mut self,
+        position: f64,
+        relative: bool,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(), ErrorId> {
+        let by = if relative {
+            position
+        } else {
+            position - self.actual
+        };
+        let at = self.setpoint.position + by;
+        if !(at.is_finite() && (self.actual + by).is_finite()) {
+            return Err(ErrorId::PositionInvalid);
+        }
+        let before = (self.setpoint, self.layer);
+        self.setpoint.position = at;
+        if let Some(layer) = &mut self.layer {
+            layer.base.position += by;
+        }
+        if let Err(error) = self.move_motion(by, source.scan, log) {
+            (self.setpoint, self.layer) = before;
+            return Err(error);
+        }
+        self.shift_actual(by);
+        if !relative {
+            self.actual = position;
+        }
+        if let Some(modulo) = &self.modulo {
+            self.actual = split(self.actual, modulo.length).1;
+        }
+        let following = matches!(self.motion, Motion::Follow);
+        if following {
+            self.setpoint = Setpoint::at_rest(self.actual);
+        }
+        if self.config.scaling.is_some() {
+            self.shift += by;
+        } else {
+            // Out of operation the drive stands at its actual position, where it may have been pushed to.
+            self.rename = Some(self.setpoint().position);
+        }
+        self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
+        self.record(Event::Shifted { by }, source, log);
+        Ok(())
+    }
+
+    /// The motion in progress in coordinates moved by `by` (u): an absolute move is planned anew to the same
+    /// number, every other one goes on as it is.
+    fn move_motion(&mut self, by: f64, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+        let Motion::Run { plan, elapsed, scans } = &mut self.motion else {
+            return Ok(());
+        };
+        let absolute = |owner: &Entry| matches!(owner.place(), Some(Place::At(_)));
+        let Some(mut owner) = self.owner.filter(absolute).filter(|_| elapsed < scans) else {
+            plan.shift(by);
+            if let Some(Entry { end: Some(end), .. }) = &mut self.owner {
+                *end += by;
+            }
+            return Ok(());
+        };
+        let start = self.aim(&mut owner, self.setpoint.position);
+        owner.passage = self.passage(&owner, start, 0);
+        // With something superimposed it may find no room just now.
+        let motion = self.plan_next(&owner)?.ok_or(ErrorId::InMotion)?;
+        self.take_over(owner.limits, &motion);
+        self.motion = motion;
+        self.start_of_plan();
+        self.owner = Some(owner);
+        if let Motion::Run { plan, scans, .. } = &self.motion {
+            let planned = Event::Planned {
+                goal: Goal::Position(plan.at(*scans).position),
+                scans: plan.scans(),
+            };
+            self.record(planned, self.owner_source(scan), log);
+        }
+        Ok(())
+    }
+
+    /// The place where the axis stands is called `position` (u) from now on (MC_Home).
+    pub(super) fn call_set_position(&mut self, position: f64) {
+        self.rename_actual(self.setpoint.position, position);
+        if self.config.scaling.is_some() {
+            self.shift += position - self.setpoint.position;
+        } else {
+            self.rename = Some(position);
+        }
+        self.setpoint = Setpoint::at_rest(position);
+    }
+}

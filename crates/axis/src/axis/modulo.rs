@@ -1,0 +1,301 @@
+//! Modulo axes: positions that come round, turns counted in integers, and the way round to a target.
+//!
+//! Positions a program sees are in [0, length). The core moves in a frame of its own: a plan ends in the first
+//! turn of its frame, wherever it starts, so that every target is met to the bit; an endless motion is brought
+//! back when it is two turns away. The whole turns between the frame and the drive's increments are an integer.
+//!
+//! Source: PLCopen Motion Control Part 1, MC_MoveAbsolute and MC_DIRECTION; B8; the rule for Direction is that of
+//! docs/modulo.md.
+
+use super::queue::{Entry, Place, Work};
+use super::{Axis, Motion};
+use crate::{AxisConfig, Direction, DrivePosition, ErrorId, Scaling, Turn};
+use standstill_planner::turns::{split, two_product};
+use standstill_planner::{Plan, Planner, Setpoint};
+
+/// How far, relative to the way a stop takes, a target may lie before its end and still be met: rounding, and
+/// no visible way back.
+const ROUNDING: f64 = 1e-9;
+
+/// An endless motion this many turns away is brought back.
+const FAR: f64 = 2.0;
+
+/// What an axis with turns has beyond a linear one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Modulo {
+    /// One turn (u).
+    pub length: f64,
+    /// One turn in increments, for drives that count them.
+    turn: Option<Turn>,
+    /// Whole turns at the frame's 0. Drives that speak units know no turns, so there it means nothing.
+    turns: i64,
+    /// Whole turns at the actual position.
+    actual_turns: i64,
+}
+
+impl Modulo {
+    pub fn new(config: &AxisConfig) -> Option<Self> {
+        let length = config.modulo?;
+        Some(Self {
+            length,
+            turn: config.scaling.and_then(|scaling| scaling.turn(length)),
+            turns: 0,
+            actual_turns: 0,
+        })
+    }
+
+    /// As programs see it.
+    #[inline(never)]
+    pub fn shown(&self, setpoint: &Setpoint) -> Setpoint {
+        Setpoint {
+            position: split(setpoint.position, self.length).1,
+            ..*setpoint
+        }
+    }
+
+    /// A position of the frame at the drive: in increments however many turns there were, in units in the
+    /// first turn.
+    #[inline(never)]
+    pub fn at_drive(&self, config: &AxisConfig, position: f64) -> DrivePosition {
+        let (further, position) = split(position, self.length);
+        match (config.scaling, &self.turn) {
+            (Some(scaling), Some(turn)) => DrivePosition::Increments(scaling.to_increments_turned(
+                turn,
+                self.turns.saturating_add(further),
+                position,
+            )),
+            _ => DrivePosition::Units(position),
+        }
+    }
+
+    /// The actual position (u) in the first turn.
+    #[inline(never)]
+    pub fn latch(&mut self, config: &AxisConfig, feedback: DrivePosition, shift: f64) -> f64 {
+        let (turns, position) = match (feedback, config.scaling, &self.turn) {
+            (DrivePosition::Increments(increments), Some(scaling), Some(turn)) => {
+                Scaling::to_units_turned(&scaling, turn, self.length, increments)
+            }
+            (DrivePosition::Units(units), ..) => split(units, self.length),
+            // A drive that counts increments needs a scaling; take one increment as one unit.
+            (DrivePosition::Increments(increments), ..) => split(increments as f64, self.length),
+        };
+        let (further, position) = split(position + shift, self.length);
+        self.actual_turns = turns.saturating_add(further);
+        position
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// The set-point takes over where the feedback is, turns included.
+    pub(super) fn count_actual_turns(&mut self) {
+        if let Some(modulo) = &mut self.modulo {
+            modulo.turns = modulo.actual_turns;
+        }
+    }
+
+    /// Whether `position` (u) is one a program may name: in the first turn, or any on a linear axis. If not,
+    /// the length of a turn and the error.
+    pub(super) fn in_first_turn(&self, position: f64) -> Result<(), (f64, ErrorId)> {
+        match &self.modulo {
+            Some(Modulo { length, .. }) if !(position >= 0.0 && position < *length) => {
+                Err((*length, ErrorId::PositionOutsideModulo))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Keeps an endless motion within some turns of 0. Cost: a comparison, and once in two turns about 60
+    /// operations.
+    #[inline(never)]
+    pub(super) fn bring_back(&mut self) {
+        let Some(modulo) = &mut self.modulo else { return };
+        if self.setpoint.position.abs() < FAR * modulo.length {
+            return;
+        }
+        if let Motion::Run { plan, elapsed, scans } = &mut self.motion
+            && let Some(turns) = plan.bring_back(*elapsed, modulo.length)
+        {
+            let passed = core::mem::take(elapsed);
+            *scans = u64::from(plan.scans());
+            let start = plan.at(0).position;
+            modulo.turns = modulo.turns.saturating_add(turns);
+            // Its end is left behind, in another frame.
+            if let Some(owner) = &mut self.owner {
+                owner.end = None;
+            }
+            self.setpoint.position = match &mut self.layer {
+                Some(layer) => layer.bring_back(start, passed),
+                None => start,
+            };
+        }
+    }
+
+    /// A plan begins: its start is the present position in the plan's frame.
+    #[inline(never)]
+    pub(super) fn start_of_plan(&mut self) {
+        let (Some(modulo), Motion::Run { plan, .. }) = (&mut self.modulo, &self.motion) else {
+            return;
+        };
+        let start = plan.at(0).position;
+        let turns = (self.setpoint.position - start) / modulo.length;
+        let nearest = (if turns < 0.0 { turns - 0.5 } else { turns + 0.5 }) as i64;
+        modulo.turns = modulo.turns.saturating_add(nearest);
+        self.setpoint.position = start;
+        if let Some(layer) = &mut self.layer {
+            layer.base.position = start;
+        }
+    }
+
+    /// Where `entry` ends, now that it is its turn, and how far its frame is from the present one. Distances
+    /// count from `from` (u), and so does the way to a target. Returns where it starts in its frame (u).
+    ///
+    /// Cost: on a modulo axis at most one ramp.
+    #[inline]
+    pub(super) fn aim(&self, entry: &mut Entry, from: f64) -> f64 {
+        let start = self.setpoint.position;
+        match &self.modulo {
+            Some(modulo) => self.aim_round(entry, from, modulo.length),
+            None => {
+                entry.end = entry.work.end(from);
+                start
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn aim_round(&self, entry: &mut Entry, from: f64, length: f64) -> f64 {
+        let start = Setpoint {
+            position: self.setpoint.position,
+            ..self.base()
+        };
+        (entry.turns, entry.end) = match (entry.place(), entry.direction) {
+            (None, _) => (split(start.position, length).0, None),
+            (Some(Place::At(target)), Some(direction)) => {
+                let turns = turns_to(
+                    target,
+                    from,
+                    length,
+                    self.heading(direction, self.last_velocity > 0.0),
+                );
+                (
+                    self.never_back(entry, &start, target, turns, length),
+                    Some(target),
+                )
+            }
+            (Some(Place::At(target)), None) => {
+                let (turns, target) = split(target, length);
+                (turns, Some(target))
+            }
+            (Some(Place::By(distance)), _) => {
+                let (turns, target) = beyond(from, distance, length);
+                (turns, Some(target))
+            }
+        };
+        back_by(start.position, entry.turns, length)
+    }
+
+    /// Where a command of a chain ends, counted from `from` (u) in the frame of that, after a motion that went
+    /// `forward` or not; `None` if it leads nowhere.
+    pub(super) fn end_of_leg(&self, entry: &Entry, from: f64, forward: bool) -> Option<f64> {
+        let (Some(modulo), Some(Place::At(target)), Some(direction)) =
+            (&self.modulo, entry.place(), entry.direction)
+        else {
+            return entry.work.end(from);
+        };
+        let turns = turns_to(target, from, modulo.length, self.heading(direction, forward));
+        Some(target + turns as f64 * modulo.length)
+    }
+
+    /// `start` in the frame `entry` was aimed in, if that is another one.
+    #[inline]
+    pub(super) fn in_frame_of(&self, entry: &Entry, start: &Setpoint) -> Option<Setpoint> {
+        match &self.modulo {
+            Some(modulo) if entry.turns != 0 => Some(Setpoint {
+                position: back_by(start.position, entry.turns, modulo.length),
+                ..*start
+            }),
+            _ => None,
+        }
+    }
+
+    /// The direction a move must take: `None` for the shortest way.
+    fn heading(&self, direction: Direction, forward: bool) -> Option<bool> {
+        match direction {
+            Direction::Unset | Direction::ShortestWay => None,
+            Direction::Positive => Some(true),
+            Direction::Negative => Some(false),
+            Direction::Current => Some(forward),
+        }
+    }
+
+    /// `turns`, and as many more as a motion from `start` that must not turn back needs to slow down (B8).
+    fn never_back(&self, entry: &Entry, start: &Setpoint, target: f64, turns: i64, length: f64) -> i64 {
+        let heading = entry
+            .direction
+            .and_then(|direction| self.heading(direction, self.last_velocity > 0.0));
+        let Some(forward) = heading else { return turns };
+        if start.is_at_rest() {
+            return turns;
+        }
+        // What passes its target in the same direction need not stop before it.
+        let velocity = match entry.work {
+            Work::Through { end_velocity, .. } if (end_velocity > 0.0) == forward => end_velocity,
+            _ => 0.0,
+        };
+        let before = self.limits_before(&entry.limits);
+        // What cannot be planned to stop cannot be planned to go there; planning it tells why.
+        let Ok(ramp) = self.planner.ramp_to(start, velocity, &entry.limits, &before) else {
+            return turns;
+        };
+        let way = ramp.at(u64::from(ramp.scans())).position - start.position;
+        let to_target = target - back_by(start.position, turns, length);
+        let missing = if forward { way - to_target } else { to_target - way };
+        let missing = missing - ROUNDING * way.abs();
+        if missing <= 0.0 {
+            return turns;
+        }
+        let whole = (missing / length) as i64;
+        let further = whole.saturating_add(i64::from(whole as f64 * length < missing));
+        if forward {
+            turns.saturating_add(further)
+        } else {
+            turns.saturating_sub(further)
+        }
+    }
+}
+
+/// `position` (u) in a frame `turns` whole turns further on.
+fn back_by(position: f64, turns: i64, length: f64) -> f64 {
+    let (whole, error) = two_product(turns as f64, length);
+    (position - whole) - error
+}
+
+/// Turns and target of a way `distance` (u) from `from`: whole turns apart, so that they do not cost the rest
+/// its last bits.
+fn beyond(from: f64, distance: f64, length: f64) -> (i64, f64) {
+    let (from_turns, here) = split(from, length);
+    let (turns, rest) = split(distance.abs(), length);
+    let (turns, rest) = if distance < 0.0 {
+        (-turns, -rest)
+    } else {
+        (turns, rest)
+    };
+    let (further, target) = split(here + rest, length);
+    (from_turns.saturating_add(turns).saturating_add(further), target)
+}
+
+/// How many turns on `target`, of the first turn, is met from `from` (u), `forward` or not, or the shortest way.
+fn turns_to(target: f64, from: f64, length: f64, forward: Option<bool>) -> i64 {
+    let (turns, here) = split(from, length);
+    let ahead = if target >= here {
+        target - here
+    } else {
+        target - here + length
+    };
+    let further = match forward.unwrap_or(ahead <= length / 2.0) {
+        true if target < here => 1,
+        false if target > here => -1,
+        true | false => 0,
+    };
+    turns.saturating_add(further)
+}

@@ -1,0 +1,106 @@
+//! Software limits: what would end outside is refused, what runs stops inside.
+//!
+//! A command to a place outside is refused, and so is an endless motion that leads further out from where the
+//! axis stands at or beyond a limit. A motion that may come out all the same is watched: endless ones, ramps to
+//! rest that end outside, moves that brake too late and turn back outside. In the last scan in which the stop
+//! dynamics can keep it inside it ends in ErrorStop. An axis that is outside, because it was pushed there or its
+//! coordinates moved, may move to any place inside.
+
+use super::queue::{Entry, Work};
+use super::{Axis, Motion};
+use crate::ErrorId;
+use standstill_planner::{Limits, Plan, Planner, Setpoint};
+
+impl<P: Planner> Axis<P> {
+    /// `target` (u), if a move may end there.
+    pub(super) fn allowed(&self, target: f64) -> Result<f64, ErrorId> {
+        match self.config.software_limits {
+            Some((min, max)) if target < min || target > max => Err(ErrorId::TargetOutsideSoftwareLimits),
+            _ => Ok(target),
+        }
+    }
+
+    /// Refuses an endless motion from `here` (u) with `velocity` (u/s) that leads further out.
+    pub(super) fn not_outward(&self, here: f64, velocity: f64) -> Result<(), ErrorId> {
+        match self.config.software_limits {
+            Some((min, max)) if (velocity > 0.0 && here >= max) || (velocity < 0.0 && here <= min) => {
+                Err(ErrorId::OutwardFromSoftwareLimit)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The software limit that `position` (u) is at or beyond: the upper one, else the lower one.
+    pub(super) fn broken_software_limit(&self, position: f64) -> f64 {
+        match self.config.software_limits {
+            Some((_, max)) if position >= max => max,
+            Some((min, _)) => min,
+            None => f64::NAN,
+        }
+    }
+
+    /// Whether the motion of `entry` in progress may leave the software limits. Cost: at most one ramp.
+    pub(super) fn needs_watching(&self, entry: &Entry) -> bool {
+        match self.config.software_limits {
+            Some(limits) => self.may_leave(entry, limits),
+            None => false,
+        }
+    }
+
+    #[inline(never)]
+    fn may_leave(&self, entry: &Entry, (min, max): (f64, f64)) -> bool {
+        let outside = |rest: f64| rest < min || rest > max;
+        match entry.work {
+            Work::Velocity { .. } => true,
+            Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
+            Work::Halt | Work::Stop => outside(self.end_of_plan()),
+            // From rest the way leads straight to the target, from motion perhaps past it.
+            Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
+                outside(self.end_of_plan())
+                    || (!self.setpoint.is_at_rest() && outside(self.rest(&self.setpoint, &entry.limits)))
+            }
+            Work::Home(_) | Work::SetPosition { .. } => false,
+        }
+    }
+
+    /// Whether this is the last scan in which the stop dynamics can keep a motion inside that would leave; `next`
+    /// is the set-point it is about to publish. Cost: at most two ramps.
+    #[inline(never)]
+    pub(super) fn would_leave(&self, next: &Setpoint) -> bool {
+        let (Some((min, max)), Some(owner), Motion::Run { .. }) =
+            (self.config.software_limits, &self.owner, &self.motion)
+        else {
+            return false;
+        };
+        let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
+        let leaving = match owner.work {
+            Work::Velocity { .. } => true,
+            Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
+            Work::Halt | Work::Stop => leaves(self.end_of_plan() + self.superimposed_left()),
+            // With something superimposed, ends and turns were checked when it was planned.
+            Work::Position(_) | Work::Distance(_) | Work::Through { .. } if !self.watched => false,
+            // It turns back where it stops, or its end has another name since it began.
+            Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
+                leaves(self.end_of_plan()) || leaves(self.rest(next, &owner.limits))
+            }
+            Work::Home(_) | Work::SetPosition { .. } => false,
+        };
+        leaving && leaves(self.rest(next, &self.stop_limits()))
+    }
+
+    /// Where a ramp to rest from `state` within `limits` ends (u).
+    fn rest(&self, state: &Setpoint, limits: &Limits) -> f64 {
+        match self.planner.ramp_to(state, 0.0, limits, &self.in_force) {
+            Ok(ramp) => ramp.at(u64::from(ramp.scans())).position,
+            Err(_) => state.position,
+        }
+    }
+
+    /// Where the running plan has its goal (u).
+    pub(super) fn end_of_plan(&self) -> f64 {
+        match &self.motion {
+            Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
+            Motion::Follow | Motion::Hold => self.setpoint.position,
+        }
+    }
+}

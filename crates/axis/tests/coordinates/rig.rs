@@ -1,0 +1,125 @@
+//! An axis over an ideal drive, and a generator of cases.
+
+use standstill_axis::{
+    Axis, AxisConfig, AxisId, Command, CommandId, Drive, DrivePosition, Fate, IdealDrive, InstanceId, Log,
+    Request, Source, Standard,
+};
+
+pub const CYCLE: f64 = 0.001;
+
+/// splitmix64.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        mixed ^ (mixed >> 31)
+    }
+
+    pub fn below(&mut self, count: u64) -> u64 {
+        self.bits() % count
+    }
+
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+}
+
+/// An axis over its drive.
+#[derive(Clone)]
+pub struct Rig {
+    pub axis: Axis,
+    pub drive: IdealDrive,
+    pub log: Log,
+    pub scan: u64,
+    turn: f64,
+    /// Way of the published positions since the start, on a modulo axis the shorter way round in each scan (u).
+    pub way: f64,
+    /// Least and largest velocity published (u/s).
+    pub least: f64,
+    pub most: f64,
+}
+
+impl Rig {
+    pub fn new(config: AxisConfig) -> Self {
+        let position = match config.scaling {
+            Some(scaling) => DrivePosition::Increments(scaling.to_increments(config.position)),
+            None => DrivePosition::Units(config.position),
+        };
+        Self {
+            axis: Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).unwrap(),
+            drive: IdealDrive::new(position, 0, Some(0), true),
+            log: Log::default(),
+            scan: 0,
+            turn: config.modulo.unwrap_or(f64::INFINITY),
+            way: 0.0,
+            least: 0.0,
+            most: 0.0,
+        }
+    }
+
+    pub fn source(&self) -> Source {
+        Source {
+            scan: self.scan,
+            instance: InstanceId(1),
+        }
+    }
+
+    pub fn command(&mut self, command: Command) -> CommandId {
+        let source = self.source();
+        self.axis
+            .command(&Request::aborting(command), source, &mut self.log)
+            .unwrap()
+    }
+
+    /// One scan; returns the increments the drive told, 0 if it speaks units.
+    pub fn step(&mut self) -> i64 {
+        let feedback = self.drive.read(0);
+        self.axis.follow_feedback(&feedback, self.scan, &mut self.log);
+        let before = self.axis.setpoint().position;
+        self.axis.advance(self.scan, &mut self.log);
+        let now = self.axis.setpoint();
+        self.drive.write(0, &self.axis.drive_command());
+        let mut difference = now.position - before;
+        if self.turn.is_finite() {
+            assert!((0.0..self.turn).contains(&now.position), "{now:?}");
+            if difference > self.turn / 2.0 {
+                difference -= self.turn;
+            } else if difference < -self.turn / 2.0 {
+                difference += self.turn;
+            }
+        }
+        self.way += difference;
+        self.least = self.least.min(now.velocity);
+        self.most = self.most.max(now.velocity);
+        self.scan += 1;
+        match feedback.position {
+            DrivePosition::Increments(increments) => increments,
+            DrivePosition::Units(_) => 0,
+        }
+    }
+
+    /// Way and velocities count from here.
+    pub fn forget(&mut self) {
+        let velocity = self.axis.setpoint().velocity;
+        (self.way, self.least, self.most) = (0.0, velocity, velocity);
+    }
+
+    /// Steps until the command has ended, and tells how.
+    pub fn run(&mut self, id: CommandId) -> Fate {
+        for _ in 0..200_000 {
+            if !matches!(self.axis.fate(id), Fate::Active { .. } | Fate::Waiting) {
+                return self.axis.fate(id);
+            }
+            self.step();
+        }
+        panic!("the move does not end");
+    }
+}
