@@ -63,6 +63,16 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// [`Axis::would_leave`] for the set-point the plan is at. It is computed again, because handing over a reference
+    /// would keep the one about to be published out of registers, in every scan of every axis.
+    #[inline(never)]
+    pub(super) fn plan_would_leave(&self) -> bool {
+        match &self.motion {
+            Motion::Run { plan, elapsed, .. } => self.would_leave(&plan.at(*elapsed)),
+            Motion::Follow | Motion::Hold => false,
+        }
+    }
+
     /// Whether this is the last scan in which the stop dynamics can keep a motion inside that would leave; `next`
     /// is the set-point it is about to publish. Cost: at most two ramps.
     #[inline(never)]

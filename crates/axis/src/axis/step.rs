@@ -39,7 +39,7 @@ impl<P: Planner> Axis<P> {
         let next = plan.at(*elapsed);
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
-        } else if self.watched && self.would_leave(&next) {
+        } else if self.watched && self.plan_would_leave() {
             self.fail(ErrorId::SoftwareLimitReached, scan, log);
         } else {
             self.publish(next);
