@@ -3,6 +3,7 @@
 use standstill_planner::kernel::{
     Bounds, MAX_STEPS, Point, Profile, Sides, falling_root, second, third, zero,
 };
+use standstill_planner::math::cbrt;
 
 /// splitmix64, as a number in 0..1.
 struct Random(u64);
@@ -239,14 +240,12 @@ fn a_root_needs_no_cap() {
             assert!(steps <= 12, "{ulps} {at} {steps}");
         }
     }
+    let power_of = |x: f64, power: u32| (0..power).fold(1.0, |product, _| product * x);
     let mut most = 0;
     for exponent in 0..300 {
-        let n = f64::from(exponent + 1);
-        let at = 1.0 / (n * n * n * n * n);
+        let at = 1.0 / power_of(f64::from(exponent + 1), 5);
         for power in [1, 3, 9] {
-            let (root, steps) = falling_root(0.0, 1.0, |x| {
-                (0..power).fold(1.0, |product, _| product * (at - x))
-            });
+            let (root, steps) = falling_root(0.0, 1.0, |x| power_of(at - x, power));
             assert!(root >= at && root - at <= 1e-14, "{at} {power} {root}");
             most = most.max(steps);
         }
@@ -272,7 +271,7 @@ fn a_zero_needs_no_cap() {
             value: match case % 2 {
                 0 if at < root => -down,
                 0 => up,
-                _ => (at - root).abs().sqrt().copysign(at - root),
+                _ => cbrt((at - root).abs()).copysign(at - root),
             },
             noise: 0.0,
         };

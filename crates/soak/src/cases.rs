@@ -276,7 +276,7 @@ impl Chain {
     }
 
     /// Draws the next replan.
-    pub fn draw(&mut self) -> Case {
+    pub fn next_case(&mut self) -> Case {
         let limits = self.limits();
         // What fits under limits fits under larger ones.
         let viable = self.start.is_at_rest() || self.viable && contains(&limits, &self.before);

@@ -25,7 +25,7 @@ const FUZZED: u32 = 6;
 pub fn fuzz(bytes: &[u8]) -> Result<(), String> {
     let mut chain = Chain::of(Random::of_bytes(bytes));
     for link in 0..FUZZED {
-        let case = chain.draw();
+        let case = chain.next_case();
         let judged = case.plan().map_err(|error| error.to_string()).and_then(|plan| {
             let scan = chain.leave(&plan);
             let measured = judge(&case, &plan, scan)?;

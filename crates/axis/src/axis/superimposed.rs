@@ -126,7 +126,7 @@ impl<P: Planner> Axis<P> {
     /// Takes MC_MoveSuperimposed, or refuses it without any effect (R38). It aborts only a superimposed
     /// command before it (R66) and takes over from its motion.
     ///
-    /// Cost: at most [`plan::PROPOSALS`] plans, each laid over the owner's.
+    /// Cost: at most 7 plans, each laid over the owner's.
     ///
     /// # Errors
     /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit. Lack of room

@@ -131,7 +131,7 @@ fn chain(seed: u64, number: u64, links: u64) -> Tally {
     let mut tally = Tally::default();
     let mut chain = Chain::new(seed, number);
     for link in 0..links {
-        let case = chain.draw();
+        let case = chain.next_case();
         let judged = case.plan().map_err(|error| error.to_string()).and_then(|plan| {
             let scan = chain.leave(&plan);
             let measured = judge(&case, &plan, scan)?;
@@ -162,7 +162,7 @@ mod tests {
         for number in 0..chains {
             let mut chain = Chain::new(7, number);
             for _ in 0..LINKS {
-                let case = chain.draw();
+                let case = chain.next_case();
                 let plan = case.plan().expect("a plan");
                 let scan = chain.leave(&plan);
                 chain.follow(&plan, scan, false);
