@@ -99,17 +99,14 @@ error_ids! {
         "Choose a target inside them or change the axis configuration.";
     SourceInvalid = 118, "Source is not a number of MC_SOURCE.",
         "Use mcCommandedValue (0), mcSetValue (1) or mcActualValue (2).";
+    PositionOutsideModulo = 119, "The position is not in the first turn of a modulo axis.",
+        "Give a position from 0 to below the length of a turn, or move by a distance.";
     EndVelocityInvalid = 120, "EndVelocity is NaN or infinite, or its magnitude is above Velocity.",
         "Give a finite number not above Velocity; its sign is the direction of motion at the target.";
     EndVelocityAboveLimit = 121, "EndVelocity is above the axis limit and the axis is set to refuse that.",
         "Lower EndVelocity, raise the limit, or set above_limit to clamp.";
-
-    PositionOutsideModulo = 119, "The position is not in the first turn of a modulo axis.",
-        "Give a position from 0 to below the length of a turn, or move by a distance.";
-
     ExecutionModeInvalid = 122, "ExecutionMode is not a number of MC_EXECUTION_MODE.",
         "Use mcImmediately (0) or mcQueued (1).";
-
     OutwardFromSoftwareLimit = 123, "The axis stands at or beyond a software limit and the endless motion would lead further out.",
         "Move back inside: the other way, or to a target inside.";
 
