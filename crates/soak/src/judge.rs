@@ -17,6 +17,9 @@ const STILL: f64 = 1e-9;
 /// What sums of positions resolve, relative to them.
 const RESOLVED: f64 = 32.0 * f64::EPSILON;
 
+/// What the clock of a plan resolves, relative to the time it has run: an instant is a 64-bit number, too.
+const TICK: f64 = 2.0 * f64::EPSILON;
+
 /// What was measured on a plan, each relative; what a plan cannot be measured by is 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measured {
@@ -51,14 +54,17 @@ pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
     let scale = Scale::new(case, &followed, time);
     let taken = state_at(&case.start, &segments, time);
     let mut measured = Measured {
-        jumps: relative(followed.jumps, [scale.velocity, scale.acceleration, scale.jerk]),
+        jumps: relative(
+            scale.beyond_tick(followed.jumps),
+            [scale.velocity, scale.acceleration, scale.jerk],
+        ),
         miss: miss(case, plan, &followed, &scale)?,
         sample: scale.difference(case, &plan.at(scan), &taken, order),
         peak: peak(plan, &followed, &scale, order),
         keeps: plan.excess().is_none() && followed.snap <= case.limits.snap * (1.0 + RELATIVE),
         ..Measured::default()
     };
-    limits(case, plan, &followed, &mut measured)?;
+    limits(case, plan, &followed, &scale, &mut measured)?;
     ends(case, plan, order, &followed, &scale)?;
     let bounded = [
         ("velocity jumps", measured.jumps[0]),
@@ -94,6 +100,8 @@ struct Scale {
     velocity: f64,
     acceleration: f64,
     jerk: f64,
+    /// By how much velocity, acceleration and jerk change in a tick of the clock.
+    tick: [f64; 3],
 }
 
 impl Scale {
@@ -103,7 +111,9 @@ impl Scale {
             Goal::Velocity(_) => case.start.position + followed.end.position,
         };
         let finite = |bound: f64, seen: f64| if bound.is_finite() { bound.max(seen) } else { seen };
+        let tick = TICK * followed.duration.max(time);
         Self {
+            tick: [followed.acceleration(), followed.jerk, followed.snap].map(|rate| tick * rate),
             way: case.limits.velocity.max(followed.speed()) * followed.duration.max(time),
             resolved: RESOLVED * (case.start.position.abs() + target.abs()),
             velocity: case.limits.velocity.max(followed.speed()),
@@ -116,6 +126,15 @@ impl Scale {
         }
     }
 
+    /// Differences of velocity, acceleration and jerk beyond what the clock resolves.
+    fn beyond_tick(&self, differences: [f64; 3]) -> [f64; 3] {
+        let mut beyond = differences;
+        for (difference, tick) in beyond.iter_mut().zip(self.tick) {
+            *difference = (difference.abs() - tick).max(0.0);
+        }
+        beyond
+    }
+
     /// A difference of positions relative to the way, beyond what positions resolve.
     fn position(&self, difference: f64) -> f64 {
         let beyond = difference.abs() - self.resolved;
@@ -124,15 +143,20 @@ impl Scale {
 
     /// The largest difference of a set-point from a state that counts from the start.
     fn difference(&self, case: &Case, setpoint: &Setpoint, state: &Setpoint, order: Order) -> f64 {
+        let [velocity, acceleration, jerk] = self.beyond_tick([
+            setpoint.velocity - state.velocity,
+            setpoint.acceleration - state.acceleration,
+            setpoint.jerk - state.jerk,
+        ]);
         let mut most = self
             .position(setpoint.position - case.start.position - state.position)
-            .max((setpoint.velocity - state.velocity).abs() / self.velocity);
+            .max(velocity / self.velocity);
         // What may jump has two values at a switch.
         if order >= Order::Three {
-            most = most.max((setpoint.acceleration - state.acceleration).abs() / self.acceleration);
+            most = most.max(acceleration / self.acceleration);
         }
         if order == Order::Four {
-            most = most.max((setpoint.jerk - state.jerk).abs() / self.jerk);
+            most = most.max(jerk / self.jerk);
         }
         most
     }
@@ -176,8 +200,15 @@ fn peak(plan: &Plan, followed: &Followed, scale: &Scale, order: Order) -> f64 {
 }
 
 /// Holds the extremes against the limits, and against the excess the plan tells of.
-fn limits(case: &Case, plan: &Plan, followed: &Followed, measured: &mut Measured) -> Result<(), String> {
+fn limits(
+    case: &Case,
+    plan: &Plan,
+    followed: &Followed,
+    scale: &Scale,
+    measured: &mut Measured,
+) -> Result<(), String> {
     let limits = &case.limits;
+    let [velocity_tick, acceleration_tick, jerk_tick] = scale.tick;
     let higher = limits.acceleration.max(limits.deceleration);
     let over = |value: f64, bound: f64| {
         if bound.is_finite() {
@@ -187,12 +218,14 @@ fn limits(case: &Case, plan: &Plan, followed: &Followed, measured: &mut Measured
         }
     };
     let acceleration = [
-        (followed.growing, limits.acceleration),
-        (followed.falling, limits.deceleration),
-        (followed.still, higher),
+        (followed.growing - acceleration_tick, limits.acceleration),
+        (followed.falling - acceleration_tick, limits.deceleration),
+        (followed.still - acceleration_tick, higher),
     ];
-    let velocity = over(followed.speed(), limits.velocity);
-    let jerk = over(followed.jerk, limits.jerk);
+    let speed = followed.speed() - velocity_tick;
+    let highest_jerk = followed.jerk - jerk_tick;
+    let velocity = over(speed, limits.velocity);
+    let jerk = over(highest_jerk, limits.jerk);
     let relative_acceleration = acceleration.map(|(value, bound)| over(value, bound) / bound);
     let excess = [
         velocity / limits.velocity,
@@ -229,12 +262,12 @@ fn limits(case: &Case, plan: &Plan, followed: &Followed, measured: &mut Measured
     }
     let beyond = |value: f64, bound: f64, told: f64| over(over(value, bound), told) / (bound + told);
     let untold = [
-        beyond(followed.speed(), limits.velocity, told.velocity),
+        beyond(speed, limits.velocity, told.velocity),
         acceleration
             .map(|(value, bound)| beyond(value, bound, told.acceleration))
             .into_iter()
             .fold(0.0, f64::max),
-        beyond(followed.jerk, limits.jerk, told.jerk),
+        beyond(highest_jerk, limits.jerk, told.jerk),
     ];
     if let Some((name, value)) = worst(&untold) {
         return Err(format!("{name} exceeds what is told of by {value:e}"));
