@@ -232,6 +232,15 @@ fn drive() -> Value {
             "delay" => delay(),
             _ => never(),
         }),
+        "plant" => required(
+            &["inertia"],
+            object(&shape::PLANT, |key| match key {
+                "power_on" => never(),
+                "load" => required(&["inertia", "stiffness"], object(&shape::LOAD, |_| of("finite"))),
+                "gains" => object(&shape::GAINS, |_| of("finite")),
+                _ => of("finite"),
+            }),
+        ),
         _ => object(&shape::CIA402, |key| match key {
             "delay" => delay(),
             "power_on" => never(),
