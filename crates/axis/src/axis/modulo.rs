@@ -53,19 +53,21 @@ impl Modulo {
         }
     }
 
-    /// A position of the frame at the drive: in increments however many turns there were, in units in the
-    /// first turn.
+    /// A position of the frame (u) in increments, however many turns there were.
     #[inline(never)]
-    pub fn at_drive(&self, config: &AxisConfig, position: f64) -> DrivePosition {
+    pub fn increments(&self, scaling: &Scaling, position: f64) -> i64 {
         let (further, position) = split(position, self.length);
-        match (config.scaling, &self.turn) {
-            (Some(scaling), Some(turn)) => DrivePosition::Increments(scaling.to_increments_turned(
-                turn,
-                self.turns.saturating_add(further),
-                position,
-            )),
-            _ => DrivePosition::Units(position),
+        match &self.turn {
+            Some(turn) => scaling.to_increments_turned(turn, self.turns.saturating_add(further), position),
+            // Not reached: what has a scaling has a turn.
+            None => scaling.to_increments(position),
         }
+    }
+
+    /// A position of the frame (u) in the first turn.
+    #[inline(never)]
+    pub fn in_turn(&self, position: f64) -> f64 {
+        split(position, self.length).1
     }
 
     /// The actual position (u) in the first turn.
