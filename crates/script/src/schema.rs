@@ -219,6 +219,7 @@ fn axis_key(key: &str) -> Value {
         "queue" => integer(0, QUEUE_MAX as i64),
         "on_power_off" => words(&ON_POWER_OFF),
         "needs_homed" => json!({"type": "boolean"}),
+        "override_max" => any(&[json!({"type": "number", "minimum": 1}), of("parameter")]),
         "drive" => drive(),
         _ => of("finite"),
     }

@@ -59,6 +59,7 @@ pub(crate) const AXIS: Shape = Shape {
         "stop_jerk",
         "on_power_off",
         "needs_homed",
+        "override_max",
         "drive",
         "note",
     ],
