@@ -6,11 +6,13 @@
 
 mod bad_input;
 mod blocks;
+mod compliance;
 mod error_ids;
 mod pictures;
 mod requirements;
 mod states;
 
+pub use compliance::Compliance;
 pub use requirements::Requirements;
 use std::path::{Path, PathBuf};
 
@@ -31,6 +33,7 @@ pub fn generated() -> Vec<Generated> {
     files.extend(pictures.values().map(pictures::Picture::drawn));
     files.push(error_ids::page());
     files.push(bad_input::page());
+    files.extend(Compliance::read().pages());
     files.extend(states::pages());
     files.extend(requirements.pages());
     files
