@@ -138,6 +138,7 @@ fn layers_depend_only_downwards() {
             "standstill-blocks",
             &["standstill-axis", "standstill-fb"],
         ),
+        ("crates/drives", "standstill-drives", &["standstill-axis"]),
         (
             "crates/scan",
             "standstill-scan",
