@@ -135,7 +135,7 @@ fn the_top_level_holds_what_a_newcomer_expects() {
 #[test]
 fn layers_depend_only_downwards() {
     // Package and what it may depend on, from bottom to top (docs/architecture.md).
-    let layers: [(&str, &str, &[&str]); 11] = [
+    let layers: [(&str, &str, &[&str]); 12] = [
         ("crates/planner", "standstill-planner", &[]),
         ("crates/axis", "standstill-axis", &["standstill-planner"]),
         ("crates/fb", "standstill-fb", &["standstill-axis"]),
@@ -168,6 +168,7 @@ fn layers_depend_only_downwards() {
             &[
                 "standstill-axis",
                 "standstill-blocks",
+                "standstill-drives",
                 "standstill-fb",
                 "standstill-planner",
                 "standstill-scan",
