@@ -89,10 +89,13 @@ fn is_shown_as(value: &Value, cell: &str) -> bool {
     match (value.as_f64(), cell.parse::<f64>()) {
         (Some(value), Ok(shown)) => {
             let digits = cell.split_once('.').map_or(0, |(_, digits)| digits.len());
-            let half = 0.5 * 0.1_f64.powi(i32::try_from(digits).unwrap());
+            let half = (0..digits).fold(0.5, |half, _| half / 10.0);
             (value - shown).abs() <= half * 1.000_001
         }
-        _ => (value.is_null() && cell == "-") || value.to_string() == cell,
+        _ => {
+            let text = value.to_string();
+            (value.is_null() && cell == "-") || text == cell
+        }
     }
 }
 

@@ -1,7 +1,8 @@
 //! The statement as data: one object, a pin, a parameter or a type a line.
 
 use super::page::{NATURE, STANDARD, TRADEMARK};
-use super::{Compliance, ParameterRow, Row, Statement, TypeRow};
+use super::types::TypeRow;
+use super::{Compliance, ParameterRow, Row, Statement};
 use serde_json::Value;
 use standstill_fb::Direction;
 
@@ -10,6 +11,7 @@ pub fn json(compliance: &Compliance) -> String {
         field("statement", NATURE),
         field("trademark", TRADEMARK),
         field("standard", STANDARD),
+        field("supplier", "the standstill contributors"),
         field("product", "standstill"),
         field("version", env!("CARGO_PKG_VERSION")),
         flag("certified", false),

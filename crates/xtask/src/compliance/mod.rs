@@ -7,12 +7,12 @@ mod json;
 mod page;
 mod probe;
 mod standard;
+mod types;
 
 use crate::Generated;
 use standard::{Parameter, Standard, StandardBlock, StandardPin};
 use standstill_blocks::{REGISTRY, registry::find};
 use standstill_fb::{BlockInfo, Direction, Pin, PinType};
-use std::collections::BTreeSet;
 
 /// The three kinds of pins in the order of the form.
 const KINDS: [(Direction, &str); 3] = [
@@ -60,14 +60,6 @@ impl ParameterRow {
     fn supported(&self) -> bool {
         self.readable && (self.writable || !self.parameter.writable)
     }
-}
-
-/// A line of the tables of data types.
-#[derive(Debug)]
-struct TypeRow {
-    name: String,
-    supported: bool,
-    remark: String,
 }
 
 /// The whole statement.
@@ -187,72 +179,6 @@ impl Compliance {
             .iter()
             .filter(|info| self.standard.blocks().all(|block| block.name != info.name))
     }
-
-    /// Elementary types: whether a pin of the registry has it, and what stands in for it.
-    fn elementary(&self) -> Vec<TypeRow> {
-        self.standard
-            .elementary
-            .iter()
-            .map(|name| {
-                let supported = REGISTRY.iter().flat_map(BlockInfo::pins).any(|pin| match pin.ty {
-                    PinType::Enum(_) => name == "ENUM",
-                    ty => ty.iec_name() == name,
-                });
-                let rows = self.blocks.iter().flat_map(|block| &block.rows);
-                let instead: BTreeSet<_> = rows
-                    .filter(|row| row.standard == *name)
-                    .filter_map(|row| row.here)
-                    .filter(|here| here != name)
-                    .collect();
-                let remark = match instead.is_empty() {
-                    false => Vec::from_iter(instead).join(", "),
-                    true if supported => String::new(),
-                    true => "no block that uses it is offered yet".into(),
-                };
-                TypeRow {
-                    name: name.clone(),
-                    supported,
-                    remark,
-                }
-            })
-            .collect()
-    }
-
-    /// Derived types: whether a pin of the registry has it, and what it is made of.
-    fn derived(&self) -> Vec<TypeRow> {
-        self.standard
-            .derived
-            .iter()
-            .map(|name| {
-                let mut pins = REGISTRY.iter().flat_map(BlockInfo::pins);
-                let pin = pins.find(|pin| pin.ty.iec_name() == name);
-                let elements = match pin.map(|pin| pin.ty) {
-                    Some(PinType::Enum(info)) => info
-                        .elements
-                        .iter()
-                        .map(|(name, number)| format!("{number} {name}"))
-                        .collect::<Vec<_>>()
-                        .join(", "),
-                    _ => String::new(),
-                };
-                let remark = self.standard.remark(name).map(|remark| remark.text.clone());
-                TypeRow {
-                    name: name.clone(),
-                    supported: pin.is_some(),
-                    remark: joined([elements, remark.unwrap_or_default()]),
-                }
-            })
-            .collect()
-    }
-
-    /// Blocks of the standard with a pin of this type.
-    fn users(&self, ty: &str) -> Vec<&str> {
-        self.standard
-            .blocks()
-            .filter(|block| block.pins.iter().any(|pin| pin.ty == ty))
-            .map(|block| block.name.as_str())
-            .collect()
-    }
 }
 
 fn is_same(standard: &StandardPin, pin: &Pin) -> bool {
@@ -361,6 +287,7 @@ fn parameter_row(standard: &Standard, known: &Parameter) -> ParameterRow {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
 
     fn problems(edit: impl Fn(&mut Standard)) -> String {
         let mut standard = Standard::read();
@@ -417,5 +344,31 @@ mod tests {
         assert!(ty.contains("MC_Halt.Execute is BOOL where"), "{ty}");
         let nothing = problems(|standard| standard.derived.clear());
         assert!(nothing.contains("AXIS_REF is not in the catalogue"), "{nothing}");
+    }
+
+    /// The data alone is enough to judge the statement by.
+    #[test]
+    fn every_supported_row_of_the_data_is_a_pin_and_every_b_row_of_an_offered_block_is_supported() {
+        let [_, data] = Compliance::read().pages();
+        let data: serde_json::Value = serde_json::from_str(&data.text).unwrap();
+        assert_eq!(data["certified"], false);
+        let blocks = data["blocks"].as_array().unwrap();
+        for block in blocks {
+            let info = find(block["block"].as_str().unwrap());
+            assert_eq!(block["supported"], info.is_some(), "{block}");
+            for pin in block["pins"].as_array().unwrap() {
+                let there = info.and_then(|info| info.pin(pin["pin"].as_str().unwrap()));
+                let ty = there.map_or("", |(_, pin)| pin.ty.iec_name());
+                assert_eq!(pin["type"].as_str().unwrap_or(""), ty, "{pin}");
+                assert!(there.is_some() || pin["supported"] == false, "{pin}");
+                assert!(
+                    info.is_none() || pin["mark"] != "B" || pin["supported"] == true,
+                    "{pin}"
+                );
+            }
+        }
+        let offered = blocks.iter().filter(|block| block["supported"] == true).count();
+        let vendors = data["vendor_blocks"].as_array().unwrap().len();
+        assert_eq!(offered + vendors, REGISTRY.len());
     }
 }

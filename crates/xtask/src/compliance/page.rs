@@ -1,6 +1,7 @@
 //! The statement as a page.
 
-use super::{Compliance, KINDS, Statement, TypeRow};
+use super::types::TypeRow;
+use super::{Compliance, KINDS, Statement};
 use crate::NOTICE;
 use std::fmt::Write;
 
@@ -28,6 +29,7 @@ pub fn page(compliance: &Compliance) -> String {
          {TRADEMARK}\n\n\
          | | |\n| --- | --- |\n\
          | product | standstill {} |\n\
+         | supplier | the standstill contributors; no company, no representative, no signature |\n\
          | modelled on | {STANDARD} |\n\
          | blocks offered | {offered} of {} |\n\
          | the same as data | [compliance.json](compliance.json) |\n\n\
