@@ -1,6 +1,6 @@
 //! The repository is tidy: generated files are fresh, links lead somewhere, forbidden words stay out.
 
-use standstill_xtask::{Requirements, generated, root};
+use standstill_xtask::{Compliance, Faults, Requirements, generated, root};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -32,6 +32,19 @@ fn every_block_has_a_timing_picture() {
 #[test]
 fn every_requirement_has_a_test_or_a_stated_gap() {
     let problems = Requirements::read().problems();
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+/// Covers: R87
+#[test]
+fn the_compliance_statement_is_true() {
+    let problems = Compliance::read().problems();
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+#[test]
+fn every_error_is_shown_by_a_trace_or_has_a_reason() {
+    let problems = Faults::read().problems();
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
