@@ -2,6 +2,7 @@
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
+//! [`factors`] is the override, [`replan`] changes the owner's motion while it runs,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
@@ -10,10 +11,12 @@ mod accept;
 mod blend;
 mod coordinates;
 mod dynamics;
+mod factors;
 mod modulo;
 mod power;
 mod queue;
 mod reading;
+mod replan;
 mod software_limits;
 mod step;
 mod superimposed;
@@ -24,6 +27,7 @@ use crate::{
     DrivePosition, DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState,
     state,
 };
+pub use factors::Factors;
 use modulo::Modulo;
 use queue::{Entry, Queue, Work};
 pub use reading::{MotionState, Pace, Way};
@@ -129,6 +133,10 @@ pub struct Outlook {
     pub forward: bool,
     /// What is superimposed.
     pub superimposed: Option<Beside>,
+    /// The override, as bits.
+    pub factors: [u64; 3],
+    /// The owner's motion is not the one to its goal: the override halts it, or it has yet to be planned anew.
+    pub held_up: bool,
 }
 
 /// What a superimposed motion will do next, part of [`Outlook`].
@@ -216,6 +224,10 @@ pub struct Axis<P: Planner = Standard> {
     watched: bool,
     /// A queued MC_SetPosition takes effect at the next latch.
     shift_due: bool,
+    /// The override.
+    factors: Factors,
+    /// The owner has values that its motion does not have yet, for lack of room beside something superimposed.
+    replan_due: bool,
 }
 
 impl<P: Planner> Axis<P> {
@@ -271,6 +283,8 @@ impl<P: Planner> Axis<P> {
             shift: 0.0,
             watched: false,
             shift_due: false,
+            factors: Factors::ONE,
+            replan_due: false,
         })
     }
 
@@ -350,7 +364,7 @@ impl<P: Planner> Axis<P> {
             return match owner.work {
                 Work::Stop if self.stop_held => Fate::Done,
                 Work::Velocity { .. } | Work::Through { .. } => Fate::Active {
-                    reached: self.goal_reached(),
+                    reached: self.goal_reached() && !self.is_held_up(),
                 },
                 Work::Position(_)
                 | Work::Distance(_)
@@ -401,6 +415,8 @@ impl<P: Planner> Axis<P> {
             homed: self.homed,
             forward: self.last_velocity > 0.0,
             superimposed: self.superimposed_outlook(),
+            factors: self.factors.bits(),
+            held_up: self.is_held_up(),
         }
     }
 
@@ -442,6 +458,11 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// Whether the owner's motion in progress is not the one to its goal: what it reaches is not reached.
+    fn is_held_up(&self) -> bool {
+        self.replan_due || self.owner.as_ref().is_some_and(|owner| owner.halted)
+    }
+
     /// The one place where the state changes.
     fn enter(&mut self, event: AxisEvent) {
         match state::next(self.state, event) {
@@ -472,6 +493,7 @@ impl<P: Planner> Axis<P> {
             self.fates.record(owner.id, fate);
         }
         self.stop_held = false;
+        self.replan_due = false;
     }
 
     fn record(&self, event: Event, source: Source, log: &mut Log) {

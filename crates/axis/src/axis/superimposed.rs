@@ -36,8 +36,12 @@ pub(super) struct Added {
     pub id: CommandId,
     instance: InstanceId,
     adds: Adds,
-    /// As commanded.
+    /// As the override has them.
     limits: Limits,
+    /// As commanded.
+    asked: Limits,
+    /// The override holds it: it comes to rest and goes on when the factor of the velocity is raised.
+    halting: bool,
     /// The motion added is this command's; else it waits for room and the one before it comes to its end.
     planned: bool,
     /// That motion is slower than asked for.
@@ -110,6 +114,33 @@ impl<P: Plan> Layer<P> {
         self.sum().position
     }
 
+    /// The owner's plan starts at `start` (u) of its own frame; returns the sum's position.
+    pub fn start_at(&mut self, start: f64) -> f64 {
+        self.base.position = start;
+        self.sum().position
+    }
+
+    /// The owner takes over the whole velocity, as `sum`; what is left to add starts again from rest.
+    pub fn pass_velocity(&mut self, sum: Setpoint) {
+        self.base = sum;
+        self.motion = Motion::Hold;
+        self.added = Setpoint::at_rest(self.added.position);
+        if let Some(command) = &mut self.command {
+            command.planned = command.adds == Adds::Halt;
+            command.lowered = false;
+        }
+    }
+
+    /// The owner's motion is another one: a command that waits or was lowered is tried again.
+    pub fn try_soon(&mut self) {
+        self.retry = 0;
+    }
+
+    /// Where the axis will be once everything is added to the owner at `position` (u).
+    pub fn end_above(&self, position: f64) -> f64 {
+        position + (self.added.position - self.taken) + self.left()
+    }
+
     fn sum(&self) -> Setpoint {
         let (base, added) = (&self.base, &self.added);
         Setpoint {
@@ -167,7 +198,9 @@ impl<P: Planner> Axis<P> {
                 origin,
                 target,
             },
-            limits,
+            limits: self.factors.of(&limits, &self.config.limits),
+            asked: limits,
+            halting: self.factors.halt(),
             planned: false,
             lowered: false,
         };
@@ -203,6 +236,8 @@ impl<P: Planner> Axis<P> {
             instance: source.instance,
             adds: Adds::Halt,
             limits,
+            asked: limits,
+            halting: false,
             planned: !layer.moves(),
             lowered: false,
         };
@@ -281,6 +316,12 @@ impl<P: Planner> Axis<P> {
     fn base_end(&self, layer: &Layer<P::Plan>) -> f64 {
         match (&self.motion, self.owner.as_ref().map(|owner| owner.work)) {
             (Motion::Run { .. }, Some(Work::Velocity { .. } | Work::Through { .. })) => f64::NAN,
+            // Halted, its plan ends elsewhere.
+            (Motion::Run { .. }, Some(Work::Position(_) | Work::Distance(_))) => self
+                .owner
+                .as_ref()
+                .and_then(|owner| owner.end)
+                .unwrap_or(f64::NAN),
             (Motion::Run { plan, .. }, _) => plan.at(u64::from(plan.scans())).position,
             (Motion::Hold | Motion::Follow, _) => layer.base.position,
         }
@@ -354,6 +395,9 @@ impl<P: Planner> Axis<P> {
             self.settle(scan, log);
         }
         self.settle_superimposed(scan, log);
+        if self.replan_due {
+            self.replan_late(scan, log);
+        }
     }
 
     /// Completion of what is superimposed, and a new attempt of a command that waits or was lowered.
@@ -368,7 +412,12 @@ impl<P: Planner> Axis<P> {
             let stopped = layer.moves();
             layer.motion = Motion::Hold;
             match layer.command {
-                Some(Added { planned, adds, .. }) if planned || adds == Adds::Halt => {
+                Some(Added {
+                    planned,
+                    adds,
+                    halting: false,
+                    ..
+                }) if planned || adds == Adds::Halt => {
                     self.end_superimposed_command(Fate::Done);
                 }
                 // It stands now, from where more may fit.
