@@ -3,8 +3,10 @@
 use crate::administrative::{
     mc_power::McPower, mc_read_actual_position::McReadActualPosition,
     mc_read_actual_velocity::McReadActualVelocity, mc_read_axis_error::McReadAxisError,
-    mc_read_axis_info::McReadAxisInfo, mc_read_motion_state::McReadMotionState, mc_read_status::McReadStatus,
-    mc_reset::McReset, mc_set_override::McSetOverride, mc_set_position::McSetPosition,
+    mc_read_axis_info::McReadAxisInfo, mc_read_digital_input::McReadDigitalInput,
+    mc_read_digital_output::McReadDigitalOutput, mc_read_motion_state::McReadMotionState,
+    mc_read_status::McReadStatus, mc_reset::McReset, mc_set_override::McSetOverride,
+    mc_set_position::McSetPosition, mc_write_digital_output::McWriteDigitalOutput,
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
@@ -62,6 +64,7 @@ macro_rules! registry {
 registry! {
     McPower McReset McReadStatus McReadMotionState McReadAxisInfo McReadAxisError
     McReadActualPosition McReadActualVelocity McSetPosition McSetOverride
+    McReadDigitalInput McReadDigitalOutput McWriteDigitalOutput
     McHome
     McStop McHalt McMoveAbsolute McMoveRelative McMoveAdditive McMoveVelocity
     McMoveContinuousAbsolute McMoveContinuousRelative McMoveSuperimposed McHaltSuperimposed
@@ -110,13 +113,19 @@ mod tests {
 
     /// Covers: R3, R7
     #[test]
-    fn mc_blocks_have_one_axis_and_numbers_are_lreal() {
+    fn mc_blocks_have_one_axis_first_and_numbers_are_lreal() {
         for info in REGISTRY.iter().filter(|info| info.name.starts_with("MC_")) {
-            let axes: Vec<_> = info.pins_of(standstill_fb::Direction::InOut).collect();
-            assert_eq!(axes.len(), 1, "{}", info.name);
-            assert_eq!(
-                (axes[0].name, axes[0].ty.iec_name()),
-                ("Axis", "AXIS_REF"),
+            let mut in_outs = info.pins_of(standstill_fb::Direction::InOut);
+            let first = in_outs.next().map(|pin| (pin.name, pin.ty.iec_name()));
+            // What reads and writes inputs and outputs has a reference to those instead.
+            let expected = match info.name {
+                "MC_ReadDigitalInput" => ("Input", "MC_INPUT_REF"),
+                "MC_ReadDigitalOutput" | "MC_WriteDigitalOutput" => ("Output", "MC_OUTPUT_REF"),
+                _ => ("Axis", "AXIS_REF"),
+            };
+            assert_eq!(first, Some(expected), "{}", info.name);
+            assert!(
+                in_outs.all(|pin| pin.ty.iec_name() != "AXIS_REF"),
                 "{}",
                 info.name
             );

@@ -19,7 +19,7 @@ fn values(ty: PinType) -> Vec<Vec<Value>> {
             let beyond = info.elements.iter().map(|(_, number)| number + 1).max();
             vec![[i32::MIN, -1, beyond.unwrap(), i32::MAX].map(Value::Enum).into()]
         }
-        PinType::Bool | PinType::Word | PinType::Axis => Vec::new(),
+        PinType::Bool | PinType::Word | PinType::Axis(_) => Vec::new(),
     }
 }
 

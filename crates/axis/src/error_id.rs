@@ -61,8 +61,8 @@ macro_rules! error_ids {
 error_ids! {
     None = 0, "No error.", "Nothing to do.";
 
-    AxisUnknown = 100, "The Axis pin names no axis of this runtime.",
-        "Wire Axis to a configured axis.";
+    AxisUnknown = 100, "The Axis, Input or Output pin names no axis of this runtime.",
+        "Wire it to a configured axis.";
     PositionInvalid = 101, "Position or Distance is NaN or infinite, or the target is not representable.",
         "Give a finite number.";
     VelocityInvalid = 102, "Velocity is NaN or infinite, or zero or negative where a positive value is needed.",
@@ -111,6 +111,8 @@ error_ids! {
         "Move back inside: the other way, or to a target inside.";
     FactorInvalid = 124, "An override factor is NaN, negative, 0 where only VelFactor may be 0, or above the largest one of the axis.",
         "Give VelFactor from 0, AccFactor and JerkFactor from above 0, each at most 1 or the override_max of the axis.";
+    DigitalNumberInvalid = 130, "InputNumber or OutputNumber is not the number of a digital input or output.",
+        "Give a number from 0 to 31.";
 
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";

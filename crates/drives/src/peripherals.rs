@@ -2,9 +2,6 @@
 
 use standstill_axis::{DriveOrder, DrivePosition, DriveReport, Edge, PROBES, ProbeReport};
 
-/// Inputs and outputs are numbered 0 to one less.
-pub const DIGITAL: u32 = 32;
-
 /// A probe's input and what it has seen.
 #[derive(Clone, Copy, Debug, Default)]
 struct Probe {
@@ -29,7 +26,7 @@ pub struct Peripherals {
 }
 
 impl Peripherals {
-    /// Sets the digital input `number`; those from [`DIGITAL`] on do not exist.
+    /// Sets the digital input `number`; those from [`standstill_axis::DIGITAL`] on do not exist.
     pub fn set_input(&mut self, number: u32, level: bool) {
         if let Some(bit) = 1_u32.checked_shl(number) {
             self.inputs = if level {

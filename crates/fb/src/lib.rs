@@ -16,4 +16,6 @@ mod pins;
 pub use block::{AnyInstance, Block, BlockInfo, Context, Described, Group, Instance};
 pub use enable::{EnableCore, Reading};
 pub use execute::{ExecuteCore, Phase};
-pub use pins::{Direction, EnumInfo, Int, Pin, PinError, PinType, PinValue, Pins, Time, Value};
+pub use pins::{
+    Direction, EnumInfo, InputRef, Int, OutputRef, Pin, PinError, PinType, PinValue, Pins, Time, Value,
+};

@@ -54,8 +54,8 @@ pub enum PinType {
     Word,
     /// TIME, in nanoseconds.
     Time,
-    /// AXIS_REF.
-    Axis,
+    /// An axis, by the name of the reference: AXIS_REF, or what stands for something its drive has.
+    Axis(&'static str),
     /// An enumeration.
     Enum(EnumInfo),
 }
@@ -69,7 +69,7 @@ impl PinType {
             Self::Lreal => "LREAL",
             Self::Word => "WORD",
             Self::Time => "TIME",
-            Self::Axis => "AXIS_REF",
+            Self::Axis(name) => name,
             Self::Enum(info) => info.name,
         }
     }
@@ -88,7 +88,7 @@ pub enum Value {
     Word(u16),
     /// TIME in nanoseconds.
     Time(i64),
-    /// AXIS_REF.
+    /// An axis.
     Axis(AxisId),
     /// An enumeration's number, defined or not.
     Enum(i32),
@@ -134,7 +134,50 @@ macro_rules! pin_value {
 pin_value!(bool, Bool, Bool);
 pin_value!(i16, Int, Int);
 pin_value!(f64, Lreal, Lreal);
-pin_value!(AxisId, Axis, Axis);
+
+macro_rules! axis_value {
+    ($rust:ty, $name:literal, $id:ident => $made:expr) => {
+        impl PinValue for $rust {
+            const TYPE: PinType = PinType::Axis($name);
+
+            fn into_value(self) -> Value {
+                Value::Axis(self.into())
+            }
+
+            fn from_value(value: Value) -> Option<Self> {
+                if let Value::Axis($id) = value {
+                    Some($made)
+                } else {
+                    None
+                }
+            }
+        }
+    };
+}
+
+/// MC_INPUT_REF: the axis whose drive has the inputs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct InputRef(pub AxisId);
+
+/// MC_OUTPUT_REF: the axis whose drive has the outputs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OutputRef(pub AxisId);
+
+impl From<InputRef> for AxisId {
+    fn from(input: InputRef) -> Self {
+        input.0
+    }
+}
+
+impl From<OutputRef> for AxisId {
+    fn from(output: OutputRef) -> Self {
+        output.0
+    }
+}
+
+axis_value!(AxisId, "AXIS_REF", id => id);
+axis_value!(InputRef, "MC_INPUT_REF", id => Self(id));
+axis_value!(OutputRef, "MC_OUTPUT_REF", id => Self(id));
 
 impl PinValue for Time {
     const TYPE: PinType = PinType::Time;

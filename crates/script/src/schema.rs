@@ -11,9 +11,8 @@ use crate::read::step::FAULT_KINDS;
 use crate::read::value::NUMBER_WORDS;
 use crate::read::{SCANS_MAX, VERSION};
 use serde_json::{Map, Value, json};
-use standstill_axis::{DELAY_MAX, PROBES, QUEUE_MAX};
+use standstill_axis::{DELAY_MAX, DIGITAL, PROBES, QUEUE_MAX};
 use standstill_blocks::REGISTRY;
-use standstill_drives::peripherals::DIGITAL;
 use standstill_fb::{BlockInfo, Direction, PinType};
 
 /// The JSON Schema (draft 2020-12) of scan scripts, in the layout of [`format`](crate::format).
@@ -334,7 +333,7 @@ fn constant(ty: PinType) -> Value {
         PinType::Lreal => of("number"),
         PinType::Word => integer(0, u16::MAX.into()),
         PinType::Time => of("scans"),
-        PinType::Axis => of("identifier"),
+        PinType::Axis(_) => of("identifier"),
         PinType::Enum(info) => any(&[words(info.elements), integer(i32::MIN.into(), i32::MAX.into())]),
     }
 }

@@ -175,7 +175,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether a command that waits now would follow a motion without an end, so not start at rest.
     fn predecessor_is_endless(&self) -> bool {
-        let last = self.queue.last().or(self.owner.as_ref());
+        let last = self.queue.last_motion().or(self.owner.as_ref());
         last.is_some_and(Entry::is_endless)
     }
 
@@ -324,7 +324,8 @@ impl<P: Planner> Axis<P> {
             | Work::Velocity { .. }
             | Work::Stop
             | Work::Home(_)
-            | Work::SetPosition { .. } => None,
+            | Work::SetPosition { .. }
+            | Work::Output { .. } => None,
         }
     }
 
@@ -418,7 +419,7 @@ impl<P: Planner> Axis<P> {
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
             Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
-            Work::Home(_) | Work::SetPosition { .. } => return Ok(Motion::Hold),
+            Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => return Ok(Motion::Hold),
         };
         match planned {
             Ok(plan) => Ok(Motion::along(plan)),
@@ -448,6 +449,7 @@ impl<P: Planner> Axis<P> {
             Work::Velocity { velocity, .. } => ("Velocity", velocity),
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),
             Work::Home(position) | Work::SetPosition { position, .. } => ("Position", position),
+            Work::Output { .. } => ("OutputNumber", f64::NAN),
         };
         let limit = match error {
             ErrorId::TargetOutsideSoftwareLimits | ErrorId::OutwardFromSoftwareLimit => {
@@ -490,7 +492,7 @@ impl<P: Planner> Axis<P> {
             Work::Position(_) | Work::Distance(_) | Work::Halt => AxisEvent::StartDiscrete,
             Work::Velocity { .. } | Work::Through { .. } => AxisEvent::StartContinuous,
             Work::Stop => AxisEvent::Stop,
-            Work::Home(_) | Work::SetPosition { .. } => AxisEvent::StartHoming,
+            Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => AxisEvent::StartHoming,
         });
         self.before = self.limits_before(&entry.limits);
         self.adopt(entry, motion, scan, log);

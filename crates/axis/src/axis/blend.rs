@@ -186,7 +186,7 @@ impl<P: Planner> Axis<P> {
                 (towards, velocity.abs(), None)
             }
             Work::Halt => (direction, 0.0, None),
-            Work::Stop | Work::Home(_) | Work::SetPosition { .. } => return REST,
+            Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => return REST,
         };
         // Reversed, or nowhere: at rest (B13). To the velocity 0 leads no direction.
         if towards * direction <= 0.0 && velocity != 0.0 {

@@ -3,6 +3,7 @@
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
 //! [`factors`] is the override, [`replan`] changes the owner's motion while it runs,
+//! [`queued`] lets administrative commands wait, [`outputs`] reads and writes digital inputs and outputs,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
@@ -13,8 +14,10 @@ mod coordinates;
 mod dynamics;
 mod factors;
 mod modulo;
+mod outputs;
 mod power;
 mod queue;
+mod queued;
 mod reading;
 mod replan;
 mod software_limits;
@@ -381,7 +384,8 @@ impl<P: Planner> Axis<P> {
                 | Work::Halt
                 | Work::Stop
                 | Work::Home(_)
-                | Work::SetPosition { .. } => Fate::Active { reached: false },
+                | Work::SetPosition { .. }
+                | Work::Output { .. } => Fate::Active { reached: false },
             };
         }
         self.fate_of_other(id)

@@ -32,6 +32,8 @@ pub(super) enum Work {
     Home(f64),
     /// The coordinates move: the actual position becomes this, or grows by it (u).
     SetPosition { position: f64, relative: bool },
+    /// A digital output of the drive gets a value.
+    Output { bit: u32, value: bool },
 }
 
 impl Work {
@@ -48,9 +50,12 @@ impl Work {
                 to: Place::By(distance),
                 ..
             } => Some(from + distance),
-            Self::Velocity { .. } | Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } => {
-                None
-            }
+            Self::Velocity { .. }
+            | Self::Halt
+            | Self::Stop
+            | Self::Home(_)
+            | Self::SetPosition { .. }
+            | Self::Output { .. } => None,
         }
     }
 
@@ -64,7 +69,8 @@ impl Work {
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
-            | Self::SetPosition { .. } => 0.0,
+            | Self::SetPosition { .. }
+            | Self::Output { .. } => 0.0,
         }
     }
 
@@ -81,7 +87,8 @@ impl Work {
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
-            | Self::SetPosition { .. } => self,
+            | Self::SetPosition { .. }
+            | Self::Output { .. } => self,
         }
     }
 
@@ -89,7 +96,7 @@ impl Work {
     pub fn obeys_override(&self) -> bool {
         match self {
             Self::Position(_) | Self::Distance(_) | Self::Through { .. } | Self::Velocity { .. } => true,
-            Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } => false,
+            Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } | Self::Output { .. } => false,
         }
     }
 
@@ -103,6 +110,7 @@ impl Work {
             Self::Stop => "stop",
             Self::Home(_) => "home",
             Self::SetPosition { .. } => "set position",
+            Self::Output { .. } => "output",
         }
     }
 }
@@ -179,10 +187,18 @@ impl Entry {
             Work::Position(position) => Some(Place::At(position)),
             Work::Distance(distance) => Some(Place::By(distance)),
             Work::Through { to, .. } => Some(to),
-            Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } => {
-                None
-            }
+            Work::Velocity { .. }
+            | Work::Halt
+            | Work::Stop
+            | Work::Home(_)
+            | Work::SetPosition { .. }
+            | Work::Output { .. } => None,
         }
+    }
+
+    /// Whether it moves the axis when its turn comes, rather than writing something.
+    pub fn is_motion(&self) -> bool {
+        !matches!(self.work, Work::SetPosition { .. } | Work::Output { .. })
     }
 
     /// Whether it goes on until another command takes over.
@@ -226,8 +242,9 @@ impl Queue {
         self.entries.first()?.as_ref()
     }
 
-    pub fn last(&self) -> Option<&Entry> {
-        self.entries.get(self.len.checked_sub(1)?)?.as_ref()
+    /// The last one that will move the axis.
+    pub fn last_motion(&self) -> Option<&Entry> {
+        self.iter().filter(|entry| entry.is_motion()).last()
     }
 
     pub fn iter(&self) -> impl Iterator<Item = &Entry> {

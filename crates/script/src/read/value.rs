@@ -337,7 +337,7 @@ impl Reader {
                 u16::try_from(value).ok().map(Value::Word)
             }
             PinType::Time => self.duration(node, what).map(Value::Time),
-            PinType::Axis => {
+            PinType::Axis(_) => {
                 let index = self.axis_index(node, what)?;
                 u16::try_from(index)
                     .ok()

@@ -82,7 +82,7 @@ pub(crate) fn convert(value: Value, ty: PinType) -> Option<Value> {
         | (Value::Lreal(_), PinType::Lreal)
         | (Value::Word(_), PinType::Word)
         | (Value::Time(_), PinType::Time)
-        | (Value::Axis(_), PinType::Axis)
+        | (Value::Axis(_), PinType::Axis(_))
         | (Value::Enum(_), PinType::Enum(_)) => Some(value),
         (_, PinType::Lreal) => match value {
             Value::Time(ns) => Some(Value::Lreal(ns as f64)),
@@ -92,7 +92,7 @@ pub(crate) fn convert(value: Value, ty: PinType) -> Option<Value> {
         (_, PinType::Word) => Some(Value::Word(whole(value)?.try_into().ok()?)),
         (_, PinType::Time) => Some(Value::Time(whole(value)?)),
         (_, PinType::Enum(_)) => Some(Value::Enum(whole(value)?.try_into().ok()?)),
-        (_, PinType::Bool | PinType::Axis) => None,
+        (_, PinType::Bool | PinType::Axis(_)) => None,
     }
 }
 
