@@ -1,12 +1,13 @@
 //! Every block the runtime knows, by its IEC name.
 
 use crate::administrative::{
-    mc_power::McPower, mc_read_actual_position::McReadActualPosition,
+    mc_abort_trigger::McAbortTrigger, mc_power::McPower, mc_read_actual_position::McReadActualPosition,
     mc_read_actual_velocity::McReadActualVelocity, mc_read_axis_error::McReadAxisError,
     mc_read_axis_info::McReadAxisInfo, mc_read_digital_input::McReadDigitalInput,
     mc_read_digital_output::McReadDigitalOutput, mc_read_motion_state::McReadMotionState,
     mc_read_status::McReadStatus, mc_reset::McReset, mc_set_override::McSetOverride,
-    mc_set_position::McSetPosition, mc_write_digital_output::McWriteDigitalOutput,
+    mc_set_position::McSetPosition, mc_touch_probe::McTouchProbe,
+    mc_write_digital_output::McWriteDigitalOutput,
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
@@ -65,6 +66,7 @@ registry! {
     McPower McReset McReadStatus McReadMotionState McReadAxisInfo McReadAxisError
     McReadActualPosition McReadActualVelocity McSetPosition McSetOverride
     McReadDigitalInput McReadDigitalOutput McWriteDigitalOutput
+    McTouchProbe McAbortTrigger
     McHome
     McStop McHalt McMoveAbsolute McMoveRelative McMoveAdditive McMoveVelocity
     McMoveContinuousAbsolute McMoveContinuousRelative McMoveSuperimposed McHaltSuperimposed
@@ -144,6 +146,7 @@ mod tests {
                 "MC_DIRECTION" => (0..=4).collect(),
                 "MC_SOURCE" => (0..=2).collect(),
                 "MC_EXECUTION_MODE" => (0..=1).collect(),
+                "MC_TRIGGER_REF" => (0..=3).collect(),
                 _ => panic!("state the numbers of {name} here"),
             }
         };

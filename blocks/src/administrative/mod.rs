@@ -1,5 +1,6 @@
 //! Blocks that switch, reset and read; they move nothing.
 
+pub mod mc_abort_trigger;
 pub mod mc_power;
 pub mod mc_read_actual_position;
 pub mod mc_read_actual_velocity;
@@ -12,4 +13,5 @@ pub mod mc_read_status;
 pub mod mc_reset;
 pub mod mc_set_override;
 pub mod mc_set_position;
+pub mod mc_touch_probe;
 pub mod mc_write_digital_output;

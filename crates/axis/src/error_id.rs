@@ -113,6 +113,10 @@ error_ids! {
         "Give VelFactor from 0, AccFactor and JerkFactor from above 0, each at most 1 or the override_max of the axis.";
     DigitalNumberInvalid = 130, "InputNumber or OutputNumber is not the number of a digital input or output.",
         "Give a number from 0 to 31.";
+    TriggerInvalid = 131, "TriggerInput is not a number of MC_TRIGGER_REF.",
+        "Use a value from mcProbe1Rising (0) to mcProbe2Falling (3).";
+    WindowInvalid = 132, "LastPosition is below FirstPosition on an axis without turns, so the window is empty.",
+        "Give the window in positive direction; only on a modulo axis it may go on behind the end of the turn.";
 
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";
@@ -128,6 +132,8 @@ error_ids! {
         "Wait for Disabled, then switch it on again with MC_Power.";
     NotHomed = 207, "The axis is set to need homing before absolute moves.",
         "Call MC_Home first.";
+    TriggerTaken = 215, "Another instance waits for this probe.",
+        "Wait for it, or abort it with MC_AbortTrigger; each probe serves one instance at a time.";
 
     BufferFull = 301, "All places of the command buffer are taken.",
         "Wait for a buffered command to become active, or enlarge the queue of the axis.";

@@ -21,10 +21,10 @@ mod log;
 mod scaling;
 mod state;
 
-pub use axis::{Axis, Beside, Factors, MotionState, Outlook, Pace, Source, Way};
+pub use axis::{Axis, Beside, Factors, MotionState, Outlook, Pace, Source, TouchProbe, Way};
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,
-    QUEUE_MAX, Raw, Request, Superimpose, ValueSource,
+    QUEUE_MAX, Raw, Request, Superimpose, Trigger, ValueSource,
 };
 pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, MODULO_MAX, PowerOff, StartState};
 pub use drive::{

@@ -4,6 +4,7 @@
 //! (which names exist, the types of wires, multiples of the cycle) only the reader checks.
 
 use crate::read::axis::{ABOVE_LIMIT, ON_POWER_OFF, PROFILES, START_STATES};
+use crate::read::block::is_needed;
 use crate::read::drive::REACTIONS;
 use crate::read::names::KEYWORDS;
 use crate::read::shape::{self, Shape};
@@ -316,12 +317,16 @@ fn pins(info: &BlockInfo) -> Value {
         );
         properties.insert(pin.name.to_owned(), schema);
     }
-    let in_outs: Vec<&str> = info.pins_of(Direction::InOut).map(|pin| pin.name).collect();
+    let needed: Vec<&str> = info
+        .pins()
+        .filter(|pin| is_needed(pin))
+        .map(|pin| pin.name)
+        .collect();
     json!({
         "description": info.doc,
         "type": "object",
         "properties": properties,
-        "required": in_outs,
+        "required": needed,
         "additionalProperties": false,
     })
 }

@@ -4,6 +4,7 @@
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
 //! [`factors`] is the override, [`replan`] changes the owner's motion while it runs,
 //! [`queued`] lets administrative commands wait, [`outputs`] reads and writes digital inputs and outputs,
+//! [`probe`] records positions at edges,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
@@ -16,6 +17,7 @@ mod factors;
 mod modulo;
 mod outputs;
 mod power;
+mod probe;
 mod queue;
 mod queued;
 mod reading;
@@ -32,6 +34,7 @@ use crate::{
 };
 pub use factors::Factors;
 use modulo::Modulo;
+pub use probe::TouchProbe;
 use queue::{Entry, Queue, Work};
 pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
@@ -203,6 +206,8 @@ pub struct Axis<P: Planner = Standard> {
     signals: DriveSignals,
     /// What the drive has beside its motion.
     beside: BesideMotion,
+    /// Touch probes.
+    probes: probe::Probes,
     motion: Motion<P::Plan>,
     /// A second motion on top of it.
     layer: Option<superimposed::Layer<P::Plan>>,
@@ -265,6 +270,7 @@ impl<P: Planner> Axis<P> {
             past: reading::Past::new(config.position),
             signals: DriveSignals::default(),
             beside: BesideMotion::default(),
+            probes: probe::Probes::default(),
             motion: if powered { Motion::Hold } else { Motion::Follow },
             layer: None,
             covered: None,
@@ -394,7 +400,10 @@ impl<P: Planner> Axis<P> {
     /// What became of a command that is not the owner.
     #[inline(never)]
     fn fate_of_other(&self, id: CommandId) -> Fate {
-        if self.queue.contains(id) || self.reset.as_ref().is_some_and(|reset| reset.id == id) {
+        if self.queue.contains(id)
+            || self.probes.is_waiting(id)
+            || self.reset.as_ref().is_some_and(|reset| reset.id == id)
+        {
             return Fate::Waiting;
         }
         if let Some(fate) = self.superimposed_fate(id) {
