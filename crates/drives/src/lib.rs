@@ -12,3 +12,5 @@
 extern crate std;
 
 pub mod cia402;
+pub mod mechanism;
+pub mod peripherals;

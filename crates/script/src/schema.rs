@@ -4,14 +4,16 @@
 //! (which names exist, the types of wires, multiples of the cycle) only the reader checks.
 
 use crate::read::axis::{ABOVE_LIMIT, ON_POWER_OFF, PROFILES, START_STATES};
+use crate::read::drive::REACTIONS;
 use crate::read::names::KEYWORDS;
 use crate::read::shape::{self, Shape};
 use crate::read::step::FAULT_KINDS;
 use crate::read::value::NUMBER_WORDS;
 use crate::read::{SCANS_MAX, VERSION};
 use serde_json::{Map, Value, json};
-use standstill_axis::{DELAY_MAX, QUEUE_MAX};
+use standstill_axis::{DELAY_MAX, PROBES, QUEUE_MAX};
 use standstill_blocks::REGISTRY;
+use standstill_drives::peripherals::DIGITAL;
 use standstill_fb::{BlockInfo, Direction, PinType};
 
 /// The JSON Schema (draft 2020-12) of scan scripts, in the layout of [`format`](crate::format).
@@ -219,14 +221,42 @@ fn axis_key(key: &str) -> Value {
         "on_power_off" => words(&ON_POWER_OFF),
         "needs_homed" => json!({"type": "boolean"}),
         "override_max" => any(&[json!({"type": "number", "minimum": 1}), of("parameter")]),
-        "drive" => object(&shape::DRIVE, |_| {
-            object(&shape::IDEAL, |key| match key {
-                "delay" => any(&[integer(0, DELAY_MAX as i64), of("time_literal")]),
-                _ => any(&[of("scans"), json!({"type": "null"})]),
-            })
-        }),
+        "drive" => drive(),
         _ => of("finite"),
     }
+}
+
+fn drive() -> Value {
+    let never = || any(&[of("scans"), json!({"type": "null"})]);
+    let delay = || any(&[integer(0, DELAY_MAX as i64), of("time_literal")]);
+    object(&shape::DRIVE, |key| match key {
+        "ideal" => object(&shape::IDEAL, |key| match key {
+            "delay" => delay(),
+            _ => never(),
+        }),
+        "plant" => required(
+            &["inertia"],
+            object(&shape::PLANT, |key| match key {
+                "power_on" => never(),
+                "load" => required(&["inertia", "stiffness"], object(&shape::LOAD, |_| of("finite"))),
+                "gains" => object(&shape::GAINS, |_| of("finite")),
+                _ => of("finite"),
+            }),
+        ),
+        _ => object(&shape::CIA402, |key| match key {
+            "delay" => delay(),
+            "power_on" => never(),
+            "start_up" => of("scans"),
+            "quick_stop" => words(&REACTIONS),
+            "on_disable" | "on_fault" => words(&[REACTIONS[0], REACTIONS[1]]),
+            "limit_switches" => required(
+                &["negative", "positive"],
+                object(&shape::LIMIT_SWITCHES, |_| of("finite")),
+            ),
+            "home_switch" => required(&["from", "to"], object(&shape::HOME_SWITCH, |_| of("finite"))),
+            _ => of("finite"),
+        }),
+    })
 }
 
 fn task() -> Value {
@@ -335,9 +365,26 @@ fn step() -> Value {
         ),
         "clear" => required(&["axis"], object(&shape::CLEAR, |_| text())),
         _ => required(
-            &["axis", "displace"],
-            object(&shape::DRIVE_STEP, |key| {
-                if key == "displace" { of("finite") } else { text() }
+            &["axis"],
+            object(&shape::DRIVE_STEP, |key| match key {
+                "displace" => of("finite"),
+                "remote" | "warning" => json!({"type": "boolean"}),
+                "input" => required(
+                    &["number", "value"],
+                    object(&shape::DRIVE_INPUT, |key| match key {
+                        "number" => integer(0, i64::from(DIGITAL) - 1),
+                        _ => json!({"type": "boolean"}),
+                    }),
+                ),
+                "probe" => required(
+                    &["number", "value"],
+                    object(&shape::DRIVE_PROBE, |key| match key {
+                        "number" => integer(1, PROBES as i64),
+                        "at" => of("finite"),
+                        _ => json!({"type": "boolean"}),
+                    }),
+                ),
+                _ => text(),
             }),
         ),
     });

@@ -25,8 +25,8 @@ mod update;
 use crate::fate::Fates;
 use crate::{
     AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, Comms, ConfigError, DriveCommand,
-    DrivePosition, DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState,
-    state,
+    DriveOrder, DrivePosition, DriveReport, DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log,
+    QUEUE_MAX, Record, StartState, state,
 };
 pub use factors::Factors;
 use modulo::Modulo;
@@ -76,6 +76,13 @@ impl<P: Plan> Motion<P> {
             }
         }
     }
+}
+
+/// What goes to and comes from a drive beside its motion.
+#[derive(Clone, Copy, Debug, Default)]
+struct BesideMotion {
+    report: DriveReport,
+    order: DriveOrder,
 }
 
 /// What is known of the power stage.
@@ -192,6 +199,8 @@ pub struct Axis<P: Planner = Standard> {
     past: reading::Past,
     /// What the drive reported last beside its position.
     signals: DriveSignals,
+    /// What the drive has beside its motion.
+    beside: BesideMotion,
     motion: Motion<P::Plan>,
     /// A second motion on top of it.
     layer: Option<superimposed::Layer<P::Plan>>,
@@ -253,6 +262,7 @@ impl<P: Planner> Axis<P> {
             modulo: Modulo::new(&config),
             past: reading::Past::new(config.position),
             signals: DriveSignals::default(),
+            beside: BesideMotion::default(),
             motion: if powered { Motion::Hold } else { Motion::Follow },
             layer: None,
             covered: None,
@@ -419,6 +429,21 @@ impl<P: Planner> Axis<P> {
             factors: self.factors.bits(),
             held_up: self.is_held_up(),
         }
+    }
+
+    /// What the drive told last beside its motion; the machine writes it before the blocks are called.
+    pub fn report(&self) -> &DriveReport {
+        &self.beside.report
+    }
+
+    /// As [`Axis::report`], for the machine.
+    pub fn report_mut(&mut self) -> &mut DriveReport {
+        &mut self.beside.report
+    }
+
+    /// What the drive is asked beside its motion.
+    pub fn order(&self) -> &DriveOrder {
+        &self.beside.order
     }
 
     /// The drive's command for this scan.
