@@ -148,8 +148,6 @@ error_ids! {
     CommunicationLost = 601, "The communication with the drive was lost.",
         "Restore it, then call MC_Reset.";
 
-    ContinuousUpdateUnsupported = 702, "ContinuousUpdate is not supported yet.",
-        "Leave ContinuousUpdate FALSE and give a new command instead.";
     DirectionEnableUnsupported = 703, "EnablePositive and EnableNegative are not supported yet.",
         "Leave both TRUE.";
 
@@ -162,7 +160,10 @@ error_ids! {
 }
 
 /// Numbers that earlier versions showed and no version will show again, each with what it said.
-pub const RETIRED: &[(u16, &str)] = &[(701, "Blending buffer modes were not supported.")];
+pub const RETIRED: &[(u16, &str)] = &[
+    (701, "Blending buffer modes were not supported."),
+    (702, "ContinuousUpdate was not supported."),
+];
 
 // Deriving it needs an attribute on a variant that the table above writes.
 #[allow(clippy::derivable_impls)]

@@ -2,7 +2,7 @@
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
-//! [`factors`] is the override, [`replan`] changes the owner's motion while it runs,
+//! [`factors`] is the override, [`replan`] changes the owner's motion while it runs, [`update`] gives it new values,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
@@ -20,6 +20,7 @@ mod replan;
 mod software_limits;
 mod step;
 mod superimposed;
+mod update;
 
 use crate::fate::Fates;
 use crate::{

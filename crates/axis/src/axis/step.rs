@@ -165,6 +165,7 @@ impl<P: Planner> Axis<P> {
             }
             let passage_from = self.aim(&mut next, from);
             next.passage = self.passage(&next, passage_from, 1);
+            let before = self.limits_before(&next.limits);
             let planned = self.plan_next(&next);
             if let Ok(None) = planned {
                 return;
@@ -175,10 +176,8 @@ impl<P: Planner> Axis<P> {
                 Ok(Some(motion)) => {
                     let blended = self.passes_its_end();
                     self.end_owner(self.fate_at_hand_over());
-                    self.begin(next, motion, scan, log);
-                    if blended {
-                        self.before = next.limits;
-                    }
+                    let before = if blended { next.limits } else { before };
+                    self.begin(next, motion, before, scan, log);
                     return;
                 }
                 Err(error) => {

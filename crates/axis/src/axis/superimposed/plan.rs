@@ -269,7 +269,8 @@ impl<P: Planner> Axis<P> {
     /// The limits that hold for the state published last: those of the motion in progress, both together if
     /// there are two, but never more than the axis has; `own` if there is none.
     pub(in crate::axis) fn limits_before(&self, own: &Limits) -> Limits {
-        let base = matches!(self.motion, Motion::Run { .. }).then_some(&self.in_force);
+        let base = self.limits_of_owner();
+        let base = base.as_ref();
         let Some(layer) = self.layer.as_ref().filter(|layer| layer.moves()) else {
             return *base.unwrap_or(own);
         };
