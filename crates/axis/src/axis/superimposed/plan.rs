@@ -246,6 +246,7 @@ impl<P: Planner> Axis<P> {
         command.halting = self.factors.halt();
         command.planned = false;
         layer.try_soon();
+        self.stir();
         self.layer = Some(layer);
         self.try_again(scan, log);
     }
@@ -330,6 +331,7 @@ impl<P: Planner> Axis<P> {
             layer.pass_velocity(self.setpoint);
         }
         layer.try_soon();
+        self.stir();
         self.layer = Some(layer);
         Ok(Some(motion))
     }
