@@ -76,7 +76,7 @@ impl<V: Values> UpdateCore<V> {
         issue: impl FnOnce(&mut Axis<P>, V, Option<CommandId>, Source, &mut Log) -> Result<CommandId, ErrorId>,
     ) -> Phase {
         if self.seen.is_some() {
-            self.update(pins, &mut context.reborrow(), values());
+            self.update(pins, &mut context.reborrow(), &values);
         }
         let seen = &mut self.seen;
         self.execute.scan(pins.execute, context, |context, replaces| {
@@ -91,7 +91,8 @@ impl<V: Values> UpdateCore<V> {
     /// Before the fate is asked for, so that what the new values change shows in the same call.
     #[cold]
     #[inline(never)]
-    fn update<P: Planner>(&mut self, pins: Move, context: &mut Context<'_, P>, values: V) {
+    fn update<P: Planner>(&mut self, pins: Move, context: &mut Context<'_, P>, values: &impl Fn() -> V) {
+        let values = values();
         let running = self.execute.running(pins.execute);
         let (Some((axis, id)), Some(seen), true) = (running, &mut self.seen, pins.continuous_update) else {
             self.seen = None;
