@@ -124,6 +124,10 @@ error_ids! {
         "Wait for Disabled, then switch it on again with MC_Power.";
     NotHomed = 207, "The axis is set to need homing before absolute moves.",
         "Call MC_Home first.";
+    PositiveBarred = 208, "The motion needs the positive direction, and EnablePositive of MC_Power is FALSE.",
+        "Set EnablePositive to TRUE at the MC_Power instance called last, or move the other way.";
+    NegativeBarred = 209, "The motion needs the negative direction, and EnableNegative of MC_Power is FALSE.",
+        "Set EnableNegative to TRUE at the MC_Power instance called last, or move the other way.";
 
     BufferFull = 301, "All places of the command buffer are taken.",
         "Wait for a buffered command to become active, or enlarge the queue of the axis.";
@@ -148,8 +152,6 @@ error_ids! {
 
     ContinuousUpdateUnsupported = 702, "ContinuousUpdate is not supported yet.",
         "Leave ContinuousUpdate FALSE and give a new command instead.";
-    DirectionEnableUnsupported = 703, "EnablePositive and EnableNegative are not supported yet.",
-        "Leave both TRUE.";
 
     SetpointBroken = 901, "A plan gave a set-point that is not finite.",
         "This is a defect of standstill: please report the trace.";
@@ -160,7 +162,10 @@ error_ids! {
 }
 
 /// Numbers that earlier versions showed and no version will show again, each with what it said.
-pub const RETIRED: &[(u16, &str)] = &[(701, "Blending buffer modes were not supported.")];
+pub const RETIRED: &[(u16, &str)] = &[
+    (701, "Blending buffer modes were not supported."),
+    (703, "EnablePositive and EnableNegative were not supported."),
+];
 
 // Deriving it needs an attribute on a variant that the table above writes.
 #[allow(clippy::derivable_impls)]

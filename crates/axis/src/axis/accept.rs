@@ -93,6 +93,7 @@ impl<P: Planner> Axis<P> {
             end: None,
             passage: REST,
             held: work == Work::Stop,
+            paused: false,
         };
         match way {
             Way::Wait => {
@@ -430,7 +431,10 @@ impl<P: Planner> Axis<P> {
             Work::Home(_) | Work::SetPosition { .. } => return Ok(Motion::Hold),
         };
         match planned {
-            Ok(plan) => Ok(Motion::along(plan)),
+            Ok(plan) => {
+                self.permitted(entry, &plan, before)?;
+                Ok(Motion::along(plan))
+            }
             Err(error) => Err(refusal(error)),
         }
     }
@@ -493,14 +497,14 @@ impl<P: Planner> Axis<P> {
         (beyond != Excess::default()).then_some(beyond)
     }
 
-    /// Makes `entry` the owner.
-    pub(super) fn begin(&mut self, entry: Entry, motion: Motion<P::Plan>, scan: u64, log: &mut Log) {
+    /// Records what `motion` of `entry` leads to, and where it can't keep the limits.
+    pub(super) fn record_plan(&self, entry: &Entry, motion: &Motion<P::Plan>, scan: u64, log: &mut Log) {
         let source = Source {
             scan,
             instance: entry.instance,
         };
         let positioning = matches!(entry.work, Work::Position(_) | Work::Distance(_));
-        if let Motion::Run { plan, .. } = &motion {
+        if let Motion::Run { plan, .. } = motion {
             let end = plan.at(u64::from(plan.scans()));
             let goal = match entry.end {
                 Some(position) if end.velocity != 0.0 || !positioning => Goal::Passing {
@@ -525,6 +529,11 @@ impl<P: Planner> Axis<P> {
                 self.record(Event::Unavoidable(excess), source, log);
             }
         }
+    }
+
+    /// Makes `entry` the owner.
+    pub(super) fn begin(&mut self, entry: Entry, motion: Motion<P::Plan>, scan: u64, log: &mut Log) {
+        self.record_plan(&entry, &motion, scan, log);
         self.enter(match entry.work {
             Work::Position(_) | Work::Distance(_) | Work::Halt => AxisEvent::StartDiscrete,
             Work::Velocity { .. } | Work::Through { .. } => AxisEvent::StartContinuous,

@@ -25,7 +25,9 @@ impl<P: Planner> Axis<P> {
         if matches!(mode, BufferMode::Aborting | BufferMode::Buffered) {
             return;
         }
-        let Some(mut owner) = self.owner else { return };
+        let Some(mut owner) = self.owner.filter(|owner| !owner.paused) else {
+            return;
+        };
         let passage = self.passage(&owner, self.setpoint.position, 0);
         let Some(end) = owner.end else { return };
         if passage == owner.passage || !matches!(self.motion, Motion::Run { .. }) {
@@ -199,6 +201,18 @@ impl<P: Planner> Axis<P> {
             Work::Halt => (direction, 0.0, None),
             Work::Stop | Work::Home(_) | Work::SetPosition { .. } => return REST,
         };
+        // What MC_Power bars would be refused at the end, too late to stop there.
+        let end_velocity = match next.entry.work {
+            Work::Through { end_velocity, .. } => end_velocity,
+            _ => 0.0,
+        };
+        if self
+            .way_barred(towards)
+            .or(self.way_barred(end_velocity))
+            .is_some()
+        {
+            return REST;
+        }
         // Reversed, or nowhere: at rest (B13). To the velocity 0 leads no direction.
         if towards * direction <= 0.0 && velocity != 0.0 {
             return REST;

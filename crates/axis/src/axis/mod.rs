@@ -3,7 +3,7 @@
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
-//! motions inside, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
+//! motions inside, [`permission`] keeps them out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
 
 mod accept;
@@ -11,6 +11,7 @@ mod blend;
 mod coordinates;
 mod dynamics;
 mod modulo;
+mod permission;
 mod power;
 mod queue;
 mod reading;
@@ -25,6 +26,7 @@ use crate::{
     state,
 };
 use modulo::Modulo;
+pub use permission::Permission;
 use queue::{Entry, Queue, Work};
 pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
@@ -85,7 +87,9 @@ struct Power {
     /// Power was lost: it does not come back before a reset or a new rising Enable.
     tripped: bool,
     /// What the last MC_Power of this scan asked for, and which instance, unless that is the decider.
-    overruled: Option<(bool, InstanceId)>,
+    overruled: Option<(bool, Permission, InstanceId)>,
+    /// The directions MC_Power permits.
+    permitted: Permission,
     /// The instance that spoke last in the scan before.
     decider: Option<InstanceId>,
     /// Power for the stage is available, as last told.
@@ -111,6 +115,10 @@ pub struct Outlook {
     pub waiting: [Option<(CommandId, &'static str, BufferMode)>; QUEUE_MAX],
     /// MC_Power.Enable.
     pub power_wanted: bool,
+    /// The directions MC_Power permits.
+    pub permitted: Permission,
+    /// The owner waits to be permitted to go on.
+    pub paused: bool,
     /// Operation is enabled.
     pub power_on: bool,
     /// On the way to Disabled.
@@ -257,6 +265,7 @@ impl<P: Planner> Axis<P> {
                 going_off: false,
                 tripped: false,
                 overruled: None,
+                permitted: Permission::BOTH,
                 decider: None,
                 voltage: true,
                 fault: None,
@@ -350,7 +359,7 @@ impl<P: Planner> Axis<P> {
             return match owner.work {
                 Work::Stop if self.stop_held => Fate::Done,
                 Work::Velocity { .. } | Work::Through { .. } => Fate::Active {
-                    reached: self.goal_reached(),
+                    reached: self.goal_reached() && !owner.paused,
                 },
                 Work::Position(_)
                 | Work::Distance(_)
@@ -392,6 +401,8 @@ impl<P: Planner> Axis<P> {
             stop_held: self.stop_held,
             waiting,
             power_wanted: self.power.wanted,
+            permitted: self.power.permitted,
+            paused: self.is_paused(),
             power_on: self.power.on,
             going_off: self.power.going_off,
             tripped: self.power.tripped,

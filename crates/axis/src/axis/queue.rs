@@ -86,6 +86,8 @@ pub(super) struct Entry {
     pub passage: Passage,
     /// MC_Stop: Execute is still TRUE.
     pub held: bool,
+    /// It brakes, or stands, because MC_Power bars a direction it needs.
+    pub paused: bool,
 }
 
 impl Entry {

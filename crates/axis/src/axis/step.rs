@@ -110,6 +110,9 @@ impl<P: Planner> Axis<P> {
             }
             return;
         };
+        if owner.paused {
+            return self.settle_paused(scan, log);
+        }
         match owner.work {
             Work::Position(_) | Work::Distance(_) | Work::Halt => self.complete(scan, log),
             Work::Home(position) => {

@@ -110,6 +110,42 @@ impl<P: Plan> Layer<P> {
         self.sum().position
     }
 
+    /// The sum is one motion from now on, at `sum`; returns how much of what was added (u) was not in the base
+    /// yet. What is left of a distance waits.
+    pub fn hand_in(&mut self, sum: &Setpoint) -> f64 {
+        let added = self.not_taken();
+        self.base = *sum;
+        self.motion = Motion::Hold;
+        self.added = Setpoint::at_rest(self.added.position);
+        self.taken = self.added.position;
+        if let Some(command) = &mut self.command {
+            command.planned = command.adds == Adds::Halt;
+            command.lowered = false;
+        }
+        added
+    }
+
+    /// What was added (u) since the base began.
+    pub fn not_taken(&self) -> f64 {
+        self.added.position - self.taken
+    }
+
+    /// A command that waits is tried again with the next set-point.
+    pub fn look_again(&mut self) {
+        // 0 stands for a command that was not tried yet.
+        self.retry = self.retry.min(1);
+    }
+
+    /// The rest of a superimposed distance, and the limits it keeps.
+    pub fn distance_in_progress(&self) -> Option<((&P, u64), &Limits)> {
+        match (&self.motion, &self.command) {
+            (Motion::Run { plan, elapsed, .. }, Some(command)) if command.adds != Adds::Halt => {
+                Some(((plan, *elapsed), &self.in_force))
+            }
+            _ => None,
+        }
+    }
+
     fn sum(&self) -> Setpoint {
         let (base, added) = (&self.base, &self.added);
         Setpoint {
@@ -280,6 +316,7 @@ impl<P: Planner> Axis<P> {
     /// Where the owner will stand (u); NaN if it does not come to rest by itself.
     fn base_end(&self, layer: &Layer<P::Plan>) -> f64 {
         match (&self.motion, self.owner.as_ref().map(|owner| owner.work)) {
+            _ if self.is_paused() => self.owner.and_then(|owner| owner.end).unwrap_or(f64::NAN),
             (Motion::Run { .. }, Some(Work::Velocity { .. } | Work::Through { .. })) => f64::NAN,
             (Motion::Run { plan, .. }, _) => plan.at(u64::from(plan.scans())).position,
             (Motion::Hold | Motion::Follow, _) => layer.base.position,
@@ -384,6 +421,7 @@ impl<P: Planner> Axis<P> {
                 self.enter(AxisEvent::MotionDone);
                 self.hand_over(self.setpoint.position, scan, log);
             }
+            self.resume(scan, log);
         }
     }
 
@@ -391,6 +429,20 @@ impl<P: Planner> Axis<P> {
     pub(super) fn start_beside(&mut self, scan: u64, log: &mut Log) {
         if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
             self.hand_over(self.setpoint.position, scan, log);
+        }
+    }
+
+    /// What is superimposed comes to rest with the stop dynamics; what is left of its distance waits.
+    #[cold]
+    pub(super) fn brake_superimposed(&mut self) {
+        let limits = self.stop_limits();
+        let Some(layer) = &mut self.layer else { return };
+        let planned = self.planner.ramp_to(&layer.added, 0.0, &limits, &layer.in_force);
+        if let (Ok(plan), Some(command)) = (planned, &mut layer.command) {
+            layer.motion = Motion::along(plan);
+            layer.in_force = limits;
+            command.planned = false;
+            command.lowered = false;
         }
     }
 
