@@ -1,6 +1,7 @@
 //! A scan script as values: checked, names resolved to indices, parameters filled in.
 
 use standstill_axis::{AxisConfig, AxisState};
+use standstill_drives::cia402::Reaction;
 use standstill_fb::{BlockInfo, Value};
 use std::collections::BTreeMap;
 
@@ -45,7 +46,48 @@ pub struct Axis {
     /// Configuration.
     pub config: AxisConfig,
     /// Its drive.
-    pub drive: IdealDriveSetup,
+    pub drive: DriveSetup,
+}
+
+/// The drive of an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DriveSetup {
+    /// Follows its command exactly.
+    Ideal(IdealDriveSetup),
+    /// A simulated CiA 402 drive.
+    Cia402(Cia402Setup),
+}
+
+impl Default for DriveSetup {
+    fn default() -> Self {
+        Self::Ideal(IdealDriveSetup {
+            delay: 0,
+            power_on: Some(0),
+        })
+    }
+}
+
+/// Parameters of a simulated CiA 402 drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cia402Setup {
+    /// Scans from command to actual position.
+    pub delay: usize,
+    /// Scans from Switched on to Operation enabled; `None` never.
+    pub power_on: Option<u32>,
+    /// Scans of self-test.
+    pub start_up: u32,
+    /// Rate of the drive's own ramps (u/s^2); that of the axis limits if absent.
+    pub deceleration: Option<f64>,
+    /// Object 605Ah.
+    pub quick_stop: Reaction,
+    /// Objects 605Bh and 605Ch.
+    pub on_disable: Reaction,
+    /// Object 605Eh.
+    pub on_fault: Reaction,
+    /// The end switches are active up to the first and from the second on (u).
+    pub limit_switches: Option<(f64, f64)>,
+    /// The home switch is active from the first to the second (u).
+    pub home_switch: Option<(f64, f64)>,
 }
 
 /// Parameters of the ideal drive.
@@ -171,13 +213,24 @@ pub enum Action {
         /// Index of the axis.
         axis: usize,
     },
-    /// Pushes the axis while its power is off.
-    Displace {
+    /// Does something to the drive.
+    Drive {
         /// Index of the axis.
         axis: usize,
-        /// By how much (u).
-        distance: f64,
+        /// What.
+        change: DriveChange,
     },
+}
+
+/// What happens to a drive, beside failing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DriveChange {
+    /// Someone pushes the axis while its power is off (u; increments at drives that count them).
+    Displace(f64),
+    /// A CiA 402 drive listens to its controller, or does not.
+    Remote(bool),
+    /// A CiA 402 drive shows a warning, or does not.
+    Warning(bool),
 }
 
 /// What fails.

@@ -4,6 +4,7 @@
 //! (which names exist, the types of wires, multiples of the cycle) only the reader checks.
 
 use crate::read::axis::{ABOVE_LIMIT, ON_POWER_OFF, PROFILES, START_STATES};
+use crate::read::drive::REACTIONS;
 use crate::read::names::KEYWORDS;
 use crate::read::shape::{self, Shape};
 use crate::read::step::FAULT_KINDS;
@@ -218,14 +219,33 @@ fn axis_key(key: &str) -> Value {
         "queue" => integer(0, QUEUE_MAX as i64),
         "on_power_off" => words(&ON_POWER_OFF),
         "needs_homed" => json!({"type": "boolean"}),
-        "drive" => object(&shape::DRIVE, |_| {
-            object(&shape::IDEAL, |key| match key {
-                "delay" => any(&[integer(0, DELAY_MAX as i64), of("time_literal")]),
-                _ => any(&[of("scans"), json!({"type": "null"})]),
-            })
-        }),
+        "drive" => drive(),
         _ => of("finite"),
     }
+}
+
+fn drive() -> Value {
+    let never = || any(&[of("scans"), json!({"type": "null"})]);
+    let delay = || any(&[integer(0, DELAY_MAX as i64), of("time_literal")]);
+    object(&shape::DRIVE, |key| match key {
+        "ideal" => object(&shape::IDEAL, |key| match key {
+            "delay" => delay(),
+            _ => never(),
+        }),
+        _ => object(&shape::CIA402, |key| match key {
+            "delay" => delay(),
+            "power_on" => never(),
+            "start_up" => of("scans"),
+            "quick_stop" => words(&REACTIONS),
+            "on_disable" | "on_fault" => words(&[REACTIONS[0], REACTIONS[1]]),
+            "limit_switches" => required(
+                &["negative", "positive"],
+                object(&shape::LIMIT_SWITCHES, |_| of("finite")),
+            ),
+            "home_switch" => required(&["from", "to"], object(&shape::HOME_SWITCH, |_| of("finite"))),
+            _ => of("finite"),
+        }),
+    })
 }
 
 fn task() -> Value {
@@ -334,9 +354,11 @@ fn step() -> Value {
         ),
         "clear" => required(&["axis"], object(&shape::CLEAR, |_| text())),
         _ => required(
-            &["axis", "displace"],
-            object(&shape::DRIVE_STEP, |key| {
-                if key == "displace" { of("finite") } else { text() }
+            &["axis"],
+            object(&shape::DRIVE_STEP, |key| match key {
+                "displace" => of("finite"),
+                "remote" | "warning" => json!({"type": "boolean"}),
+                _ => text(),
             }),
         ),
     });

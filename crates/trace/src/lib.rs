@@ -37,8 +37,10 @@ pub mod golden;
 mod header;
 pub mod jsonl;
 mod number;
+mod panels;
 pub mod plot;
 mod read;
+pub mod svg;
 mod trace;
 
 pub use column::{Cell, Column, Kind, Role};

@@ -3,9 +3,8 @@
 use std::fmt::Write;
 use std::ops::Range;
 
-use crate::column::{Cell, Kind};
-use crate::extremes::axis_title;
-use crate::number::{fixed, time_literal};
+use crate::number::time_literal;
+use crate::panels::{Curve, compact, curves, waves};
 use crate::trace::Trace;
 
 /// Lines of a curve.
@@ -22,21 +21,21 @@ const DOTS: (usize, usize) = (2, 4);
 /// `width` characters wide, if that leaves room for a curve.
 #[must_use]
 pub fn plot(trace: &Trace, width: usize) -> String {
-    let curves: Vec<Curve> = curves(trace);
-    let booleans = booleans(trace);
+    let curves: Vec<Curve> = curves(trace, &["Position", "Velocity"]);
+    let waves = waves(trace);
     let labels = curves
         .iter()
         .flat_map(|curve| [compact(curve.least), compact(curve.greatest)]);
-    let labels = labels.chain(booleans.iter().map(|(name, _)| name.clone()));
+    let labels = labels.chain(waves.iter().map(|wave| wave.name.clone()));
     let gutter = labels.map(|label| label.chars().count()).max().unwrap_or(0);
     let width = width.saturating_sub(gutter + 1).max(WIDTH_MIN);
     let mut text = String::new();
     for curve in &curves {
         draw_curve(&mut text, curve, gutter, width);
     }
-    for (name, levels) in &booleans {
+    for wave in &waves {
         // Writing to a String cannot fail, here and below.
-        let _ = writeln!(text, "{name:>gutter$} {}", edges(levels, width));
+        let _ = writeln!(text, "{:>gutter$} {}", wave.name, edges(&wave.levels, width));
     }
     let last = trace.scans().saturating_sub(1);
     let end = format!("scan {last}, {}", time_literal(trace.time_ns(last)));
@@ -45,66 +44,13 @@ pub fn plot(trace: &Trace, width: usize) -> String {
     text
 }
 
-struct Curve {
-    title: String,
-    values: Vec<f64>,
-    least: f64,
-    greatest: f64,
-}
-
-fn curves(trace: &Trace) -> Vec<Curve> {
-    let axes = trace.header().axes.iter();
-    let wanted = axes.flat_map(|axis| [(axis, "Position"), (axis, "Velocity")]);
-    wanted
-        .filter_map(|(axis, signal)| {
-            let values: Vec<f64> = trace
-                .reals(trace.column(&format!("{}.{signal}", axis.name))?)
-                .collect();
-            let finite = values.iter().copied().filter(|value| value.is_finite());
-            let [least, greatest] = [finite.clone().reduce(f64::min)?, finite.reduce(f64::max)?];
-            let per = if signal == "Velocity" && !axis.unit.is_empty() {
-                "/s"
-            } else {
-                ""
-            };
-            let title = axis_title(axis).replacen(&axis.name, &format!("{}.{signal}", axis.name), 1);
-            let title = title
-                .strip_suffix(')')
-                .map_or(title.clone(), |start| format!("{start}{per})"));
-            Some(Curve {
-                title,
-                values,
-                least,
-                greatest,
-            })
-        })
-        .collect()
-}
-
-fn booleans(trace: &Trace) -> Vec<(String, Vec<bool>)> {
-    let columns = trace
-        .columns()
-        .iter()
-        .enumerate()
-        .filter(|(_, column)| column.kind == Kind::Bool);
-    columns
-        .map(|(at, column)| {
-            let levels = trace
-                .cells(at)
-                .map(|cell| cell == Cell::Bool(true))
-                .collect::<Vec<_>>();
-            (column.name.clone(), levels)
-        })
-        .filter(|(_, levels)| levels.windows(2).any(|pair| pair[0] != pair[1]))
-        .collect()
-}
-
 fn draw_curve(text: &mut String, curve: &Curve, gutter: usize, width: usize) {
     let Curve {
         title,
         values,
         least,
         greatest,
+        ..
     } = curve;
     if least == greatest {
         let _ = writeln!(text, "{title}: {} throughout\n", compact(*least));
@@ -198,13 +144,4 @@ fn edges(levels: &[bool], width: usize) -> String {
             }
         })
         .collect()
-}
-
-/// A number for a label: no zeros at its end.
-fn compact(value: f64) -> String {
-    let text = fixed(value);
-    if text.contains('e') || !text.contains('.') {
-        return text;
-    }
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

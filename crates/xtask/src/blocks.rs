@@ -1,14 +1,65 @@
 //! `docs/blocks/`: one page per block and an index, from the registry.
 
-use crate::{Generated, NOTICE};
+use crate::pictures::Picture;
+use crate::{Generated, NOTICE, Requirements};
 use standstill_blocks::REGISTRY;
 use standstill_fb::{BlockInfo, Direction, Pin, PinType, Value};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
-pub fn pages() -> Vec<Generated> {
-    let mut files: Vec<_> = REGISTRY.iter().map(page).collect();
+pub fn pages(requirements: &Requirements, pictures: &BTreeMap<String, Picture>) -> Vec<Generated> {
+    let mut files: Vec<_> = REGISTRY
+        .iter()
+        .map(|info| {
+            let mut page = page(info);
+            if let Some(picture) = pictures.get(info.name) {
+                in_time(&mut page.text, picture);
+            }
+            rules(&mut page.text, info, requirements);
+            page
+        })
+        .collect();
     files.push(index());
     files
+}
+
+/// The timing picture, with the script it is drawn from.
+fn in_time(text: &mut String, picture: &Picture) {
+    let Picture { script, title, .. } = picture;
+    let file = picture.path();
+    let file = file.rsplit('/').next().unwrap_or_default();
+    let _ = write!(
+        text,
+        "\n## In time\n\n![{title}]({file})\n\n{title}.\n\nDrawn from [the script](../../{script}); run it with\n\n    \
+         cargo run --release -- run {script}\n"
+    );
+}
+
+/// What the block is held to, and what of that vendors do otherwise.
+fn rules(text: &mut String, info: &BlockInfo, requirements: &Requirements) {
+    let rules = requirements.of_block(info.name);
+    let (vendors, standard): (Vec<_>, Vec<_>) =
+        rules.into_iter().partition(|rule| rule.area == "vendor-choices");
+    let parts = [
+        ("Rules", "Each id leads to its tests.", standard),
+        ("Where vendors differ", "What is done here.", vendors),
+    ];
+    for (title, about, rules) in parts {
+        if rules.is_empty() {
+            continue;
+        }
+        let _ = write!(
+            text,
+            "\n## {title}\n\n{about}\n\n| id | in short |\n| --- | --- |\n"
+        );
+        for rule in rules {
+            let _ = writeln!(
+                text,
+                "| [{}](../requirements/{}.md) | {} |",
+                rule.id, rule.area, rule.text
+            );
+        }
+    }
 }
 
 fn file_name(info: &BlockInfo) -> String {

@@ -7,6 +7,7 @@
 mod bad_input;
 mod blocks;
 mod error_ids;
+mod pictures;
 mod requirements;
 mod states;
 
@@ -24,11 +25,14 @@ pub struct Generated {
 
 /// Every generated file of the repository.
 pub fn generated() -> Vec<Generated> {
-    let mut files = blocks::pages();
+    let requirements = Requirements::read();
+    let pictures = pictures::pictures();
+    let mut files = blocks::pages(&requirements, &pictures);
+    files.extend(pictures.values().map(pictures::Picture::drawn));
     files.push(error_ids::page());
     files.push(bad_input::page());
     files.extend(states::pages());
-    files.extend(Requirements::read().pages());
+    files.extend(requirements.pages());
     files
 }
 

@@ -38,6 +38,14 @@ struct Test {
     name: String,
 }
 
+/// A rule: its page, its id and the rule in short.
+#[derive(Clone, Copy, Debug)]
+pub struct Rule<'a> {
+    pub area: &'a str,
+    pub id: &'a str,
+    pub text: &'a str,
+}
+
 /// Everything that is known.
 #[derive(Debug)]
 pub struct Requirements {
@@ -119,6 +127,25 @@ impl Requirements {
         found
     }
 
+    /// The rules that name a block, and those that the scripts in its folder below `scan-tests/` cover, in order.
+    pub fn of_block(&self, block: &str) -> Vec<Rule<'_>> {
+        let folder = format!("scan-tests/{}/", snake_case(block));
+        let is_covered = |id: &str| {
+            let tests = self.tests.get(id).into_iter().flatten();
+            tests.into_iter().any(|test| test.path.starts_with(&folder))
+        };
+        let names = |text: &str| {
+            text.split(|character: char| !(character.is_alphanumeric() || character == '_'))
+                .any(|word| word == block)
+        };
+        self.areas
+            .iter()
+            .flat_map(|area| area.rules.iter().map(move |(id, text)| (area.name, id, text)))
+            .filter(|(_, id, text)| names(text) || is_covered(id))
+            .map(|(area, id, text)| Rule { area, id, text })
+            .collect()
+    }
+
     /// The generated pages.
     pub fn pages(&self) -> Vec<Generated> {
         let mut files: Vec<_> = self.areas.iter().map(|area| self.page(area)).collect();
@@ -188,6 +215,20 @@ impl Requirements {
             text,
         }
     }
+}
+
+/// `MC_MoveAbsolute` as `mc_move_absolute`.
+fn snake_case(block: &str) -> String {
+    let mut name = String::new();
+    let mut before = '_';
+    for character in block.chars() {
+        if character.is_uppercase() && before.is_lowercase() {
+            name.push('_');
+        }
+        name.extend(character.to_lowercase());
+        before = character;
+    }
+    name
 }
 
 fn links(tests: &BTreeSet<Test>) -> String {

@@ -17,6 +17,19 @@ fn generated_files_are_fresh() {
 }
 
 #[test]
+fn every_block_has_a_timing_picture() {
+    let files = generated();
+    for info in standstill_blocks::REGISTRY {
+        let path = format!("docs/blocks/{}.svg", info.name.to_lowercase());
+        assert!(
+            files.iter().any(|file| file.path == path),
+            "{} has no line in crates/xtask/pictures.txt",
+            info.name
+        );
+    }
+}
+
+#[test]
 fn every_requirement_has_a_test_or_a_stated_gap() {
     let problems = Requirements::read().problems();
     assert!(problems.is_empty(), "{}", problems.join("\n"));
@@ -118,6 +131,7 @@ fn layers_depend_only_downwards() {
             "standstill-blocks",
             &["standstill-axis", "standstill-fb"],
         ),
+        ("crates/drives", "standstill-drives", &["standstill-axis"]),
         (
             "crates/scan",
             "standstill-scan",
@@ -141,6 +155,7 @@ fn layers_depend_only_downwards() {
             &[
                 "standstill-axis",
                 "standstill-blocks",
+                "standstill-drives",
                 "standstill-fb",
                 "standstill-planner",
                 "standstill-scan",
@@ -163,7 +178,13 @@ fn layers_depend_only_downwards() {
         (
             "crates/xtask",
             "standstill-xtask",
-            &["standstill-axis", "standstill-blocks", "standstill-fb"],
+            &[
+                "standstill-axis",
+                "standstill-blocks",
+                "standstill-fb",
+                "standstill-script",
+                "standstill-trace",
+            ],
         ),
     ];
     for (folder, name, allowed) in layers {

@@ -4,10 +4,10 @@ use super::json::{Json, Key, Node};
 use super::value::Fields;
 use super::{Reader, shape};
 use crate::error::{Code, Diagnostic};
-use crate::model::{Axis, IdealDriveSetup, Span};
+use crate::model::{Axis, Span};
 use standstill_axis::{
-    AboveLimit, AxisConfig, AxisState, DELAY_MAX, Defaults, Limits, MoveProfile, PowerOff, QUEUE_MAX,
-    Scaling, StartState,
+    AboveLimit, AxisConfig, AxisState, Defaults, Limits, MoveProfile, PowerOff, QUEUE_MAX, Scaling,
+    StartState,
 };
 
 pub(crate) const ABOVE_LIMIT: [(&str, AboveLimit); 2] =
@@ -50,7 +50,8 @@ impl Reader {
         let unit = fields
             .get("unit")
             .map_or(Some(""), |node| self.text(node, "`unit`"));
-        let drive = self.drive(&fields);
+        let drive = self.drive(&fields, config.scaling.is_some());
+        self.drives.push(drive);
         limits?;
         good?;
         if let Err(error) = config.check() {
@@ -108,7 +109,7 @@ impl Reader {
     }
 
     /// A number that may be absent, in `Some`; `None` if it was refused.
-    fn optional(&mut self, fields: &Fields<'_>, key: &str, what: &str) -> Option<Option<f64>> {
+    pub(super) fn optional(&mut self, fields: &Fields<'_>, key: &str, what: &str) -> Option<Option<f64>> {
         match fields.get(key) {
             None => Some(None),
             Some(node) => self.finite(node, what).map(Some),
@@ -262,39 +263,6 @@ impl Reader {
                 .help("lower `limits.velocity`, or give a longer turn or a shorter `cycle`"),
         );
         None
-    }
-
-    fn drive(&mut self, axis: &Fields<'_>) -> Option<IdealDriveSetup> {
-        let mut setup = IdealDriveSetup {
-            delay: 0,
-            power_on: Some(0),
-        };
-        let Some(node) = axis.get("drive") else {
-            return Some(setup);
-        };
-        let fields = self.fields(node, &shape::DRIVE)?;
-        let Some(ideal) = fields.get("ideal") else {
-            return Some(setup);
-        };
-        let fields = self.fields(ideal, &shape::IDEAL)?;
-        if let Some(node) = fields.get("delay") {
-            let delay = self.scans(node, "`delay`")?;
-            setup.delay = usize::try_from(delay)
-                .ok()
-                .filter(|delay| *delay <= DELAY_MAX)
-                .or_else(|| {
-                    let message = format!("the ideal drive delays by {DELAY_MAX} scans at most, not {delay}");
-                    self.report(Diagnostic::new(Code::BadValue, node.span, message));
-                    None
-                })?;
-        }
-        if let Some(node) = fields.get("power_on") {
-            setup.power_on = match node.json {
-                Json::Null => None,
-                _ => Some(u32::try_from(self.scans(node, "`power_on`")?).unwrap_or(u32::MAX)),
-            };
-        }
-        Some(setup)
     }
 }
 

@@ -8,6 +8,7 @@ pub(crate) mod axis;
 mod block;
 mod circle;
 mod condition;
+pub(crate) mod drive;
 mod expect;
 pub(crate) mod json;
 pub(crate) mod names;
@@ -20,7 +21,7 @@ mod wire;
 
 use crate::error::{Code, Diagnostic, ScriptError, quoted};
 use crate::format::number_text;
-use crate::model::{Conditions, Input, Script, Span};
+use crate::model::{Conditions, DriveSetup, Input, Script, Span};
 use json::{Json, Key, Node};
 use names::{Entity, Names, identifier_error, suggestion};
 use standstill_fb::{PinType, Value};
@@ -46,6 +47,8 @@ struct Reader {
     names: Names,
     cycle_ns: Option<i64>,
     scan_count: Option<u64>,
+    /// The drives of the axes, where they could be read.
+    drives: Vec<Option<DriveSetup>>,
     /// The wires read so far.
     wires: circle::Wires,
     errors: Vec<Diagnostic>,

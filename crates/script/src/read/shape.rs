@@ -76,10 +76,27 @@ pub(crate) const SCALING: Shape = shape("`scaling`", &["increments", "units", "i
 pub(crate) const SOFTWARE_LIMITS: Shape = shape("`software_limits`", &["min", "max", "note"]);
 pub(crate) const DRIVE: Shape = Shape {
     what: "`drive`",
-    keys: &["ideal", "note"],
-    later: &["cia402", "plant"],
+    keys: &["ideal", "cia402", "note"],
+    later: &["plant"],
 };
 pub(crate) const IDEAL: Shape = shape("the ideal drive", &["delay", "power_on", "note"]);
+pub(crate) const CIA402: Shape = shape(
+    "a CiA 402 drive",
+    &[
+        "delay",
+        "power_on",
+        "start_up",
+        "deceleration",
+        "quick_stop",
+        "on_disable",
+        "on_fault",
+        "limit_switches",
+        "home_switch",
+        "note",
+    ],
+);
+pub(crate) const LIMIT_SWITCHES: Shape = shape("`limit_switches`", &["negative", "positive", "note"]);
+pub(crate) const HOME_SWITCH: Shape = shape("`home_switch`", &["from", "to", "note"]);
 
 pub(crate) const BLOCK: Shape = shape("a block", &["name", "type", "task", "pins", "note"]);
 pub(crate) const WIRE: Shape = shape("a wire", &["from", "not", "any", "all", "note"]);
@@ -96,8 +113,8 @@ pub(crate) const STEP: Shape = shape(
 pub(crate) const FAULT: Shape = shape("`fault`", &["axis", "kind", "code", "note"]);
 pub(crate) const CLEAR: Shape = shape("`clear`", &["axis", "note"]);
 pub(crate) const DRIVE_STEP: Shape = shape(
-    "a `drive` step; the ideal drive knows `displace`",
-    &["axis", "displace", "note"],
+    "a `drive` step; every drive knows `displace`, a CiA 402 drive `remote` and `warning`, too",
+    &["axis", "displace", "remote", "warning", "note"],
 );
 
 pub(crate) const COMPARISON: Shape = shape(

@@ -1,10 +1,10 @@
 //! Steps: when, and what they do.
 
-use super::json::Node;
+use super::json::{Key, Node};
 use super::value::Fields;
 use super::{Reader, is_note, shape};
 use crate::error::{Code, Diagnostic, quoted};
-use crate::model::{Action, FaultKind, Point, Span, Step, When};
+use crate::model::{Action, DriveChange, DriveSetup, FaultKind, Point, Span, Step, When};
 use std::collections::BTreeMap;
 
 pub(crate) const FAULT_KINDS: [(&str, FaultKind); 4] = [
@@ -32,7 +32,7 @@ impl Reader {
                 "set" => self.set(value),
                 "fault" => self.fault(value).map(|action| vec![action]),
                 "clear" => self.clear(value).map(|action| vec![action]),
-                "drive" => self.displace(value).map(|action| vec![action]),
+                "drive" => self.drive_step(value),
                 _ => continue,
             };
             actions = actions.zip(new).map(|(mut actions, new)| {
@@ -178,16 +178,51 @@ impl Reader {
         Some(Action::Clear { axis })
     }
 
-    fn displace(&mut self, node: &Node) -> Option<Action> {
+    fn drive_step(&mut self, node: &Node) -> Option<Vec<Action>> {
         let fields = self.fields(node, &shape::DRIVE_STEP)?;
         let axis = self.axis_of(&fields, "a `drive` step");
-        let distance = self
-            .require(&fields, "displace", "a `drive` step")
-            .and_then(|node| self.finite(node, "`displace`"));
-        Some(Action::Displace {
-            axis: axis?,
-            distance: distance?,
-        })
+        let mut changes = Some(Vec::new());
+        for (key, value) in fields.iter() {
+            let name = format!("`{}`", key.text);
+            let change = match key.text.as_str() {
+                "displace" => self.finite(value, &name).map(DriveChange::Displace),
+                "remote" => self.boolean(value, &name).map(DriveChange::Remote),
+                "warning" => self.boolean(value, &name).map(DriveChange::Warning),
+                _ => continue,
+            };
+            let change = change.filter(|change| axis.is_none_or(|axis| self.knows_change(key, axis, change)));
+            changes = changes.zip(change).map(|(mut changes, change)| {
+                changes.push(change);
+                changes
+            });
+        }
+        let (axis, changes) = (axis?, changes?);
+        if changes.is_empty() {
+            let message = "a `drive` step needs what is to happen";
+            self.report(
+                Diagnostic::new(Code::MissingKey, fields.brace(), message)
+                    .help("give `displace`, or for a CiA 402 drive `remote` or `warning`"),
+            );
+            return None;
+        }
+        let actions = changes.into_iter();
+        Some(actions.map(|change| Action::Drive { axis, change }).collect())
+    }
+
+    /// Whether the drive of `axis` knows the change; drives that could not be read were reported.
+    fn knows_change(&mut self, key: &Key, axis: usize, change: &DriveChange) -> bool {
+        let drive = self.drives.get(axis).copied().flatten();
+        match (change, drive) {
+            (DriveChange::Displace(_), _) | (_, None | Some(DriveSetup::Cia402(_))) => true,
+            (DriveChange::Remote(_) | DriveChange::Warning(_), Some(DriveSetup::Ideal(_))) => {
+                let message = format!("the ideal drive has no `{}`", key.text);
+                self.report(
+                    Diagnostic::new(Code::BadValue, key.span, message)
+                        .help("give the axis \"drive\": {\"cia402\": {}}"),
+                );
+                false
+            }
+        }
     }
 
     fn axis_of(&mut self, fields: &Fields<'_>, what: &str) -> Option<usize> {

@@ -2,21 +2,20 @@
 
 use super::RunError;
 use super::cells::{self, Undefined};
+use super::drive::ScriptDrive;
 use super::layout::Layout;
 use super::notes::Notes;
 use super::rows::{Rows, Shift};
 use super::schedule::Schedule;
 use super::values::Values;
 use crate::model::{Action, FaultKind, Point, Script, Wire};
-use standstill_axis::{
-    AxisId, AxisState, DrivePosition, ErrorId, IdealDrive, InstanceId, Standard, StartState,
-};
+use standstill_axis::{AxisId, AxisState, ErrorId, InstanceId, Standard};
 use standstill_fb::{AnyInstance, Context, PinType, Value};
 use standstill_scan::{Machine, ProgramFault, ProgramId, Programs, RUNTIME, ScanTime, TaskId};
 use standstill_trace::{Cell, Trace};
 
-/// The machine of a script: Standard planners over ideal drives.
-pub(crate) type ScriptMachine = Machine<Standard, IdealDrive>;
+/// The machine of a script: Standard planners over simulated drives.
+pub(crate) type ScriptMachine = Machine<Standard, ScriptDrive>;
 
 /// The number of an instance in records: 0 is nobody's, so that it can stand for the host.
 pub(crate) fn instance_id(index: usize) -> InstanceId {
@@ -28,12 +27,7 @@ pub(crate) fn machine(script: &Script) -> Result<ScriptMachine, RunError> {
     let mut machine = Machine::new();
     let planner = Standard::new(script.cycle_ns as f64 / 1e9);
     for axis in &script.axes {
-        let position = match axis.config.scaling {
-            Some(scaling) => DrivePosition::Increments(scaling.to_increments(axis.config.position)),
-            None => DrivePosition::Units(axis.config.position),
-        };
-        let enabled = axis.config.start == StartState::Standstill;
-        let drive = IdealDrive::new(position, axis.drive.delay, axis.drive.power_on, enabled);
+        let drive = ScriptDrive::new(axis, script.cycle_ns);
         machine
             .add_axis(axis.config, planner, drive)
             .map_err(|error| RunError::Axis {
@@ -139,9 +133,9 @@ impl<'a> Bench<'a> {
                     axis.clear_cause();
                 }
             }
-            Action::Displace { axis, distance } => {
+            Action::Drive { axis, change } => {
                 let drive = machine.drives_mut().get_mut(axis);
-                if drive.is_some_and(|drive| drive.displace(distance).is_err()) {
+                if drive.is_some_and(|drive| drive.change(change).is_err()) {
                     let axis = self.script.axes.get(axis);
                     let axis = axis.map_or_else(String::new, |axis| axis.name.clone());
                     self.stop(RunError::Displaced { step, scan, axis });
@@ -211,7 +205,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-impl Programs<Standard, IdealDrive> for Bench<'_> {
+impl Programs<Standard, ScriptDrive> for Bench<'_> {
     fn latch(&mut self, time: ScanTime, machine: &mut ScriptMachine) {
         let script = self.script;
         for index in self.schedule.take(time.scan) {

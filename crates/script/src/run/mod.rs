@@ -2,6 +2,7 @@
 
 mod bench;
 pub(crate) mod cells;
+mod drive;
 mod layout;
 mod notes;
 mod rows;

@@ -2,7 +2,9 @@
 
 use standstill_axis::{AxisState, Limits, StartState};
 use standstill_fb::Value;
-use standstill_script::model::{Action, ClaimKind, Comparison, Point, Range, Signal, Test, When, Wire};
+use standstill_script::model::{
+    Action, ClaimKind, Comparison, DriveSetup, Point, Range, Signal, Test, When, Wire,
+};
 use standstill_script::read;
 
 const EXAMPLE: &str = include_str!("contract_example.scan.json");
@@ -27,7 +29,7 @@ fn every_value_of_the_example_arrives_in_the_model() {
     };
     assert_eq!(axis.config.limits, limits);
     assert_eq!(axis.config.start, StartState::Standstill);
-    assert_eq!((axis.drive.delay, axis.drive.power_on), (0, Some(0)));
+    assert_eq!(axis.drive, DriveSetup::default());
 
     let names: Vec<_> = script
         .inputs

@@ -1,9 +1,11 @@
 //! A script with every key of the format, looked at where the example of the format says nothing.
 
 use standstill_axis::{AboveLimit, AxisId, Limits, MoveProfile, PowerOff, Scaling};
+use standstill_drives::cia402::Reaction;
 use standstill_fb::Value;
 use standstill_script::model::{
-    Action, ClaimKind, Comparison, FaultKind, IdealDriveSetup, Point, Range, Script, Test, When, Wire,
+    Action, Cia402Setup, ClaimKind, Comparison, DriveChange, DriveSetup, FaultKind, IdealDriveSetup, Point,
+    Range, Script, Test, When, Wire,
 };
 use standstill_script::{format, read};
 
@@ -41,10 +43,10 @@ fn axes_take_their_configuration() {
     assert!(x.config.needs_homed);
     assert_eq!(
         x.drive,
-        IdealDriveSetup {
+        DriveSetup::Ideal(IdealDriveSetup {
             delay: 2,
             power_on: None
-        }
+        })
     );
 
     let y = &script.axes[1];
@@ -56,12 +58,21 @@ fn axes_take_their_configuration() {
         snap: inf,
     };
     assert_eq!(y.config, standstill_axis::AxisConfig::new(limits));
+    assert_eq!(y.drive, DriveSetup::default());
+
     assert_eq!(
-        y.drive,
-        IdealDriveSetup {
-            delay: 0,
-            power_on: Some(0)
-        }
+        script.axes[2].drive,
+        DriveSetup::Cia402(Cia402Setup {
+            delay: 3,
+            power_on: Some(20),
+            start_up: 10,
+            deceleration: Some(4.0),
+            quick_stop: Reaction::RampAndStay,
+            on_disable: Reaction::Ramp,
+            on_fault: Reaction::Coast,
+            limit_switches: Some((-10.0, 10.0)),
+            home_switch: Some((-1.0, 0.5)),
+        })
     );
 }
 
@@ -165,10 +176,15 @@ fn steps_and_claims_take_all_their_forms() {
     );
     assert_eq!(
         script.steps[4].actions,
-        [Action::Displace {
+        [Action::Drive {
             axis: 1,
-            distance: 0.5
+            change: DriveChange::Displace(0.5)
         }]
+    );
+    let of_z = |change| Action::Drive { axis: 2, change };
+    assert_eq!(
+        script.steps[5].actions,
+        [of_z(DriveChange::Remote(false)), of_z(DriveChange::Warning(true))]
     );
 
     let kinds: Vec<_> = script.claims.iter().map(|claim| &claim.kind).collect();

@@ -1,0 +1,156 @@
+//! A drive of any CiA 402 node.
+
+use super::node::{Inputs, MODE_CSP, Node, Outputs};
+use super::sequencer::{Memory, controlword};
+use super::words::{State, Statusword};
+use standstill_axis::{
+    Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals, Fault,
+};
+
+/// Makes a [`Drive`] of a [`Node`], in cyclic synchronous position mode.
+///
+/// - The node's position, modulo 2^32, is extended: it may wrap as often as it likes, as long as it moves less
+///   than 2^31 increments between two scans (DR-2).
+/// - Operation counts as enabled when the state says so and the mode is acknowledged (CI-7). Until then the
+///   target is the actual position, so that enabling never makes a step (CI-3).
+/// - Inputs that do not arrive make the communication lost in the same scan (CI-8); the outputs are sent on.
+/// - A node that is not under remote control counts as one without supply: not ready, no error (CI-6).
+///
+/// Positions at this drive are increments, so its axis needs a scaling.
+#[derive(Clone, Copy, Debug)]
+pub struct Adapter<N> {
+    node: N,
+    memory: Memory,
+    last: Inputs,
+    /// The node's position, extended.
+    position: i64,
+    /// Nothing has arrived yet.
+    fresh: bool,
+    simulated: bool,
+}
+
+impl<N: Node> Adapter<N> {
+    /// Before the first scan. Positions begin within 2^31 of 0, where the node says.
+    pub fn new(node: N) -> Self {
+        Self {
+            node,
+            memory: Memory::default(),
+            last: Inputs::default(),
+            position: 0,
+            fresh: true,
+            simulated: false,
+        }
+    }
+
+    /// The node.
+    pub fn node(&self) -> &N {
+        &self.node
+    }
+
+    /// The node.
+    pub fn node_mut(&mut self) -> &mut N {
+        &mut self.node
+    }
+
+    /// Says that nothing real moves.
+    pub(super) fn simulated(mut self) -> Self {
+        self.simulated = true;
+        self
+    }
+
+    /// The state the node showed last.
+    pub fn state(&self) -> State {
+        Statusword(self.last.statusword).state()
+    }
+
+    fn take(&mut self, inputs: Inputs) {
+        self.position = if self.fresh {
+            i64::from(inputs.position)
+        } else {
+            extended(self.position, inputs.position)
+        };
+        self.fresh = false;
+        self.last = inputs;
+    }
+
+    fn is_enabled(&self) -> bool {
+        self.state() == State::OperationEnabled && self.last.mode == MODE_CSP
+    }
+}
+
+/// The position nearest to `before` whose low 32 bits are those of `raw`.
+fn extended(before: i64, raw: i32) -> i64 {
+    let low = before as i32;
+    before.saturating_add(i64::from(raw.wrapping_sub(low)))
+}
+
+impl<N: Node> Drive for Adapter<N> {
+    fn read(&mut self, now_ns: i64) -> DriveFeedback {
+        let arrived = self.node.inputs(now_ns);
+        if let Some(inputs) = arrived {
+            self.take(inputs);
+        }
+        let status = Statusword(self.last.statusword);
+        let is_faulty = matches!(status.state(), State::Fault | State::FaultReactionActive);
+        let input = |bit: u32| self.last.digital_inputs & (1 << bit) != 0;
+        DriveFeedback {
+            enabled: self.is_enabled(),
+            voltage: status.voltage() && status.remote(),
+            fault: is_faulty.then_some(Fault {
+                code: self.last.error_code,
+                // The profile has no word for it: whether a reset works is seen when it is tried.
+                cause_present: false,
+            }),
+            position: DrivePosition::Increments(self.position),
+            comms: if arrived.is_some() { Comms::Ok } else { Comms::Lost },
+            signals: DriveSignals {
+                simulated: self.simulated,
+                home_switch: input(2),
+                limit_switch_positive: input(1),
+                limit_switch_negative: input(0),
+                warning: status.warning(),
+            },
+        }
+    }
+
+    fn write(&mut self, now_ns: i64, command: &DriveCommand) {
+        let request = if self.fresh {
+            DriveRequest::Off
+        } else {
+            command.request
+        };
+        let (word, memory) = controlword(request, Statusword(self.last.statusword), self.memory);
+        self.memory = memory;
+        let target = match command.position {
+            DrivePosition::Increments(increments) if self.is_enabled() => increments,
+            // An axis without a scaling cannot be told what an increment is: it stays where it is.
+            DrivePosition::Increments(_) | DrivePosition::Units(_) => self.position,
+        };
+        let outputs = Outputs {
+            controlword: word,
+            mode: MODE_CSP,
+            // Modulo 2^32, as the node counts.
+            target_position: target as i32,
+        };
+        self.node.outputs(now_ns, &outputs);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Covers: DR-2
+    #[test]
+    fn a_wrapping_position_goes_on() {
+        let mut position = i64::from(i32::MAX) - 3;
+        let mut raw = position as i32;
+        for step in [1, 2, 3, 1 << 30, -(1 << 30), -9, i32::MAX, i32::MIN + 1] {
+            raw = raw.wrapping_add(step);
+            let next = extended(position, raw);
+            assert_eq!(next - position, i64::from(step));
+            position = next;
+        }
+        assert_eq!(extended(0x7fff_ffff, i32::MIN), 0x8000_0000);
+    }
+}

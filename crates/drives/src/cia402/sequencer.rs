@@ -1,0 +1,72 @@
+//! Which control word brings a drive where the axis wants it.
+
+use super::words::{Command, State, Statusword};
+use standstill_axis::DriveRequest;
+
+/// What the sequencer remembers from one scan to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Memory {
+    /// Bit 7 was set in the last word.
+    reset: bool,
+}
+
+/// The control word for what is asked and what the drive shows, and what to remember.
+///
+/// Every step waits for the status, never for time (CI-1). A fault reset is an edge: the bit goes up for one scan
+/// and comes down again, for as long as the reset is asked for and the fault is there (CI-4). Whatever the status
+/// word holds there is an answer; for states that are none it is 0, which takes the voltage off. Mode specific
+/// bits stay 0. Pure.
+pub fn controlword(request: DriveRequest, status: Statusword, memory: Memory) -> (u16, Memory) {
+    let state = status.state();
+    if request == DriveRequest::FaultReset && state == State::Fault {
+        let reset = !memory.reset;
+        let word = if reset { Command::FAULT_RESET } else { 0 };
+        return (word, Memory { reset });
+    }
+    let command = match (request, state) {
+        (DriveRequest::Enable, State::SwitchOnDisabled) => Command::Shutdown,
+        (DriveRequest::Enable, State::ReadyToSwitchOn) => Command::SwitchOn,
+        (DriveRequest::Enable, State::SwitchedOn | State::OperationEnabled | State::QuickStopActive) => {
+            Command::EnableOperation
+        }
+        (DriveRequest::QuickStop, State::OperationEnabled | State::QuickStopActive) => Command::QuickStop,
+        (
+            DriveRequest::Enable | DriveRequest::Off | DriveRequest::QuickStop | DriveRequest::FaultReset,
+            _,
+        ) => Command::DisableVoltage,
+    };
+    (command.bits(), Memory::default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use DriveRequest::{Enable, FaultReset, Off, QuickStop};
+
+    /// Covers: CI-1, CI-2, CI-4
+    #[test]
+    fn every_status_word_has_the_one_right_answer() {
+        for word in 0..=u16::MAX {
+            let status = Statusword(word);
+            for memory in [Memory { reset: false }, Memory { reset: true }] {
+                let answer = |request| controlword(request, status, memory);
+                let enable = match status.state() {
+                    State::SwitchOnDisabled => 0x6,
+                    State::ReadyToSwitchOn => 0x7,
+                    State::SwitchedOn | State::OperationEnabled | State::QuickStopActive => 0xf,
+                    _ => 0,
+                };
+                let stop = match status.state() {
+                    State::OperationEnabled | State::QuickStopActive => 0x2,
+                    _ => 0,
+                };
+                let raise = status.state() == State::Fault && !memory.reset;
+                assert_eq!(answer(Enable), (enable, Memory::default()), "{word:#x}");
+                assert_eq!(answer(Off), (0, Memory::default()), "{word:#x}");
+                assert_eq!(answer(QuickStop), (stop, Memory::default()), "{word:#x}");
+                let reset = (if raise { 0x80 } else { 0 }, Memory { reset: raise });
+                assert_eq!(answer(FaultReset), reset, "{word:#x}");
+            }
+        }
+    }
+}

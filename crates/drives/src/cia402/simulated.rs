@@ -1,0 +1,348 @@
+//! A node that only exists in memory, with every state and transition of the profile.
+
+use super::adapter::Adapter;
+use super::motor::Motor;
+use super::node::{Inputs, MODE_CSP, Node, Outputs};
+use super::state::{Transition, command_transition};
+use super::words::{Command, State};
+
+/// A simulated node behind the adapter: a drive for tests without hardware.
+pub type Cia402Drive = Adapter<SimulatedNode>;
+
+/// How a drive comes to rest when it may not follow its command (objects 605Ah to 605Eh).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reaction {
+    /// Torque off at once.
+    Coast,
+    /// Along a ramp; then as the transition says.
+    #[default]
+    Ramp,
+    /// Along a ramp, and the quick stop stays active until the controller asks for something else (605Ah 5 to 8).
+    RampAndStay,
+}
+
+/// How a simulated node is set up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Position before the first scan (increments).
+    pub position: i64,
+    /// Operation is enabled before the first scan.
+    pub enabled: bool,
+    /// Scans from a target to the actual position that meets it, beyond the one of the bus; at most
+    /// [`DELAY_MAX`](standstill_axis::DELAY_MAX).
+    pub delay: usize,
+    /// Scans of self-test.
+    pub start_up: u32,
+    /// Scans from Switched on to Operation enabled; `None`: never.
+    pub power_on: Option<u32>,
+    /// Ramp of reactions (increments/scan^2), above 0.
+    pub deceleration: f64,
+    /// 605Ah
+    pub quick_stop: Reaction,
+    /// 605Bh and 605Ch
+    pub leaving: Reaction,
+    /// 605Eh
+    pub fault: Reaction,
+    /// The end switches are active below and above these (increments).
+    pub ends: Option<(i64, i64)>,
+    /// The home switch is active from here to there (increments).
+    pub home: Option<(i64, i64)>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            position: 0,
+            enabled: false,
+            delay: 0,
+            start_up: 0,
+            power_on: Some(0),
+            deceleration: 1.0,
+            quick_stop: Reaction::Ramp,
+            leaving: Reaction::Coast,
+            fault: Reaction::Ramp,
+            ends: None,
+            home: None,
+        }
+    }
+}
+
+/// The motor has torque, so nobody can push it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Displaced;
+
+/// A CiA 402 node in cyclic synchronous position mode.
+#[derive(Clone, Copy, Debug)]
+pub struct SimulatedNode {
+    settings: Settings,
+    state: State,
+    /// Scans in this state.
+    waited: u32,
+    /// Where a ramp leads when the motor is at rest (transitions 5 and 8).
+    leaving: Option<State>,
+    controlword: u16,
+    mode: i8,
+    motor: Motor,
+    error_code: u16,
+    fault_pending: bool,
+    cause_present: bool,
+    voltage: bool,
+    remote: bool,
+    warning: bool,
+    connected: bool,
+    /// Of the transitions taken so far, one bit a number.
+    taken: u32,
+}
+
+impl SimulatedNode {
+    /// Before the first scan.
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            state: if settings.enabled {
+                State::OperationEnabled
+            } else {
+                State::NotReadyToSwitchOn
+            },
+            waited: 0,
+            leaving: None,
+            controlword: 0,
+            mode: MODE_CSP,
+            motor: Motor::new(settings.position, settings.delay),
+            error_code: 0,
+            fault_pending: false,
+            cause_present: false,
+            voltage: true,
+            remote: true,
+            warning: false,
+            connected: true,
+            taken: 0,
+            settings,
+        }
+    }
+
+    /// Its state.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// Actual position (increments).
+    pub fn position(&self) -> i64 {
+        self.motor.actual()
+    }
+
+    /// The transitions taken so far: bit n for number n.
+    pub fn taken(&self) -> u32 {
+        self.taken
+    }
+
+    /// A fault with the drive's own `code`; its cause stays until [`SimulatedNode::clear_cause`].
+    pub fn fail(&mut self, code: u16) {
+        self.error_code = code;
+        self.fault_pending = true;
+        self.cause_present = true;
+    }
+
+    /// The supply of the power stage is gone, or safe torque off is asked for: no torque at once.
+    pub fn cut_power(&mut self) {
+        self.voltage = false;
+        if matches!(
+            self.state,
+            State::ReadyToSwitchOn | State::SwitchedOn | State::OperationEnabled | State::QuickStopActive
+        ) {
+            let number = match self.state {
+                State::ReadyToSwitchOn => 7,
+                State::SwitchedOn => 10,
+                State::OperationEnabled => 9,
+                _ => 12,
+            };
+            self.enter(number, State::SwitchOnDisabled);
+        }
+        self.motor.let_go();
+    }
+
+    /// Inputs no longer arrive; outputs still do.
+    pub fn cut_communication(&mut self) {
+        self.connected = false;
+    }
+
+    /// The cause of whatever fault is gone. A fault of the drive stays until it is reset.
+    pub fn clear_cause(&mut self) {
+        self.cause_present = false;
+        self.voltage = true;
+        self.connected = true;
+    }
+
+    /// Whether it obeys the control word.
+    pub fn set_remote(&mut self, remote: bool) {
+        self.remote = remote;
+    }
+
+    /// Whether it shows a warning.
+    pub fn set_warning(&mut self, warning: bool) {
+        self.warning = warning;
+    }
+
+    /// Someone pushes the motor by `distance` increments.
+    ///
+    /// # Errors
+    /// [`Displaced`] while it has torque.
+    pub fn displace(&mut self, distance: i64) -> Result<(), Displaced> {
+        if self.state.has_torque() {
+            return Err(Displaced);
+        }
+        self.motor.stand_at(self.motor.actual().saturating_add(distance));
+        Ok(())
+    }
+
+    fn enter(&mut self, number: u8, state: State) {
+        self.taken |= 1 << number;
+        self.state = state;
+        self.waited = 0;
+        self.leaving = None;
+        if !state.has_torque() {
+            self.motor.let_go();
+        }
+    }
+
+    /// What the drive does by itself, before it looks at the control word.
+    fn by_itself(&mut self) {
+        let Settings {
+            start_up,
+            quick_stop,
+            fault,
+            ..
+        } = self.settings;
+        let at_rest = self.motor.is_at_rest();
+        let is_faulty = matches!(self.state, State::Fault | State::FaultReactionActive);
+        if self.fault_pending && !is_faulty {
+            let had_torque = self.state.has_torque();
+            self.enter(13, State::FaultReactionActive);
+            if !had_torque || fault == Reaction::Coast {
+                self.motor.let_go();
+            }
+            return;
+        }
+        match self.state {
+            State::NotReadyToSwitchOn if self.waited >= start_up => self.enter(1, State::SwitchOnDisabled),
+            State::FaultReactionActive if at_rest => self.enter(14, State::Fault),
+            State::QuickStopActive if quick_stop == Reaction::Coast => {
+                self.enter(12, State::SwitchOnDisabled);
+            }
+            State::QuickStopActive if quick_stop == Reaction::Ramp && at_rest => {
+                self.enter(12, State::SwitchOnDisabled);
+            }
+            State::OperationEnabled if at_rest => {
+                if let Some(to) = self.leaving {
+                    let number = if to == State::SwitchedOn { 5 } else { 8 };
+                    self.enter(number, to);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn obey(&mut self, controlword: u16) {
+        let rises = controlword & !self.controlword & Command::FAULT_RESET != 0;
+        self.controlword = controlword;
+        if !self.remote {
+            return;
+        }
+        if self.state == State::Fault && rises && !self.cause_present {
+            self.fault_pending = false;
+            self.error_code = 0;
+            self.enter(15, State::SwitchOnDisabled);
+            return;
+        }
+        let Some(arrow) = command_transition(self.state, Command::of(controlword)) else {
+            return;
+        };
+        if self.permits(&arrow) {
+            self.take(&arrow);
+        }
+    }
+
+    fn permits(&self, arrow: &Transition) -> bool {
+        match arrow.number {
+            // Without voltage it stays where it has none.
+            2 | 3 => self.voltage,
+            4 => self.settings.power_on.is_some_and(|scans| self.waited >= scans),
+            16 => self.settings.quick_stop == Reaction::RampAndStay,
+            _ => true,
+        }
+    }
+
+    fn take(&mut self, arrow: &Transition) {
+        let ramps = matches!(arrow.number, 5 | 8) && self.settings.leaving != Reaction::Coast;
+        if ramps && !self.motor.is_at_rest() {
+            self.leaving = Some(arrow.to);
+        } else {
+            self.enter(arrow.number, arrow.to);
+            if arrow.number == 11 && self.settings.quick_stop == Reaction::Coast {
+                self.motor.let_go();
+            }
+        }
+    }
+
+    fn turn(&mut self, target: i32) {
+        let brakes = matches!(self.state, State::QuickStopActive | State::FaultReactionActive)
+            || self.leaving.is_some();
+        if brakes {
+            self.motor.brake(self.settings.deceleration);
+        } else if self.state == State::OperationEnabled {
+            // The target comes modulo 2^32: the one nearest to the last is meant.
+            let newest = self.motor.newest();
+            let step = i64::from(target.wrapping_sub(newest as i32));
+            self.motor.follow(newest.saturating_add(step));
+        }
+    }
+
+    fn statusword(&self) -> u16 {
+        let bit = |is_set: bool, number: u32| u16::from(is_set) << number;
+        let is_limited = self.switches() & 0b11 != 0;
+        let follows = self.state == State::OperationEnabled && self.leaving.is_none();
+        self.state.bits()
+            | bit(self.voltage, 4)
+            | bit(self.warning, 7)
+            | bit(self.remote, 9)
+            | bit(is_limited, 11)
+            | bit(follows, 12)
+    }
+
+    /// 60FDh
+    fn switches(&self) -> u32 {
+        let Settings { ends, home, .. } = self.settings;
+        let position = self.position();
+        let bit = |is_set: bool, number: u32| u32::from(is_set) << number;
+        bit(ends.is_some_and(|(low, _)| position <= low), 0)
+            | bit(ends.is_some_and(|(_, high)| position >= high), 1)
+            | bit(home.is_some_and(|(from, to)| (from..=to).contains(&position)), 2)
+    }
+}
+
+impl Node for SimulatedNode {
+    fn inputs(&mut self, _now_ns: i64) -> Option<Inputs> {
+        self.connected.then(|| Inputs {
+            statusword: self.statusword(),
+            mode: self.mode,
+            // Modulo 2^32, as real counters are.
+            position: self.position() as i32,
+            error_code: self.error_code,
+            digital_inputs: self.switches(),
+        })
+    }
+
+    fn outputs(&mut self, _now_ns: i64, outputs: &Outputs) {
+        self.waited = self.waited.saturating_add(1);
+        self.by_itself();
+        self.obey(outputs.controlword);
+        self.mode = outputs.mode;
+        self.turn(outputs.target_position);
+    }
+}
+
+impl Cia402Drive {
+    /// A simulated node behind an adapter.
+    pub fn simulated_node(settings: Settings) -> Self {
+        Self::new(SimulatedNode::new(settings)).simulated()
+    }
+}

@@ -1,0 +1,200 @@
+//! Status word 6041h and control word 6040h.
+
+/// State of a power drive system.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum State {
+    /// Self-test; nothing works yet.
+    #[default]
+    NotReadyToSwitchOn,
+    /// Waits for a controller.
+    SwitchOnDisabled,
+    /// May be switched on.
+    ReadyToSwitchOn,
+    /// The power stage may be on; no torque.
+    SwitchedOn,
+    /// Torque is on and the command is followed.
+    OperationEnabled,
+    /// Torque is on; the drive stops by itself.
+    QuickStopActive,
+    /// A fault was found; the drive stops by itself.
+    FaultReactionActive,
+    /// No torque until the fault is reset.
+    Fault,
+    /// A combination of bits the profile does not have; treated as not enabled (CI-2).
+    Unknown,
+}
+
+/// Mask, value and state: a word has the state of the first row it matches.
+const STATES: [(u16, u16, State); 8] = [
+    (0x4f, 0x00, State::NotReadyToSwitchOn),
+    (0x4f, 0x40, State::SwitchOnDisabled),
+    (0x6f, 0x21, State::ReadyToSwitchOn),
+    (0x6f, 0x23, State::SwitchedOn),
+    (0x6f, 0x27, State::OperationEnabled),
+    (0x6f, 0x07, State::QuickStopActive),
+    (0x4f, 0x0f, State::FaultReactionActive),
+    (0x4f, 0x08, State::Fault),
+];
+
+impl State {
+    /// All states a drive can be in.
+    pub const ALL: [Self; 8] = [
+        Self::NotReadyToSwitchOn,
+        Self::SwitchOnDisabled,
+        Self::ReadyToSwitchOn,
+        Self::SwitchedOn,
+        Self::OperationEnabled,
+        Self::QuickStopActive,
+        Self::FaultReactionActive,
+        Self::Fault,
+    ];
+
+    /// The state's bits in a status word; 0 for [`State::Unknown`].
+    pub fn bits(self) -> u16 {
+        STATES
+            .iter()
+            .find(|(.., state)| *state == self)
+            .map_or(0, |(_, value, _)| *value)
+    }
+
+    /// Whether the motor has torque.
+    pub fn has_torque(self) -> bool {
+        matches!(
+            self,
+            Self::OperationEnabled | Self::QuickStopActive | Self::FaultReactionActive
+        )
+    }
+}
+
+/// A status word.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Statusword(pub u16);
+
+impl Statusword {
+    /// The state its bits 0 to 3, 5 and 6 tell.
+    pub fn state(self) -> State {
+        STATES
+            .iter()
+            .find(|(mask, value, _)| self.0 & mask == *value)
+            .map_or(State::Unknown, |(.., state)| *state)
+    }
+
+    /// Bit 4: power for the stage is there.
+    pub const fn voltage(self) -> bool {
+        self.0 & (1 << 4) != 0
+    }
+
+    /// Bit 7: a warning is present.
+    pub const fn warning(self) -> bool {
+        self.0 & (1 << 7) != 0
+    }
+
+    /// Bit 9: the drive obeys the control word.
+    pub const fn remote(self) -> bool {
+        self.0 & (1 << 9) != 0
+    }
+
+    /// Bit 11: an internal limit is active.
+    pub const fn internal_limit(self) -> bool {
+        self.0 & (1 << 11) != 0
+    }
+
+    /// Bit 12 in the cyclic modes: the drive follows the command.
+    pub const fn follows_command(self) -> bool {
+        self.0 & (1 << 12) != 0
+    }
+}
+
+/// What a control word asks for, beside the edge of its bit 7.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Command {
+    /// 0006h
+    Shutdown,
+    /// 0007h; from Operation enabled it disables operation.
+    SwitchOn,
+    /// 000Fh
+    EnableOperation,
+    /// 0002h
+    QuickStop,
+    /// 0000h
+    DisableVoltage,
+    /// A combination without a meaning, or the fault reset.
+    None,
+}
+
+/// Mask, value and command.
+const COMMANDS: [(u16, u16, Command); 5] = [
+    (0x82, 0x00, Command::DisableVoltage),
+    (0x86, 0x02, Command::QuickStop),
+    (0x87, 0x06, Command::Shutdown),
+    (0x8f, 0x07, Command::SwitchOn),
+    (0x8f, 0x0f, Command::EnableOperation),
+];
+
+impl Command {
+    /// Bit 7 of a control word: fault reset, at its rising edge.
+    pub const FAULT_RESET: u16 = 1 << 7;
+
+    /// The command of a control word.
+    pub fn of(controlword: u16) -> Self {
+        COMMANDS
+            .iter()
+            .find(|(mask, value, _)| controlword & mask == *value)
+            .map_or(Self::None, |(.., command)| *command)
+    }
+
+    /// Its control word; 0 for none, which disables the voltage.
+    pub fn bits(self) -> u16 {
+        COMMANDS
+            .iter()
+            .find(|(.., command)| *command == self)
+            .map_or(0, |(_, value, _)| *value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+    use std::vec::Vec;
+
+    /// Covers: CI-2, CI-9
+    #[test]
+    fn all_patterns_of_bits_0_to_3_with_5_and_6_are_decoded() {
+        let mut counts = BTreeMap::new();
+        for pattern in 0..64_u16 {
+            let word = (pattern & 0xf) | (pattern & 0x30) << 1;
+            let state = Statusword(word).state();
+            *counts.entry(state).or_insert(0) += 1;
+            // The bits a state does not look at change nothing.
+            for other in [0x10, 0x80, 0xff00, 0xff90] {
+                assert_eq!(Statusword(word | other).state(), state, "{word:#x}");
+            }
+        }
+        use State::*;
+        let expected = [
+            (NotReadyToSwitchOn, 2),
+            (SwitchOnDisabled, 2),
+            (ReadyToSwitchOn, 1),
+            (SwitchedOn, 1),
+            (OperationEnabled, 1),
+            (QuickStopActive, 1),
+            (FaultReactionActive, 2),
+            (Fault, 2),
+            (Unknown, 52),
+        ];
+        assert_eq!(counts.into_iter().collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn states_and_commands_survive_their_bits() {
+        for state in State::ALL {
+            assert_eq!(Statusword(state.bits()).state(), state);
+        }
+        for (_, value, command) in COMMANDS {
+            assert_eq!(Command::of(value), command);
+            assert_eq!(command.bits(), value);
+            assert_eq!(Command::of(value | Command::FAULT_RESET), Command::None);
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! The drive of an axis.
+
+use super::json::{Json, Node};
+use super::value::Fields;
+use super::{Reader, shape};
+use crate::error::{Code, Diagnostic};
+use crate::model::{Cia402Setup, DriveSetup, IdealDriveSetup};
+use standstill_axis::DELAY_MAX;
+use standstill_drives::cia402::Reaction;
+
+/// How a CiA 402 drive comes to rest by itself; `stay` is for the quick stop only.
+pub(crate) const REACTIONS: [(&str, Reaction); 3] = [
+    ("coast", Reaction::Coast),
+    ("ramp", Reaction::Ramp),
+    ("stay", Reaction::RampAndStay),
+];
+
+impl Reader {
+    /// The drive of an axis with a scaling, or without.
+    pub(super) fn drive(&mut self, axis: &Fields<'_>, is_scaled: bool) -> Option<DriveSetup> {
+        let Some(node) = axis.get("drive") else {
+            return Some(DriveSetup::default());
+        };
+        let fields = self.fields(node, &shape::DRIVE)?;
+        match (fields.entry("ideal"), fields.entry("cia402")) {
+            (Some(_), Some((key, _))) => {
+                let message = "an axis has one drive, `ideal` or `cia402`";
+                self.report(Diagnostic::new(Code::BadValue, key.span, message));
+                None
+            }
+            (Some((_, ideal)), None) => self.ideal(ideal).map(DriveSetup::Ideal),
+            (None, Some((key, _))) if !is_scaled => {
+                let message = "a CiA 402 drive counts increments, so its axis needs `scaling`";
+                self.report(
+                    Diagnostic::new(Code::MissingKey, key.span, message)
+                        .help("for example \"scaling\": {\"increments\": 10000, \"units\": 1}"),
+                );
+                None
+            }
+            (None, Some((_, cia402))) => self.cia402(cia402).map(DriveSetup::Cia402),
+            (None, None) => Some(DriveSetup::default()),
+        }
+    }
+
+    fn ideal(&mut self, node: &Node) -> Option<IdealDriveSetup> {
+        let fields = self.fields(node, &shape::IDEAL)?;
+        let delay = self.delay(&fields, "the ideal drive");
+        let power_on = self.power_on(&fields);
+        Some(IdealDriveSetup {
+            delay: delay?,
+            power_on: power_on?,
+        })
+    }
+
+    fn cia402(&mut self, node: &Node) -> Option<Cia402Setup> {
+        let fields = self.fields(node, &shape::CIA402)?;
+        let delay = self.delay(&fields, "the drive");
+        let power_on = self.power_on(&fields);
+        let start_up = fields.get("start_up").map_or(Some(0), |node| {
+            Some(u32::try_from(self.scans(node, "`start_up`")?).unwrap_or(u32::MAX))
+        });
+        let deceleration = self.optional(&fields, "deceleration", "`deceleration`");
+        let mut reaction = |key: &str, words: &[(&str, Reaction)], otherwise| {
+            fields.get(key).map_or(Some(otherwise), |node| {
+                self.choice(node, &format!("`{key}`"), words)
+            })
+        };
+        let quick_stop = reaction("quick_stop", &REACTIONS, Reaction::Ramp);
+        let [coast, ramp, _] = REACTIONS;
+        let on_disable = reaction("on_disable", &[coast, ramp], Reaction::Coast);
+        let on_fault = reaction("on_fault", &[coast, ramp], Reaction::Ramp);
+        let limit_switches = self.pair(&fields, "limit_switches", ["negative", "positive"]);
+        let home_switch = self.pair(&fields, "home_switch", ["from", "to"]);
+        Some(Cia402Setup {
+            delay: delay?,
+            power_on: power_on?,
+            start_up: start_up?,
+            deceleration: deceleration?,
+            quick_stop: quick_stop?,
+            on_disable: on_disable?,
+            on_fault: on_fault?,
+            limit_switches: limit_switches?,
+            home_switch: home_switch?,
+        })
+    }
+
+    fn delay(&mut self, fields: &Fields<'_>, what: &str) -> Option<usize> {
+        let Some(node) = fields.get("delay") else {
+            return Some(0);
+        };
+        let delay = self.scans(node, "`delay`")?;
+        usize::try_from(delay)
+            .ok()
+            .filter(|delay| *delay <= DELAY_MAX)
+            .or_else(|| {
+                let message = format!("{what} delays by {DELAY_MAX} scans at most, not {delay}");
+                self.report(Diagnostic::new(Code::BadValue, node.span, message));
+                None
+            })
+    }
+
+    fn power_on(&mut self, fields: &Fields<'_>) -> Option<Option<u32>> {
+        match fields.get("power_on") {
+            None => Some(Some(0)),
+            Some(node) if matches!(node.json, Json::Null) => Some(None),
+            Some(node) => {
+                let scans = self.scans(node, "`power_on`")?;
+                Some(Some(u32::try_from(scans).unwrap_or(u32::MAX)))
+            }
+        }
+    }
+
+    /// Two positions (u), the first not above the second.
+    fn pair(&mut self, fields: &Fields<'_>, key: &str, ends: [&str; 2]) -> Option<Option<(f64, f64)>> {
+        let Some(node) = fields.get(key) else {
+            return Some(None);
+        };
+        let shape = if key == "home_switch" {
+            &shape::HOME_SWITCH
+        } else {
+            &shape::LIMIT_SWITCHES
+        };
+        let fields = self.fields(node, shape)?;
+        let mut end = |name: &str| {
+            let node = self.require(&fields, name, &format!("`{key}`"))?;
+            self.finite(node, &format!("`{key}.{name}`"))
+        };
+        let (first, second) = (end(ends[0]), end(ends[1]));
+        let (first, second) = (first?, second?);
+        if first > second {
+            let message = format!(
+                "`{key}.{}` is {first:?}, above `{}`, {second:?}",
+                ends[0], ends[1]
+            );
+            self.report(
+                Diagnostic::new(Code::BadValue, fields.brace(), message).help("swap the two positions"),
+            );
+            return None;
+        }
+        Some(Some((first, second)))
+    }
+}

@@ -1,0 +1,68 @@
+//! Timing pictures of scan scripts, as `crates/xtask/pictures.txt` lists them.
+
+use crate::{Generated, root};
+use standstill_blocks::REGISTRY;
+use standstill_script::{read, run};
+use standstill_trace::{Trace, svg::svg};
+use std::collections::BTreeMap;
+use std::fs;
+
+/// What the pictures show of an axis, beside its states and the Booleans.
+const SIGNALS: [&str; 2] = ["Position", "Velocity"];
+
+/// A line of the list.
+#[derive(Debug)]
+pub struct Picture {
+    /// A block, or a name.
+    pub name: String,
+    /// The script, relative to the repository root.
+    pub script: String,
+    /// Title of the script.
+    pub title: String,
+    trace: Trace,
+}
+
+impl Picture {
+    /// Where the picture is, relative to the repository root.
+    pub fn path(&self) -> String {
+        let folder = match REGISTRY.iter().any(|info| info.name == self.name) {
+            true => "blocks",
+            false => "pictures",
+        };
+        format!("docs/{folder}/{}.svg", self.name.to_lowercase())
+    }
+
+    /// The drawn picture.
+    pub fn drawn(&self) -> Generated {
+        Generated {
+            path: self.path(),
+            text: svg(&self.trace, &SIGNALS),
+        }
+    }
+}
+
+/// Every picture by its name; each script is run. Panics, naming the line, where a script does not run.
+pub fn pictures() -> BTreeMap<String, Picture> {
+    let list = root().join("crates/xtask/pictures.txt");
+    let list = fs::read_to_string(&list).unwrap_or_else(|error| panic!("{}: {error}", list.display()));
+    list.lines()
+        .filter(|line| !line.starts_with('#'))
+        .filter_map(|line| line.split_once(' '))
+        .map(|(name, script)| (name.to_owned(), picture(name, script)))
+        .collect()
+}
+
+fn picture(name: &str, script: &str) -> Picture {
+    let path = format!("scan-tests/{script}.scan.json");
+    let text = fs::read_to_string(root().join(&path)).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let script = read(&text, &path, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let trace = run(&script)
+        .unwrap_or_else(|error| panic!("{path}: {error}"))
+        .trace;
+    Picture {
+        name: name.into(),
+        script: path,
+        title: trace.header().title.clone(),
+        trace,
+    }
+}
