@@ -242,6 +242,15 @@ pub enum Command {
         /// Its sign multiplies that of the velocity (V3).
         direction: Raw<Direction>,
     },
+    /// MC_Jog: to an endless motion, or by a distance; the velocity must be positive.
+    Jog {
+        /// Towards larger positions.
+        forward: bool,
+        /// Distance (u), not negative; 0 for an endless motion.
+        distance: f64,
+        /// Dynamic values.
+        dynamics: Dynamics,
+    },
     /// To velocity zero; other commands may interrupt. The velocity of `dynamics` is not read.
     Halt {
         /// Dynamic values.

@@ -66,7 +66,7 @@ error_ids! {
     PositionInvalid = 101, "Position or Distance is NaN or infinite, or the target is not representable.",
         "Give a finite number.";
     VelocityInvalid = 102, "Velocity is NaN or infinite, or zero or negative where a positive value is needed.",
-        "Positioning moves need a Velocity above 0; give the direction by the target.";
+        "Positioning moves and MC_Jog need a Velocity above 0; give the direction by the target or the button.";
     AccelerationInvalid = 103, "Acceleration is NaN, infinite or negative.",
         "Give a positive number, or 0 for the axis default.";
     DecelerationInvalid = 104, "Deceleration is NaN, infinite or negative.",
@@ -109,6 +109,8 @@ error_ids! {
         "Use mcImmediately (0) or mcQueued (1).";
     OutwardFromSoftwareLimit = 123, "The axis stands at or beyond a software limit and the endless motion would lead further out.",
         "Move back inside: the other way, or to a target inside.";
+    JogDistanceInvalid = 124, "Distance of MC_Jog is NaN, infinite or negative.",
+        "Give 0 to move while the button is held, or the length of a step above 0; the buttons give the direction.";
 
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";

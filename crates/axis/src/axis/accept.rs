@@ -31,6 +31,7 @@ fn direction_of(command: &Command) -> Option<Direction> {
         | Command::MoveRelative { .. }
         | Command::MoveContinuousRelative { .. }
         | Command::MoveVelocity { .. }
+        | Command::Jog { .. }
         | Command::Halt { .. }
         | Command::Stop { .. }
         | Command::Home { .. } => None,
@@ -264,6 +265,11 @@ impl<P: Planner> Axis<P> {
                 })?;
                 Ok((work, self.resolve(dynamics, source, log)?))
             }
+            Command::Jog {
+                forward,
+                distance,
+                ref dynamics,
+            } => self.jog(forward, distance, dynamics, source, log),
             Command::Halt { ref dynamics } => Ok((Work::Halt, self.resolve(dynamics, source, log)?)),
             Command::Stop { ref dynamics } => Ok((Work::Stop, self.resolve(dynamics, source, log)?)),
             Command::Home { position } => {

@@ -2,7 +2,7 @@
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
-//! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
+//! [`jog`] checks what MC_Jog asks for, [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`permission`] keeps them out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
 
@@ -10,6 +10,7 @@ mod accept;
 mod blend;
 mod coordinates;
 mod dynamics;
+mod jog;
 mod modulo;
 mod permission;
 mod power;
