@@ -4,7 +4,7 @@ use crate::administrative::{
     mc_power::McPower, mc_read_actual_position::McReadActualPosition,
     mc_read_actual_velocity::McReadActualVelocity, mc_read_axis_error::McReadAxisError,
     mc_read_axis_info::McReadAxisInfo, mc_read_motion_state::McReadMotionState, mc_read_status::McReadStatus,
-    mc_reset::McReset, mc_set_position::McSetPosition,
+    mc_reset::McReset, mc_set_override::McSetOverride, mc_set_position::McSetPosition,
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
@@ -62,7 +62,7 @@ macro_rules! registry {
 
 registry! {
     McPower McReset McReadStatus McReadMotionState McReadAxisInfo McReadAxisError
-    McReadActualPosition McReadActualVelocity McSetPosition
+    McReadActualPosition McReadActualVelocity McSetPosition McSetOverride
     McHome
     McStop McHalt McMoveAbsolute McMoveRelative McMoveAdditive McMoveVelocity
     McMoveContinuousAbsolute McMoveContinuousRelative McMoveSuperimposed McHaltSuperimposed McJog

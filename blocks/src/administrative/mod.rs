@@ -8,4 +8,5 @@ pub mod mc_read_axis_info;
 pub mod mc_read_motion_state;
 pub mod mc_read_status;
 pub mod mc_reset;
+pub mod mc_set_override;
 pub mod mc_set_position;

@@ -80,6 +80,8 @@ pub struct AxisConfig {
     pub on_power_off: PowerOff,
     /// Absolute moves need MC_Home first (V11a).
     pub needs_homed: bool,
+    /// Largest factor MC_SetOverride takes, at least 1; above 1 the limits hold all the same (V16).
+    pub override_max: f64,
 }
 
 impl AxisConfig {
@@ -105,6 +107,7 @@ impl AxisConfig {
             stop_jerk: None,
             on_power_off: PowerOff::Ramp,
             needs_homed: false,
+            override_max: 1.0,
         }
     }
 
@@ -159,6 +162,11 @@ impl AxisConfig {
             {
                 return Err(ConfigError::AboveLimit { key, value, limit });
             }
+        }
+        if !(self.override_max >= 1.0 && self.override_max.is_finite()) {
+            return Err(ConfigError::OverrideMax {
+                value: self.override_max,
+            });
         }
         if !self.position.is_finite() {
             return Err(ConfigError::NotFinite {
@@ -289,6 +297,11 @@ pub enum ConfigError {
         /// Places asked for.
         value: usize,
     },
+    /// The largest override factor is below 1 or not finite.
+    OverrideMax {
+        /// The factor.
+        value: f64,
+    },
     /// The profile cannot keep a limit of the axis.
     Profile {
         /// The profile asked for.
@@ -319,6 +332,7 @@ impl ConfigError {
             Self::PositionOutsideModulo { .. } => "position",
             Self::ModuloWithSoftwareLimits => "software_limits",
             Self::Queue { .. } => "queue",
+            Self::OverrideMax { .. } => "override_max",
             Self::Profile { .. } => "profile",
             Self::Scaling { .. } => "scaling",
         }
@@ -364,6 +378,10 @@ impl fmt::Display for ConfigError {
                 "modulo is {value:?}: with this scaling a turn is no fraction of increments with parts below 2^63; choose a unit of which a turn is a whole number"
             ),
             Self::Queue { value } => write!(f, "queue is {value}: at most {QUEUE_MAX} commands can wait"),
+            Self::OverrideMax { value } => write!(
+                f,
+                "override_max is {value:?}: the largest override factor must be a finite number of at least 1"
+            ),
             Self::Profile { profile, key, limit } => write!(
                 f,
                 "profile is {}, which cannot keep {key} {limit:?}: leave that limit out or choose another profile, such as fastest",

@@ -109,7 +109,9 @@ error_ids! {
         "Use mcImmediately (0) or mcQueued (1).";
     OutwardFromSoftwareLimit = 123, "The axis stands at or beyond a software limit and the endless motion would lead further out.",
         "Move back inside: the other way, or to a target inside.";
-    JogDistanceInvalid = 124, "Distance of MC_Jog is NaN, infinite or negative.",
+    FactorInvalid = 124, "An override factor is NaN, negative, 0 where only VelFactor may be 0, or above the largest one of the axis.",
+        "Give VelFactor from 0, AccFactor and JerkFactor from above 0, each at most 1 or the override_max of the axis.";
+    JogDistanceInvalid = 125, "Distance of MC_Jog is NaN, infinite or negative.",
         "Give 0 to move while the button is held, or the length of a step above 0; the buttons give the direction.";
 
     NotPowered = 201, "The axis is Disabled.",

@@ -2,8 +2,9 @@
 //! what was paused comes to its end when it may.
 
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Fate, InstanceId,
-    Limits, Log, Permission, Plan, Planner, Raw, Request, Source, Standard, StartState, Superimpose,
+    Axis, AxisConfig, AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Factors, Fate,
+    InstanceId, Limits, Log, Permission, Plan, Planner, Raw, Request, Source, Standard, StartState,
+    Superimpose,
 };
 
 const CYCLE: f64 = 0.01;
@@ -163,6 +164,15 @@ impl Case {
             };
         }
         self.axis.set_power(true, self.permitted, source, &mut self.log);
+        if self.random.below(40) == 0 {
+            let factors = Factors {
+                velocity: [0.0, 0.3, 1.0][self.random.below(3) as usize],
+                acceleration: self.random.between(0.2, 1.0),
+                ..Factors::ONE
+            };
+            let changed = self.axis.set_override(factors, source, &mut self.log);
+            assert!(changed.is_ok(), "{changed:?} in {}: {}", self.scan, self.story());
+        }
         let limits = self.axis.config().limits;
         if self.random.below(25) == 0 {
             let mode = match self.random.below(4) {
@@ -257,6 +267,8 @@ fn what_was_paused_comes_to_its_end() {
         {
             let source = case.source();
             case.axis.set_power(true, Permission::BOTH, source, &mut case.log);
+            let changed = case.axis.set_override(Factors::ONE, source, &mut case.log);
+            assert!(changed.is_ok(), "seed {seed}: {changed:?}");
             case.axis.advance(case.scan, &mut case.log);
             case.scan += 1;
             assert!(case.scan < MOST_SCANS, "seed {seed}: {:?}", case.axis.outlook());

@@ -12,3 +12,4 @@
 extern crate std;
 
 pub mod cia402;
+pub mod mechanism;

@@ -1,9 +1,9 @@
-//! The core of reading blocks: `Enable` in, `Valid` with values or an error out.
+//! The core of Enable-type blocks: `Enable` in, `Valid` with values or an error out.
 //!
 //! Source: PLCopen Motion Control Part 1, section on Enable/Valid; rules R15 and R52 to R59.
 
 use crate::Context;
-use standstill_axis::{Axis, AxisId, ErrorId, Planner};
+use standstill_axis::{Axis, AxisId, ErrorId, Log, Planner, Source};
 
 /// What an Enable-type block shows. Outputs are derived from it, so Valid and Error at once cannot be written
 /// (R53).
@@ -71,6 +71,25 @@ impl EnableCore {
         context: &Context<'_, P>,
         read: impl FnOnce(&Axis<P>) -> Result<T, ErrorId>,
     ) -> Reading<T> {
+        self.answer(enable, || context.axes.get(axis.index()).map(read))
+    }
+
+    /// The same for a block that writes.
+    pub fn write<P: Planner, T>(
+        &mut self,
+        enable: bool,
+        axis: AxisId,
+        context: &mut Context<'_, P>,
+        write: impl FnOnce(&mut Axis<P>, Source, &mut Log) -> Result<T, ErrorId>,
+    ) -> Reading<T> {
+        self.answer(enable, || {
+            let (axis, log, source) = context.axis(axis).ok()?;
+            Some(write(axis, source, log))
+        })
+    }
+
+    /// What `ask` gives while enabled; `None` is a lack of an axis.
+    fn answer<T>(&mut self, enable: bool, ask: impl FnOnce() -> Option<Result<T, ErrorId>>) -> Reading<T> {
         if !enable {
             self.failed = None;
             return Reading::Off;
@@ -78,11 +97,9 @@ impl EnableCore {
         if let Some(id) = self.failed {
             return Reading::Failed(id);
         }
-        match context.axes.get(axis.index()) {
-            Some(axis) => match read(axis) {
-                Ok(value) => Reading::Valid(value),
-                Err(id) => Reading::Recoverable(id),
-            },
+        match ask() {
+            Some(Ok(value)) => Reading::Valid(value),
+            Some(Err(id)) => Reading::Recoverable(id),
             None => {
                 self.failed = Some(ErrorId::AxisUnknown);
                 Reading::Failed(ErrorId::AxisUnknown)

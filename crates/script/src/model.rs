@@ -2,6 +2,7 @@
 
 use standstill_axis::{AxisConfig, AxisState};
 use standstill_drives::cia402::Reaction;
+use standstill_drives::mechanism::{Gains, Plant};
 use standstill_fb::{BlockInfo, Value};
 use std::collections::BTreeMap;
 
@@ -56,6 +57,19 @@ pub enum DriveSetup {
     Ideal(IdealDriveSetup),
     /// A simulated CiA 402 drive.
     Cia402(Cia402Setup),
+    /// Turns a mechanism.
+    Plant(PlantSetup),
+}
+
+/// Parameters of a drive with a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlantSetup {
+    /// Scans until power is confirmed; `None` never.
+    pub power_on: Option<u32>,
+    /// What is moved.
+    pub plant: Plant,
+    /// The loops.
+    pub gains: Gains,
 }
 
 impl Default for DriveSetup {

@@ -219,6 +219,7 @@ fn axis_key(key: &str) -> Value {
         "queue" => integer(0, QUEUE_MAX as i64),
         "on_power_off" => words(&ON_POWER_OFF),
         "needs_homed" => json!({"type": "boolean"}),
+        "override_max" => any(&[json!({"type": "number", "minimum": 1}), of("parameter")]),
         "drive" => drive(),
         _ => of("finite"),
     }
@@ -232,6 +233,15 @@ fn drive() -> Value {
             "delay" => delay(),
             _ => never(),
         }),
+        "plant" => required(
+            &["inertia"],
+            object(&shape::PLANT, |key| match key {
+                "power_on" => never(),
+                "load" => required(&["inertia", "stiffness"], object(&shape::LOAD, |_| of("finite"))),
+                "gains" => object(&shape::GAINS, |_| of("finite")),
+                _ => of("finite"),
+            }),
+        ),
         _ => object(&shape::CIA402, |key| match key {
             "delay" => delay(),
             "power_on" => never(),

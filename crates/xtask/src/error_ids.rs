@@ -10,7 +10,7 @@ pub fn page() -> Generated {
          Every number a block can show at `ErrorID` or `AxisErrorID`. Numbers are interface: they are never\n\
          reused and never change their meaning. The hundreds say what an error is about: 1 a pin's value,\n\
          2 the axis state, 3 the command buffer, 4 the axis, 5 the drive, 6 the communication, 7 not\n\
-         supported yet, 9 a defect of standstill.\n\n\
+         supported yet, 9 a defect of standstill. What each looks like in a trace: [faults.md](faults.md).\n\n\
          | ErrorID | name | cause | remedy |\n| ---: | --- | --- | --- |\n"
     );
     for id in ErrorId::ALL {

@@ -6,11 +6,15 @@
 
 mod bad_input;
 mod blocks;
+mod compliance;
 mod error_ids;
+mod faults;
 mod pictures;
 mod requirements;
 mod states;
 
+pub use compliance::Compliance;
+pub use faults::Faults;
 pub use requirements::Requirements;
 use std::path::{Path, PathBuf};
 
@@ -30,7 +34,9 @@ pub fn generated() -> Vec<Generated> {
     let mut files = blocks::pages(&requirements, &pictures);
     files.extend(pictures.values().map(pictures::Picture::drawn));
     files.push(error_ids::page());
+    files.push(Faults::read().page());
     files.push(bad_input::page());
+    files.extend(Compliance::read().pages());
     files.extend(states::pages());
     files.extend(requirements.pages());
     files

@@ -1,6 +1,6 @@
 //! The repository is tidy: generated files are fresh, links lead somewhere, forbidden words stay out.
 
-use standstill_xtask::{Requirements, generated, root};
+use standstill_xtask::{Compliance, Faults, Requirements, generated, root};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -32,6 +32,19 @@ fn every_block_has_a_timing_picture() {
 #[test]
 fn every_requirement_has_a_test_or_a_stated_gap() {
     let problems = Requirements::read().problems();
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+/// Covers: R87
+#[test]
+fn the_compliance_statement_is_true() {
+    let problems = Compliance::read().problems();
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+#[test]
+fn every_error_is_shown_by_a_trace_or_has_a_reason() {
+    let problems = Faults::read().problems();
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
@@ -122,7 +135,7 @@ fn the_top_level_holds_what_a_newcomer_expects() {
 #[test]
 fn layers_depend_only_downwards() {
     // Package and what it may depend on, from bottom to top (docs/architecture.md).
-    let layers: [(&str, &str, &[&str]); 11] = [
+    let layers: [(&str, &str, &[&str]); 12] = [
         ("crates/planner", "standstill-planner", &[]),
         ("crates/axis", "standstill-axis", &["standstill-planner"]),
         ("crates/fb", "standstill-fb", &["standstill-axis"]),

@@ -6,10 +6,10 @@
 use super::queue::{Entry, Place, Work};
 use super::{Axis, Motion, Source};
 use crate::{
-    AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Event, Fate, Goal,
-    Log, Raw, Request,
+    AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Fate, Log, Raw,
+    Request,
 };
-use standstill_planner::{Excess, Field, Limits, Passage, Plan, PlanError, Planner, Setpoint};
+use standstill_planner::{Excess, Field, Limits, Passage, PlanError, Planner, Setpoint};
 
 /// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
 const ROUNDING: f64 = 1e-9;
@@ -83,19 +83,9 @@ impl<P: Planner> Axis<P> {
             self.refuse(pin, value, f64::NAN, error, source, log)
         })?;
         let (work, limits) = self.check(&request.command, way, source, log)?;
-        let mut entry = Entry {
-            id: self.new_id(),
-            instance: source.instance,
-            work,
-            limits,
-            direction: direction_of(&request.command),
-            turns: 0,
-            mode,
-            end: None,
-            passage: REST,
-            held: work == Work::Stop,
-            paused: false,
-        };
+        let mut entry = Entry::new(self.new_id(), source.instance, work, limits, mode);
+        entry.direction = direction_of(&request.command);
+        self.override_entry(&mut entry);
         match way {
             Way::Wait => {
                 self.queue.push(entry);
@@ -414,6 +404,7 @@ impl<P: Planner> Axis<P> {
             self.planner.move_to(profile, start, end, &entry.limits, before)
         };
         let planned = match entry.work {
+            _ if entry.halted => self.planner.ramp_to(start, 0.0, &entry.limits, before),
             Work::Position(_) | Work::Distance(_) => match self.blended(entry, start, end, before) {
                 Some(plan) => Ok(plan),
                 None => to_rest(),
@@ -421,15 +412,14 @@ impl<P: Planner> Axis<P> {
             Work::Through {
                 end_velocity: 0.0, ..
             } => to_rest(),
+            Work::Through { end_velocity, .. } if entry.passed => {
+                self.planner.ramp_to(start, end_velocity, &entry.limits, before)
+            }
             Work::Through { end_velocity, .. } => {
                 self.planner.pass(start, end, end_velocity, &entry.limits, before)
             }
             Work::Velocity { velocity, along } => {
-                let velocity = if along {
-                    velocity * self.last_velocity.signum()
-                } else {
-                    velocity
-                };
+                let velocity = if along { velocity * entry.sign } else { velocity };
                 self.not_outward(start.position, velocity)?;
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
@@ -503,55 +493,15 @@ impl<P: Planner> Axis<P> {
         (beyond != Excess::default()).then_some(beyond)
     }
 
-    /// Records what `motion` of `entry` leads to, and where it can't keep the limits.
-    pub(super) fn record_plan(&self, entry: &Entry, motion: &Motion<P::Plan>, scan: u64, log: &mut Log) {
-        let source = Source {
-            scan,
-            instance: entry.instance,
-        };
-        let positioning = matches!(entry.work, Work::Position(_) | Work::Distance(_));
-        if let Motion::Run { plan, .. } = motion {
-            let end = plan.at(u64::from(plan.scans()));
-            let goal = match entry.end {
-                Some(position) if end.velocity != 0.0 || !positioning => Goal::Passing {
-                    position,
-                    velocity: end.velocity,
-                },
-                Some(_) => Goal::Position(end.position),
-                None => Goal::Velocity(end.velocity),
-            };
-            self.record(
-                Event::Planned {
-                    goal,
-                    scans: plan.scans(),
-                },
-                source,
-                log,
-            );
-            if let Some(excess) = plan
-                .excess()
-                .and_then(|excess| self.beyond_axis(excess, &entry.limits))
-            {
-                self.record(Event::Unavoidable(excess), source, log);
-            }
-        }
-    }
-
     /// Makes `entry` the owner.
     pub(super) fn begin(&mut self, entry: Entry, motion: Motion<P::Plan>, scan: u64, log: &mut Log) {
-        self.record_plan(&entry, &motion, scan, log);
         self.enter(match entry.work {
             Work::Position(_) | Work::Distance(_) | Work::Halt => AxisEvent::StartDiscrete,
             Work::Velocity { .. } | Work::Through { .. } => AxisEvent::StartContinuous,
             Work::Stop => AxisEvent::Stop,
             Work::Home(_) | Work::SetPosition { .. } => AxisEvent::StartHoming,
         });
-        self.take_over(entry.limits, &motion);
-        self.motion = motion;
-        if self.modulo.is_some() {
-            self.start_of_plan();
-        }
-        self.watched = self.needs_watching(&entry);
-        self.owner = Some(entry);
+        self.before = self.limits_before(&entry.limits);
+        self.adopt(entry, motion, scan, log);
     }
 }

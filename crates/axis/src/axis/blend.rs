@@ -7,7 +7,7 @@ use super::accept::REST;
 use super::power::Reaction;
 use super::queue::{Entry, Work};
 use super::{Axis, Motion};
-use crate::{BufferMode, ErrorId, Event, Fate, Goal, Log, QUEUE_MAX};
+use crate::{BufferMode, ErrorId, Fate, Log, QUEUE_MAX};
 use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};
 
 /// A command of a chain: the owner to be, or one that waits.
@@ -25,12 +25,10 @@ impl<P: Planner> Axis<P> {
         if matches!(mode, BufferMode::Aborting | BufferMode::Buffered) {
             return;
         }
-        let Some(mut owner) = self.owner.filter(|owner| !owner.paused) else {
-            return;
-        };
+        let Some(mut owner) = self.owner else { return };
         let passage = self.passage(&owner, self.setpoint.position, 0);
         let Some(end) = owner.end else { return };
-        if passage == owner.passage || !matches!(self.motion, Motion::Run { .. }) {
+        if passage == owner.passage || self.is_held_up() || !matches!(self.motion, Motion::Run { .. }) {
             return;
         }
         owner.passage = passage;
@@ -38,17 +36,7 @@ impl<P: Planner> Axis<P> {
         // Should it have to come to rest all the same, it does so as planned.
         let planned = planned.filter(|plan| plan.at(u64::from(plan.scans())).velocity != 0.0);
         if let Some(plan) = planned {
-            self.in_force = raised(&owner.limits, &plan);
-            let event = Event::Planned {
-                goal: Goal::Passing {
-                    position: end,
-                    velocity: plan.at(u64::from(plan.scans())).velocity,
-                },
-                scans: plan.scans(),
-            };
-            self.record(event, self.owner_source(scan), log);
-            self.motion = Motion::along(plan);
-            self.owner = Some(owner);
+            self.adopt(owner, Motion::along(plan), scan, log);
         }
     }
 
@@ -71,13 +59,12 @@ impl<P: Planner> Axis<P> {
         planned.ok().flatten()
     }
 
-    /// Notes whose limits hold from now on, and which did for the motion taken over from.
-    pub(super) fn take_over(&mut self, limits: Limits, motion: &Motion<P::Plan>) {
-        self.before = self.limits_before(&limits);
-        self.in_force = match motion {
-            Motion::Run { plan, .. } => raised(&limits, plan),
-            Motion::Follow | Motion::Hold => limits,
-        };
+    /// `limits` of a motion, with the velocity its plan ends with, should that be larger (B3).
+    pub(super) fn limits_of(limits: &Limits, motion: &Motion<P::Plan>) -> Limits {
+        match motion {
+            Motion::Run { plan, .. } => raised(limits, plan),
+            Motion::Follow | Motion::Hold => *limits,
+        }
     }
 
     /// The owner has passed its end in motion: Done, and the next takes over from the set-point (B2). Should
@@ -93,7 +80,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the owner is at its end in motion, for the next to take over.
     pub(super) fn passes_its_end(&self) -> bool {
-        self.goal_reached() && self.passes_on() && self.setpoint.velocity != 0.0
+        self.goal_reached() && !self.is_held_up() && self.passes_on() && self.setpoint.velocity != 0.0
     }
 
     /// What becomes of the owner when another takes over in motion: what has an end has passed it.
@@ -201,16 +188,9 @@ impl<P: Planner> Axis<P> {
             Work::Halt => (direction, 0.0, None),
             Work::Stop | Work::Home(_) | Work::SetPosition { .. } => return REST,
         };
-        // What MC_Power bars would be refused at the end, too late to stop there.
-        let end_velocity = match next.entry.work {
-            Work::Through { end_velocity, .. } => end_velocity,
-            _ => 0.0,
-        };
-        if self
-            .way_barred(towards)
-            .or(self.way_barred(end_velocity))
-            .is_some()
-        {
+        // What MC_Power bars would be refused at the end, too late to stop there. A continuous move may need a run-up.
+        let runs_up = matches!(next.entry.work, Work::Through { end_velocity, .. } if end_velocity != 0.0);
+        if self.way_barred(towards).is_some() || (runs_up && self.bars_any()) {
             return REST;
         }
         // Reversed, or nowhere: at rest (B13). To the velocity 0 leads no direction.

@@ -6,12 +6,9 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_SetPosition; V15, T39 i.
 
-use super::accept::REST;
 use super::queue::{Entry, Place, Work};
 use super::{Axis, Motion, Source};
-use crate::{
-    AxisState, BufferMode, CommandId, ErrorId, Event, ExecutionMode, Fate, Goal, Log, QUEUE_MAX, Raw,
-};
+use crate::{AxisState, BufferMode, CommandId, ErrorId, Event, ExecutionMode, Fate, Log, QUEUE_MAX, Raw};
 use standstill_planner::turns::split;
 use standstill_planner::{Plan, Planner, Setpoint};
 
@@ -55,21 +52,17 @@ impl<P: Planner> Axis<P> {
         if defined == ExecutionMode::Queued && self.is_owned() {
             self.wait()
                 .map_err(|(_, error)| self.refuse("ExecutionMode", 1.0, f64::NAN, error, source, log))?;
-            let entry = Entry {
-                id: self.new_id(),
-                instance: source.instance,
-                work: Work::SetPosition { position, relative },
-                limits: self.config.limits,
-                direction: None,
-                turns: 0,
-                mode: BufferMode::Buffered,
-                end: None,
-                passage: REST,
-                held: false,
-                paused: false,
-            };
+            let work = Work::SetPosition { position, relative };
+            let id = self.new_id();
+            let entry = Entry::new(
+                id,
+                source.instance,
+                work,
+                self.config.limits,
+                BufferMode::Buffered,
+            );
             self.queue.push(entry);
-            return Ok(entry.id);
+            return Ok(id);
         }
         self.move_coordinates(position, relative, source, log)
             .map_err(|error| self.refuse("Position", position, f64::NAN, error, source, log))?;
@@ -185,8 +178,9 @@ impl<P: Planner> Axis<P> {
         let absolute = |owner: &Entry| matches!(owner.place(), Some(Place::At(_)));
         let Some(mut owner) = self.owner.filter(absolute).filter(|_| elapsed < scans) else {
             plan.shift(by);
-            if let Some(Entry { end: Some(end), .. }) = &mut self.owner {
-                *end += by;
+            if let Some(owner) = &mut self.owner {
+                owner.end = owner.end.map(|end| end + by);
+                owner.from += by;
             }
             return Ok(());
         };
@@ -194,17 +188,8 @@ impl<P: Planner> Axis<P> {
         owner.passage = self.passage(&owner, start, 0);
         // With something superimposed it may find no room just now.
         let motion = self.plan_next(&owner)?.ok_or(ErrorId::InMotion)?;
-        self.take_over(owner.limits, &motion);
-        self.motion = motion;
-        self.start_of_plan();
-        self.owner = Some(owner);
-        if let Motion::Run { plan, scans, .. } = &self.motion {
-            let planned = Event::Planned {
-                goal: Goal::Position(plan.at(*scans).position),
-                scans: plan.scans(),
-            };
-            self.record(planned, self.owner_source(scan), log);
-        }
+        self.before = self.limits_before(&owner.limits);
+        self.adopt(owner, motion, scan, log);
         Ok(())
     }
 

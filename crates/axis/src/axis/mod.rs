@@ -2,20 +2,23 @@
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
-//! [`jog`] checks what MC_Jog asks for, [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
-//! motions inside, [`permission`] keeps them out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
+//! [`factors`] is the override, [`replan`] changes the owner's motion while it runs, [`jog`] checks what MC_Jog asks for,
+//! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
+//! motions inside, [`permission`] out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
 
 mod accept;
 mod blend;
 mod coordinates;
 mod dynamics;
+mod factors;
 mod jog;
 mod modulo;
 mod permission;
 mod power;
 mod queue;
 mod reading;
+mod replan;
 mod software_limits;
 mod step;
 mod superimposed;
@@ -26,6 +29,7 @@ use crate::{
     DrivePosition, DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState,
     state,
 };
+pub use factors::Factors;
 use modulo::Modulo;
 pub use permission::Permission;
 use queue::{Entry, Queue, Work};
@@ -138,6 +142,10 @@ pub struct Outlook {
     pub forward: bool,
     /// What is superimposed.
     pub superimposed: Option<Beside>,
+    /// The override, as bits.
+    pub factors: [u64; 3],
+    /// The owner's motion is not the one to its goal: the override halts it, MC_Power bars it, or it has yet to be planned anew.
+    pub held_up: bool,
 }
 
 /// What a superimposed motion will do next, part of [`Outlook`].
@@ -225,6 +233,10 @@ pub struct Axis<P: Planner = Standard> {
     watched: bool,
     /// A queued MC_SetPosition takes effect at the next latch.
     shift_due: bool,
+    /// The override.
+    factors: Factors,
+    /// The owner has values that its motion does not have yet, for lack of room beside something superimposed.
+    replan_due: bool,
 }
 
 impl<P: Planner> Axis<P> {
@@ -281,6 +293,8 @@ impl<P: Planner> Axis<P> {
             shift: 0.0,
             watched: false,
             shift_due: false,
+            factors: Factors::ONE,
+            replan_due: false,
         })
     }
 
@@ -360,7 +374,7 @@ impl<P: Planner> Axis<P> {
             return match owner.work {
                 Work::Stop if self.stop_held => Fate::Done,
                 Work::Velocity { .. } | Work::Through { .. } => Fate::Active {
-                    reached: self.goal_reached() && !owner.paused,
+                    reached: self.goal_reached() && !self.is_held_up(),
                 },
                 Work::Position(_)
                 | Work::Distance(_)
@@ -413,6 +427,8 @@ impl<P: Planner> Axis<P> {
             homed: self.homed,
             forward: self.last_velocity > 0.0,
             superimposed: self.superimposed_outlook(),
+            factors: self.factors.bits(),
+            held_up: self.is_held_up(),
         }
     }
 
@@ -454,6 +470,15 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// Whether the owner's motion in progress is not the one to its goal: what it reaches is not reached.
+    fn is_held_up(&self) -> bool {
+        self.replan_due
+            || self
+                .owner
+                .as_ref()
+                .is_some_and(|owner| owner.halted || owner.paused)
+    }
+
     /// The one place where the state changes.
     fn enter(&mut self, event: AxisEvent) {
         match state::next(self.state, event) {
@@ -484,6 +509,7 @@ impl<P: Planner> Axis<P> {
             self.fates.record(owner.id, fate);
         }
         self.stop_held = false;
+        self.replan_due = false;
     }
 
     fn record(&self, event: Event, source: Source, log: &mut Log) {

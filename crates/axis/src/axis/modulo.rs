@@ -111,7 +111,10 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     pub(super) fn bring_back(&mut self) {
         let Some(modulo) = &mut self.modulo else { return };
-        if self.setpoint.position.abs() < FAR * modulo.length {
+        // An owner that the override halts may have its end there.
+        if self.setpoint.position.abs() < FAR * modulo.length
+            || self.owner.as_ref().is_some_and(|owner| owner.halted)
+        {
             return;
         }
         if let Motion::Run { plan, elapsed, scans } = &mut self.motion
@@ -124,6 +127,7 @@ impl<P: Planner> Axis<P> {
             // Its end is left behind, in another frame.
             if let Some(owner) = &mut self.owner {
                 owner.end = None;
+                owner.from = back_by(owner.from, turns, modulo.length);
             }
             self.setpoint.position = match &mut self.layer {
                 Some(layer) => layer.bring_back(start, passed),
@@ -139,13 +143,17 @@ impl<P: Planner> Axis<P> {
             return;
         };
         let start = plan.at(0).position;
-        let turns = (self.setpoint.position - start) / modulo.length;
+        let here = self
+            .layer
+            .as_ref()
+            .map_or(self.setpoint.position, |layer| layer.base.position);
+        let turns = (here - start) / modulo.length;
         let nearest = (if turns < 0.0 { turns - 0.5 } else { turns + 0.5 }) as i64;
         modulo.turns = modulo.turns.saturating_add(nearest);
-        self.setpoint.position = start;
-        if let Some(layer) = &mut self.layer {
-            layer.base.position = start;
-        }
+        self.setpoint.position = match &mut self.layer {
+            Some(layer) => layer.start_at(start),
+            None => start,
+        };
     }
 
     /// Where `entry` ends, now that it is its turn, and how far its frame is from the present one. Distances
@@ -155,6 +163,10 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub(super) fn aim(&self, entry: &mut Entry, from: f64) -> f64 {
         let start = self.setpoint.position;
+        entry.sign = self.last_velocity.signum();
+        if let Some(Place::By(_)) = entry.place() {
+            entry.from = from;
+        }
         match &self.modulo {
             Some(modulo) => self.aim_round(entry, from, modulo.length),
             None => {
@@ -193,6 +205,7 @@ impl<P: Planner> Axis<P> {
                 (turns, Some(target))
             }
         };
+        entry.from = back_by(entry.from, entry.turns, length);
         back_by(start.position, entry.turns, length)
     }
 
@@ -231,7 +244,14 @@ impl<P: Planner> Axis<P> {
     }
 
     /// `turns`, and as many more as a motion from `start` that must not turn back needs to slow down (B8).
-    fn never_back(&self, entry: &Entry, start: &Setpoint, target: f64, turns: i64, length: f64) -> i64 {
+    pub(super) fn never_back(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        target: f64,
+        turns: i64,
+        length: f64,
+    ) -> i64 {
         let heading = entry
             .direction
             .and_then(|direction| self.heading(direction, self.last_velocity > 0.0));

@@ -13,7 +13,7 @@
 use super::queue::{Entry, Place, Work};
 use super::{Axis, Motion};
 use crate::{AxisEvent, ErrorId, Event, Fate, Log};
-use standstill_planner::{Limits, Plan, Planner};
+use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 /// How much further than a stop is none: rounding, relative to the way.
 const ROUNDING: f64 = 1e-9;
@@ -59,7 +59,7 @@ impl<P: Planner> Axis<P> {
             self.pause(error, scan, log);
         }
         if let Some(layer) = &mut self.layer {
-            layer.look_again();
+            layer.try_soon();
         }
         self.resume(scan, log);
     }
@@ -74,7 +74,8 @@ impl<P: Planner> Axis<P> {
     /// paused may go no further than its stop.
     #[inline]
     pub(super) fn permitted(&self, entry: &Entry, plan: &P::Plan, before: &Limits) -> Result<(), ErrorId> {
-        if self.power.permitted == Permission::BOTH || !entry.leads_on() {
+        let brakes = entry.halted && !entry.paused;
+        if self.power.permitted == Permission::BOTH || brakes || !entry.leads_on() {
             return Ok(());
         }
         let limits = if entry.paused {
@@ -132,40 +133,39 @@ impl<P: Planner> Axis<P> {
         permitted.bars(true, true).filter(|_| passage.wanted <= 0.0)
     }
 
-    /// Everything brakes: from now on there is one motion, that of the sum. The owner keeps its end. What is
-    /// superimposed on an axis that stands brakes by itself, so that its way counts.
-    fn pause(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
+    /// Everything brakes: from now on there is one motion, with the velocity of the sum. What is superimposed on an
+    /// axis that stands brakes by itself, so that its way counts.
+    pub(super) fn pause(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
         let source = self.owner_source(scan);
         self.record(Event::Paused { error }, source, log);
         if !matches!(self.motion, Motion::Run { .. }) {
             return self.brake_superimposed();
         }
-        let reached = self.goal_reached();
-        let goal = match &self.motion {
-            Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).velocity,
-            Motion::Follow | Motion::Hold => 0.0,
-        };
-        self.in_force = self.limits_before(&self.in_force);
-        let added = match &mut self.layer {
-            Some(layer) => layer.hand_in(&self.setpoint),
-            None => 0.0,
-        };
-        if let Some(owner) = &mut self.owner
-            && owner.leads_on()
-        {
+        if let Some(mut owner) = self.owner.filter(Entry::leads_on) {
+            self.note_passing(&mut owner);
             owner.paused = true;
             owner.turns = 0;
-            owner.end = owner.end.map(|end| end + added);
-            if matches!(owner.work, Work::Velocity { .. }) || (owner.is_endless() && reached) {
-                // The end is behind it, and mcCurrentDirection means the one it had.
-                owner.end = None;
-                owner.work = Work::Velocity {
-                    velocity: goal,
-                    along: false,
-                };
-            }
+            self.owner = Some(owner);
         }
-        self.ramp_down(source, log);
+        self.replan_due = false;
+        self.in_force = self.limits_before(&self.in_force);
+        if let Some(layer) = &mut self.layer {
+            layer.pass_velocity(Setpoint {
+                position: layer.base.position,
+                ..self.setpoint
+            });
+        }
+        let (start, limits) = (self.base(), self.stop_limits());
+        self.motion = match self.planner.ramp_to(&start, 0.0, &limits, &self.in_force) {
+            Ok(plan) if !start.is_at_rest() => {
+                if let Some(excess) = plan.excess().and_then(|excess| self.beyond_axis(excess, &limits)) {
+                    self.record(Event::Unavoidable(excess), source, log);
+                }
+                Motion::along(plan)
+            }
+            _ => Motion::Hold,
+        };
+        self.in_force = limits;
         self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
     }
 
@@ -175,21 +175,11 @@ impl<P: Planner> Axis<P> {
         let Some(mut owner) = self.owner.filter(|owner| owner.paused) else {
             return;
         };
-        if let Some(layer) = &self.layer {
-            owner.end = owner.end.map(|end| end + layer.not_taken());
+        if owner.turns == 0 {
+            self.stay_in_direction(&mut owner, &self.base());
         }
-        owner.passage = self.passage(&owner, self.setpoint.position, 0);
-        match self.plan_next(&owner) {
-            Ok(Some(motion)) => {
-                owner.paused = false;
-                self.record_plan(&owner, &motion, scan, log);
-                self.take_over(owner.limits, &motion);
-                self.motion = motion;
-                self.start_of_plan();
-                self.watched = self.needs_watching(&owner);
-                self.owner = Some(owner);
-            }
-            Ok(None) | Err(ErrorId::PositiveBarred | ErrorId::NegativeBarred) => {}
+        match self.plan_anew(owner, scan, log) {
+            Ok(()) | Err(ErrorId::PositiveBarred | ErrorId::NegativeBarred) => {}
             Err(error) if self.setpoint.is_at_rest() && self.layer.is_none() => {
                 let source = self.owner_source(scan);
                 self.refuse_plan(&owner, error, source, log);
@@ -206,7 +196,7 @@ impl<P: Planner> Axis<P> {
     /// The paused owner stands. What it needs now may be permitted: the stop may have passed its end.
     #[cold]
     pub(super) fn settle_paused(&mut self, scan: u64, log: &mut Log) {
-        if matches!(self.motion, Motion::Run { .. }) {
+        if self.is_paused() && matches!(self.motion, Motion::Run { .. }) {
             self.motion = Motion::Hold;
             self.resume(scan, log);
         }
@@ -223,8 +213,14 @@ impl<P: Planner> Axis<P> {
             self.aim(&mut owner, self.setpoint.position);
         } else {
             owner.end = owner.end.map(|end| end + by);
+            owner.from += by;
         }
         self.owner = Some(owner);
+    }
+
+    /// Whether a direction is barred.
+    pub(super) fn bars_any(&self) -> bool {
+        self.power.permitted != Permission::BOTH
     }
 
     /// A direction in which nothing may be added to a layer at rest.

@@ -1,5 +1,6 @@
 //! Commands that were accepted: the owner and those that wait.
 
+use super::accept::REST;
 use crate::{BufferMode, CommandId, Direction, InstanceId, QUEUE_MAX};
 use standstill_planner::{Limits, Passage};
 
@@ -53,6 +54,45 @@ impl Work {
         }
     }
 
+    /// The velocity (u/s) it goes on with, 0 if it ends at rest.
+    pub fn velocity(&self) -> f64 {
+        match *self {
+            Self::Through { end_velocity, .. } => end_velocity,
+            Self::Velocity { velocity, .. } => velocity,
+            Self::Position(_)
+            | Self::Distance(_)
+            | Self::Halt
+            | Self::Stop
+            | Self::Home(_)
+            | Self::SetPosition { .. } => 0.0,
+        }
+    }
+
+    /// The same with another velocity to go on with (u/s).
+    pub fn with_velocity(self, velocity: f64) -> Self {
+        match self {
+            Self::Through { to, .. } => Self::Through {
+                to,
+                end_velocity: velocity,
+            },
+            Self::Velocity { along, .. } => Self::Velocity { velocity, along },
+            Self::Position(_)
+            | Self::Distance(_)
+            | Self::Halt
+            | Self::Stop
+            | Self::Home(_)
+            | Self::SetPosition { .. } => self,
+        }
+    }
+
+    /// Whether the override holds for it: it does for moves, not for what stops or names places (V16).
+    pub fn obeys_override(&self) -> bool {
+        match self {
+            Self::Position(_) | Self::Distance(_) | Self::Through { .. } | Self::Velocity { .. } => true,
+            Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } => false,
+        }
+    }
+
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Position(_) => "position",
@@ -72,8 +112,20 @@ impl Work {
 pub(super) struct Entry {
     pub id: CommandId,
     pub instance: InstanceId,
+    /// What it does; velocities as the override has them.
     pub work: Work,
+    /// Its limits, as the override has them.
     pub limits: Limits,
+    /// What the program asked for, before the override.
+    pub asked: Asked,
+    /// The override holds it at rest: it goes on when the factor of the velocity is raised.
+    pub halted: bool,
+    /// It has passed the place it leads through, and goes on with its end velocity.
+    pub passed: bool,
+    /// Where its distance counts from (u), once that is known (R13).
+    pub from: f64,
+    /// mcCurrentDirection of a velocity, as it was when the command became active.
+    pub sign: f64,
     /// Way round to a position on a modulo axis; `None` where the position is one of the frame, some turns on.
     pub direction: Option<Direction>,
     /// Whole turns the frame of a modulo axis moves on by when it begins.
@@ -90,7 +142,40 @@ pub(super) struct Entry {
     pub paused: bool,
 }
 
+/// Values of a command before the override.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    pub limits: Limits,
+    /// Velocity of an endless motion, end velocity of a continuous move (u/s).
+    pub velocity: f64,
+}
+
 impl Entry {
+    /// A command that starts at rest, or with what the one before leaves it.
+    pub fn new(id: CommandId, instance: InstanceId, work: Work, limits: Limits, mode: BufferMode) -> Self {
+        Self {
+            id,
+            instance,
+            work,
+            limits,
+            asked: Asked {
+                limits,
+                velocity: work.velocity(),
+            },
+            halted: false,
+            passed: false,
+            from: 0.0,
+            sign: 1.0,
+            direction: None,
+            turns: 0,
+            mode,
+            end: None,
+            passage: REST,
+            held: work == Work::Stop,
+            paused: false,
+        }
+    }
+
     /// Where it leads, if anywhere.
     pub fn place(&self) -> Option<Place> {
         match self.work {
@@ -150,6 +235,10 @@ impl Queue {
 
     pub fn iter(&self) -> impl Iterator<Item = &Entry> {
         self.entries.iter().flatten()
+    }
+
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Entry> {
+        self.entries.iter_mut().flatten()
     }
 
     pub fn contains(&self, id: CommandId) -> bool {

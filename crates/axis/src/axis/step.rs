@@ -110,7 +110,7 @@ impl<P: Planner> Axis<P> {
             }
             return;
         };
-        if owner.paused {
+        if self.is_held_up() {
             return self.settle_paused(scan, log);
         }
         match owner.work {

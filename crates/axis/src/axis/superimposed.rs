@@ -36,8 +36,12 @@ pub(super) struct Added {
     pub id: CommandId,
     instance: InstanceId,
     adds: Adds,
-    /// As commanded.
+    /// As the override has them.
     limits: Limits,
+    /// As commanded.
+    asked: Limits,
+    /// The override holds it: it comes to rest and goes on when the factor of the velocity is raised.
+    halting: bool,
     /// The motion added is this command's; else it waits for room and the one before it comes to its end.
     planned: bool,
     /// That motion is slower than asked for.
@@ -110,30 +114,21 @@ impl<P: Plan> Layer<P> {
         self.sum().position
     }
 
-    /// The sum is one motion from now on, at `sum`; returns how much of what was added (u) was not in the base
-    /// yet. What is left of a distance waits.
-    pub fn hand_in(&mut self, sum: &Setpoint) -> f64 {
-        let added = self.not_taken();
-        self.base = *sum;
+    /// The owner's plan starts at `start` (u) of its own frame; returns the sum's position.
+    pub fn start_at(&mut self, start: f64) -> f64 {
+        self.base.position = start;
+        self.sum().position
+    }
+
+    /// The owner takes over the whole velocity, as `sum`; what is left to add starts again from rest.
+    pub fn pass_velocity(&mut self, sum: Setpoint) {
+        self.base = sum;
         self.motion = Motion::Hold;
         self.added = Setpoint::at_rest(self.added.position);
-        self.taken = self.added.position;
         if let Some(command) = &mut self.command {
             command.planned = command.adds == Adds::Halt;
             command.lowered = false;
         }
-        added
-    }
-
-    /// What was added (u) since the base began.
-    pub fn not_taken(&self) -> f64 {
-        self.added.position - self.taken
-    }
-
-    /// A command that waits is tried again with the next set-point.
-    pub fn look_again(&mut self) {
-        // 0 stands for a command that was not tried yet.
-        self.retry = self.retry.min(1);
     }
 
     /// The rest of a superimposed distance, and the limits it keeps.
@@ -144,6 +139,16 @@ impl<P: Plan> Layer<P> {
             }
             _ => None,
         }
+    }
+
+    /// The owner's motion is another one: a command that waits or was lowered is tried again.
+    pub fn try_soon(&mut self) {
+        self.retry = 0;
+    }
+
+    /// Where the axis will be once everything is added to the owner at `position` (u).
+    pub fn end_above(&self, position: f64) -> f64 {
+        position + (self.added.position - self.taken) + self.left()
     }
 
     fn sum(&self) -> Setpoint {
@@ -203,7 +208,9 @@ impl<P: Planner> Axis<P> {
                 origin,
                 target,
             },
-            limits,
+            limits: self.factors.of(&limits, &self.config.limits),
+            asked: limits,
+            halting: self.factors.halt(),
             planned: false,
             lowered: false,
         };
@@ -239,6 +246,8 @@ impl<P: Planner> Axis<P> {
             instance: source.instance,
             adds: Adds::Halt,
             limits,
+            asked: limits,
+            halting: false,
             planned: !layer.moves(),
             lowered: false,
         };
@@ -316,8 +325,13 @@ impl<P: Planner> Axis<P> {
     /// Where the owner will stand (u); NaN if it does not come to rest by itself.
     fn base_end(&self, layer: &Layer<P::Plan>) -> f64 {
         match (&self.motion, self.owner.as_ref().map(|owner| owner.work)) {
-            _ if self.is_paused() => self.owner.and_then(|owner| owner.end).unwrap_or(f64::NAN),
             (Motion::Run { .. }, Some(Work::Velocity { .. } | Work::Through { .. })) => f64::NAN,
+            // Halted, its plan ends elsewhere.
+            (Motion::Run { .. }, Some(Work::Position(_) | Work::Distance(_))) => self
+                .owner
+                .as_ref()
+                .and_then(|owner| owner.end)
+                .unwrap_or(f64::NAN),
             (Motion::Run { plan, .. }, _) => plan.at(u64::from(plan.scans())).position,
             (Motion::Hold | Motion::Follow, _) => layer.base.position,
         }
@@ -391,6 +405,9 @@ impl<P: Planner> Axis<P> {
             self.settle(scan, log);
         }
         self.settle_superimposed(scan, log);
+        if self.replan_due {
+            self.replan_late(scan, log);
+        }
     }
 
     /// Completion of what is superimposed, and a new attempt of a command that waits or was lowered.
@@ -405,7 +422,12 @@ impl<P: Planner> Axis<P> {
             let stopped = layer.moves();
             layer.motion = Motion::Hold;
             match layer.command {
-                Some(Added { planned, adds, .. }) if planned || adds == Adds::Halt => {
+                Some(Added {
+                    planned,
+                    adds,
+                    halting: false,
+                    ..
+                }) if planned || adds == Adds::Halt => {
                     self.end_superimposed_command(Fate::Done);
                 }
                 // It stands now, from where more may fit.

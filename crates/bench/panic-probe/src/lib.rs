@@ -44,6 +44,7 @@ impl Image {
             stop_jerk: any(None),
             on_power_off: any(PowerOff::Ramp),
             needs_homed: any(false),
+            override_max: any(1.0),
             ..any(AxisConfig::new(any(Limits::NONE)))
         };
         let info = REGISTRY.get(any(0))?;

@@ -146,6 +146,7 @@ impl Reader {
         let needs_homed = fields
             .get("needs_homed")
             .map_or(Some(false), |node| self.boolean(node, "`needs_homed`"));
+        let override_max = self.optional(fields, "override_max", "`override_max`");
         let scaling = self.scaling(fields);
         let modulo = self.optional(fields, "modulo", "`modulo`");
         let software_limits = self.software_limits(fields);
@@ -160,6 +161,7 @@ impl Reader {
         config.on_power_off = on_power_off?;
         config.queue = usize::try_from(queue?).ok()?;
         config.needs_homed = needs_homed?;
+        config.override_max = override_max?.unwrap_or(config.override_max);
         config.scaling = scaling?;
         config.modulo = modulo?;
         config.software_limits = software_limits?;

@@ -4,9 +4,10 @@ use super::json::{Json, Node};
 use super::value::Fields;
 use super::{Reader, shape};
 use crate::error::{Code, Diagnostic};
-use crate::model::{Cia402Setup, DriveSetup, IdealDriveSetup};
+use crate::model::{Cia402Setup, DriveSetup, IdealDriveSetup, PlantSetup};
 use standstill_axis::DELAY_MAX;
 use standstill_drives::cia402::Reaction;
+use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, Servo};
 
 /// How a CiA 402 drive comes to rest by itself; `stay` is for the quick stop only.
 pub(crate) const REACTIONS: [(&str, Reaction); 3] = [
@@ -22,14 +23,21 @@ impl Reader {
             return Some(DriveSetup::default());
         };
         let fields = self.fields(node, &shape::DRIVE)?;
-        match (fields.entry("ideal"), fields.entry("cia402")) {
-            (Some(_), Some((key, _))) => {
-                let message = "an axis has one drive, `ideal` or `cia402`";
-                self.report(Diagnostic::new(Code::BadValue, key.span, message));
-                None
-            }
-            (Some((_, ideal)), None) => self.ideal(ideal).map(DriveSetup::Ideal),
-            (None, Some((key, _))) if !is_scaled => {
+        let mut kinds = fields
+            .iter()
+            .filter(|(key, _)| matches!(key.text.as_str(), "ideal" | "cia402" | "plant"));
+        let Some((key, node)) = kinds.next() else {
+            return Some(DriveSetup::default());
+        };
+        if let Some((second, _)) = kinds.next() {
+            let message = format!("an axis has one drive, `{}` or `{}`", key.text, second.text);
+            self.report(Diagnostic::new(Code::BadValue, second.span, message));
+            return None;
+        }
+        match key.text.as_str() {
+            "ideal" => self.ideal(node).map(DriveSetup::Ideal),
+            "plant" => self.plant(node).map(DriveSetup::Plant),
+            _ if !is_scaled => {
                 let message = "a CiA 402 drive counts increments, so its axis needs `scaling`";
                 self.report(
                     Diagnostic::new(Code::MissingKey, key.span, message)
@@ -37,9 +45,81 @@ impl Reader {
                 );
                 None
             }
-            (None, Some((_, cia402))) => self.cia402(cia402).map(DriveSetup::Cia402),
-            (None, None) => Some(DriveSetup::default()),
+            _ => self.cia402(node).map(DriveSetup::Cia402),
         }
+    }
+
+    fn plant(&mut self, node: &Node) -> Option<PlantSetup> {
+        let fields = self.fields(node, &shape::PLANT)?;
+        let power_on = self.power_on(&fields);
+        let inertia = self
+            .require(&fields, "inertia", "a plant")
+            .and_then(|node| self.finite(node, "`inertia`"));
+        let viscous = self.optional(&fields, "viscous", "`viscous`");
+        let coulomb = self.optional(&fields, "coulomb", "`coulomb`");
+        let torque = self.optional(&fields, "torque", "`torque`");
+        let load = fields
+            .get("load")
+            .map_or(Some(None), |node| self.load(node).map(Some));
+        let plant = Plant {
+            inertia: inertia?,
+            viscous: viscous?.unwrap_or(0.0),
+            coulomb: coulomb?.unwrap_or(0.0),
+            load: load?,
+        };
+        let cycle = self.cycle_ns? as f64 / 1e9;
+        let mut gains = Gains::of(&plant, cycle);
+        if let Some(limit) = torque? {
+            gains.torque = limit;
+        }
+        if let Some(node) = fields.get("gains") {
+            self.gains(node, &mut gains)?;
+        }
+        // What is wrong with it shows when it is made.
+        let made = Mechanism::new(plant, 0.0, cycle).and_then(|made| Servo::new(made, gains, cycle));
+        if let Err(error) = made {
+            self.report(Diagnostic::new(Code::BadValue, fields.brace(), error.to_string()));
+            return None;
+        }
+        Some(PlantSetup {
+            power_on: power_on?,
+            plant,
+            gains,
+        })
+    }
+
+    fn load(&mut self, node: &Node) -> Option<Load> {
+        let fields = self.fields(node, &shape::LOAD)?;
+        let mut needed = |key: &str| {
+            let node = self.require(&fields, key, "the load of a plant")?;
+            self.finite(node, &format!("`{key}`"))
+        };
+        let (inertia, stiffness) = (needed("inertia"), needed("stiffness"));
+        let damping = self.optional(&fields, "damping", "`damping`");
+        Some(Load {
+            inertia: inertia?,
+            stiffness: stiffness?,
+            damping: damping?.unwrap_or(0.0),
+        })
+    }
+
+    fn gains(&mut self, node: &Node, gains: &mut Gains) -> Option<()> {
+        let fields = self.fields(node, &shape::GAINS)?;
+        let mut good = Some(());
+        for (key, gain) in [
+            ("position", &mut gains.position),
+            ("velocity", &mut gains.velocity),
+            ("integral", &mut gains.integral),
+            ("feed_velocity", &mut gains.feed_velocity),
+            ("feed_acceleration", &mut gains.feed_acceleration),
+        ] {
+            match self.optional(&fields, key, &format!("`{key}`")) {
+                Some(Some(value)) => *gain = value,
+                Some(None) => {}
+                None => good = None,
+            }
+        }
+        good
     }
 
     fn ideal(&mut self, node: &Node) -> Option<IdealDriveSetup> {

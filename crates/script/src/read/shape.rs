@@ -59,6 +59,7 @@ pub(crate) const AXIS: Shape = Shape {
         "stop_jerk",
         "on_power_off",
         "needs_homed",
+        "override_max",
         "drive",
         "note",
     ],
@@ -76,8 +77,8 @@ pub(crate) const SCALING: Shape = shape("`scaling`", &["increments", "units", "i
 pub(crate) const SOFTWARE_LIMITS: Shape = shape("`software_limits`", &["min", "max", "note"]);
 pub(crate) const DRIVE: Shape = Shape {
     what: "`drive`",
-    keys: &["ideal", "cia402", "note"],
-    later: &["plant"],
+    keys: &["ideal", "cia402", "plant", "note"],
+    later: &[],
 };
 pub(crate) const IDEAL: Shape = shape("the ideal drive", &["delay", "power_on", "note"]);
 pub(crate) const CIA402: Shape = shape(
@@ -92,6 +93,27 @@ pub(crate) const CIA402: Shape = shape(
         "on_fault",
         "limit_switches",
         "home_switch",
+        "note",
+    ],
+);
+pub(crate) const PLANT: Shape = shape(
+    "a plant",
+    &[
+        "power_on", "inertia", "viscous", "coulomb", "load", "gains", "torque", "note",
+    ],
+);
+pub(crate) const LOAD: Shape = shape(
+    "the load of a plant",
+    &["inertia", "stiffness", "damping", "note"],
+);
+pub(crate) const GAINS: Shape = shape(
+    "the gains of a plant",
+    &[
+        "position",
+        "velocity",
+        "integral",
+        "feed_velocity",
+        "feed_acceleration",
         "note",
     ],
 );

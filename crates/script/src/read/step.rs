@@ -214,8 +214,8 @@ impl Reader {
         let drive = self.drives.get(axis).copied().flatten();
         match (change, drive) {
             (DriveChange::Displace(_), _) | (_, None | Some(DriveSetup::Cia402(_))) => true,
-            (DriveChange::Remote(_) | DriveChange::Warning(_), Some(DriveSetup::Ideal(_))) => {
-                let message = format!("the ideal drive has no `{}`", key.text);
+            (DriveChange::Remote(_) | DriveChange::Warning(_), Some(_)) => {
+                let message = format!("only a CiA 402 drive has `{}`", key.text);
                 self.report(
                     Diagnostic::new(Code::BadValue, key.span, message)
                         .help("give the axis \"drive\": {\"cia402\": {}}"),

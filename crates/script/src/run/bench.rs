@@ -27,7 +27,10 @@ pub(crate) fn machine(script: &Script) -> Result<ScriptMachine, RunError> {
     let mut machine = Machine::new();
     let planner = Standard::new(script.cycle_ns as f64 / 1e9);
     for axis in &script.axes {
-        let drive = ScriptDrive::new(axis, script.cycle_ns);
+        let drive = ScriptDrive::new(axis, script.cycle_ns).map_err(|error| RunError::Axis {
+            axis: axis.name.clone(),
+            reason: error.to_string(),
+        })?;
         machine
             .add_axis(axis.config, planner, drive)
             .map_err(|error| RunError::Axis {

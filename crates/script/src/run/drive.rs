@@ -1,22 +1,26 @@
 //! The drives a script can have.
 
-use crate::model::{Axis, Cia402Setup, DriveChange, DriveSetup, IdealDriveSetup};
+use crate::model::{Axis, Cia402Setup, DriveChange, DriveSetup, IdealDriveSetup, PlantSetup};
 use standstill_axis::{Drive, DriveCommand, DriveFeedback, DrivePosition, IdealDrive, Powered, StartState};
 use standstill_drives::cia402::{Cia402Drive, Settings};
+use standstill_drives::mechanism::{Mechanism, MechanismError, PlantDrive, Servo};
 
 /// One of them.
 #[derive(Clone, Debug)]
 pub(crate) enum ScriptDrive {
     Ideal(Box<IdealDrive>),
     Cia402(Box<Cia402Drive>),
+    Plant(Box<PlantDrive>),
 }
 
 impl ScriptDrive {
-    pub(crate) fn new(axis: &Axis, cycle_ns: i64) -> Self {
+    /// # Errors
+    /// None for what was read: the mechanism was made once then.
+    pub(crate) fn new(axis: &Axis, cycle_ns: i64) -> Result<Self, MechanismError> {
         let increments = |position: f64| axis.config.scaling.map(|scaling| scaling.to_increments(position));
         let position = increments(axis.config.position);
         let enabled = axis.config.start == StartState::Standstill;
-        match axis.drive {
+        Ok(match axis.drive {
             DriveSetup::Ideal(IdealDriveSetup { delay, power_on }) => {
                 let position = match position {
                     Some(increments) => DrivePosition::Increments(increments),
@@ -44,7 +48,21 @@ impl ScriptDrive {
                     home: setup.home_switch.and_then(ordered),
                 })))
             }
-        }
+            DriveSetup::Plant(PlantSetup {
+                power_on,
+                plant,
+                gains,
+            }) => {
+                let cycle = cycle_ns as f64 / 1e9;
+                let mechanism = Mechanism::new(plant, axis.config.position, cycle)?;
+                let servo = Servo::new(mechanism, gains, cycle)?;
+                let counts = axis.config.scaling.map(|scaling| {
+                    let ratio = f64::from(scaling.increments()) / f64::from(scaling.units());
+                    (if scaling.invert() { -ratio } else { ratio }, scaling.offset())
+                });
+                Self::Plant(Box::new(PlantDrive::new(servo, counts, power_on, enabled)))
+            }
+        })
     }
 
     /// A drive fault with the drive's own `code`.
@@ -52,6 +70,7 @@ impl ScriptDrive {
         match self {
             Self::Ideal(drive) => drive.fail(code),
             Self::Cia402(drive) => drive.node_mut().fail(code),
+            Self::Plant(drive) => drive.fail(code),
         }
     }
 
@@ -60,6 +79,7 @@ impl ScriptDrive {
         match self {
             Self::Ideal(drive) => drive.cut_power(),
             Self::Cia402(drive) => drive.node_mut().cut_power(),
+            Self::Plant(drive) => drive.cut_power(),
         }
     }
 
@@ -68,6 +88,7 @@ impl ScriptDrive {
         match self {
             Self::Ideal(drive) => drive.cut_communication(),
             Self::Cia402(drive) => drive.node_mut().cut_communication(),
+            Self::Plant(drive) => drive.cut_communication(),
         }
     }
 
@@ -76,6 +97,7 @@ impl ScriptDrive {
         match self {
             Self::Ideal(drive) => drive.clear_cause(),
             Self::Cia402(drive) => drive.node_mut().clear_cause(),
+            Self::Plant(drive) => drive.clear_cause(),
         }
     }
 
@@ -86,6 +108,7 @@ impl ScriptDrive {
     pub(crate) fn change(&mut self, change: DriveChange) -> Result<(), Powered> {
         match (self, change) {
             (Self::Ideal(drive), DriveChange::Displace(distance)) => drive.displace(distance),
+            (Self::Plant(drive), DriveChange::Displace(distance)) => drive.displace(distance),
             (Self::Cia402(drive), DriveChange::Displace(distance)) => {
                 drive.node_mut().displace(distance as i64).map_err(|_| Powered)
             }
@@ -97,7 +120,7 @@ impl ScriptDrive {
                 drive.node_mut().set_warning(warning);
                 Ok(())
             }
-            (Self::Ideal(_), DriveChange::Remote(_) | DriveChange::Warning(_)) => Ok(()),
+            (Self::Ideal(_) | Self::Plant(_), DriveChange::Remote(_) | DriveChange::Warning(_)) => Ok(()),
         }
     }
 }
@@ -117,6 +140,7 @@ impl Drive for ScriptDrive {
         match self {
             Self::Ideal(drive) => drive.read(now_ns),
             Self::Cia402(drive) => drive.read(now_ns),
+            Self::Plant(drive) => drive.read(now_ns),
         }
     }
 
@@ -124,6 +148,7 @@ impl Drive for ScriptDrive {
         match self {
             Self::Ideal(drive) => drive.write(now_ns, command),
             Self::Cia402(drive) => drive.write(now_ns, command),
+            Self::Plant(drive) => drive.write(now_ns, command),
         }
     }
 }

@@ -250,11 +250,25 @@ pub fn cases() -> Vec<Case> {
             "\"scaling\": {\"increments\": 9, \"units\": 1}, \"drive\": {\"cia402\": {\"on_fault\": \"stay\"}}, \"state\"",
         ),
         case(
-            "unsupported",
+            "missing_key",
             Schema,
-            "a plant",
+            "a plant without inertia",
             "\"state\"",
             "\"drive\": {\"plant\": {}}, \"state\"",
+        ),
+        case(
+            "bad_value",
+            Reader,
+            "a plant with a load of nothing",
+            "\"state\"",
+            "\"drive\": {\"plant\": {\"inertia\": 1, \"load\": {\"inertia\": 0, \"stiffness\": 1}}}, \"state\"",
+        ),
+        case(
+            "bad_value",
+            Reader,
+            "gains below zero",
+            "\"state\"",
+            "\"drive\": {\"plant\": {\"inertia\": 1, \"gains\": {\"position\": -1}}}, \"state\"",
         ),
         case(
             "unsupported",

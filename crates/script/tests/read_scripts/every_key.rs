@@ -2,10 +2,11 @@
 
 use standstill_axis::{AboveLimit, AxisId, Limits, MoveProfile, PowerOff, Scaling};
 use standstill_drives::cia402::Reaction;
+use standstill_drives::mechanism::{Gains, Load, Plant};
 use standstill_fb::Value;
 use standstill_script::model::{
-    Action, Cia402Setup, ClaimKind, Comparison, DriveChange, DriveSetup, FaultKind, IdealDriveSetup, Point,
-    Range, Script, Test, When, Wire,
+    Action, Cia402Setup, ClaimKind, Comparison, DriveChange, DriveSetup, FaultKind, IdealDriveSetup,
+    PlantSetup, Point, Range, Script, Test, When, Wire,
 };
 use standstill_script::{format, read};
 
@@ -72,6 +73,30 @@ fn axes_take_their_configuration() {
             on_fault: Reaction::Coast,
             limit_switches: Some((-10.0, 10.0)),
             home_switch: Some((-1.0, 0.5)),
+        })
+    );
+    assert_eq!(
+        script.axes[3].drive,
+        DriveSetup::Plant(PlantSetup {
+            power_on: Some(4),
+            plant: Plant {
+                inertia: 0.02,
+                viscous: 0.001,
+                coulomb: 0.05,
+                load: Some(Load {
+                    inertia: 0.05,
+                    stiffness: 200.0,
+                    damping: 0.01
+                }),
+            },
+            gains: Gains {
+                position: 50.0,
+                velocity: 2.0,
+                integral: 30.0,
+                feed_velocity: 0.5,
+                feed_acceleration: 0.0,
+                torque: 9.0,
+            },
         })
     );
 }

@@ -116,12 +116,15 @@ impl<P: Planner> Axis<P> {
         layer: &Layer<P::Plan>,
         command: &Added,
     ) -> Result<Option<Proposal<P::Plan>>, ErrorId> {
+        let axis = &self.config.limits;
+        if command.halting && !layer.moves() {
+            return Ok(None);
+        }
         if let (Adds::Distance { target, .. }, false) = (command.adds, layer.moves())
             && let Some(error) = self.way_barred(target - layer.added.position)
         {
             return Err(error);
         }
-        let axis = &self.config.limits;
         let base = self.rest_of_base();
         let room = Room {
             limits: base.map_or(*axis, |rest| self.planner.room(rest, axis)),
@@ -136,6 +139,9 @@ impl<P: Planner> Axis<P> {
             last = Some(limits);
             let before = if layer.moves() { &layer.in_force } else { &limits };
             let planned = match command.adds {
+                Adds::Distance { .. } if command.halting => {
+                    self.planner.ramp_to(&layer.added, 0.0, &limits, before)
+                }
                 Adds::Distance { target, .. } => {
                     let profile = self.config.profile;
                     self.planner
@@ -146,6 +152,7 @@ impl<P: Planner> Axis<P> {
             match planned {
                 Ok(plan) => {
                     if command.adds != Adds::Halt
+                        && !command.halting
                         && let Some(error) = self.barred((&plan, 0), &limits, before)
                     {
                         return Err(error);
@@ -179,6 +186,7 @@ impl<P: Planner> Axis<P> {
             .rest_of_base()
             .map(|rest| (self.planner.next_switch(rest), rest.1));
         let Some(layer) = &mut self.layer else { return };
+        let moves = layer.moves();
         let Some(command) = &mut layer.command else { return };
         let first = layer.retry == 0;
         layer.retry = match next_switch {
@@ -204,12 +212,12 @@ impl<P: Planner> Axis<P> {
                 self.record_lowered(&command, &limits, scan, log);
                 let scans = plan.scans();
                 let distance = match command.adds {
-                    Adds::Distance { distance, .. } => Some(distance),
-                    Adds::Halt => None,
+                    Adds::Distance { distance, .. } if !command.halting => Some(distance),
+                    Adds::Distance { .. } | Adds::Halt => None,
                 };
                 self.record_as(&command, Event::Superimposed { distance, scans }, scan, log);
             }
-            None if first && !command.planned => {
+            None if first && !command.planned && (!command.halting || moves) => {
                 let command = *command;
                 self.record_as(&command, Event::RoomAwaited, scan, log);
             }
@@ -228,10 +236,29 @@ impl<P: Planner> Axis<P> {
             ("Snap", asked.snap, used.snap),
         ];
         for (pin, value, limit) in pins {
-            if limit < value && (pin != "VelocityDiff" || command.adds != Adds::Halt) {
+            let rests = command.halting || command.adds == Adds::Halt;
+            if limit < value && (pin != "VelocityDiff" || !rests) {
                 self.record_as(command, Event::Clamped { pin, value, limit }, scan, log);
             }
         }
+    }
+
+    /// The override has changed: a superimposed move takes its new limits, comes to rest, or goes on.
+    pub(in crate::axis) fn override_superimposed(&mut self, scan: u64, log: &mut Log) {
+        let Some(mut layer) = self.layer else { return };
+        let Some(command) = layer
+            .command
+            .as_mut()
+            .filter(|command| command.adds != Adds::Halt)
+        else {
+            return;
+        };
+        command.limits = self.factors.of(&command.asked, &self.config.limits);
+        command.halting = self.factors.halt();
+        command.planned = false;
+        layer.try_soon();
+        self.layer = Some(layer);
+        self.try_again(scan, log);
     }
 
     /// A command that waits or was lowered is tried again when the owner's motion has changed.
@@ -299,37 +326,42 @@ impl<P: Planner> Axis<P> {
         } else {
             entry.limits
         };
-        let taken = layer.added.position;
         let mut motion = self.plan_from(entry, &start, &in_force)?;
         if let (Motion::Run { plan, .. }, false) = (&motion, entry.is_endless()) {
             self.allowed(plan.at(u64::from(plan.scans())).position + layer.left())?;
         }
         layer.base = start;
-        if let (
-            Motion::Run { plan, .. },
-            Motion::Run {
-                plan: added, elapsed, ..
-            },
-        ) = (&motion, &layer.motion)
-        {
-            let (axis, range) = (&self.config.limits, self.range(taken));
-            if !self.planner.fits((plan, 0), (added, *elapsed), axis, range) {
-                motion = self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))?;
-                if self.exceeds(&motion, &entry.limits) {
-                    // It cannot take this velocity over either; soon there is less of it.
-                    return Ok(None);
-                }
-                layer.hand_in(&self.setpoint);
+        layer.taken = layer.added.position;
+        if !self.fits_under(&motion, &layer) {
+            motion = self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))?;
+            if self.exceeds(&motion, &entry.limits) {
+                // It cannot take this velocity over either; soon there is less of it.
+                return Ok(None);
             }
+            layer.pass_velocity(self.setpoint);
         }
-        layer.taken = taken;
-        layer.retry = 0;
+        layer.try_soon();
         self.layer = Some(layer);
         Ok(Some(motion))
     }
 
+    /// Whether a new motion of the owner leaves room for what is being added.
+    pub(in crate::axis) fn fits_under(&self, motion: &Motion<P::Plan>, layer: &Layer<P::Plan>) -> bool {
+        let (
+            Motion::Run { plan, .. },
+            Motion::Run {
+                plan: added, elapsed, ..
+            },
+        ) = (motion, &layer.motion)
+        else {
+            return true;
+        };
+        let (axis, range) = (&self.config.limits, self.range(layer.taken));
+        self.planner.fits((plan, 0), (added, *elapsed), axis, range)
+    }
+
     /// Whether a plan within `limits` must exceed those of the axis.
-    fn exceeds(&self, motion: &Motion<P::Plan>, limits: &Limits) -> bool {
+    pub(in crate::axis) fn exceeds(&self, motion: &Motion<P::Plan>, limits: &Limits) -> bool {
         let Motion::Run { plan, .. } = motion else {
             return false;
         };

@@ -1,0 +1,151 @@
+//! The override: factors on the velocities, accelerations and jerks of what an axis is told to do.
+//!
+//! A command keeps what the program asked for beside what the override makes of it, so that factors never add up.
+//! With 0 for the velocity the owner comes to rest and stays the owner: the state does not change, nothing
+//! completes and nothing is handed over until the factor is raised.
+//!
+//! Source: PLCopen Motion Control Part 1, MC_SetOverride; S5, S6, B17, T39d, V16.
+
+use super::queue::Entry;
+use super::{Axis, Source};
+use crate::{ErrorId, Log};
+use standstill_planner::{Limits, Planner};
+
+/// Factors of an override. The axis starts with 1 for each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Factors {
+    /// Of velocities, from 0 on.
+    pub velocity: f64,
+    /// Of accelerations and decelerations, above 0.
+    pub acceleration: f64,
+    /// Of jerks, above 0.
+    pub jerk: f64,
+}
+
+impl Factors {
+    /// No override.
+    pub const ONE: Self = Self {
+        velocity: 1.0,
+        acceleration: 1.0,
+        jerk: 1.0,
+    };
+
+    /// As bits, to tell whether anything changes.
+    pub fn bits(&self) -> [u64; 3] {
+        [self.velocity, self.acceleration, self.jerk].map(f64::to_bits)
+    }
+
+    /// The velocity is held at 0.
+    pub fn halt(&self) -> bool {
+        self.velocity == 0.0
+    }
+
+    /// What is left of `asked`, and never more than `axis` has. With 0 for the velocity the motion is a ramp to
+    /// rest, which needs no other velocity than what was asked for.
+    pub(super) fn of(&self, asked: &Limits, axis: &Limits) -> Limits {
+        Limits {
+            velocity: scaled(
+                asked.velocity,
+                if self.halt() { 1.0 } else { self.velocity },
+                axis.velocity,
+            ),
+            acceleration: scaled(asked.acceleration, self.acceleration, axis.acceleration),
+            deceleration: scaled(asked.deceleration, self.acceleration, axis.deceleration),
+            jerk: scaled(asked.jerk, self.jerk, axis.jerk),
+            snap: asked.snap,
+        }
+    }
+}
+
+/// `asked` times `factor`, in magnitude at most `limit`.
+fn scaled(asked: f64, factor: f64, limit: f64) -> f64 {
+    let value = asked * factor;
+    if value.abs() <= limit {
+        value
+    } else if value < 0.0 {
+        -limit
+    } else {
+        limit
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// The override in force.
+    pub fn factors(&self) -> Factors {
+        self.factors
+    }
+
+    /// MC_SetOverride: `factors` hold from now on, for the motion in progress, for what waits and for what comes.
+    /// In every state, and without changing it. Ramps to rest (MC_Halt, MC_Stop, power, errors) are as commanded.
+    ///
+    /// Cost: a comparison if nothing changes; else the owner is planned anew, and what is superimposed.
+    ///
+    /// # Errors
+    /// The [`ErrorId`] the block shows: a factor out of range, or a motion that could not be planned anew.
+    /// Nothing changes then.
+    #[inline]
+    pub fn set_override(&mut self, factors: Factors, source: Source, log: &mut Log) -> Result<(), ErrorId> {
+        if factors == self.factors {
+            return Ok(());
+        }
+        self.change_override(factors, source, log)
+    }
+
+    #[inline(never)]
+    fn change_override(&mut self, factors: Factors, source: Source, log: &mut Log) -> Result<(), ErrorId> {
+        let most = self.config.override_max;
+        let pins = [
+            ("VelFactor", factors.velocity, true),
+            ("AccFactor", factors.acceleration, false),
+            ("JerkFactor", factors.jerk, false),
+        ];
+        for (pin, value, may_be_0) in pins {
+            // NaN is none of these.
+            if !((value > 0.0 || (may_be_0 && value == 0.0)) && value <= most) {
+                let limit = if value > most { most } else { 0.0 };
+                return Err(self.refuse(pin, value, limit, ErrorId::FactorInvalid, source, log));
+            }
+        }
+        let before = self.factors;
+        self.factors = factors;
+        self.override_queue();
+        if let Err(error) = self.override_owner(source.scan, log) {
+            self.factors = before;
+            self.override_queue();
+            return Err(self.refuse("VelFactor", factors.velocity, f64::NAN, error, source, log));
+        }
+        self.override_superimposed(source.scan, log);
+        Ok(())
+    }
+
+    /// What the override makes of `entry`.
+    pub(super) fn override_entry(&self, entry: &mut Entry) {
+        if !entry.work.obeys_override() {
+            return;
+        }
+        let (factors, axis) = (&self.factors, &self.config.limits);
+        entry.limits = factors.of(&entry.asked.limits, axis);
+        // Halted, it is the goal that waits, not one of 0.
+        let factor = if factors.halt() { 1.0 } else { factors.velocity };
+        let velocity = scaled(entry.asked.velocity, factor, axis.velocity);
+        entry.work = entry.work.with_velocity(velocity);
+        entry.halted = factors.halt();
+    }
+
+    fn override_queue(&mut self) {
+        let mut queue = self.queue;
+        for entry in queue.iter_mut() {
+            self.override_entry(entry);
+        }
+        self.queue = queue;
+    }
+
+    fn override_owner(&mut self, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+        let Some(mut owner) = self.owner.filter(|owner| owner.work.obeys_override()) else {
+            return Ok(());
+        };
+        self.note_passing(&mut owner);
+        self.override_entry(&mut owner);
+        self.replan(owner, scan, log)
+    }
+}

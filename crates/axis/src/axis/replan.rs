@@ -1,0 +1,191 @@
+//! The owner is planned anew in motion: new override factors, new values at its pins, a successor to blend with.
+//!
+//! The motion goes on from the last set-point, so nothing steps. Until the state is inside the new limits the
+//! largest of those that held since the command began hold too, getting inside comes first, and what no ramp can
+//! avoid is recorded. Something superimposed goes on if the sum stays inside the limits of the axis. If not, the
+//! owner takes over the velocity of the sum and what is left to superimpose starts again when there is room.
+//!
+//! Source: PLCopen Motion Control Part 1, sections on ContinuousUpdate and MC_SetOverride; R9, R12, B15 to B17.
+
+use super::queue::{Entry, Place, Work};
+use super::superimposed::Layer;
+use super::{Axis, Motion, Source};
+use crate::{ErrorId, Event, Goal, Log};
+use standstill_planner::{Limits, Plan, Planner, Setpoint};
+
+/// The larger one of each limit.
+pub(super) fn larger(a: &Limits, b: &Limits) -> Limits {
+    let max = |a: f64, b: f64| if b > a { b } else { a };
+    Limits {
+        velocity: max(a.velocity, b.velocity),
+        acceleration: max(a.acceleration, b.acceleration),
+        deceleration: max(a.deceleration, b.deceleration),
+        jerk: max(a.jerk, b.jerk),
+        snap: max(a.snap, b.snap),
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// Plans `owner`, the present one with other values, from the present state. With something superimposed it
+    /// may find no room just now: then it is tried again in every scan.
+    ///
+    /// Cost: at most two plans and two checks of a sum; on a modulo axis a ramp more; for each command that waits
+    /// blended a ramp, at most a root of ramps.
+    ///
+    /// # Errors
+    /// What the planner or the software limits refuse; nothing changes then.
+    pub(super) fn replan(&mut self, mut owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+        let here = self.base();
+        owner.turns = 0;
+        self.stay_in_direction(&mut owner, &here);
+        self.replan_aimed(owner, scan, log)
+    }
+
+    /// The same for an owner whose end has been found in the frame it is to move in.
+    pub(super) fn replan_aimed(&mut self, owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+        if owner.paused {
+            // It goes on with these values when it may.
+            self.owner = Some(owner);
+            return Ok(());
+        }
+        match self.plan_anew(owner, scan, log) {
+            Err(error @ (ErrorId::PositiveBarred | ErrorId::NegativeBarred)) => {
+                self.owner = Some(owner);
+                self.pause(error, scan, log);
+                Ok(())
+            }
+            planned => planned,
+        }
+    }
+
+    /// The same for one that may be paused, and goes on with this.
+    pub(super) fn plan_anew(&mut self, mut owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+        let here = self.base();
+        let start = self
+            .in_frame_of(&owner, &here)
+            .map_or(here.position, |framed| framed.position);
+        owner.passage = self.passage(&owner, start, 0);
+        let before = larger(&self.before, &self.in_force);
+        let motion = match self.layer {
+            None => Some(self.plan_from(&owner, &here, &before)?),
+            Some(layer) => self.plan_beside(layer, &owner, &before)?,
+        };
+        match motion {
+            Some(motion) => {
+                self.before = before;
+                self.adopt(owner, motion, scan, log);
+            }
+            None => {
+                owner.paused = false;
+                self.owner = Some(owner);
+                self.replan_due = true;
+            }
+        }
+        Ok(())
+    }
+
+    /// Plans `owner` with something superimposed, which goes on if there is room for it; `None` if it must wait.
+    #[inline(never)]
+    fn plan_beside(
+        &mut self,
+        mut layer: Layer<P::Plan>,
+        owner: &Entry,
+        before: &Limits,
+    ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
+        let mut motion = self.plan_from(owner, &layer.base, before)?;
+        if let (Motion::Run { plan, .. }, false) = (&motion, owner.is_endless() || owner.halted) {
+            self.allowed(layer.end_above(plan.at(u64::from(plan.scans())).position))?;
+        }
+        if !self.fits_under(&motion, &layer) {
+            let sum = Setpoint {
+                position: layer.base.position,
+                ..self.setpoint
+            };
+            let both = larger(before, &self.limits_before(&owner.limits));
+            motion = self.plan_from(owner, &sum, &both)?;
+            if self.exceeds(&motion, &owner.limits) {
+                return Ok(None);
+            }
+            layer.pass_velocity(sum);
+        }
+        layer.try_soon();
+        self.layer = Some(layer);
+        Ok(Some(motion))
+    }
+
+    /// A plan that had to wait for something superimposed is tried again.
+    #[cold]
+    pub(super) fn replan_late(&mut self, scan: u64, log: &mut Log) {
+        self.replan_due = false;
+        let Some(owner) = self.owner else { return };
+        if let Err(error) = self.replan(owner, scan, log) {
+            self.refuse_plan(&owner, error, self.owner_source(scan), log);
+        }
+    }
+
+    /// Notes that an endless owner has passed the place it led through: what comes leads from there on.
+    pub(super) fn note_passing(&self, owner: &mut Entry) {
+        let through = matches!(owner.work, Work::Through { .. });
+        owner.passed |= through && !owner.halted && !self.replan_due && self.goal_reached();
+    }
+
+    /// An owner that must not turn back goes on to the next time round if it can't stop before its target (B8).
+    pub(super) fn stay_in_direction(&self, owner: &mut Entry, here: &Setpoint) {
+        let (Some(modulo), Some(Place::At(_)), Some(end), Some(_)) =
+            (&self.modulo, owner.place(), owner.end, owner.direction)
+        else {
+            return;
+        };
+        if !owner.halted && !owner.passed {
+            owner.turns = self.never_back(owner, here, end, 0, modulo.length);
+        }
+    }
+
+    /// Sets `entry`, which is the owner or becomes it, in motion.
+    pub(super) fn adopt(&mut self, entry: Entry, motion: Motion<P::Plan>, scan: u64, log: &mut Log) {
+        if let Motion::Run { plan, .. } = &motion {
+            self.record_plan(&entry, plan, scan, log);
+        }
+        self.in_force = Self::limits_of(&entry.limits, &motion);
+        self.motion = motion;
+        if self.modulo.is_some() {
+            self.start_of_plan();
+        }
+        let entry = Entry {
+            paused: false,
+            ..entry
+        };
+        self.watched = self.needs_watching(&entry);
+        self.owner = Some(entry);
+        self.replan_due = false;
+    }
+
+    fn record_plan(&self, entry: &Entry, plan: &P::Plan, scan: u64, log: &mut Log) {
+        let source = Source {
+            scan,
+            instance: entry.instance,
+        };
+        let positioning = matches!(entry.work, Work::Position(_) | Work::Distance(_));
+        let end = plan.at(u64::from(plan.scans()));
+        let goal = match entry.end {
+            _ if entry.halted || entry.passed => Goal::Velocity(end.velocity),
+            Some(position) if end.velocity != 0.0 || !positioning => Goal::Passing {
+                position,
+                velocity: end.velocity,
+            },
+            Some(_) => Goal::Position(end.position),
+            None => Goal::Velocity(end.velocity),
+        };
+        let planned = Event::Planned {
+            goal,
+            scans: plan.scans(),
+        };
+        self.record(planned, source, log);
+        if let Some(excess) = plan
+            .excess()
+            .and_then(|excess| self.beyond_axis(excess, &entry.limits))
+        {
+            self.record(Event::Unavoidable(excess), source, log);
+        }
+    }
+}

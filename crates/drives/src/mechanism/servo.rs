@@ -1,0 +1,177 @@
+//! Position and velocity loop in cascade, with feed-forward.
+
+use super::SUBSTEPS;
+use super::plant::{Mechanism, MechanismError, Plant};
+
+/// Bandwidth of the velocity loop where no gain is given, times a step (rad).
+const BANDWIDTH: f64 = 0.2;
+
+/// Velocity loop to position loop, and to its integral part, where no gains are given.
+const CASCADE: f64 = 4.0;
+
+/// The gains of a servo.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gains {
+    /// Velocity for a position error (1/s), from 0.
+    pub position: f64,
+    /// Torque for a velocity error (torque s/u), from 0.
+    pub velocity: f64,
+    /// Torque a second for a velocity error (torque/u), from 0.
+    pub integral: f64,
+    /// Part of the set velocity that is fed forward, 0 to 1 in most drives.
+    pub feed_velocity: f64,
+    /// Part of the torque for the set acceleration that is fed forward.
+    pub feed_acceleration: f64,
+    /// Largest torque, above 0; infinite for none.
+    pub torque: f64,
+}
+
+impl Gains {
+    /// Gains that hold any plant with steps of a scan of `cycle` seconds: a velocity loop as fast as the steps
+    /// allow, a position loop four times as slow, full feed-forward.
+    pub fn of(plant: &Plant, cycle: f64) -> Self {
+        let bandwidth = BANDWIDTH * f64::from(SUBSTEPS) / cycle;
+        let velocity = plant.inertia * bandwidth;
+        Self {
+            position: bandwidth / CASCADE,
+            velocity,
+            integral: velocity * bandwidth / (CASCADE * CASCADE),
+            feed_velocity: 1.0,
+            feed_acceleration: 1.0,
+            torque: f64::INFINITY,
+        }
+    }
+
+    fn check(&self) -> Result<(), MechanismError> {
+        let rows = [
+            ("gains.position", self.position),
+            ("gains.velocity", self.velocity),
+            ("gains.integral", self.integral),
+            ("gains.feed_velocity", self.feed_velocity),
+            ("gains.feed_acceleration", self.feed_acceleration),
+        ];
+        if let Some((key, value)) = rows
+            .into_iter()
+            .find(|(_, value)| !(value.is_finite() && *value >= 0.0))
+        {
+            return Err(MechanismError { key, value });
+        }
+        if self.torque > 0.0 {
+            Ok(())
+        } else {
+            Err(MechanismError {
+                key: "torque",
+                value: self.torque,
+            })
+        }
+    }
+}
+
+/// A set-point at the end of a scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SetPoint {
+    /// Position (u).
+    pub position: f64,
+    /// Velocity (u/s).
+    pub velocity: f64,
+}
+
+/// A mechanism under its loops.
+#[derive(Clone, Copy, Debug)]
+pub struct Servo {
+    mechanism: Mechanism,
+    gains: Gains,
+    cycle: f64,
+    /// The set-point at the end of the scan before.
+    from: SetPoint,
+    /// Torque of the integral part.
+    integral: f64,
+    torque: f64,
+}
+
+impl Servo {
+    /// Holds `mechanism` where it stands, in scans of `cycle` seconds.
+    ///
+    /// # Errors
+    /// [`MechanismError`] names the gain that cannot be used.
+    pub fn new(mechanism: Mechanism, gains: Gains, cycle: f64) -> Result<Self, MechanismError> {
+        gains.check()?;
+        Ok(Self {
+            mechanism,
+            gains,
+            cycle,
+            from: SetPoint {
+                position: mechanism.position(),
+                velocity: 0.0,
+            },
+            integral: 0.0,
+            torque: 0.0,
+        })
+    }
+
+    /// A scan on the way to `to`: between the scans the set-point is the cubic through both ends with their
+    /// velocities. Cost: four steps.
+    pub fn follow(&mut self, to: SetPoint) {
+        let from = core::mem::replace(&mut self.from, to);
+        let step = 1.0 / f64::from(SUBSTEPS);
+        let time = self.cycle * step;
+        let way = to.position - from.position;
+        let (early, late) = (from.velocity * self.cycle, to.velocity * self.cycle);
+        // p = from + early s + curve s^2 + twist s^3, s from 0 to 1
+        let curve = 3.0 * way - 2.0 * early - late;
+        let twist = early + late - 2.0 * way;
+        let inertia = self.gains.feed_acceleration * self.mechanism.plant().total_inertia();
+        let mut part = 0.0;
+        for _ in 0..SUBSTEPS {
+            let position = from.position + part * (early + part * (curve + part * twist));
+            let velocity = (early + part * (2.0 * curve + part * (3.0 * twist))) / self.cycle;
+            // The mean over the step, for which the torque holds.
+            let middle = part + 0.5 * step;
+            let acceleration = (2.0 * curve + 6.0 * twist * middle) / (self.cycle * self.cycle);
+            let wanted = self.gains.feed_velocity * velocity
+                + self.gains.position * (position - self.mechanism.position());
+            let error = wanted - self.mechanism.velocity();
+            let unlimited = self.gains.velocity * error + self.integral + inertia * acceleration;
+            self.torque = unlimited.max(-self.gains.torque).min(self.gains.torque);
+            // At its limit the integral part would only wind up.
+            if self.torque == unlimited {
+                self.integral += self.gains.integral * error * time;
+            }
+            self.mechanism.step(self.torque);
+            part += step;
+        }
+    }
+
+    /// A scan without torque.
+    pub fn coast(&mut self) {
+        (self.integral, self.torque) = (0.0, 0.0);
+        for _ in 0..SUBSTEPS {
+            self.mechanism.step(0.0);
+        }
+        self.from = SetPoint {
+            position: self.mechanism.position(),
+            velocity: self.mechanism.velocity(),
+        };
+    }
+
+    /// Everything is called `by` (u) more, or someone moved it by that.
+    pub fn shift(&mut self, by: f64) {
+        self.mechanism.shift(by);
+        self.from.position += by;
+    }
+
+    /// What is moved.
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.mechanism
+    }
+
+    /// Torque of the last step.
+    pub fn torque(&self) -> f64 {
+        self.torque
+    }
+
+    /// The set-point last followed.
+    pub fn set_point(&self) -> SetPoint {
+        self.from
+    }
+}

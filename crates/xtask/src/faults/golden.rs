@@ -1,0 +1,81 @@
+//! Goldens, as far as the fault guide reads them.
+
+use crate::root;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// A line of a golden's events.
+#[derive(Debug)]
+pub struct Event {
+    pub scan: usize,
+    /// An instance or an axis.
+    pub subject: String,
+    pub text: String,
+}
+
+impl Event {
+    /// Whether it shows this error, at a pin or as a record.
+    pub fn shows(&self, number: u16) -> bool {
+        let pins = [format!("ErrorID={number}"), format!("AxisErrorID={number}")];
+        self.text
+            .split(' ')
+            .any(|word| pins.iter().any(|pin| pin == word))
+            || self.text.starts_with(&format!("fault {number} "))
+    }
+}
+
+/// The title of a script and the events of its run.
+#[derive(Debug)]
+pub struct Golden {
+    pub title: String,
+    pub events: Vec<Event>,
+}
+
+/// Every golden by its script, relative to `scan-tests/` and without extension.
+pub fn goldens() -> BTreeMap<String, Golden> {
+    let mut found = BTreeMap::new();
+    let tests = root().join("scan-tests");
+    let mut folders = vec![tests.clone()];
+    while let Some(folder) = folders.pop() {
+        for entry in entries(&folder) {
+            if entry.is_dir() {
+                folders.push(entry);
+            } else if entry.extension().is_some_and(|extension| extension == "snap") {
+                let text = fs::read_to_string(&entry).unwrap_or_default();
+                let name = entry.strip_prefix(&tests).unwrap_or(&entry).with_extension("");
+                let name = name.to_string_lossy().replace('\\', "/");
+                found.insert(name, golden(&text));
+            }
+        }
+    }
+    found
+}
+
+fn entries(folder: &Path) -> Vec<std::path::PathBuf> {
+    let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    entries.flatten().map(|entry| entry.path()).collect()
+}
+
+/// Events stand below a line `events` down to an empty line: scan, subject, text.
+fn golden(text: &str) -> Golden {
+    let title = text.lines().find_map(|line| line.strip_prefix("title "));
+    let events = text.lines().skip_while(|line| *line != "events").skip(1);
+    Golden {
+        title: title.unwrap_or_default().trim().into(),
+        events: events
+            .take_while(|line| !line.is_empty())
+            .filter_map(event)
+            .collect(),
+    }
+}
+
+fn event(line: &str) -> Option<Event> {
+    let (scan, rest) = line.trim_start().split_once("  ")?;
+    let (subject, text) = rest.split_once("  ")?;
+    Some(Event {
+        scan: scan.parse().ok()?,
+        subject: subject.into(),
+        text: text.trim_start().into(),
+    })
+}
