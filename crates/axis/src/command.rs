@@ -242,6 +242,15 @@ pub enum Command {
         /// Its sign multiplies that of the velocity (V3).
         direction: Raw<Direction>,
     },
+    /// MC_Jog: to an endless motion, or by a distance; the velocity must be positive.
+    Jog {
+        /// Towards larger positions.
+        forward: bool,
+        /// Distance (u), not negative; 0 for an endless motion.
+        distance: f64,
+        /// Dynamic values.
+        dynamics: Dynamics,
+    },
     /// To velocity zero; other commands may interrupt. The velocity of `dynamics` is not read.
     Halt {
         /// Dynamic values.
@@ -302,6 +311,11 @@ impl Command {
                 dynamics,
             } => (*distance, *end_velocity, 0, dynamics),
             Self::MoveVelocity { dynamics, direction } => (0.0, 0.0, direction.number(), dynamics),
+            Self::Jog {
+                forward,
+                distance,
+                dynamics,
+            } => (*distance, 0.0, i32::from(*forward), dynamics),
             Self::Halt { dynamics } | Self::Stop { dynamics } => (0.0, 0.0, 0, dynamics),
             Self::Home { position } => (*position, 0.0, 0, &none),
         };

@@ -21,7 +21,7 @@ mod log;
 mod scaling;
 mod state;
 
-pub use axis::{Axis, Beside, Factors, MotionState, Outlook, Pace, Source, Way};
+pub use axis::{Axis, Beside, Factors, MotionState, Outlook, Pace, Permission, Source, Way};
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,
     QUEUE_MAX, Raw, Request, Superimpose, ValueSource,

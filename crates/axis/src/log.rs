@@ -68,6 +68,11 @@ pub enum Event {
     },
     /// A superimposed command waits until the motion under it leaves room below the axis limits.
     RoomAwaited,
+    /// MC_Power bars a direction the motion needs: it brakes, and goes on when it may.
+    Paused {
+        /// Which direction.
+        error: ErrorId,
+    },
     /// The axis entered ErrorStop.
     Fault {
         /// Why.

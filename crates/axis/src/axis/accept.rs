@@ -31,6 +31,7 @@ pub(super) fn direction_of(command: &Command) -> Option<Direction> {
         | Command::MoveRelative { .. }
         | Command::MoveContinuousRelative { .. }
         | Command::MoveVelocity { .. }
+        | Command::Jog { .. }
         | Command::Halt { .. }
         | Command::Stop { .. }
         | Command::Home { .. } => None,
@@ -255,6 +256,11 @@ impl<P: Planner> Axis<P> {
                 })?;
                 Ok((work, self.resolve(dynamics, source, log)?))
             }
+            Command::Jog {
+                forward,
+                distance,
+                ref dynamics,
+            } => self.jog(forward, distance, dynamics, source, log),
             Command::Halt { ref dynamics } => Ok((Work::Halt, self.resolve(dynamics, source, log)?)),
             Command::Stop { ref dynamics } => Ok((Work::Stop, self.resolve(dynamics, source, log)?)),
             Command::Home { position } => {
@@ -428,7 +434,10 @@ impl<P: Planner> Axis<P> {
             Work::Home(_) | Work::SetPosition { .. } => return Ok(Motion::Hold),
         };
         match planned {
-            Ok(plan) => Ok(Motion::along(plan)),
+            Ok(plan) => {
+                self.permitted(entry, &plan, before)?;
+                Ok(Motion::along(plan))
+            }
             Err(error) => Err(refusal(error)),
         }
     }

@@ -86,7 +86,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the owner is at its end in motion, for the next to take over.
     pub(super) fn passes_its_end(&self) -> bool {
-        self.goal_reached() && self.passes_on() && self.setpoint.velocity != 0.0
+        self.goal_reached() && !self.is_held_up() && self.passes_on() && self.setpoint.velocity != 0.0
     }
 
     /// What becomes of the owner when another takes over in motion: what has an end has passed it.
@@ -194,6 +194,11 @@ impl<P: Planner> Axis<P> {
             Work::Halt => (direction, 0.0, None),
             Work::Stop | Work::Home(_) | Work::SetPosition { .. } => return REST,
         };
+        // What MC_Power bars would be refused at the end, too late to stop there. A continuous move may need a run-up.
+        let runs_up = matches!(next.entry.work, Work::Through { end_velocity, .. } if end_velocity != 0.0);
+        if self.way_barred(towards).is_some() || (runs_up && self.bars_any()) {
+            return REST;
+        }
         // Reversed, or nowhere: at rest (B13). To the velocity 0 leads no direction.
         if towards * direction <= 0.0 && velocity != 0.0 {
             return REST;

@@ -170,6 +170,10 @@ impl<P: Planner> Axis<P> {
     /// The motion in progress in coordinates moved by `by` (u): an absolute move is planned anew to the same
     /// number, every other one goes on as it is.
     fn move_motion(&mut self, by: f64, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+        if self.is_paused() {
+            self.shift_paused(by);
+            return Ok(());
+        }
         let Motion::Run { plan, elapsed, scans } = &mut self.motion else {
             return Ok(());
         };

@@ -3,8 +3,9 @@
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
 //! [`factors`] is the override, [`replan`] changes the owner's motion while it runs, [`update`] gives it new values,
+//! [`jog`] checks what MC_Jog asks for,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
-//! motions inside, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
+//! motions inside, [`permission`] out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
 
 mod accept;
@@ -12,7 +13,9 @@ mod blend;
 mod coordinates;
 mod dynamics;
 mod factors;
+mod jog;
 mod modulo;
+mod permission;
 mod power;
 mod queue;
 mod reading;
@@ -30,6 +33,7 @@ use crate::{
 };
 pub use factors::Factors;
 use modulo::Modulo;
+pub use permission::Permission;
 use queue::{Entry, Queue, Work};
 pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
@@ -97,7 +101,9 @@ struct Power {
     /// Power was lost: it does not come back before a reset or a new rising Enable.
     tripped: bool,
     /// What the last MC_Power of this scan asked for, and which instance, unless that is the decider.
-    overruled: Option<(bool, InstanceId)>,
+    overruled: Option<(bool, Permission, InstanceId)>,
+    /// The directions MC_Power permits.
+    permitted: Permission,
     /// The instance that spoke last in the scan before.
     decider: Option<InstanceId>,
     /// Power for the stage is available, as last told.
@@ -123,6 +129,10 @@ pub struct Outlook {
     pub waiting: [Option<(CommandId, &'static str, BufferMode)>; QUEUE_MAX],
     /// MC_Power.Enable.
     pub power_wanted: bool,
+    /// The directions MC_Power permits.
+    pub permitted: Permission,
+    /// The owner waits to be permitted to go on.
+    pub paused: bool,
     /// Operation is enabled.
     pub power_on: bool,
     /// On the way to Disabled.
@@ -143,7 +153,7 @@ pub struct Outlook {
     pub superimposed: Option<Beside>,
     /// The override, as bits.
     pub factors: [u64; 3],
-    /// The owner's motion is not the one to its goal: the override halts it, or it has yet to be planned anew.
+    /// The owner's motion is not the one to its goal: the override halts it, MC_Power bars it, or it has yet to be planned anew.
     pub held_up: bool,
 }
 
@@ -282,6 +292,7 @@ impl<P: Planner> Axis<P> {
                 going_off: false,
                 tripped: false,
                 overruled: None,
+                permitted: Permission::BOTH,
                 decider: None,
                 voltage: true,
                 fault: None,
@@ -420,6 +431,8 @@ impl<P: Planner> Axis<P> {
             stop_held: self.stop_held,
             waiting,
             power_wanted: self.power.wanted,
+            permitted: self.power.permitted,
+            paused: self.is_paused(),
             power_on: self.power.on,
             going_off: self.power.going_off,
             tripped: self.power.tripped,
@@ -486,7 +499,11 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the owner's motion in progress is not the one to its goal: what it reaches is not reached.
     fn is_held_up(&self) -> bool {
-        self.replan_due || self.owner.as_ref().is_some_and(|owner| owner.halted)
+        self.replan_due
+            || self
+                .owner
+                .as_ref()
+                .is_some_and(|owner| owner.halted || owner.paused)
     }
 
     /// The one place where the state changes.

@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, notes 1 to 5 of the state diagram, MC_Power, MC_Reset; V9a, V10a,
 //! S10 to S14; iec61131-executor CI-5, CI-8.
 
-use super::{Axis, Motion, Power, Source};
+use super::{Axis, Motion, Permission, Power, Source};
 use crate::{
     AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
     Log, PowerOff,
@@ -154,16 +154,17 @@ impl<P: Planner> Axis<P> {
         self.motion = Motion::Hold;
     }
 
-    /// MC_Power: power is wanted or not. With `false` all commands are aborted in this call and the axis
-    /// goes to Disabled the configured way (V9a).
+    /// MC_Power: power is wanted or not, and which directions are permitted. With `false` all commands are
+    /// aborted in this call and the axis goes to Disabled the configured way (V9a). A motion that needs a
+    /// direction no longer permitted brakes in this call and goes on when it is permitted again (V9).
     ///
     /// Should several instances speak in one scan, the last call decides (V9b): whoever decided in the scan
     /// before is obeyed at once, others at the end of the scan if nobody spoke after them.
     #[inline]
-    pub fn set_power(&mut self, wanted: bool, source: Source, log: &mut Log) {
+    pub fn set_power(&mut self, wanted: bool, permitted: Permission, source: Source, log: &mut Log) {
         match self.power.decider {
             Some(decider) if decider != source.instance => {
-                self.power.overruled = Some((wanted, source.instance));
+                self.power.overruled = Some((wanted, permitted, source.instance));
                 self.stir();
                 return;
             }
@@ -171,13 +172,13 @@ impl<P: Planner> Axis<P> {
             None => self.power.decider = Some(source.instance),
         }
         self.power.overruled = None;
-        self.switch(wanted, source, log);
+        self.switch(wanted, permitted, source, log);
     }
 
     /// Switches the axis off whatever MC_Power says: the runtime stops.
     pub fn switch_off(&mut self, source: Source, log: &mut Log) {
         self.power.overruled = None;
-        self.switch(false, source, log);
+        self.switch(false, self.power.permitted, source, log);
     }
 
     /// The end of a scan's calls: the last MC_Power decides.
@@ -191,17 +192,19 @@ impl<P: Planner> Axis<P> {
     #[cold]
     #[inline(never)]
     fn change_decider(&mut self, scan: u64, log: &mut Log) {
-        if let Some((wanted, instance)) = self.power.overruled.take() {
+        if let Some((wanted, permitted, instance)) = self.power.overruled.take() {
             self.power.decider = Some(instance);
-            self.switch(wanted, Source { scan, instance }, log);
+            self.switch(wanted, permitted, Source { scan, instance }, log);
         }
     }
 
     #[inline]
-    fn switch(&mut self, wanted: bool, source: Source, log: &mut Log) {
+    fn switch(&mut self, wanted: bool, permitted: Permission, source: Source, log: &mut Log) {
         self.power.wanted = wanted;
         if !wanted {
             self.switch_to_off(source, log);
+        } else if permitted != self.power.permitted {
+            self.permit(permitted, source.scan, log);
         }
     }
 
@@ -225,7 +228,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Plans a ramp to rest with the stop dynamics.
-    fn ramp_down(&mut self, source: Source, log: &mut Log) {
+    pub(super) fn ramp_down(&mut self, source: Source, log: &mut Log) {
         // Nothing stops sooner than this.
         self.watched = false;
         // Only a plan leaves a set-point that is not at rest.

@@ -158,6 +158,8 @@ pub(super) struct Entry {
     pub passage: Passage,
     /// MC_Stop: Execute is still TRUE.
     pub held: bool,
+    /// It brakes, or stands, because MC_Power bars a direction it needs.
+    pub paused: bool,
 }
 
 /// Values of a command before the override.
@@ -190,6 +192,7 @@ impl Entry {
             end: None,
             passage: REST,
             held: work == Work::Stop,
+            paused: false,
         }
     }
 

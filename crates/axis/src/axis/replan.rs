@@ -30,7 +30,24 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The same for an owner whose end has been found in the frame it is to move in.
-    pub(super) fn replan_aimed(&mut self, mut owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+    pub(super) fn replan_aimed(&mut self, owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+        if owner.paused {
+            // It goes on with these values when it may.
+            self.owner = Some(owner);
+            return Ok(());
+        }
+        match self.plan_anew(owner, scan, log) {
+            Err(error @ (ErrorId::PositiveBarred | ErrorId::NegativeBarred)) => {
+                self.owner = Some(owner);
+                self.pause(error, scan, log);
+                Ok(())
+            }
+            planned => planned,
+        }
+    }
+
+    /// The same for one that may be paused, and goes on with this.
+    pub(super) fn plan_anew(&mut self, mut owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
         let here = self.base();
         let start = self
             .in_frame_of(&owner, &here)
@@ -47,6 +64,7 @@ impl<P: Planner> Axis<P> {
                 self.adopt(owner, motion, scan, log);
             }
             None => {
+                owner.paused = false;
                 self.owner = Some(owner);
                 self.replan_due = true;
             }
@@ -101,7 +119,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// An owner that must not turn back goes on to the next time round if it can't stop before its target (B8).
-    fn stay_in_direction(&self, owner: &mut Entry, here: &Setpoint) {
+    pub(super) fn stay_in_direction(&self, owner: &mut Entry, here: &Setpoint) {
         let (Some(modulo), Some(Place::At(_)), Some(end), Some(_)) =
             (&self.modulo, owner.place(), owner.end, owner.direction)
         else {
@@ -144,6 +162,10 @@ impl<P: Planner> Axis<P> {
         if self.modulo.is_some() {
             self.start_of_plan();
         }
+        let entry = Entry {
+            paused: false,
+            ..entry
+        };
         self.watched = self.needs_watching(&entry);
         self.owner = Some(entry);
         self.replan_due = false;

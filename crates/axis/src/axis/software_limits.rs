@@ -51,6 +51,8 @@ impl<P: Planner> Axis<P> {
     fn may_leave(&self, entry: &Entry, (min, max): (f64, f64)) -> bool {
         let outside = |rest: f64| rest < min || rest > max;
         match entry.work {
+            // It brakes as hard as it would there.
+            _ if entry.paused => outside(self.end_of_plan()),
             Work::Velocity { .. } => true,
             Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
             Work::Halt | Work::Stop => outside(self.end_of_plan()),

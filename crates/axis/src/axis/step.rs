@@ -125,7 +125,7 @@ impl<P: Planner> Axis<P> {
             return;
         };
         if self.is_held_up() {
-            return;
+            return self.settle_paused(scan, log);
         }
         match owner.work {
             Work::Position(_) | Work::Distance(_) | Work::Halt => self.complete(scan, log),

@@ -132,6 +132,16 @@ impl<P: Plan> Layer<P> {
         }
     }
 
+    /// The rest of a superimposed distance, and the limits it keeps.
+    pub fn distance_in_progress(&self) -> Option<((&P, u64), &Limits)> {
+        match (&self.motion, &self.command) {
+            (Motion::Run { plan, elapsed, .. }, Some(command)) if command.adds != Adds::Halt => {
+                Some(((plan, *elapsed), &self.in_force))
+            }
+            _ => None,
+        }
+    }
+
     /// The owner's motion is another one: a command that waits or was lowered is tried again.
     pub fn try_soon(&mut self) {
         self.retry = 0;
@@ -404,6 +414,7 @@ impl<P: Planner> Axis<P> {
                 self.enter(AxisEvent::MotionDone);
                 self.hand_over(self.setpoint.position, scan, log);
             }
+            self.resume(scan, log);
         }
     }
 
@@ -411,6 +422,20 @@ impl<P: Planner> Axis<P> {
     pub(super) fn start_beside(&mut self, scan: u64, log: &mut Log) {
         if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
             self.hand_over(self.setpoint.position, scan, log);
+        }
+    }
+
+    /// What is superimposed comes to rest with the stop dynamics; what is left of its distance waits.
+    #[cold]
+    pub(super) fn brake_superimposed(&mut self) {
+        let limits = self.stop_limits();
+        let Some(layer) = &mut self.layer else { return };
+        let planned = self.planner.ramp_to(&layer.added, 0.0, &limits, &layer.in_force);
+        if let (Ok(plan), Some(command)) = (planned, &mut layer.command) {
+            layer.motion = Motion::along(plan);
+            layer.in_force = limits;
+            command.planned = false;
+            command.lowered = false;
         }
     }
 

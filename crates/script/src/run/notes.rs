@@ -79,9 +79,11 @@ fn subject(script: &Script, record: &Record) -> String {
         Event::Refused { .. } | Event::Clamped { .. } | Event::Superimposed { .. } | Event::RoomAwaited => {
             instance_name(script, record).map_or_else(|| axis_name(script, record), str::to_owned)
         }
-        Event::Unavoidable(_) | Event::Planned { .. } | Event::Fault { .. } | Event::Shifted { .. } => {
-            axis_name(script, record)
-        }
+        Event::Unavoidable(_)
+        | Event::Planned { .. }
+        | Event::Paused { .. }
+        | Event::Fault { .. }
+        | Event::Shifted { .. } => axis_name(script, record),
     }
 }
 
@@ -134,6 +136,7 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
             format!("superimposed motion to rest in {scans} scans")
         }
         Event::RoomAwaited => "waits for room below the axis limits".to_owned(),
+        Event::Paused { error } => format!("pauses: {} {}", error.number(), error.name()),
         Event::Shifted { by } => format!("coordinates moved by {}", shortest(by)),
         Event::Fault { error, code } => {
             format!("fault {} {}, code {code}", error.number(), error.name())

@@ -110,7 +110,7 @@ impl<P: Planner> Axis<P> {
     /// none does for now.
     ///
     /// # Errors
-    /// The planner refuses the command as it is asked for.
+    /// The planner refuses the command as it is asked for, or MC_Power bars its direction.
     pub(super) fn propose(
         &self,
         layer: &Layer<P::Plan>,
@@ -119,6 +119,11 @@ impl<P: Planner> Axis<P> {
         let axis = &self.config.limits;
         if command.halting && !layer.moves() {
             return Ok(None);
+        }
+        if let (Adds::Distance { target, .. }, false) = (command.adds, layer.moves())
+            && let Some(error) = self.way_barred(target - layer.added.position)
+        {
+            return Err(error);
         }
         let base = self.rest_of_base();
         let room = Room {
@@ -146,6 +151,12 @@ impl<P: Planner> Axis<P> {
             };
             match planned {
                 Ok(plan) => {
+                    if command.adds != Adds::Halt
+                        && !command.halting
+                        && let Some(error) = self.barred((&plan, 0), &limits, before)
+                    {
+                        return Err(error);
+                    }
                     // Alone it exceeds the axis limits only where it takes over from a motion in a way that
                     // its own limits are too low for. That motion may go on instead.
                     let motion = Motion::along(plan);
@@ -262,9 +273,10 @@ impl<P: Planner> Axis<P> {
         if (command.planned && !command.lowered) || !due {
             return;
         }
-        // What the planner took once it takes again; if not, everything stays as it is.
-        let proposed = self.propose(layer, command).unwrap_or(None);
-        self.add(proposed, scan, log);
+        // What the planner took once it takes again; if not, or while it is barred, everything stays as it is.
+        if let Ok(proposed) = self.propose(layer, command) {
+            self.add(proposed, scan, log);
+        }
     }
 
     /// The limits that hold for the state published last: those of the motion in progress, both together if
