@@ -1,7 +1,8 @@
 //! One axis: what it knows and what others may ask.
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
-//! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
+//! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`inside`] keeps
+//! take-overs within the axis limits, [`superimposed`] adds a second motion,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
@@ -10,6 +11,7 @@ mod accept;
 mod blend;
 mod coordinates;
 mod dynamics;
+mod inside;
 mod modulo;
 mod power;
 mod queue;
@@ -308,6 +310,11 @@ impl<P: Planner> Axis<P> {
         self.power.on
     }
 
+    /// The set-point is the actual position, not one of ours: the axis is not in operation.
+    pub fn is_following(&self) -> bool {
+        matches!(self.motion, Motion::Follow)
+    }
+
     /// MC_Home has been done.
     pub fn is_homed(&self) -> bool {
         self.homed
@@ -334,6 +341,11 @@ impl<P: Planner> Axis<P> {
     /// The command that owns the axis; a superimposed one does not.
     pub fn active_command(&self) -> Option<CommandId> {
         self.owner.as_ref().map(|owner| owner.id)
+    }
+
+    /// The command accepted last: its number, for whoever follows what becomes of it.
+    pub fn newest_command(&self) -> CommandId {
+        CommandId(self.last_id)
     }
 
     /// Commands that wait.

@@ -113,7 +113,7 @@ impl<P: Planner> Axis<P> {
         match owner.work {
             Work::Position(_) | Work::Distance(_) | Work::Halt => self.complete(scan, log),
             Work::Home(position) => {
-                self.call_set_position(position);
+                self.call_set_position(position, scan, log);
                 self.homed = true;
                 self.complete(scan, log);
             }
@@ -162,7 +162,8 @@ impl<P: Planner> Axis<P> {
             }
             let passage_from = self.aim(&mut next, from);
             next.passage = self.passage(&next, passage_from, 1);
-            let planned = self.plan_next(&next);
+            let asked = next.limits;
+            let planned = self.plan_next(&mut next);
             if let Ok(None) = planned {
                 return;
             }
@@ -173,6 +174,7 @@ impl<P: Planner> Axis<P> {
                     let blended = self.passes_its_end();
                     self.end_owner(self.fate_at_hand_over());
                     self.begin(next, motion, scan, log);
+                    self.record_raised(&asked, &next.limits, self.owner_source(scan), log);
                     if blended {
                         self.before = next.limits;
                     }
