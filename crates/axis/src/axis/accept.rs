@@ -97,12 +97,14 @@ impl<P: Planner> Axis<P> {
             }
             Way::Now => {
                 self.aim(&mut entry, self.setpoint.position);
+                let asked = entry.limits;
                 let motion = self
-                    .plan_for(&entry)
+                    .plan_for(&mut entry)
                     .map_err(|error| self.refuse_plan(&entry, error, source, log))?;
                 let before = self.limits_before(&entry.limits);
                 self.end_all(Fate::Aborted, Fate::Aborted);
                 self.begin(entry, motion, before, source.scan, log);
+                self.record_raised(&asked, &entry.limits, source, log);
             }
         }
         Ok(entry.id)
@@ -137,15 +139,23 @@ impl<P: Planner> Axis<P> {
         let stop = matches!(request.command, Command::Stop { .. });
         let home = matches!(request.command, Command::Home { .. });
         let refuse = |error| Err(("", error));
+        // MC_Home starts at rest, so it cannot follow what does not end.
+        let wait = || {
+            if home && self.predecessor_is_endless() {
+                refuse(ErrorId::InMotion)
+            } else {
+                self.wait()
+            }
+        };
         match self.state {
             AxisState::Disabled => refuse(ErrorId::NotPowered),
             AxisState::ErrorStop => refuse(ErrorId::InErrorStop),
             // An idle axis starts at once whatever the mode (B9); something waits only in the scan in which
             // MC_Stop released the axis.
-            AxisState::Standstill if buffered && !self.queue.is_empty() => self.wait(),
+            AxisState::Standstill if buffered && !self.queue.is_empty() => wait(),
             AxisState::Standstill => Ok(Way::Now),
             AxisState::Homing if stop || (home && !buffered) => Ok(Way::Now),
-            AxisState::Homing if buffered && !stop => self.wait(),
+            AxisState::Homing if buffered && !stop => wait(),
             AxisState::Homing => refuse(ErrorId::InHoming),
             // The same instance may stop again with other values (V7a).
             AxisState::Stopping
@@ -156,10 +166,10 @@ impl<P: Planner> Axis<P> {
             AxisState::Stopping if buffered && !stop && !home => self.wait(),
             AxisState::Stopping => refuse(ErrorId::InStopping),
             AxisState::DiscreteMotion | AxisState::ContinuousMotion | AxisState::SynchronizedMotion => {
-                if home && (!buffered || self.predecessor_is_endless()) {
+                if buffered {
+                    wait()
+                } else if home {
                     refuse(ErrorId::InMotion)
-                } else if buffered {
-                    self.wait()
                 } else {
                     Ok(Way::Now)
                 }
@@ -177,7 +187,9 @@ impl<P: Planner> Axis<P> {
 
     /// Whether a command that waits now would follow a motion without an end, so not start at rest.
     fn predecessor_is_endless(&self) -> bool {
-        let last = self.queue.last().or(self.owner.as_ref());
+        // MC_SetPosition moves nothing: what counts is what comes before it.
+        let moves = |entry: &&Entry| !matches!(entry.work, Work::SetPosition { .. });
+        let last = self.queue.iter().filter(moves).last().or(self.owner.as_ref());
         last.is_some_and(Entry::is_endless)
     }
 
@@ -381,15 +393,17 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Plans a command from the present set-point. Nothing changes.
-    pub(super) fn plan_for(&self, entry: &Entry) -> Result<Motion<P::Plan>, ErrorId> {
+    /// Plans a command from the present set-point; its limits are raised where the axis could not be kept inside
+    /// its own with them. Nothing changes but `entry`.
+    pub(super) fn plan_for(&self, entry: &mut Entry) -> Result<Motion<P::Plan>, ErrorId> {
         let before = if self.passes_its_end() {
             // From a blended end on the limits of the second command hold, and no others (B5).
             entry.limits
         } else {
             self.limits_before(&entry.limits)
         };
-        self.plan_from(entry, &self.setpoint, &before)
+        let motion = self.plan_from(entry, &self.setpoint, &before)?;
+        Ok(self.kept_inside(entry, motion, &self.setpoint, &before))
     }
 
     /// Plans a command from `start`, whose motion was within `before`.
@@ -490,11 +504,16 @@ impl<P: Planner> Axis<P> {
         };
         let beyond = Excess {
             velocity: beyond(excess.velocity, axis.velocity, limits.velocity),
-            acceleration: beyond(
-                excess.acceleration,
-                axis.lower_acceleration(),
-                limits.lower_acceleration(),
-            ),
+            acceleration: {
+                let state = &self.setpoint;
+                // Speeding up or slowing down: the bound of the other side may leave more room than there is.
+                let (axis, limit) = if state.velocity * state.acceleration > 0.0 {
+                    (axis.acceleration, limits.acceleration)
+                } else {
+                    (axis.deceleration, limits.deceleration)
+                };
+                beyond(excess.acceleration, axis, limit)
+            },
             jerk: beyond(excess.jerk, axis.jerk, limits.jerk),
         };
         (beyond != Excess::default()).then_some(beyond)

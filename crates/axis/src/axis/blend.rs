@@ -10,12 +10,17 @@ use super::{Axis, Motion};
 use crate::{BufferMode, ErrorId, Fate, Log, QUEUE_MAX};
 use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};
 
+/// Scans of a way that leave room for its ramps in a plan.
+const SCANS: f64 = 1_073_741_824.0;
+
 /// A command of a chain: the owner to be, or one that waits.
 #[derive(Clone, Copy)]
 struct Leg<'a> {
     entry: &'a Entry,
     /// How far it leads (u), with its direction as the sign; `None` if it leads nowhere.
     way: Option<f64>,
+    /// Where it ends (u), if anywhere.
+    end: Option<f64>,
 }
 
 impl<P: Planner> Axis<P> {
@@ -142,10 +147,10 @@ impl<P: Planner> Axis<P> {
             let end = from.and_then(|from| self.end_of_leg(entry, from, forward));
             *leg = Some(Leg {
                 entry,
-                way: end
-                    .zip(from)
-                    .map(|(end, from)| end - from)
-                    .filter(|way| way.is_finite() && end.is_some_and(|end| self.allowed(end).is_ok())),
+                end,
+                way: end.zip(from).map(|(end, from)| end - from).filter(|way| {
+                    self.is_countable(*way, entry) && end.is_some_and(|end| self.allowed(end).is_ok())
+                }),
             });
             forward = end.zip(from).map_or(forward, |(end, from)| end > from);
             from = end;
@@ -157,12 +162,18 @@ impl<P: Planner> Axis<P> {
                 Some(leg) => **leg,
                 None => Leg {
                     entry: first,
+                    end: first.end,
                     way: first.end.map(|end| end - start),
                 },
             };
             passage = self.between(&leg, next, &passage);
         }
         passage
+    }
+
+    /// Whether a way is one that can be planned; a longer one is refused when its turn comes, at rest.
+    fn is_countable(&self, way: f64, entry: &Entry) -> bool {
+        way.abs() <= entry.limits.velocity * self.planner.cycle() * SCANS
     }
 
     /// How `leg` is to pass its end, if `next` passes its own as `after` says.
@@ -211,7 +222,7 @@ impl<P: Planner> Axis<P> {
             BufferMode::BlendingNext => velocity,
             BufferMode::BlendingHigh => first.max(velocity),
         };
-        match exit {
+        let passage = match exit {
             Some(exit) => {
                 let most = self.planner.entry_speed(wanted, towards.abs(), exit, limits);
                 Passage { wanted: most, most }
@@ -220,6 +231,27 @@ impl<P: Planner> Axis<P> {
                 wanted,
                 most: f64::INFINITY,
             },
+        };
+        self.stoppable(passage, leg.end, direction)
+    }
+
+    /// `passage` at `end`, but no faster than the stop dynamics can keep inside a software limit behind it, whatever
+    /// comes next.
+    fn stoppable(&self, passage: Passage, end: Option<f64>, direction: f64) -> Passage {
+        let (Some((min, max)), Some(end)) = (self.config.software_limits, end) else {
+            return passage;
+        };
+        let room = if direction > 0.0 { max - end } else { end - min };
+        if !room.is_finite() || passage.wanted <= 0.0 {
+            return passage;
+        }
+        let limits = self.stop_limits();
+        let most = self
+            .planner
+            .entry_speed(passage.wanted, room.max(0.0), 0.0, &limits);
+        Passage {
+            wanted: most,
+            most: passage.most.min(most),
         }
     }
 }

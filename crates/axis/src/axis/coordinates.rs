@@ -131,6 +131,11 @@ impl<P: Planner> Axis<P> {
         } else {
             position - self.actual
         };
+        // Whole turns change nothing but the resolution of what is planned.
+        let by = match &self.modulo {
+            Some(modulo) if by.abs() >= modulo.length => split(by, modulo.length).1,
+            _ => by,
+        };
         let at = self.setpoint.position + by;
         if !(at.is_finite() && (self.actual + by).is_finite()) {
             return Err(ErrorId::PositionInvalid);
@@ -189,14 +194,18 @@ impl<P: Planner> Axis<P> {
         let start = self.aim(&mut owner, self.setpoint.position);
         owner.passage = self.passage(&owner, start, 0);
         // With something superimposed it may find no room just now.
-        let motion = self.plan_next(&owner)?.ok_or(ErrorId::InMotion)?;
+        let motion = self.plan_next(&mut owner)?.ok_or(ErrorId::InMotion)?;
         self.before = self.limits_before(&owner.limits);
         self.adopt(owner, motion, scan, log);
         Ok(())
     }
 
     /// The place where the axis stands is called `position` (u) from now on (MC_Home).
-    pub(super) fn call_set_position(&mut self, position: f64) {
+    pub(super) fn call_set_position(&mut self, position: f64, scan: u64, log: &mut Log) {
+        let by = position - self.setpoint.position;
+        if by != 0.0 {
+            self.record(Event::Shifted { by }, self.owner_source(scan), log);
+        }
         self.rename_actual(self.setpoint.position, position);
         if self.config.scaling.is_some() {
             self.shift += position - self.setpoint.position;

@@ -1,9 +1,9 @@
 //! One axis: what it knows and what others may ask.
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
-//! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
-//! [`factors`] is the override, [`replan`] changes the owner's motion while it runs, [`update`] gives it new values,
-//! [`jog`] checks what MC_Jog asks for,
+//! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`inside`] keeps take-overs within the axis
+//! limits, [`superimposed`] adds a second motion, [`factors`] is the override, [`replan`] changes the owner's motion
+//! while it runs, [`update`] gives it new values, [`jog`] checks what MC_Jog asks for,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`permission`] out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
@@ -13,6 +13,7 @@ mod blend;
 mod coordinates;
 mod dynamics;
 mod factors;
+mod inside;
 mod jog;
 mod modulo;
 mod permission;
@@ -347,6 +348,11 @@ impl<P: Planner> Axis<P> {
         self.power.on
     }
 
+    /// The set-point is the actual position, not one of ours: the axis is not in operation.
+    pub fn is_following(&self) -> bool {
+        matches!(self.motion, Motion::Follow)
+    }
+
     /// MC_Home has been done.
     pub fn is_homed(&self) -> bool {
         self.homed
@@ -373,6 +379,11 @@ impl<P: Planner> Axis<P> {
     /// The command that owns the axis; a superimposed one does not.
     pub fn active_command(&self) -> Option<CommandId> {
         self.owner.as_ref().map(|owner| owner.id)
+    }
+
+    /// The command accepted last: its number, for whoever follows what becomes of it.
+    pub fn newest_command(&self) -> CommandId {
+        CommandId(self.last_id)
     }
 
     /// Commands that wait.

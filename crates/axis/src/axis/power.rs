@@ -236,9 +236,10 @@ impl<P: Planner> Axis<P> {
             self.motion = Motion::Hold;
             return;
         }
-        let limits = self.stop_limits();
+        let mut limits = self.stop_limits();
         self.motion = match self.planner.ramp_to(&self.setpoint, 0.0, &limits, &self.in_force) {
             Ok(plan) => {
+                let plan = self.stopped_inside(plan, &mut limits);
                 if let Some(excess) = plan.excess().and_then(|excess| self.beyond_axis(excess, &limits)) {
                     self.record(Event::Unavoidable(excess), source, log);
                 }

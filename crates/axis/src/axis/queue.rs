@@ -242,10 +242,6 @@ impl Queue {
         self.entries.first()?.as_ref()
     }
 
-    pub fn last(&self) -> Option<&Entry> {
-        self.entries.get(self.len.checked_sub(1)?)?.as_ref()
-    }
-
     pub fn iter(&self) -> impl Iterator<Item = &Entry> {
         self.entries.iter().flatten()
     }

@@ -55,7 +55,10 @@ impl<P: Planner> Axis<P> {
         owner.passage = self.passage(&owner, start, 0);
         let before = self.limits_of_owner().unwrap_or(owner.limits);
         let motion = match self.layer {
-            None => Some(self.plan_from(&owner, &here, &before)?),
+            None => {
+                let motion = self.plan_from(&owner, &here, &before)?;
+                Some(self.kept_inside(&mut owner, motion, &here, &before))
+            }
             Some(layer) => self.plan_beside(layer, &owner, &before)?,
         };
         match motion {

@@ -130,7 +130,7 @@ impl<P: Planner> Axis<P> {
         match owner.work {
             Work::Position(_) | Work::Distance(_) | Work::Halt => self.complete(scan, log),
             Work::Home(position) => {
-                self.call_set_position(position);
+                self.call_set_position(position, scan, log);
                 self.homed = true;
                 self.complete(scan, log);
             }
@@ -180,7 +180,8 @@ impl<P: Planner> Axis<P> {
             let passage_from = self.aim(&mut next, from);
             next.passage = self.passage(&next, passage_from, 1);
             let before = self.limits_before(&next.limits);
-            let planned = self.plan_next(&next);
+            let asked = next.limits;
+            let planned = self.plan_next(&mut next);
             if let Ok(None) = planned {
                 return;
             }
@@ -192,6 +193,7 @@ impl<P: Planner> Axis<P> {
                     self.end_owner(self.fate_at_hand_over());
                     let before = if blended { next.limits } else { before };
                     self.begin(next, motion, before, scan, log);
+                    self.record_raised(&asked, &next.limits, self.owner_source(scan), log);
                     return;
                 }
                 Err(error) => {

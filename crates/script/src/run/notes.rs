@@ -76,7 +76,11 @@ fn instance_name<'a>(script: &'a Script, record: &Record) -> Option<&'a str> {
 /// the axis.
 fn subject(script: &Script, record: &Record) -> String {
     match record.event {
-        Event::Refused { .. } | Event::Clamped { .. } | Event::Superimposed { .. } | Event::RoomAwaited => {
+        Event::Refused { .. }
+        | Event::Clamped { .. }
+        | Event::Raised { .. }
+        | Event::Superimposed { .. }
+        | Event::RoomAwaited => {
             instance_name(script, record).map_or_else(|| axis_name(script, record), str::to_owned)
         }
         Event::Unavoidable(_)
@@ -111,6 +115,9 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
         }
         Event::Clamped { pin, value, limit } => {
             format!("clamped: {pin} {} to {}", shortest(value), shortest(limit))
+        }
+        Event::Raised { pin, value, limit } => {
+            format!("raised: {pin} {} to {}", shortest(value), shortest(limit))
         }
         Event::Unavoidable(excess) => format!("unavoidable: {}", excess_text(&excess)),
         Event::Planned { goal, scans } => {

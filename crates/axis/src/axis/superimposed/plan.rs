@@ -4,7 +4,7 @@ use super::{Added, Adds, Layer};
 use crate::axis::accept::refusal;
 use crate::axis::queue::{Entry, Work};
 use crate::axis::{Axis, Motion, Source};
-use crate::{Dynamics, ErrorId, Event, Log};
+use crate::{AxisState, Dynamics, ErrorId, Event, Log};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 /// Motions tried, one after the other, until one fits.
@@ -130,6 +130,11 @@ impl<P: Planner> Axis<P> {
             limits: base.map_or(*axis, |rest| self.planner.room(rest, axis)),
             endless: base.is_some_and(|(plan, _)| plan.at(u64::from(plan.scans())).velocity != 0.0),
         };
+        let range = self.range(layer.taken);
+        // What lies over nothing may not turn outside the software limits either.
+        let still = Setpoint::at_rest(layer.base.position);
+        let hold = range.and_then(|_| self.planner.ramp_to(&still, 0.0, axis, axis).ok());
+        let base = base.or(hold.as_ref().map(|plan| (plan, 0)));
         let mut last = None;
         for index in 0..PROPOSALS {
             let limits = limits_of(index, &command.limits, &room);
@@ -160,7 +165,6 @@ impl<P: Planner> Axis<P> {
                     // Alone it exceeds the axis limits only where it takes over from a motion in a way that
                     // its own limits are too low for. That motion may go on instead.
                     let motion = Motion::along(plan);
-                    let range = self.range(layer.taken);
                     let fits = !self.exceeds(&motion, &limits)
                         && base.is_none_or(|rest| self.planner.fits(rest, (&plan, 0), axis, range));
                     if fits {
@@ -304,11 +308,21 @@ impl<P: Planner> Axis<P> {
     /// It starts at the real set position. If what is added leaves room for it, it starts with the velocity
     /// its predecessor alone has. If not, the velocity of what is added passes to it, and what is left of the
     /// added distance starts again from rest when there is room.
-    pub(in crate::axis) fn plan_next(&mut self, entry: &Entry) -> Result<Option<Motion<P::Plan>>, ErrorId> {
+    pub(in crate::axis) fn plan_next(
+        &mut self,
+        entry: &mut Entry,
+    ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
+        // MC_Home names a position at rest. What was to bring the axis there may have failed.
+        if matches!(entry.work, Work::Home(_)) {
+            if self.is_superimposing() {
+                return Ok(None);
+            }
+            if !matches!(self.state, AxisState::Standstill | AxisState::Homing) {
+                return Err(ErrorId::InMotion);
+            }
+        }
         match self.layer {
             None => self.plan_for(entry).map(Some),
-            // MC_Home names a position at rest.
-            Some(_) if matches!(entry.work, Work::Home(_)) && self.is_superimposing() => Ok(None),
             Some(layer) => self.plan_under(layer, entry),
         }
     }
@@ -317,7 +331,7 @@ impl<P: Planner> Axis<P> {
     fn plan_under(
         &mut self,
         mut layer: Layer<P::Plan>,
-        entry: &Entry,
+        entry: &mut Entry,
     ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
         let start = Setpoint {
             position: self.setpoint.position,
@@ -328,8 +342,11 @@ impl<P: Planner> Axis<P> {
         } else {
             entry.limits
         };
-        let mut motion = self.plan_from(entry, &start, &in_force)?;
-        if let (Motion::Run { plan, .. }, false) = (&motion, entry.is_endless()) {
+        let motion = self.plan_from(entry, &start, &in_force)?;
+        let mut motion = self.kept_inside(entry, motion, &start, &in_force);
+        // A stop is never refused: on its way out it is watched.
+        let leads_somewhere = !entry.is_endless() && entry.end.is_some();
+        if let (Motion::Run { plan, .. }, true) = (&motion, leads_somewhere) {
             self.allowed(plan.at(u64::from(plan.scans())).position + layer.left())?;
         }
         layer.base = start;
@@ -365,11 +382,6 @@ impl<P: Planner> Axis<P> {
 
     /// Whether a plan within `limits` must exceed those of the axis.
     pub(in crate::axis) fn exceeds(&self, motion: &Motion<P::Plan>, limits: &Limits) -> bool {
-        let Motion::Run { plan, .. } = motion else {
-            return false;
-        };
-        plan.excess()
-            .and_then(|excess| self.beyond_axis(excess, limits))
-            .is_some()
+        self.excess_of(motion, limits).is_some()
     }
 }
