@@ -11,8 +11,9 @@ use crate::administrative::{
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
-    mc_halt::McHalt, mc_halt_superimposed::McHaltSuperimposed, mc_move_absolute::McMoveAbsolute,
-    mc_move_additive::McMoveAdditive, mc_move_continuous_absolute::McMoveContinuousAbsolute,
+    mc_halt::McHalt, mc_halt_superimposed::McHaltSuperimposed, mc_jog::McJog,
+    mc_move_absolute::McMoveAbsolute, mc_move_additive::McMoveAdditive,
+    mc_move_continuous_absolute::McMoveContinuousAbsolute,
     mc_move_continuous_relative::McMoveContinuousRelative, mc_move_relative::McMoveRelative,
     mc_move_superimposed::McMoveSuperimposed, mc_move_velocity::McMoveVelocity, mc_stop::McStop,
 };
@@ -69,7 +70,7 @@ registry! {
     McTouchProbe McAbortTrigger
     McHome
     McStop McHalt McMoveAbsolute McMoveRelative McMoveAdditive McMoveVelocity
-    McMoveContinuousAbsolute McMoveContinuousRelative McMoveSuperimposed McHaltSuperimposed
+    McMoveContinuousAbsolute McMoveContinuousRelative McMoveSuperimposed McHaltSuperimposed McJog
     RTrig FTrig Sr Rs Ctu Ctd Ctud Ton Tof Tp
 }
 

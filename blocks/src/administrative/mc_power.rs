@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section of that name; V9, V9a, V9b. `Enable` switches the power
 //! stage, not the block (R60). With several instances on one axis the last call in the scan decides.
 
-use standstill_axis::{AxisId, ErrorId, Planner};
+use standstill_axis::{AxisId, ErrorId, Permission, Planner};
 use standstill_fb::{Block, Context, Group, pins};
 
 pins! {
@@ -14,9 +14,10 @@ pins! {
     inputs {
         /// Power is wanted as long as TRUE.
         Enable => enable: bool = false, "";
-        /// Motion in positive direction is permitted; FALSE is not supported yet.
+        /// Motion in positive direction is permitted. With FALSE a command that needs it is refused, and a motion that
+        /// needs it brakes with the stop dynamics, stays Busy and goes on when it is permitted again.
         EnablePositive => enable_positive: bool = true, "";
-        /// Motion in negative direction is permitted; FALSE is not supported yet.
+        /// The same for the negative direction.
         EnableNegative => enable_negative: bool = true, "";
     }
     vendor_inputs {}
@@ -50,14 +51,14 @@ impl Block for McPower {
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let (axis, log, source) = match context.axis(inputs.axis) {
             Ok(found) => found,
-            Err(id) if inputs.enable => return refused(false, id),
+            Err(id) if inputs.enable => return refused(id),
             Err(_) => return Outputs::default(),
         };
-        if inputs.enable && !(inputs.enable_positive && inputs.enable_negative) {
-            axis.set_power(false, source, log);
-            return refused(axis.is_powered(), ErrorId::DirectionEnableUnsupported);
-        }
-        axis.set_power(inputs.enable, source, log);
+        let permitted = Permission {
+            positive: inputs.enable_positive,
+            negative: inputs.enable_negative,
+        };
+        axis.set_power(inputs.enable, permitted, source, log);
         Outputs {
             status: axis.is_powered(),
             valid: inputs.enable,
@@ -66,9 +67,8 @@ impl Block for McPower {
     }
 }
 
-fn refused(status: bool, error_id: ErrorId) -> Outputs {
+fn refused(error_id: ErrorId) -> Outputs {
     Outputs {
-        status,
         error: true,
         error_id,
         ..Outputs::default()

@@ -2,6 +2,7 @@
 
 pub mod mc_halt;
 pub mod mc_halt_superimposed;
+pub mod mc_jog;
 pub mod mc_move_absolute;
 pub mod mc_move_additive;
 pub mod mc_move_continuous_absolute;

@@ -58,7 +58,7 @@ fn rows(table: &'static str) -> Vec<(&'static str, &'static str, Vec<Cell>)> {
 /// The pin that makes a block act, if it has one.
 fn trigger(block: &BlockInstance) -> Option<&'static str> {
     use standstill_fb::AnyInstance;
-    ["Execute", "Enable"]
+    ["Execute", "Enable", "JogForward"]
         .into_iter()
         .find(|name| block.info().pin(name).is_some())
 }

@@ -105,6 +105,11 @@ impl Planner for Countdown {
             elapsed
         }
     }
+
+    fn ways(&self, (plan, elapsed): (&Count, u64)) -> (f64, f64) {
+        let way = plan.goal.position - plan.at(elapsed).position;
+        (way.max(0.0), (-way).max(0.0))
+    }
 }
 
 impl Plan for Count {

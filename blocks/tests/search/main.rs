@@ -1,9 +1,8 @@
-//! Every reachable state of one axis under two motion blocks, MC_Stop and MC_Power.
+//! Every reachable state of one axis under any two motion blocks, MC_Stop and MC_Power.
 //!
 //! A breadth-first search tries, in every state, all inputs of the blocks and all events of the axis (faults,
-//! loss of power, their causes gone, MC_Reset), at most two of them in one scan; with `STANDSTILL_SEARCH=all`
-//! in the environment, any number of them. The
-//! planner is a countdown behind its trait, so that the states are finitely many; blocks and axis are the
+//! loss of power, their causes gone, MC_Reset), at most two of them in one scan, and four buffer modes; with
+//! `STANDSTILL_SEARCH=all` in the environment, any number of them and every mode. The planner is a countdown behind its trait, so that the states are finitely many; blocks and axis are the
 //! real ones. The rules checked after every scan have their ids beside them in `rules.rs`. A violation is
 //! printed as a scan script that reproduces it.
 
@@ -12,6 +11,8 @@ mod rules;
 mod script;
 mod system;
 
+use standstill_blocks::REGISTRY;
+use standstill_soak::rules::Kind;
 use std::collections::{BTreeSet, VecDeque};
 use system::{Inputs, System};
 
@@ -26,7 +27,7 @@ struct Reached {
 
 /// Searches from an axis in Standstill until nothing new is found or `most_states` are.
 fn search(first: &'static str, second: &'static str, changes: usize, most_states: usize) -> Reached {
-    let start = System::new(first, second);
+    let start = System::new(first, second, modes());
     let mut seen = BTreeSet::from([start.key()]);
     // How each state was reached: the place of the one before and the inputs of the scan.
     let mut trail: Vec<(usize, Inputs)> = vec![(usize::MAX, Inputs::default())];
@@ -72,70 +73,90 @@ fn path_to(trail: &[(usize, Inputs)], mut place: usize, last: Inputs) -> Vec<Inp
     path
 }
 
-/// Things that change in one scan: two, or as many as there are with `STANDSTILL_SEARCH=all`.
+/// Whether everything is asked for.
+fn everything() -> bool {
+    std::env::var("STANDSTILL_SEARCH").is_ok_and(|value| value == "all")
+}
+
+/// Things that change in one scan: two, or as many as there are.
 fn changes_at_once() -> usize {
-    if std::env::var("STANDSTILL_SEARCH").is_ok_and(|value| value == "all") {
-        usize::MAX
+    if everything() { usize::MAX } else { 2 }
+}
+
+/// Buffer modes besides mcAborting: waiting, and blending with the lower and the higher velocity; or all there are.
+fn modes() -> &'static [u8] {
+    if everything() {
+        &[1, 2, 3, 4, 5]
     } else {
-        2
+        &[1, 2, 5]
     }
 }
 
-fn all_states(first: &'static str, second: &'static str) {
-    let reached = search(first, second, changes_at_once(), 100_000);
-    println!("{first} and {second}: {reached:?}");
-    assert!(reached.complete && reached.depth >= 8, "{reached:?}");
+/// Blocks of the registry that give commands, but for MC_Stop, which stands between any two.
+fn kinds() -> Vec<&'static str> {
+    REGISTRY
+        .iter()
+        .filter(|info| {
+            let kind = Kind::of(info);
+            kind == Kind::Motion || kind.is_superimposed()
+        })
+        .map(|info| info.name)
+        .collect()
+}
+
+/// Every reachable state of every pair whose first is `first`, as far as not searched from the other one.
+fn all_states_with(first: &'static str) {
+    let kinds = kinds();
+    let place = kinds
+        .iter()
+        .position(|kind| *kind == first)
+        .expect("a kind of command");
+    for second in &kinds[place..] {
+        let reached = search(first, second, changes_at_once(), 200_000);
+        println!("{first} and {second}: {reached:?}");
+        assert!(
+            reached.complete && reached.depth >= 8,
+            "{first} and {second}: {reached:?}"
+        );
+    }
+}
+
+macro_rules! searches {
+    ($($name:ident $kind:literal)*) => {
+        $(
+            #[test]
+            fn $name() {
+                all_states_with($kind);
+            }
+        )*
+
+        /// The searches there are, to see that none is missing.
+        const SEARCHED: &[&str] = &[$($kind),*];
+    };
+}
+
+searches! {
+    home_and_all_others "MC_Home"
+    halt_and_all_after_it "MC_Halt"
+    move_absolute_and_all_after_it "MC_MoveAbsolute"
+    move_relative_and_all_after_it "MC_MoveRelative"
+    move_additive_and_all_after_it "MC_MoveAdditive"
+    move_velocity_and_all_after_it "MC_MoveVelocity"
+    move_continuous_absolute_and_all_after_it "MC_MoveContinuousAbsolute"
+    move_continuous_relative_and_all_after_it "MC_MoveContinuousRelative"
+    move_superimposed_and_all_after_it "MC_MoveSuperimposed"
+    two_halts_of_what_is_superimposed "MC_HaltSuperimposed"
 }
 
 #[test]
-fn move_absolute_and_move_velocity() {
-    all_states("MC_MoveAbsolute", "MC_MoveVelocity");
-}
-
-#[test]
-fn two_absolute_moves() {
-    all_states("MC_MoveAbsolute", "MC_MoveAbsolute");
-}
-
-#[test]
-fn halt_and_move_velocity() {
-    all_states("MC_Halt", "MC_MoveVelocity");
-}
-
-#[test]
-fn home_and_move_absolute() {
-    all_states("MC_Home", "MC_MoveAbsolute");
-}
-
-#[test]
-fn superimposed_and_absolute_move() {
-    all_states("MC_MoveSuperimposed", "MC_MoveAbsolute");
-}
-
-#[test]
-fn velocity_and_superimposed_move() {
-    all_states("MC_MoveVelocity", "MC_MoveSuperimposed");
-}
-
-#[test]
-fn home_and_superimposed_move() {
-    all_states("MC_Home", "MC_MoveSuperimposed");
-}
-
-#[test]
-fn two_superimposed_moves() {
-    all_states("MC_MoveSuperimposed", "MC_MoveSuperimposed");
-}
-
-#[test]
-fn superimposed_move_and_its_halt() {
-    all_states("MC_MoveSuperimposed", "MC_HaltSuperimposed");
+fn every_command_of_the_registry_is_searched() {
+    assert_eq!(kinds(), SEARCHED);
 }
 
 #[test]
 fn a_broken_rule_is_found_and_printed_as_a_script() {
     // The search is worth what it finds: with a rule that forbids Stopping it must give the shortest way there.
-    let start = System::new("MC_MoveAbsolute", "MC_MoveVelocity");
+    let start = System::new("MC_MoveAbsolute", "MC_MoveVelocity", modes());
     let stop = Inputs {
         stop: true,
         ..start.held()

@@ -9,6 +9,12 @@ pub fn print(first: &str, second: &str, path: &[Inputs]) -> String {
         let goal = match block {
             "MC_MoveAbsolute" => format!(", \"Position\": {position}, \"Velocity\": 1"),
             "MC_MoveVelocity" => ", \"Velocity\": 1".to_string(),
+            "MC_MoveRelative" | "MC_MoveAdditive" => ", \"Velocity\": 2".to_string(),
+            "MC_MoveContinuousAbsolute" => {
+                format!(", \"Position\": {position}, \"Velocity\": 1, \"EndVelocity\": 1")
+            }
+            "MC_MoveContinuousRelative" => ", \"Velocity\": 1, \"EndVelocity\": 1".to_string(),
+            "MC_SetPosition" => format!(", \"Position\": {position}, \"ExecutionMode\": 1"),
             "MC_MoveSuperimposed" => ", \"VelocityDiff\": 2".to_string(),
             "MC_Home" => format!(", \"Position\": {position}"),
             _ => String::new(),
@@ -33,11 +39,8 @@ pub fn print(first: &str, second: &str, path: &[Inputs]) -> String {
     for (scan, inputs) in (1..).zip(path) {
         let mut set = Vec::new();
         for (name, index) in [("first", 0), ("second", 1)] {
-            if inputs.buffered[index] != before.buffered[index] {
-                set.push(format!(
-                    "\"{name}.BufferMode\": {}",
-                    i32::from(inputs.buffered[index])
-                ));
+            if inputs.mode[index] != before.mode[index] {
+                set.push(format!("\"{name}.BufferMode\": {}", inputs.mode[index]));
             }
             if inputs.execute[index] != before.execute[index] {
                 set.push(format!("\"{name}.Execute\": {}", inputs.execute[index]));

@@ -1,13 +1,14 @@
 //! One axis, a drive of a few bits, and four block instances, called in a fixed order.
 
 use crate::countdown::Countdown;
-use crate::rules::{self, Shown};
+use crate::rules;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Comms, DriveFeedback, DrivePosition, DriveRequest, DriveSignals,
-    ErrorId, Fault, InstanceId, Limits, Log, Outlook, Source, StartState,
+    ErrorId, Fault, InstanceId, Limits, Log, Outlook, Plan, Source, StartState,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, Value};
+use standstill_soak::rules::{Kind, Outputs, Shown};
 
 /// What happens to the axis in a scan besides block inputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,11 +33,11 @@ impl AxisEvent {
     ];
 }
 
-/// One scan's inputs. The two motion blocks: Execute and whether buffered.
+/// One scan's inputs. The two motion blocks: Execute and the number of their buffer mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Inputs {
     pub execute: [bool; 2],
-    pub buffered: [bool; 2],
+    pub mode: [u8; 2],
     pub stop: bool,
     pub enable: bool,
     pub event: AxisEvent,
@@ -69,8 +70,13 @@ pub struct System {
     axis: [Axis<Countdown>; 1],
     drive: Drive,
     blocks: [BlockInstance; 4],
-    kinds: [&'static str; 4],
+    kinds: [Kind; 4],
+    outputs: [Outputs; 4],
+    /// What the blocks would show if they were called now with their inputs as they stand.
+    polled: [Shown; 4],
     inputs: Inputs,
+    /// Buffer modes to try besides mcAborting.
+    modes: &'static [u8],
     scans: u64,
 }
 
@@ -91,6 +97,8 @@ const SECOND: usize = 3;
 pub struct Key {
     axis: Outlook,
     setpoint: (u64, u64),
+    /// Position and velocity the plan ends with.
+    goal: Option<(u64, u64)>,
     drive: Drive,
     inputs: Inputs,
     shown: [Shown; 4],
@@ -98,7 +106,7 @@ pub struct Key {
 }
 
 impl System {
-    pub fn new(first: &'static str, second: &'static str) -> Self {
+    pub fn new(first: &'static str, second: &'static str, modes: &'static [u8]) -> Self {
         let limits = Limits {
             velocity: 10.0,
             acceleration: 10.0,
@@ -111,17 +119,29 @@ impl System {
             queue: 1,
             ..AxisConfig::new(limits)
         };
-        let kinds = ["MC_Power", first, "MC_Stop", second];
-        let mut blocks = kinds.map(|name| BlockInstance::new(name).expect("a registered block"));
+        let names = ["MC_Power", first, "MC_Stop", second];
+        let mut blocks = names.map(|name| BlockInstance::new(name).expect("a registered block"));
         for block in &mut blocks {
             set(block, "Axis", Value::Axis(AxisId::new(0)));
         }
         for (place, position) in [(FIRST, 1.0), (SECOND, 0.0)] {
+            let has = |block: &BlockInstance, pin: &str| block.info().pin(pin).is_some();
+            let block = &mut blocks[place];
             // No distance, in two scans: positions that add up would be infinitely many.
-            for (pin, value) in [("Position", position), ("Velocity", 1.0), ("VelocityDiff", 2.0)] {
-                if blocks[place].info().pin(pin).is_some() {
-                    set(&mut blocks[place], pin, Value::Lreal(value));
+            let distance = has(block, "Distance") && !has(block, "EndVelocity");
+            let velocity = if distance { 2.0 } else { 1.0 };
+            for (pin, value) in [
+                ("Position", position),
+                ("Velocity", velocity),
+                ("EndVelocity", 1.0),
+                ("VelocityDiff", 2.0),
+            ] {
+                if has(block, pin) {
+                    set(block, pin, Value::Lreal(value));
                 }
+            }
+            if has(block, "ExecutionMode") {
+                set(block, "ExecutionMode", Value::Enum(1));
             }
         }
         let inputs = Inputs {
@@ -134,12 +154,17 @@ impl System {
             fault: None,
             position: 0,
         };
+        let kinds = blocks.each_ref().map(|block| Kind::of(block.info()));
+        let outputs = blocks.each_ref().map(|block| Outputs::of(block.info()));
         Self {
             axis: [Axis::new(AxisId::new(0), config, Countdown).expect("a good configuration")],
             drive,
             blocks,
             kinds,
+            outputs,
+            polled: Default::default(),
             inputs,
+            modes,
             scans: 0,
         }
     }
@@ -160,21 +185,21 @@ impl System {
     /// a rising edge.
     pub fn choices(&self, changes: usize) -> Vec<Inputs> {
         let modes = |place: usize| {
-            let mut modes = vec![(false, false), (true, false)];
+            let mut modes = vec![(false, 0), (true, 0)];
             let block = &self.blocks[[FIRST, SECOND][place]];
             if !self.inputs.execute[place] && block.info().pin("BufferMode").is_some() {
-                modes.push((true, true));
+                modes.extend(self.modes.iter().map(|mode| (true, *mode)));
             }
             modes
         };
         let mut all = Vec::new();
-        for (first, first_buffered) in modes(0) {
-            for (second, second_buffered) in modes(1) {
+        for (first, first_mode) in modes(0) {
+            for (second, second_mode) in modes(1) {
                 for bits in 0..4 {
                     for event in AxisEvent::ALL {
                         let inputs = Inputs {
                             execute: [first, second],
-                            buffered: [first_buffered, second_buffered],
+                            mode: [first_mode, second_mode],
                             stop: bits & 1 != 0,
                             enable: bits & 2 != 0,
                             event,
@@ -212,11 +237,12 @@ impl System {
             state: self.state(),
             powered: self.axis[0].is_powered(),
         };
-        rules::check_calls(&scene, self.kinds)?;
+        rules::calls(&scene, self.kinds)?;
         self.axis[0].advance(self.scans, &mut log);
         self.write();
         self.scans += 1;
-        rules::check_truth(&self.polled(), &self.axis[0].outlook(), self.kinds)
+        self.polled = self.poll();
+        rules::truth(&self.polled, &self.axis[0].outlook(), self.kinds)
     }
 
     fn apply(&mut self, inputs: &Inputs) {
@@ -250,7 +276,7 @@ impl System {
                 Value::Bool(inputs.execute[index]),
             );
             if self.blocks[place].info().pin("BufferMode").is_some() {
-                let mode = Value::Enum(i32::from(inputs.buffered[index]));
+                let mode = Value::Enum(i32::from(inputs.mode[index]));
                 set(&mut self.blocks[place], "BufferMode", mode);
             }
         }
@@ -300,14 +326,18 @@ impl System {
     }
 
     /// What the blocks would show if they were called now with their inputs as they stand.
-    fn polled(&self) -> [Shown; 4] {
+    fn poll(&self) -> [Shown; 4] {
         let mut copy = self.clone();
         copy.call(&mut Log::default());
         copy.shown()
     }
 
     fn shown(&self) -> [Shown; 4] {
-        self.blocks.each_ref().map(Shown::of)
+        let mut shown = [Shown::default(); 4];
+        for ((shown, outputs), block) in shown.iter_mut().zip(&self.outputs).zip(&self.blocks) {
+            *shown = outputs.read(block);
+        }
+        shown
     }
 
     pub fn key(&self) -> Key {
@@ -319,14 +349,18 @@ impl System {
         Key {
             axis: outlook,
             setpoint: (setpoint.position.to_bits(), setpoint.velocity.to_bits()),
+            goal: axis.plan().map(|(plan, _)| {
+                let end = plan.at(u64::from(plan.scans()));
+                (end.position.to_bits(), end.velocity.to_bits())
+            }),
             drive: self.drive,
             inputs: Inputs {
-                buffered: [false; 2],
+                mode: [0; 2],
                 ..self.held()
             },
             // Which error it is does not matter for what happens next.
             shown: self.shown().map(Shown::without_error_id),
-            polled: self.polled().map(Shown::without_error_id),
+            polled: self.polled.map(Shown::without_error_id),
         }
     }
 }

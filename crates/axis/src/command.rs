@@ -278,6 +278,15 @@ pub enum Command {
         /// Its sign multiplies that of the velocity (V3).
         direction: Raw<Direction>,
     },
+    /// MC_Jog: to an endless motion, or by a distance; the velocity must be positive.
+    Jog {
+        /// Towards larger positions.
+        forward: bool,
+        /// Distance (u), not negative; 0 for an endless motion.
+        distance: f64,
+        /// Dynamic values.
+        dynamics: Dynamics,
+    },
     /// To velocity zero; other commands may interrupt. The velocity of `dynamics` is not read.
     Halt {
         /// Dynamic values.
@@ -295,6 +304,61 @@ pub enum Command {
     },
 }
 
+impl Dynamics {
+    fn bits(&self) -> [u64; 5] {
+        let values = [
+            self.velocity,
+            self.acceleration,
+            self.deceleration,
+            self.jerk,
+            self.snap,
+        ];
+        values.map(f64::to_bits)
+    }
+}
+
+impl Command {
+    /// Whether `other` has the same values, to the bit.
+    pub fn is_same(&self, other: &Self) -> bool {
+        core::mem::discriminant(self) == core::mem::discriminant(other) && self.bits() == other.bits()
+    }
+
+    /// All its values: two numbers, the direction, the dynamic values.
+    fn bits(&self) -> ([u64; 2], i32, [u64; 5]) {
+        let none = Dynamics::default();
+        let (first, second, direction, dynamics) = match self {
+            Self::MoveAbsolute {
+                position,
+                dynamics,
+                direction,
+            } => (*position, 0.0, direction.number(), dynamics),
+            Self::MoveContinuousAbsolute {
+                position,
+                end_velocity,
+                dynamics,
+                direction,
+            } => (*position, *end_velocity, direction.number(), dynamics),
+            Self::MoveRelative { distance, dynamics } | Self::MoveAdditive { distance, dynamics } => {
+                (*distance, 0.0, 0, dynamics)
+            }
+            Self::MoveContinuousRelative {
+                distance,
+                end_velocity,
+                dynamics,
+            } => (*distance, *end_velocity, 0, dynamics),
+            Self::MoveVelocity { dynamics, direction } => (0.0, 0.0, direction.number(), dynamics),
+            Self::Jog {
+                forward,
+                distance,
+                dynamics,
+            } => (*distance, 0.0, i32::from(*forward), dynamics),
+            Self::Halt { dynamics } | Self::Stop { dynamics } => (0.0, 0.0, 0, dynamics),
+            Self::Home { position } => (*position, 0.0, 0, &none),
+        };
+        ([first.to_bits(), second.to_bits()], direction, dynamics.bits())
+    }
+}
+
 /// A command and how it enters the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
@@ -302,8 +366,6 @@ pub struct Request {
     pub command: Command,
     /// How it follows the motion in progress.
     pub buffer_mode: Raw<BufferMode>,
-    /// The ContinuousUpdate pin.
-    pub continuous_update: bool,
     /// The command the same instance holds, which this one replaces (R32).
     pub replaces: Option<CommandId>,
 }
@@ -314,7 +376,6 @@ impl Request {
         Self {
             command,
             buffer_mode: BufferMode::Aborting.into(),
-            continuous_update: false,
             replaces: None,
         }
     }
@@ -327,6 +388,11 @@ pub struct Superimpose {
     pub distance: f64,
     /// Dynamic values of what is added; the velocity (VelocityDiff) must be positive.
     pub dynamics: Dynamics,
-    /// The ContinuousUpdate pin.
-    pub continuous_update: bool,
+}
+
+impl Superimpose {
+    /// Whether `other` has the same values, to the bit.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.distance.to_bits() == other.distance.to_bits() && self.dynamics.bits() == other.dynamics.bits()
+    }
 }

@@ -66,7 +66,7 @@ error_ids! {
     PositionInvalid = 101, "Position or Distance is NaN or infinite, or the target is not representable.",
         "Give a finite number.";
     VelocityInvalid = 102, "Velocity is NaN or infinite, or zero or negative where a positive value is needed.",
-        "Positioning moves need a Velocity above 0; give the direction by the target.";
+        "Positioning moves and MC_Jog need a Velocity above 0; give the direction by the target or the button.";
     AccelerationInvalid = 103, "Acceleration is NaN, infinite or negative.",
         "Give a positive number, or 0 for the axis default.";
     DecelerationInvalid = 104, "Deceleration is NaN, infinite or negative.",
@@ -111,6 +111,8 @@ error_ids! {
         "Move back inside: the other way, or to a target inside.";
     FactorInvalid = 124, "An override factor is NaN, negative, 0 where only VelFactor may be 0, or above the largest one of the axis.",
         "Give VelFactor from 0, AccFactor and JerkFactor from above 0, each at most 1 or the override_max of the axis.";
+    JogDistanceInvalid = 125, "Distance of MC_Jog is NaN, infinite or negative.",
+        "Give 0 to move while the button is held, or the length of a step above 0; the buttons give the direction.";
     DigitalNumberInvalid = 130, "InputNumber or OutputNumber is not the number of a digital input or output.",
         "Give a number from 0 to 31.";
     TriggerInvalid = 131, "TriggerInput is not a number of MC_TRIGGER_REF.",
@@ -132,6 +134,10 @@ error_ids! {
         "Wait for Disabled, then switch it on again with MC_Power.";
     NotHomed = 207, "The axis is set to need homing before absolute moves.",
         "Call MC_Home first.";
+    PositiveBarred = 208, "The motion needs the positive direction, and EnablePositive of MC_Power is FALSE.",
+        "Set EnablePositive to TRUE at the MC_Power instance called last, or move the other way.";
+    NegativeBarred = 209, "The motion needs the negative direction, and EnableNegative of MC_Power is FALSE.",
+        "Set EnableNegative to TRUE at the MC_Power instance called last, or move the other way.";
     TriggerTaken = 215, "Another instance waits for this probe.",
         "Wait for it, or abort it with MC_AbortTrigger; each probe serves one instance at a time.";
 
@@ -156,10 +162,6 @@ error_ids! {
     CommunicationLost = 601, "The communication with the drive was lost.",
         "Restore it, then call MC_Reset.";
 
-    ContinuousUpdateUnsupported = 702, "ContinuousUpdate is not supported yet.",
-        "Leave ContinuousUpdate FALSE and give a new command instead.";
-    DirectionEnableUnsupported = 703, "EnablePositive and EnableNegative are not supported yet.",
-        "Leave both TRUE.";
 
     SetpointBroken = 901, "A plan gave a set-point that is not finite.",
         "This is a defect of standstill: please report the trace.";
@@ -170,7 +172,11 @@ error_ids! {
 }
 
 /// Numbers that earlier versions showed and no version will show again, each with what it said.
-pub const RETIRED: &[(u16, &str)] = &[(701, "Blending buffer modes were not supported.")];
+pub const RETIRED: &[(u16, &str)] = &[
+    (701, "Blending buffer modes were not supported."),
+    (702, "ContinuousUpdate was not supported."),
+    (703, "EnablePositive and EnableNegative were not supported."),
+];
 
 // Deriving it needs an attribute on a variant that the table above writes.
 #[allow(clippy::derivable_impls)]

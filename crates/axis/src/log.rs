@@ -45,6 +45,15 @@ pub enum Event {
         /// The limit used instead.
         limit: f64,
     },
+    /// A value too low to keep the axis inside its limits from the present state was raised.
+    Raised {
+        /// IEC name of the pin.
+        pin: &'static str,
+        /// The value that was asked for.
+        value: f64,
+        /// The value used instead.
+        limit: f64,
+    },
     /// The start state forces the plan out of its limits by this much.
     Unavoidable(Excess),
     /// The coordinates were moved: from this scan on the same place is called this much more (u). No motion.
@@ -68,6 +77,11 @@ pub enum Event {
     },
     /// A superimposed command waits until the motion under it leaves room below the axis limits.
     RoomAwaited,
+    /// MC_Power bars a direction the motion needs: it brakes, and goes on when it may.
+    Paused {
+        /// Which direction.
+        error: ErrorId,
+    },
     /// The axis entered ErrorStop.
     Fault {
         /// Why.

@@ -3,7 +3,10 @@
 //! Prints a table with the bars of docs/performance.md and marks what is above its bar. The bars are multiples of
 //! a sample from its parameters; the multiples of one that was planned before are shown too.
 
-use standstill_bench::{CYCLE, Executed, LIMITS, Move, OneAxis, Random, TARGET, Trapezoid, trapezoid};
+use standstill_bench::{
+    AXES, CYCLE, Executed, IN_MOTION, LIMITS, ManyAxes, Move, OneAxis, Random, TARGET, Trapezoid, WAYS,
+    trapezoid,
+};
 use standstill_planner::{GridPlan, Method, RampPlan, Setpoint};
 use std::hint::black_box;
 use std::time::Instant;
@@ -28,7 +31,7 @@ fn time(count: u64, run: impl FnOnce()) -> f64 {
 fn main() {
     let mut planned = trapezoid_sample();
     let mut yardstick = trapezoid_from_parameters();
-    let mut measures = [
+    let mut measures = vec![
         Measure {
             name: "trapezoid sample, planned before",
             bar: None,
@@ -48,6 +51,11 @@ fn main() {
             name: "the same scan through executor, machine and drive",
             bar: None,
             batch: Box::new(executor_scan_in_motion()),
+        },
+        Measure {
+            name: "scan of 64 axes in mixed motion, per axis",
+            bar: Some(8.0),
+            batch: Box::new(scan_of_many(None)),
         },
         Measure {
             name: "sample of a rest-to-rest plan",
@@ -70,6 +78,12 @@ fn main() {
             batch: Box::new(ramp_plan()),
         },
     ];
+    // What the mixture is made of.
+    measures.extend(WAYS.iter().enumerate().map(|(way, name)| Measure {
+        name,
+        bar: None,
+        batch: Box::new(scan_of_many(Some(way))),
+    }));
     let mut times = vec![Vec::new(); measures.len()];
     let mut ratios = vec![Vec::new(); measures.len()];
     let mut planned_ratios = vec![Vec::new(); measures.len()];
@@ -85,13 +99,13 @@ fn main() {
         }
     }
     println!(
-        "{:<52} {:>9} {:>7} {:>7} {:>5}",
+        "{:<56} {:>9} {:>7} {:>7} {:>5}",
         "", "ns", "planned", "ratio", "bar"
     );
     for (index, measure) in measures.iter().enumerate() {
         let ratio = median(&mut ratios[index]);
         println!(
-            "{:<52} {:>9.2} {:>7.2} {ratio:>7.2} {:>5}{}",
+            "{:<56} {:>9.2} {:>7.2} {ratio:>7.2} {:>5}{}",
             measure.name,
             median(&mut times[index]),
             median(&mut planned_ratios[index]),
@@ -170,6 +184,29 @@ fn executor_scan_in_motion() -> impl FnMut() -> f64 {
             }
         });
         assert!(rig.program.to_target.outputs.active);
+        took
+    }
+}
+
+/// A few scans of all axes in every round, the whole motion over all rounds: longer batches would measure what
+/// else the machine does.
+fn scan_of_many(only: Option<usize>) -> impl FnMut() -> f64 {
+    const SCANS: u64 = 7;
+    let started = ManyAxes::in_motion(only).expect("valid");
+    let (mut axes, mut left) = (started.clone(), IN_MOTION);
+    move || {
+        if left <= SCANS {
+            (axes, left) = (started.clone(), IN_MOTION);
+        }
+        left -= SCANS + 1;
+        // Whatever was measured before has the caches.
+        axes.scan();
+        let took = time(SCANS * u64::from(AXES), || {
+            for _ in 0..SCANS {
+                black_box(&mut axes).scan();
+            }
+        });
+        assert_eq!(axes.moving(), usize::from(AXES));
         took
     }
 }

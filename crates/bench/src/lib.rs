@@ -6,10 +6,12 @@
 //! `docs/performance.md`.
 #![forbid(unsafe_code)]
 
+mod many_axes;
 mod one_axis;
 mod random;
 mod trapezoid;
 
+pub use many_axes::{AXES, IN_MOTION, ManyAxes, WAYS};
 pub use one_axis::{CYCLE, Executed, LIMITS, OneAxis, Program, TARGET};
 pub use random::{Move, Random, Replan};
 pub use trapezoid::{Sample, Trapezoid, trapezoid};

@@ -6,7 +6,7 @@
 use standstill_axis::{
     AxisConfig, AxisId, AxisState, DrivePosition, IdealDrive, InstanceId, Scaling, Standard, StartState,
 };
-use standstill_bench::{CYCLE, LIMITS, Random};
+use standstill_bench::{CYCLE, IN_MOTION, LIMITS, ManyAxes, Random};
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::{AnyInstance, Context, Direction, PinType, Value};
 use standstill_scan::{
@@ -84,10 +84,8 @@ impl Monkey {
     /// A value that suits the pin nearly always.
     fn value(random: &mut Random, name: &str, ty: PinType) -> Option<Value> {
         Some(match ty {
-            // Power stays on most of the time.
-            PinType::Bool if name == "Enable" => Value::Bool(!random.bits().is_multiple_of(8)),
-            PinType::Bool if name.starts_with("Enable") => Value::Bool(true),
-            PinType::Bool if name == "ContinuousUpdate" => Value::Bool(random.bits().is_multiple_of(32)),
+            // Power stays on most of the time, and both directions are permitted.
+            PinType::Bool if name.starts_with("Enable") => Value::Bool(!random.bits().is_multiple_of(8)),
             PinType::Bool => Value::Bool(random.bits().is_multiple_of(2)),
             PinType::Lreal => Value::Lreal(match random.bits() % 16 {
                 0 => f64::NAN,
@@ -194,6 +192,18 @@ fn no_scan_uses_the_heap() {
         assert_eq!(seen, reachable, "{}", state.name());
     }
     assert!(machine.log().total() > 500, "{} records", machine.log().total());
+}
+
+#[test]
+fn no_scan_of_64_axes_in_mixed_motion_uses_the_heap() {
+    for _ in 0..SCANS / IN_MOTION as i64 + 1 {
+        let mut axes = ManyAxes::in_motion(None).expect("valid");
+        for scan in 0..IN_MOTION {
+            let before = ALLOCATIONS.get();
+            axes.scan();
+            assert_eq!(ALLOCATIONS.get() - before, 0, "scan {scan}");
+        }
+    }
 }
 
 #[test]

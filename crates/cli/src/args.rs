@@ -94,7 +94,27 @@ pub enum Soak {
         #[arg(long, value_name = "FILE")]
         resume: Option<PathBuf>,
     },
+    /// Run random programs of blocks over random axes, and hold every rule in every scan
+    ///
+    /// A failing program is made as small as it gets and written as a scan script.
+    Blocks {
+        /// All programs follow from it
+        #[arg(long, value_name = "S", default_value_t = 1)]
+        seed: u64,
+        /// How many scans
+        #[arg(long, value_name = "N", default_value_t = 100_000)]
+        count: u64,
+        /// Keep the state of the run in this file, and go on from there if it exists
+        #[arg(long, value_name = "FILE")]
+        resume: Option<PathBuf>,
+        /// Write failing programs into this folder
+        #[arg(long, value_name = "FOLDER", default_value = FAILURES)]
+        failures: PathBuf,
+    },
 }
+
+/// Where `soak blocks` writes failing programs.
+const FAILURES: &str = "soak-failures";
 
 /// Where the scripts of a repository stand.
 const SCRIPTS: &str = "scan-tests";

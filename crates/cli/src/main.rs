@@ -71,6 +71,15 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Soak {
             what: Soak::Planner { seed, count, resume },
         } => soak::planner(*seed, *count, resume.as_deref(), out),
+        Command::Soak {
+            what:
+                Soak::Blocks {
+                    seed,
+                    count,
+                    resume,
+                    failures,
+                },
+        } => soak::blocks(*seed, *count, resume.as_deref(), failures, out),
         Command::Blocks { json: true } => blocks::json(out),
         Command::Blocks { json: false } => blocks::table(out),
         Command::Schema => {

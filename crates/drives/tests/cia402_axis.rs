@@ -2,7 +2,7 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Direction, Drive, DrivePosition, Dynamics, InstanceId,
-    Limits, Log, Request, Scaling, Source, Standard,
+    Limits, Log, Permission, Request, Scaling, Source, Standard,
 };
 use standstill_drives::cia402::{Cia402Drive, Reaction, Settings, State};
 
@@ -100,7 +100,7 @@ impl Rig {
     }
 
     fn power(&mut self, wanted: bool) {
-        self.step(|axis, source, log| axis.set_power(wanted, source, log));
+        self.step(|axis, source, log| axis.set_power(wanted, Permission::BOTH, source, log));
     }
 
     fn run(&mut self, scans: u32) {
@@ -278,7 +278,7 @@ fn schedules(seeds: core::ops::Range<u64>) {
             };
             for scan in 0..random.below(40) {
                 rig.step(|axis, source, log| {
-                    axis.set_power(power, source, log);
+                    axis.set_power(power, Permission::BOTH, source, log);
                     if scan == 5 {
                         // Refused where the state does not allow it.
                         let _ = axis.command(&Request::aborting(command), source, log);

@@ -2,7 +2,7 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Drive, DrivePosition, Dynamics, Fate, InstanceId, Limits,
-    Log, Request, Scaling, Source, Standard,
+    Log, Permission, Request, Scaling, Source, Standard,
 };
 use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, PlantDrive, SUBSTEPS, Servo, SetPoint};
 
@@ -253,7 +253,7 @@ impl Rig {
             scan: self.scan,
             instance: InstanceId(1),
         };
-        self.axis.set_power(true, source, &mut self.log);
+        self.axis.set_power(true, Permission::BOTH, source, &mut self.log);
         during(&mut self.axis, source, &mut self.log);
         self.axis.advance(self.scan, &mut self.log);
         self.drive.write(0, &self.axis.drive_command());

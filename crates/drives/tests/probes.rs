@@ -1,8 +1,8 @@
 //! An edge of a probe between two scans, at any place of the scan and any speed.
 
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, Command, Direction, Drive, DrivePosition, Dynamics, Fate, IdealDrive, InstanceId,
-    Limits, Log, Request, Source, Standard, StartState, TouchProbe, Trigger,
+    Axis, AxisConfig, AxisId, Command, Direction, Drive, DrivePosition, Dynamics, Fate, IdealDrive,
+    InstanceId, Limits, Log, Request, Source, Standard, StartState, TouchProbe, Trigger,
 };
 use standstill_drives::peripherals::Peripherals;
 
@@ -97,7 +97,11 @@ fn an_edge_between_scans_is_recorded_to_a_millionth_of_the_way() {
         let mut rig = Rig::new(modulo, case % 3);
         // From a creep to ten units a scan, either way.
         let speed = 1e4 * random.part() * random.part() * random.part() + 0.1;
-        let velocity = if random.bits().is_multiple_of(2) { speed } else { -speed };
+        let velocity = if random.bits().is_multiple_of(2) {
+            speed
+        } else {
+            -speed
+        };
         let dynamics = Dynamics {
             velocity,
             ..Dynamics::default()
@@ -110,7 +114,9 @@ fn an_edge_between_scans_is_recorded_to_a_millionth_of_the_way() {
         rig.scan(|rig| {
             let source = rig.source();
             let request = Request::aborting(command);
-            rig.axis.command(&request, source, &mut rig.log).expect("a motion");
+            rig.axis
+                .command(&request, source, &mut rig.log)
+                .expect("a motion");
             let request = TouchProbe {
                 trigger: Trigger::Probe1Rising.into(),
                 window: None,
@@ -135,7 +141,10 @@ fn an_edge_between_scans_is_recorded_to_a_millionth_of_the_way() {
         let error = way(before + at * travel, recorded, modulo).abs();
         // What positions of this size resolve comes on top.
         let resolved = 4.0 * f64::EPSILON * before.abs().max(recorded.abs()).max(360.0);
-        assert!(error <= 1e-6 * travel.abs() + resolved, "case {case}: {error} of {travel}");
+        assert!(
+            error <= 1e-6 * travel.abs() + resolved,
+            "case {case}: {error} of {travel}"
+        );
         if travel != 0.0 {
             worst = worst.max((error - resolved).max(0.0) / travel.abs());
         }

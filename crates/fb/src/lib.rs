@@ -12,6 +12,7 @@ mod block;
 mod enable;
 mod execute;
 mod pins;
+mod update;
 
 pub use block::{AnyInstance, Block, BlockInfo, Context, Described, Group, Instance};
 pub use enable::{EnableCore, Reading};
@@ -19,3 +20,4 @@ pub use execute::{ExecuteCore, Phase};
 pub use pins::{
     Direction, EnumInfo, InputRef, Int, OutputRef, Pin, PinError, PinType, PinValue, Pins, Time, Value,
 };
+pub use update::{Move, UpdateCore, Values};

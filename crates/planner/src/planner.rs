@@ -96,6 +96,9 @@ pub trait Planner {
     /// The scan of a plan, counted from its start, at which it next changes its highest derivative, or what
     /// is given if it never does again.
     fn next_switch(&self, rest: (&Self::Plan, u64)) -> u64;
+
+    /// How far (u) the rest of a plan moves up and how far down, up to its goal.
+    fn ways(&self, rest: (&Self::Plan, u64)) -> (f64, f64);
 }
 
 /// How the moves of an axis to a position are planned (docs/planner.md, section 13).
@@ -372,6 +375,10 @@ impl Planner for Standard {
 
     fn next_switch(&self, rest: (&StandardPlan, u64)) -> u64 {
         sum::next_switch(rest, self.cycle)
+    }
+
+    fn ways(&self, rest: (&StandardPlan, u64)) -> (f64, f64) {
+        sum::ways(rest, self.cycle)
     }
 }
 

@@ -226,6 +226,43 @@ pub(crate) fn next_switch((plan, elapsed): Part<'_>, cycle: f64) -> u64 {
     elapsed.saturating_add(u64::from(scans.max(1)))
 }
 
+/// How far (u) the rest of a plan moves up and how far down, up to its goal: the sums over the stretches between
+/// its turns. Bounded by [`MAX_SWITCHES`] pieces with at most two roots each.
+pub(crate) fn ways(part: Part<'_>, cycle: f64) -> (f64, f64) {
+    let mut walk = Walk::new(part.0.segments(), part, cycle);
+    let (mut up, mut down) = (0.0, 0.0);
+    for _ in 0..MAX_SWITCHES {
+        if !walk.left.is_finite() {
+            break;
+        }
+        if walk.left > GRAIN * cycle {
+            // From 0, where positions are finest.
+            let start = Setpoint {
+                position: 0.0,
+                ..walk.state
+            };
+            let path = Path::<1>::follow(Order::Four, &start, core::iter::once((walk.left, start.snap)));
+            let mut from = 0.0;
+            let mut go = |to: f64| {
+                if to > from {
+                    up += to - from;
+                } else {
+                    down += from - to;
+                }
+                from = to;
+            };
+            path.extremes(0.0, |state, direction| {
+                if direction.is_none() {
+                    go(state.position);
+                }
+            });
+            go(moved(&start, walk.left).position);
+        }
+        walk.go(walk.left);
+    }
+    (up, down)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -313,6 +350,33 @@ mod tests {
         let ended = room((&base, 110), &LIMITS, CYCLE);
         assert_eq!((ended.velocity, ended.acceleration), (100.0, 1000.0));
         assert_eq!(room((&plan(0.0, 100.0, 100.0), 50), &LIMITS, CYCLE).velocity, 0.0);
+    }
+
+    #[test]
+    fn ways_are_counted_between_turns() {
+        let standard = Standard::new(CYCLE);
+        let moving = Setpoint {
+            velocity: 50.0,
+            ..Setpoint::at_rest(3.0)
+        };
+        // It brakes over 50^2 / (2 * 1000) = 1.25 before it comes back.
+        let back = standard
+            .move_to(MoveProfile::Online, &moving, 3.25, &LIMITS, &LIMITS)
+            .unwrap();
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+        let (up, down) = ways((&back, 0), CYCLE);
+        assert!(near(up, 1.25) && near(down, 1.0), "{up} {down}");
+        let (up, down) = ways((&back, 7), CYCLE);
+        assert!(
+            near(up, 0.0) && near(down, back.at(7).position - 3.25),
+            "{up} {down}"
+        );
+        // Up to the goal of an endless motion.
+        let ramp = standard
+            .ramp_to(&Setpoint::at_rest(0.0), -10.0, &LIMITS, &LIMITS)
+            .unwrap();
+        let (up, down) = ways((&ramp, 0), CYCLE);
+        assert!(up == 0.0 && near(down, 0.05), "{up} {down}");
     }
 
     #[test]

@@ -73,6 +73,10 @@ impl Planner for Noting {
     fn next_switch(&self, (_, elapsed): (&Note, u64)) -> u64 {
         elapsed
     }
+
+    fn ways(&self, _: (&Note, u64)) -> (f64, f64) {
+        (0.0, 0.0)
+    }
 }
 
 impl Plan for Note {

@@ -9,7 +9,9 @@
 mod cases;
 mod follow;
 mod judge;
+pub mod monkey;
 mod random;
+pub mod rules;
 
 pub use cases::{Case, Chain, Goal, Plan};
 pub use judge::{Measured, judge};

@@ -12,7 +12,7 @@ use crate::{
 use standstill_planner::{Excess, Field, Limits, Passage, PlanError, Planner, Setpoint};
 
 /// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// At its end a command comes to rest.
 pub(super) const REST: Passage = Passage {
@@ -22,7 +22,7 @@ pub(super) const REST: Passage = Passage {
 
 /// The Direction pin of a command to a position; the checks refuse undefined numbers. MC_MoveAdditive leads to a
 /// position of the frame.
-fn direction_of(command: &Command) -> Option<Direction> {
+pub(super) fn direction_of(command: &Command) -> Option<Direction> {
     match command {
         Command::MoveAbsolute { direction, .. } | Command::MoveContinuousAbsolute { direction, .. } => {
             direction.get()
@@ -31,6 +31,7 @@ fn direction_of(command: &Command) -> Option<Direction> {
         | Command::MoveRelative { .. }
         | Command::MoveContinuousRelative { .. }
         | Command::MoveVelocity { .. }
+        | Command::Jog { .. }
         | Command::Halt { .. }
         | Command::Stop { .. }
         | Command::Home { .. } => None,
@@ -85,6 +86,9 @@ impl<P: Planner> Axis<P> {
         let mut entry = Entry::new(self.new_id(), source.instance, work, limits, mode);
         entry.direction = direction_of(&request.command);
         self.override_entry(&mut entry);
+        if let (Command::MoveAdditive { .. }, Work::Position(_)) = (&request.command, work) {
+            entry.from = self.commanded_target().unwrap_or(self.setpoint.position);
+        }
         match way {
             Way::Wait => {
                 self.queue.push(entry);
@@ -93,11 +97,14 @@ impl<P: Planner> Axis<P> {
             }
             Way::Now => {
                 self.aim(&mut entry, self.setpoint.position);
+                let asked = entry.limits;
                 let motion = self
-                    .plan_for(&entry)
+                    .plan_for(&mut entry)
                     .map_err(|error| self.refuse_plan(&entry, error, source, log))?;
+                let before = self.limits_before(&entry.limits);
                 self.end_all(Fate::Aborted, Fate::Aborted);
-                self.begin(entry, motion, source.scan, log);
+                self.begin(entry, motion, before, source.scan, log);
+                self.record_raised(&asked, &entry.limits, source, log);
             }
         }
         Ok(entry.id)
@@ -126,24 +133,29 @@ impl<P: Planner> Axis<P> {
     }
 
     fn way(&self, request: &Request, buffered: bool) -> Result<Way, (&'static str, ErrorId)> {
-        if request.continuous_update {
-            return Err(("ContinuousUpdate", ErrorId::ContinuousUpdateUnsupported));
-        }
         if self.power.going_off {
             return Err(("", ErrorId::PoweringOff));
         }
         let stop = matches!(request.command, Command::Stop { .. });
         let home = matches!(request.command, Command::Home { .. });
         let refuse = |error| Err(("", error));
+        // MC_Home starts at rest, so it cannot follow what does not end.
+        let wait = || {
+            if home && self.predecessor_is_endless() {
+                refuse(ErrorId::InMotion)
+            } else {
+                self.wait()
+            }
+        };
         match self.state {
             AxisState::Disabled => refuse(ErrorId::NotPowered),
             AxisState::ErrorStop => refuse(ErrorId::InErrorStop),
             // An idle axis starts at once whatever the mode (B9); something waits only in the scan in which
             // MC_Stop released the axis.
-            AxisState::Standstill if buffered && !self.queue.is_empty() => self.wait(),
+            AxisState::Standstill if buffered && !self.queue.is_empty() => wait(),
             AxisState::Standstill => Ok(Way::Now),
             AxisState::Homing if stop || (home && !buffered) => Ok(Way::Now),
-            AxisState::Homing if buffered && !stop => self.wait(),
+            AxisState::Homing if buffered && !stop => wait(),
             AxisState::Homing => refuse(ErrorId::InHoming),
             // The same instance may stop again with other values (V7a).
             AxisState::Stopping
@@ -154,10 +166,10 @@ impl<P: Planner> Axis<P> {
             AxisState::Stopping if buffered && !stop && !home => self.wait(),
             AxisState::Stopping => refuse(ErrorId::InStopping),
             AxisState::DiscreteMotion | AxisState::ContinuousMotion | AxisState::SynchronizedMotion => {
-                if home && (!buffered || self.predecessor_is_endless()) {
+                if buffered {
+                    wait()
+                } else if home {
                     refuse(ErrorId::InMotion)
-                } else if buffered {
-                    self.wait()
                 } else {
                     Ok(Way::Now)
                 }
@@ -180,7 +192,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The values at the pins.
-    fn check(
+    pub(super) fn check(
         &self,
         command: &Command,
         way: Way,
@@ -254,6 +266,11 @@ impl<P: Planner> Axis<P> {
                 })?;
                 Ok((work, self.resolve(dynamics, source, log)?))
             }
+            Command::Jog {
+                forward,
+                distance,
+                ref dynamics,
+            } => self.jog(forward, distance, dynamics, source, log),
             Command::Halt { ref dynamics } => Ok((Work::Halt, self.resolve(dynamics, source, log)?)),
             Command::Stop { ref dynamics } => Ok((Work::Stop, self.resolve(dynamics, source, log)?)),
             Command::Home { position } => {
@@ -289,7 +306,13 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Refuses a target outside the software limits.
-    fn inside(&self, pin: &'static str, target: f64, source: Source, log: &mut Log) -> Result<(), ErrorId> {
+    pub(super) fn inside(
+        &self,
+        pin: &'static str,
+        target: f64,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(), ErrorId> {
         match self.allowed(target) {
             Ok(_) => Ok(()),
             Err(error) => {
@@ -369,15 +392,17 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Plans a command from the present set-point. Nothing changes.
-    pub(super) fn plan_for(&self, entry: &Entry) -> Result<Motion<P::Plan>, ErrorId> {
+    /// Plans a command from the present set-point; its limits are raised where the axis could not be kept inside
+    /// its own with them. Nothing changes but `entry`.
+    pub(super) fn plan_for(&self, entry: &mut Entry) -> Result<Motion<P::Plan>, ErrorId> {
         let before = if self.passes_its_end() {
             // From a blended end on the limits of the second command hold, and no others (B5).
             entry.limits
         } else {
             self.limits_before(&entry.limits)
         };
-        self.plan_from(entry, &self.setpoint, &before)
+        let motion = self.plan_from(entry, &self.setpoint, &before)?;
+        Ok(self.kept_inside(entry, motion, &self.setpoint, &before))
     }
 
     /// Plans a command from `start`, whose motion was within `before`.
@@ -422,7 +447,10 @@ impl<P: Planner> Axis<P> {
             Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => return Ok(Motion::Hold),
         };
         match planned {
-            Ok(plan) => Ok(Motion::along(plan)),
+            Ok(plan) => {
+                self.permitted(entry, &plan, before)?;
+                Ok(Motion::along(plan))
+            }
             Err(error) => Err(refusal(error)),
         }
     }
@@ -476,25 +504,37 @@ impl<P: Planner> Axis<P> {
         };
         let beyond = Excess {
             velocity: beyond(excess.velocity, axis.velocity, limits.velocity),
-            acceleration: beyond(
-                excess.acceleration,
-                axis.lower_acceleration(),
-                limits.lower_acceleration(),
-            ),
+            acceleration: {
+                let state = &self.setpoint;
+                // Speeding up or slowing down: the bound of the other side may leave more room than there is.
+                let (axis, limit) = if state.velocity * state.acceleration > 0.0 {
+                    (axis.acceleration, limits.acceleration)
+                } else {
+                    (axis.deceleration, limits.deceleration)
+                };
+                beyond(excess.acceleration, axis, limit)
+            },
             jerk: beyond(excess.jerk, axis.jerk, limits.jerk),
         };
         (beyond != Excess::default()).then_some(beyond)
     }
 
-    /// Makes `entry` the owner.
-    pub(super) fn begin(&mut self, entry: Entry, motion: Motion<P::Plan>, scan: u64, log: &mut Log) {
+    /// Makes `entry` the owner; it takes over from a motion within `before`.
+    pub(super) fn begin(
+        &mut self,
+        entry: Entry,
+        motion: Motion<P::Plan>,
+        before: Limits,
+        scan: u64,
+        log: &mut Log,
+    ) {
         self.enter(match entry.work {
             Work::Position(_) | Work::Distance(_) | Work::Halt => AxisEvent::StartDiscrete,
             Work::Velocity { .. } | Work::Through { .. } => AxisEvent::StartContinuous,
             Work::Stop => AxisEvent::Stop,
             Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => AxisEvent::StartHoming,
         });
-        self.before = self.limits_before(&entry.limits);
+        self.before = before;
         self.adopt(entry, motion, scan, log);
     }
 }

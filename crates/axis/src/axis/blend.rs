@@ -3,12 +3,15 @@
 //! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; rules B1 to B17. What the
 //! standard leaves open is told in `docs/buffering.md`. The maths is the planner's.
 
-use super::accept::REST;
+use super::accept::{REST, ROUNDING};
 use super::power::Reaction;
 use super::queue::{Entry, Work};
 use super::{Axis, Motion};
 use crate::{BufferMode, ErrorId, Fate, Log, QUEUE_MAX};
 use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};
+
+/// Scans of a way that leave room for its ramps in a plan.
+const SCANS: f64 = 1_073_741_824.0;
 
 /// A command of a chain: the owner to be, or one that waits.
 #[derive(Clone, Copy)]
@@ -16,6 +19,8 @@ struct Leg<'a> {
     entry: &'a Entry,
     /// How far it leads (u), with its direction as the sign; `None` if it leads nowhere.
     way: Option<f64>,
+    /// Where it ends (u), if anywhere.
+    end: Option<f64>,
 }
 
 impl<P: Planner> Axis<P> {
@@ -55,8 +60,14 @@ impl<P: Planner> Axis<P> {
         let planned = self
             .planner
             .blend(start, end, &entry.passage, &entry.limits, before);
-        // What can't be planned blended is planned as a move to rest, whose error would be the same.
-        planned.ok().flatten()
+        // What can't be planned blended is planned as a move to rest, whose error would be the same. So is what comes
+        // out faster than it may because the limits were lowered too late: it passes its end, turns and comes back.
+        let planned = planned.ok().flatten();
+        planned.filter(|plan| {
+            let end = plan.at(u64::from(plan.scans())).velocity.abs();
+            let most = self.config.limits.velocity * (1.0 + ROUNDING);
+            end <= if entry.passage.wanted > 0.0 { most } else { 0.0 }
+        })
     }
 
     /// `limits` of a motion, with the velocity its plan ends with, should that be larger (B3).
@@ -80,7 +91,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the owner is at its end in motion, for the next to take over.
     pub(super) fn passes_its_end(&self) -> bool {
-        self.goal_reached() && self.passes_on() && self.setpoint.velocity != 0.0
+        self.goal_reached() && !self.is_held_up() && self.passes_on() && self.setpoint.velocity != 0.0
     }
 
     /// What becomes of the owner when another takes over in motion: what has an end has passed it.
@@ -136,10 +147,10 @@ impl<P: Planner> Axis<P> {
             let end = from.and_then(|from| self.end_of_leg(entry, from, forward));
             *leg = Some(Leg {
                 entry,
-                way: end
-                    .zip(from)
-                    .map(|(end, from)| end - from)
-                    .filter(|way| way.is_finite() && end.is_some_and(|end| self.allowed(end).is_ok())),
+                end,
+                way: end.zip(from).map(|(end, from)| end - from).filter(|way| {
+                    self.is_countable(*way, entry) && end.is_some_and(|end| self.allowed(end).is_ok())
+                }),
             });
             forward = end.zip(from).map_or(forward, |(end, from)| end > from);
             from = end;
@@ -151,12 +162,18 @@ impl<P: Planner> Axis<P> {
                 Some(leg) => **leg,
                 None => Leg {
                     entry: first,
+                    end: first.end,
                     way: first.end.map(|end| end - start),
                 },
             };
             passage = self.between(&leg, next, &passage);
         }
         passage
+    }
+
+    /// Whether a way is one that can be planned; a longer one is refused when its turn comes, at rest.
+    fn is_countable(&self, way: f64, entry: &Entry) -> bool {
+        way.abs() <= entry.limits.velocity * self.planner.cycle() * SCANS
     }
 
     /// How `leg` is to pass its end, if `next` passes its own as `after` says.
@@ -188,6 +205,11 @@ impl<P: Planner> Axis<P> {
             Work::Halt => (direction, 0.0, None),
             Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => return REST,
         };
+        // What MC_Power bars would be refused at the end, too late to stop there. A continuous move may need a run-up.
+        let runs_up = matches!(next.entry.work, Work::Through { end_velocity, .. } if end_velocity != 0.0);
+        if self.way_barred(towards).is_some() || (runs_up && self.bars_any()) {
+            return REST;
+        }
         // Reversed, or nowhere: at rest (B13). To the velocity 0 leads no direction.
         if towards * direction <= 0.0 && velocity != 0.0 {
             return REST;
@@ -200,7 +222,7 @@ impl<P: Planner> Axis<P> {
             BufferMode::BlendingNext => velocity,
             BufferMode::BlendingHigh => first.max(velocity),
         };
-        match exit {
+        let passage = match exit {
             Some(exit) => {
                 let most = self.planner.entry_speed(wanted, towards.abs(), exit, limits);
                 Passage { wanted: most, most }
@@ -209,6 +231,27 @@ impl<P: Planner> Axis<P> {
                 wanted,
                 most: f64::INFINITY,
             },
+        };
+        self.stoppable(passage, leg.end, direction)
+    }
+
+    /// `passage` at `end`, but no faster than the stop dynamics can keep inside a software limit behind it, whatever
+    /// comes next.
+    fn stoppable(&self, passage: Passage, end: Option<f64>, direction: f64) -> Passage {
+        let (Some((min, max)), Some(end)) = (self.config.software_limits, end) else {
+            return passage;
+        };
+        let room = if direction > 0.0 { max - end } else { end - min };
+        if !room.is_finite() || passage.wanted <= 0.0 {
+            return passage;
+        }
+        let limits = self.stop_limits();
+        let most = self
+            .planner
+            .entry_speed(passage.wanted, room.max(0.0), 0.0, &limits);
+        Passage {
+            wanted: most,
+            most: passage.most.min(most),
         }
     }
 }

@@ -52,6 +52,7 @@ impl<P: Planner> Axis<P> {
     /// Whether the next command in the buffer moves the coordinates. It does so at the next latch, so that
     /// this scan still publishes what it was about to.
     pub(super) fn queue_waits_for_shift(&mut self) -> bool {
+        self.stir();
         self.shift_due = self
             .queue
             .first()
@@ -95,6 +96,11 @@ impl<P: Planner> Axis<P> {
         } else {
             position - self.actual
         };
+        // Whole turns change nothing but the resolution of what is planned.
+        let by = match &self.modulo {
+            Some(modulo) if by.abs() >= modulo.length => split(by, modulo.length).1,
+            _ => by,
+        };
         let at = self.setpoint.position + by;
         if !(at.is_finite() && (self.actual + by).is_finite()) {
             return Err(ErrorId::PositionInvalid);
@@ -123,6 +129,7 @@ impl<P: Planner> Axis<P> {
             self.shift += by;
         } else {
             // Out of operation the drive stands at its actual position, where it may have been pushed to.
+            self.stir();
             self.rename = Some(self.setpoint().position);
         }
         self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
@@ -133,6 +140,10 @@ impl<P: Planner> Axis<P> {
     /// The motion in progress in coordinates moved by `by` (u): an absolute move is planned anew to the same
     /// number, every other one goes on as it is.
     fn move_motion(&mut self, by: f64, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+        if self.is_paused() {
+            self.shift_paused(by);
+            return Ok(());
+        }
         let Motion::Run { plan, elapsed, scans } = &mut self.motion else {
             return Ok(());
         };
@@ -148,18 +159,23 @@ impl<P: Planner> Axis<P> {
         let start = self.aim(&mut owner, self.setpoint.position);
         owner.passage = self.passage(&owner, start, 0);
         // With something superimposed it may find no room just now.
-        let motion = self.plan_next(&owner)?.ok_or(ErrorId::InMotion)?;
+        let motion = self.plan_next(&mut owner)?.ok_or(ErrorId::InMotion)?;
         self.before = self.limits_before(&owner.limits);
         self.adopt(owner, motion, scan, log);
         Ok(())
     }
 
     /// The place where the axis stands is called `position` (u) from now on (MC_Home).
-    pub(super) fn call_set_position(&mut self, position: f64) {
+    pub(super) fn call_set_position(&mut self, position: f64, scan: u64, log: &mut Log) {
+        let by = position - self.setpoint.position;
+        if by != 0.0 {
+            self.record(Event::Shifted { by }, self.owner_source(scan), log);
+        }
         self.rename_actual(self.setpoint.position, position);
         if self.config.scaling.is_some() {
             self.shift += position - self.setpoint.position;
         } else {
+            self.stir();
             self.rename = Some(position);
         }
         self.setpoint = Setpoint::at_rest(position);

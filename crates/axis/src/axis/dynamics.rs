@@ -8,12 +8,22 @@ use super::{Axis, Source};
 use crate::{AboveLimit, Dynamics, ErrorId, Event, Log};
 use standstill_planner::{Limits, Planner};
 
+/// A derivative that is at its bound after less than this part of a cycle might as well jump there: no difference
+/// of set-points can tell. The stretches of a plan it would take are shorter than what its times resolve.
+const UNNOTICED: f64 = 1.0 / 1_048_576.0;
+
+/// Scans a rate may take to change what it changes from nothing to its limit. A lower rate is of no use, and a
+/// motion that could not be stopped in a number of scans that can be counted.
+const LONGEST: f64 = 268_435_456.0;
+
 /// A pin that carries a magnitude.
 struct Magnitude {
     pin: &'static str,
     value: f64,
     default: Option<f64>,
     limit: f64,
+    /// The lowest value other than 0 that is of any use.
+    least: f64,
     invalid: ErrorId,
     /// Error if 0 has nothing to stand for; `None` means unlimited.
     missing: Option<ErrorId>,
@@ -29,11 +39,19 @@ impl<P: Planner> Axis<P> {
         log: &mut Log,
     ) -> Result<Limits, ErrorId> {
         let (limits, defaults) = (&self.config.limits, &self.config.defaults);
+        let longest = LONGEST * self.planner.cycle();
+        let rate = limits.acceleration.max(limits.deceleration);
+        let jolt = if limits.jerk.is_finite() {
+            limits.jerk
+        } else {
+            rate / longest
+        };
         let acceleration = Magnitude {
             pin: "Acceleration",
             value: dynamics.acceleration,
             default: defaults.acceleration,
             limit: limits.acceleration,
+            least: limits.velocity / longest,
             invalid: ErrorId::AccelerationInvalid,
             missing: Some(ErrorId::AccelerationMissing),
             above: ErrorId::AccelerationAboveLimit,
@@ -43,6 +61,7 @@ impl<P: Planner> Axis<P> {
             value: dynamics.deceleration,
             default: defaults.deceleration,
             limit: limits.deceleration,
+            least: limits.velocity / longest,
             invalid: ErrorId::DecelerationInvalid,
             missing: Some(ErrorId::DecelerationMissing),
             above: ErrorId::DecelerationAboveLimit,
@@ -52,6 +71,7 @@ impl<P: Planner> Axis<P> {
             value: dynamics.jerk,
             default: defaults.jerk,
             limit: limits.jerk,
+            least: rate / longest,
             invalid: ErrorId::JerkInvalid,
             missing: None,
             above: ErrorId::JerkAboveLimit,
@@ -61,17 +81,35 @@ impl<P: Planner> Axis<P> {
             value: dynamics.snap,
             default: defaults.snap,
             limit: limits.snap,
+            least: jolt / longest,
             invalid: ErrorId::SnapInvalid,
             missing: None,
             above: ErrorId::SnapAboveLimit,
         };
-        Ok(Limits {
+        Ok(self.noticeable(&Limits {
             velocity: limits.velocity,
             acceleration: self.magnitude(&acceleration, source, log)?,
             deceleration: self.magnitude(&deceleration, source, log)?,
             jerk: self.magnitude(&jerk, source, log)?,
             snap: self.magnitude(&snap, source, log)?,
-        })
+        }))
+    }
+
+    /// `limits` without a jerk or snap so high that it limits nothing: the acceleration may as well jump from
+    /// bound to bound, or the jerk.
+    fn noticeable(&self, limits: &Limits) -> Limits {
+        let shortest = UNNOTICED * self.planner.cycle();
+        let higher = limits.acceleration.max(limits.deceleration);
+        let mut noticeable = *limits;
+        // From no acceleration to its bound takes a / j.
+        if limits.jerk * shortest > higher {
+            noticeable.jerk = f64::INFINITY;
+        }
+        // From no jerk to its bound takes j / s, and to half the acceleration at least sqrt(a / s).
+        if limits.snap * shortest > noticeable.jerk || limits.snap * shortest * shortest > higher {
+            noticeable.snap = f64::INFINITY;
+        }
+        noticeable
     }
 
     /// The velocity of a positioning move at `pin`: above 0, at most the axis limit.
@@ -130,11 +168,11 @@ impl<P: Planner> Axis<P> {
         let limits = self.config.limits;
         let deceleration = self.config.stop_deceleration.unwrap_or(limits.deceleration);
         let jerk = self.config.stop_jerk.unwrap_or(limits.jerk);
-        Limits {
+        self.noticeable(&Limits {
             deceleration,
             jerk,
             ..limits
-        }
+        })
     }
 
     fn magnitude(&self, pin: &Magnitude, source: Source, log: &mut Log) -> Result<f64, ErrorId> {
@@ -142,6 +180,10 @@ impl<P: Planner> Axis<P> {
             return Err(self.refuse(pin.pin, pin.value, 0.0, pin.invalid, source, log));
         }
         if pin.value > 0.0 {
+            // An axis whose limits are that low may use them.
+            if pin.value < pin.least && pin.value < pin.limit {
+                return Err(self.refuse(pin.pin, pin.value, pin.least, ErrorId::MoveTooLong, source, log));
+            }
             return self.within(pin.pin, pin.value, pin.limit, pin.above, source, log);
         }
         match (pin.default, pin.missing) {

@@ -1,12 +1,12 @@
 //! One axis: what it knows and what others may ask.
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
-//! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
-//! [`factors`] is the override, [`replan`] changes the owner's motion while it runs,
-//! [`queued`] lets administrative commands wait, [`outputs`] reads and writes digital inputs and outputs,
-//! [`probe`] records positions at edges,
+//! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`inside`] keeps take-overs within the axis
+//! limits, [`superimposed`] adds a second motion, [`factors`] is the override, [`replan`] changes the owner's motion
+//! while it runs, [`update`] gives it new values, [`jog`] checks what MC_Jog asks for, [`queued`] lets administrative
+//! commands wait, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
-//! motions inside, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
+//! motions inside, [`permission`] out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
 
 mod accept;
@@ -14,8 +14,11 @@ mod blend;
 mod coordinates;
 mod dynamics;
 mod factors;
+mod inside;
+mod jog;
 mod modulo;
 mod outputs;
+mod permission;
 mod power;
 mod probe;
 mod queue;
@@ -25,6 +28,7 @@ mod replan;
 mod software_limits;
 mod step;
 mod superimposed;
+mod update;
 
 use crate::fate::Fates;
 use crate::{
@@ -34,6 +38,7 @@ use crate::{
 };
 pub use factors::Factors;
 use modulo::Modulo;
+pub use permission::Permission;
 pub use probe::TouchProbe;
 use queue::{Entry, Queue, Work};
 pub use reading::{MotionState, Pace, Way};
@@ -102,7 +107,9 @@ struct Power {
     /// Power was lost: it does not come back before a reset or a new rising Enable.
     tripped: bool,
     /// What the last MC_Power of this scan asked for, and which instance, unless that is the decider.
-    overruled: Option<(bool, InstanceId)>,
+    overruled: Option<(bool, Permission, InstanceId)>,
+    /// The directions MC_Power permits.
+    permitted: Permission,
     /// The instance that spoke last in the scan before.
     decider: Option<InstanceId>,
     /// Power for the stage is available, as last told.
@@ -128,6 +135,10 @@ pub struct Outlook {
     pub waiting: [Option<(CommandId, &'static str, BufferMode)>; QUEUE_MAX],
     /// MC_Power.Enable.
     pub power_wanted: bool,
+    /// The directions MC_Power permits.
+    pub permitted: Permission,
+    /// The owner waits to be permitted to go on.
+    pub paused: bool,
     /// Operation is enabled.
     pub power_on: bool,
     /// On the way to Disabled.
@@ -148,7 +159,7 @@ pub struct Outlook {
     pub superimposed: Option<Beside>,
     /// The override, as bits.
     pub factors: [u64; 3],
-    /// The owner's motion is not the one to its goal: the override halts it, or it has yet to be planned anew.
+    /// The owner's motion is not the one to its goal: the override halts it, MC_Power bars it, or it has yet to be planned anew.
     pub held_up: bool,
 }
 
@@ -245,6 +256,8 @@ pub struct Axis<P: Planner = Standard> {
     factors: Factors,
     /// The owner has values that its motion does not have yet, for lack of room beside something superimposed.
     replan_due: bool,
+    /// In operation with nothing pending, see [`Axis::is_calm`]; FALSE may be stale, TRUE never.
+    calm: bool,
 }
 
 impl<P: Planner> Axis<P> {
@@ -288,6 +301,7 @@ impl<P: Planner> Axis<P> {
                 going_off: false,
                 tripped: false,
                 overruled: None,
+                permitted: Permission::BOTH,
                 decider: None,
                 voltage: true,
                 fault: None,
@@ -304,6 +318,7 @@ impl<P: Planner> Axis<P> {
             shift_due: false,
             factors: Factors::ONE,
             replan_due: false,
+            calm: false,
         })
     }
 
@@ -341,6 +356,11 @@ impl<P: Planner> Axis<P> {
         self.power.on
     }
 
+    /// The set-point is the actual position, not one of ours: the axis is not in operation.
+    pub fn is_following(&self) -> bool {
+        matches!(self.motion, Motion::Follow)
+    }
+
     /// MC_Home has been done.
     pub fn is_homed(&self) -> bool {
         self.homed
@@ -367,6 +387,11 @@ impl<P: Planner> Axis<P> {
     /// The command that owns the axis; a superimposed one does not.
     pub fn active_command(&self) -> Option<CommandId> {
         self.owner.as_ref().map(|owner| owner.id)
+    }
+
+    /// The command accepted last: its number, for whoever follows what becomes of it.
+    pub fn newest_command(&self) -> CommandId {
+        CommandId(self.last_id)
     }
 
     /// Commands that wait.
@@ -429,6 +454,8 @@ impl<P: Planner> Axis<P> {
             stop_held: self.stop_held,
             waiting,
             power_wanted: self.power.wanted,
+            permitted: self.power.permitted,
+            paused: self.is_paused(),
             power_on: self.power.on,
             going_off: self.power.going_off,
             tripped: self.power.tripped,
@@ -461,10 +488,7 @@ impl<P: Planner> Axis<P> {
     /// The drive's command for this scan.
     #[inline]
     pub fn drive_command(&mut self) -> DriveCommand {
-        let rename = self.rename;
-        if rename.is_some() {
-            self.rename = None;
-        }
+        let rename = if self.calm { None } else { self.rename.take() };
         DriveCommand {
             request: self.drive_request(),
             position: self.position_at_drive(),
@@ -498,11 +522,16 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the owner's motion in progress is not the one to its goal: what it reaches is not reached.
     fn is_held_up(&self) -> bool {
-        self.replan_due || self.owner.as_ref().is_some_and(|owner| owner.halted)
+        self.replan_due
+            || self
+                .owner
+                .as_ref()
+                .is_some_and(|owner| owner.halted || owner.paused)
     }
 
     /// The one place where the state changes.
     fn enter(&mut self, event: AxisEvent) {
+        self.stir();
         match state::next(self.state, event) {
             Ok(next) => self.state = next,
             Err(_) => debug_assert!(false, "{:?} in {:?}", event, self.state),

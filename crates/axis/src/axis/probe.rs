@@ -45,6 +45,15 @@ impl Probes {
     }
 }
 
+/// Whether `position` (u) lies in a window that was checked.
+fn is_inside((first, last): (f64, f64), position: f64) -> bool {
+    if first <= last {
+        first <= position && position <= last
+    } else {
+        first <= position || position <= last
+    }
+}
+
 impl<P: Planner> Axis<P> {
     /// MC_TouchProbe: records the position at the next edge that counts, in every state.
     ///
@@ -147,10 +156,7 @@ impl<P: Planner> Axis<P> {
             } else if let Some(latched) = told.latched.filter(|_| told.armed) {
                 let position = self.place_of(latched);
                 self.end_probing(probe);
-                if waiting
-                    .window
-                    .is_none_or(|window| self.is_inside(window, position))
-                {
+                if waiting.window.is_none_or(|window| is_inside(window, position)) {
                     if let Some(slot) = self.probes.recorded.get_mut(probe) {
                         *slot = Some((waiting.id, position));
                     }
@@ -212,15 +218,6 @@ impl<P: Planner> Axis<P> {
             return Err(self.refuse("LastPosition", last, first, error, source, log));
         }
         Ok(())
-    }
-
-    /// Whether `position` (u) lies in a window that was checked.
-    fn is_inside(&self, (first, last): (f64, f64), position: f64) -> bool {
-        if first <= last {
-            first <= position && position <= last
-        } else {
-            first <= position || position <= last
-        }
     }
 
     /// A position at the drive as programs see it (u).

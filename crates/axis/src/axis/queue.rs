@@ -59,6 +59,21 @@ impl Work {
         }
     }
 
+    /// Where it leads, if anywhere.
+    pub fn place(&self) -> Option<Place> {
+        match *self {
+            Self::Position(position) => Some(Place::At(position)),
+            Self::Distance(distance) => Some(Place::By(distance)),
+            Self::Through { to, .. } => Some(to),
+            Self::Velocity { .. }
+            | Self::Halt
+            | Self::Stop
+            | Self::Home(_)
+            | Self::SetPosition { .. }
+            | Self::Output { .. } => None,
+        }
+    }
+
     /// The velocity (u/s) it goes on with, 0 if it ends at rest.
     pub fn velocity(&self) -> f64 {
         match *self {
@@ -89,6 +104,14 @@ impl Work {
             | Self::Home(_)
             | Self::SetPosition { .. }
             | Self::Output { .. } => self,
+        }
+    }
+
+    /// To `position` (u), if it leads to a position.
+    pub fn at(self, position: f64) -> Self {
+        match self {
+            Self::Position(_) => Self::Position(position),
+            other => other,
         }
     }
 
@@ -146,6 +169,8 @@ pub(super) struct Entry {
     pub passage: Passage,
     /// MC_Stop: Execute is still TRUE.
     pub held: bool,
+    /// It brakes, or stands, because MC_Power bars a direction it needs.
+    pub paused: bool,
 }
 
 /// Values of a command before the override.
@@ -178,22 +203,13 @@ impl Entry {
             end: None,
             passage: REST,
             held: work == Work::Stop,
+            paused: false,
         }
     }
 
     /// Where it leads, if anywhere.
     pub fn place(&self) -> Option<Place> {
-        match self.work {
-            Work::Position(position) => Some(Place::At(position)),
-            Work::Distance(distance) => Some(Place::By(distance)),
-            Work::Through { to, .. } => Some(to),
-            Work::Velocity { .. }
-            | Work::Halt
-            | Work::Stop
-            | Work::Home(_)
-            | Work::SetPosition { .. }
-            | Work::Output { .. } => None,
-        }
+        self.work.place()
     }
 
     /// Whether it moves the axis when its turn comes, rather than writing something.

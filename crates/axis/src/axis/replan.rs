@@ -13,18 +13,6 @@ use super::{Axis, Motion, Source};
 use crate::{ErrorId, Event, Goal, Log};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
-/// The larger one of each limit.
-fn larger(a: &Limits, b: &Limits) -> Limits {
-    let max = |a: f64, b: f64| if b > a { b } else { a };
-    Limits {
-        velocity: max(a.velocity, b.velocity),
-        acceleration: max(a.acceleration, b.acceleration),
-        deceleration: max(a.deceleration, b.deceleration),
-        jerk: max(a.jerk, b.jerk),
-        snap: max(a.snap, b.snap),
-    }
-}
-
 impl<P: Planner> Axis<P> {
     /// Plans `owner`, the present one with other values, from the present state. With something superimposed it
     /// may find no room just now: then it is tried again in every scan.
@@ -42,15 +30,35 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The same for an owner whose end has been found in the frame it is to move in.
-    pub(super) fn replan_aimed(&mut self, mut owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+    pub(super) fn replan_aimed(&mut self, owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+        if owner.paused {
+            // It goes on with these values when it may.
+            self.owner = Some(owner);
+            return Ok(());
+        }
+        match self.plan_anew(owner, scan, log) {
+            Err(error @ (ErrorId::PositiveBarred | ErrorId::NegativeBarred)) => {
+                self.owner = Some(owner);
+                self.pause(error, scan, log);
+                Ok(())
+            }
+            planned => planned,
+        }
+    }
+
+    /// The same for one that may be paused, and goes on with this.
+    pub(super) fn plan_anew(&mut self, mut owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
         let here = self.base();
         let start = self
             .in_frame_of(&owner, &here)
             .map_or(here.position, |framed| framed.position);
         owner.passage = self.passage(&owner, start, 0);
-        let before = larger(&self.before, &self.in_force);
+        let before = self.limits_of_owner().unwrap_or(owner.limits);
         let motion = match self.layer {
-            None => Some(self.plan_from(&owner, &here, &before)?),
+            None => {
+                let motion = self.plan_from(&owner, &here, &before)?;
+                Some(self.kept_inside(&mut owner, motion, &here, &before))
+            }
             Some(layer) => self.plan_beside(layer, &owner, &before)?,
         };
         match motion {
@@ -59,6 +67,7 @@ impl<P: Planner> Axis<P> {
                 self.adopt(owner, motion, scan, log);
             }
             None => {
+                owner.paused = false;
                 self.owner = Some(owner);
                 self.replan_due = true;
             }
@@ -83,7 +92,7 @@ impl<P: Planner> Axis<P> {
                 position: layer.base.position,
                 ..self.setpoint
             };
-            let both = larger(before, &self.limits_before(&owner.limits));
+            let both = self.limits_before(&owner.limits).or_larger(before);
             motion = self.plan_from(owner, &sum, &both)?;
             if self.exceeds(&motion, &owner.limits) {
                 return Ok(None);
@@ -91,6 +100,7 @@ impl<P: Planner> Axis<P> {
             layer.pass_velocity(sum);
         }
         layer.try_soon();
+        self.stir();
         self.layer = Some(layer);
         Ok(Some(motion))
     }
@@ -112,7 +122,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// An owner that must not turn back goes on to the next time round if it can't stop before its target (B8).
-    fn stay_in_direction(&self, owner: &mut Entry, here: &Setpoint) {
+    pub(super) fn stay_in_direction(&self, owner: &mut Entry, here: &Setpoint) {
         let (Some(modulo), Some(Place::At(_)), Some(end), Some(_)) =
             (&self.modulo, owner.place(), owner.end, owner.direction)
         else {
@@ -121,6 +131,28 @@ impl<P: Planner> Axis<P> {
         if !owner.halted && !owner.passed {
             owner.turns = self.never_back(owner, here, end, 0, modulo.length);
         }
+    }
+
+    /// The limits that hold for the owner's motion in its present state: its own, and until it is inside them
+    /// those it took over from, too. None if it has no motion. Cost: at most one ramp.
+    pub(super) fn limits_of_owner(&self) -> Option<Limits> {
+        if !matches!(self.motion, Motion::Run { .. }) {
+            return None;
+        }
+        let wider = self.in_force.or_larger(&self.before);
+        if wider == self.in_force || self.is_inside(&self.base(), &self.in_force) {
+            Some(self.in_force)
+        } else {
+            Some(wider)
+        }
+    }
+
+    /// Whether a motion can go on from `state` without leaving `limits`.
+    #[inline(never)]
+    fn is_inside(&self, state: &Setpoint, limits: &Limits) -> bool {
+        self.planner
+            .ramp_to(state, 0.0, limits, limits)
+            .is_ok_and(|ramp| ramp.excess().is_none())
     }
 
     /// Sets `entry`, which is the owner or becomes it, in motion.
@@ -133,6 +165,10 @@ impl<P: Planner> Axis<P> {
         if self.modulo.is_some() {
             self.start_of_plan();
         }
+        let entry = Entry {
+            paused: false,
+            ..entry
+        };
         self.watched = self.needs_watching(&entry);
         self.owner = Some(entry);
         self.replan_due = false;

@@ -51,6 +51,8 @@ impl<P: Planner> Axis<P> {
     fn may_leave(&self, entry: &Entry, (min, max): (f64, f64)) -> bool {
         let outside = |rest: f64| rest < min || rest > max;
         match entry.work {
+            // It brakes as hard as it would there.
+            _ if entry.paused => outside(self.end_of_plan()),
             Work::Velocity { .. } => true,
             Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
             Work::Halt | Work::Stop => outside(self.end_of_plan()),
@@ -82,7 +84,8 @@ impl<P: Planner> Axis<P> {
         else {
             return false;
         };
-        let leaves = |rest: f64| (next.velocity > 0.0 && rest > max) || (next.velocity < 0.0 && rest < min);
+        // Further out than it is: from outside it may come in, and in the middle of a reversal a stop turns back.
+        let leaves = |rest: f64| (rest > max && rest > next.position) || (rest < min && rest < next.position);
         let leaving = match owner.work {
             Work::Velocity { .. } => true,
             Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,

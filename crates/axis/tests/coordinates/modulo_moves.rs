@@ -4,8 +4,8 @@
 
 use crate::rig::{CYCLE, Random, Rig};
 use standstill_axis::{
-    AxisConfig, BufferMode, Command, Direction, DrivePosition, Dynamics, Fate, IdealDrive, Limits, Request,
-    Scaling, StartState,
+    AxisConfig, BufferMode, Command, Direction, DrivePosition, Dynamics, Fate, IdealDrive, Limits,
+    Permission, Request, Scaling, StartState,
 };
 
 fn dynamics(random: &mut Random, limits: &Limits) -> Dynamics {
@@ -320,7 +320,7 @@ fn an_axis_a_thousand_million_turns_out_moves_as_one_at_home() {
         let mut rows = Vec::new();
         for scan in 0..4000 {
             let source = rig.source();
-            rig.axis.set_power(true, source, &mut rig.log);
+            rig.axis.set_power(true, Permission::BOTH, source, &mut rig.log);
             if scan == 10 {
                 let direction = Direction::Positive.into();
                 rig.command(Command::MoveVelocity { dynamics, direction });

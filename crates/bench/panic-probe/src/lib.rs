@@ -8,8 +8,8 @@
 use core::hint::black_box;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, BufferMode, Command, Comms, Drive, DriveFeedback, DrivePosition, ErrorId,
-    Fault, IdealDrive, InstanceId, Limits, Log, Planner, PowerOff, Raw, Request, Scaling, Setpoint, Source,
-    Standard, StartState,
+    Fault, IdealDrive, InstanceId, Limits, Log, Permission, Planner, PowerOff, Raw, Request, Scaling,
+    Setpoint, Source, Standard, StartState,
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::{AnyInstance, Context, PinType, Time, Value};
@@ -125,7 +125,6 @@ fn command(axis: &mut Axis, log: &mut Log) {
     let request = Request {
         command: any(Command::Home { position: any(0.0) }),
         buffer_mode: any(Raw::<BufferMode>::new(any(0))),
-        continuous_update: any(false),
         replaces: any(axis.active_command()),
     };
     let id = any(axis.command(&request, source, log));
@@ -133,7 +132,7 @@ fn command(axis: &mut Axis, log: &mut Log) {
         any(axis.fate(id));
         axis.release_stop(any(id));
     }
-    axis.set_power(any(true), source, log);
+    axis.set_power(any(true), any(Permission::BOTH), source, log);
     axis.raise(any(ErrorId::AxisFault), any(1), source, log);
     axis.clear_cause();
     let _reset = any(axis.reset(source, log));

@@ -1,6 +1,6 @@
 //! How far a run has come, as a file.
 
-use super::tally::Tally;
+use super::Trial;
 use crate::exit::{Exit, Failure};
 use serde::{Deserialize, Serialize};
 use standstill_script::suite::shown;
@@ -14,7 +14,7 @@ const FORM: u32 = 1;
 /// What is needed to go on.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct State {
+pub struct State<T> {
     standstill_soak: u32,
     /// Of the program: another one may plan otherwise.
     version: String,
@@ -23,10 +23,10 @@ pub struct State {
     /// Chains done.
     pub chains: u64,
     /// What came of them.
-    pub tally: Tally,
+    pub tally: T,
 }
 
-impl State {
+impl<T: Trial> State<T> {
     /// Nothing done yet.
     pub fn new(seed: u64) -> Self {
         Self {
@@ -34,7 +34,7 @@ impl State {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             seed,
             chains: 0,
-            tally: Tally::default(),
+            tally: T::default(),
         }
     }
 

@@ -68,7 +68,7 @@ impl Tally {
     }
 
     /// Counts a failure; `id` says where it was and what is wrong.
-    pub fn failed(&mut self, case: &Case, id: &str) {
+    pub fn fail(&mut self, case: &Case, id: &str) {
         self.count(case);
         self.failed += 1;
         let lines = &mut self.lines[kind(case)];
@@ -84,7 +84,7 @@ impl Tally {
     }
 
     /// Adds what came after.
-    pub fn add(&mut self, later: Self) {
+    pub fn join(&mut self, later: Self) {
         let sum = |a, b| a + b;
         raise(&mut self.goals, later.goals, sum);
         raise(&mut self.rungs, later.rungs, sum);

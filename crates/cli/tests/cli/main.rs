@@ -7,6 +7,7 @@ mod fmt;
 mod plan;
 mod run;
 mod soak;
+mod soak_blocks;
 mod support;
 mod test;
 mod traces;

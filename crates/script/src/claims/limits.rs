@@ -63,15 +63,18 @@ pub(super) fn within(rows: &Rows<'_>, path: &str, range: Range, axis: usize, fac
 }
 
 /// The limits of d1 to d4 in a scan. Where the speed falls the deceleration limit holds; where the velocity
-/// changes sign or begins, the larger one, since the difference is a mean over both.
+/// changes sign or begins, the larger one, since the difference is a mean over both. It may do so within a scan:
+/// then its mean there is at most what one scan of acceleration changes.
 fn limits(rows: &Rows<'_>, axis: usize, derivatives: &Derivatives) -> [f64; 4] {
     let Some(axis) = rows.script.axes.get(axis) else {
         return [0.0; 4];
     };
     let limits = &axis.config.limits;
     let (before, now) = (derivatives.velocity_before, derivatives.orders[0]);
-    let acceleration = if before * now <= 0.0 {
-        limits.acceleration.max(limits.deceleration)
+    let larger = limits.acceleration.max(limits.deceleration);
+    let cycle = rows.script.cycle_ns as f64 / 1e9;
+    let acceleration = if before * now <= 0.0 || now.abs().min(before.abs()) <= larger * cycle {
+        larger
     } else if now.abs() > before.abs() {
         limits.acceleration
     } else {

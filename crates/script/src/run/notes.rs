@@ -76,12 +76,18 @@ fn instance_name<'a>(script: &'a Script, record: &Record) -> Option<&'a str> {
 /// the axis.
 fn subject(script: &Script, record: &Record) -> String {
     match record.event {
-        Event::Refused { .. } | Event::Clamped { .. } | Event::Superimposed { .. } | Event::RoomAwaited => {
+        Event::Refused { .. }
+        | Event::Clamped { .. }
+        | Event::Raised { .. }
+        | Event::Superimposed { .. }
+        | Event::RoomAwaited => {
             instance_name(script, record).map_or_else(|| axis_name(script, record), str::to_owned)
         }
-        Event::Unavoidable(_) | Event::Planned { .. } | Event::Fault { .. } | Event::Shifted { .. } => {
-            axis_name(script, record)
-        }
+        Event::Unavoidable(_)
+        | Event::Planned { .. }
+        | Event::Paused { .. }
+        | Event::Fault { .. }
+        | Event::Shifted { .. } => axis_name(script, record),
     }
 }
 
@@ -98,8 +104,6 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
                 "" => String::new(),
                 // Numbers of an enumeration.
                 "BufferMode" | "Direction" | "ExecutionMode" => format!(", {pin} {value}"),
-                // A BOOL: its name says it.
-                "ContinuousUpdate" => format!(", {pin}"),
                 pin => format!(", {pin} {}", shortest(value)),
             };
             let limit = if limit.is_nan() {
@@ -111,6 +115,9 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
         }
         Event::Clamped { pin, value, limit } => {
             format!("clamped: {pin} {} to {}", shortest(value), shortest(limit))
+        }
+        Event::Raised { pin, value, limit } => {
+            format!("raised: {pin} {} to {}", shortest(value), shortest(limit))
         }
         Event::Unavoidable(excess) => format!("unavoidable: {}", excess_text(&excess)),
         Event::Planned { goal, scans } => {
@@ -136,6 +143,7 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
             format!("superimposed motion to rest in {scans} scans")
         }
         Event::RoomAwaited => "waits for room below the axis limits".to_owned(),
+        Event::Paused { error } => format!("pauses: {} {}", error.number(), error.name()),
         Event::Shifted { by } => format!("coordinates moved by {}", shortest(by)),
         Event::Fault { error, code } => {
             format!("fault {} {}, code {code}", error.number(), error.name())

@@ -4,7 +4,7 @@ use super::{Added, Adds, Layer};
 use crate::axis::accept::refusal;
 use crate::axis::queue::{Entry, Work};
 use crate::axis::{Axis, Motion, Source};
-use crate::{Dynamics, ErrorId, Event, Log};
+use crate::{AxisState, Dynamics, ErrorId, Event, Log};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 /// Motions tried, one after the other, until one fits.
@@ -110,7 +110,7 @@ impl<P: Planner> Axis<P> {
     /// none does for now.
     ///
     /// # Errors
-    /// The planner refuses the command as it is asked for.
+    /// The planner refuses the command as it is asked for, or MC_Power bars its direction.
     pub(super) fn propose(
         &self,
         layer: &Layer<P::Plan>,
@@ -120,11 +120,21 @@ impl<P: Planner> Axis<P> {
         if command.halting && !layer.moves() {
             return Ok(None);
         }
+        if let (Adds::Distance { target, .. }, false) = (command.adds, layer.moves())
+            && let Some(error) = self.way_barred(target - layer.added.position)
+        {
+            return Err(error);
+        }
         let base = self.rest_of_base();
         let room = Room {
             limits: base.map_or(*axis, |rest| self.planner.room(rest, axis)),
             endless: base.is_some_and(|(plan, _)| plan.at(u64::from(plan.scans())).velocity != 0.0),
         };
+        let range = self.range(layer.taken);
+        // What lies over nothing may not turn outside the software limits either.
+        let still = Setpoint::at_rest(layer.base.position);
+        let hold = range.and_then(|_| self.planner.ramp_to(&still, 0.0, axis, axis).ok());
+        let base = base.or(hold.as_ref().map(|plan| (plan, 0)));
         let mut last = None;
         for index in 0..PROPOSALS {
             let limits = limits_of(index, &command.limits, &room);
@@ -146,10 +156,15 @@ impl<P: Planner> Axis<P> {
             };
             match planned {
                 Ok(plan) => {
+                    if command.adds != Adds::Halt
+                        && !command.halting
+                        && let Some(error) = self.barred((&plan, 0), &limits, before)
+                    {
+                        return Err(error);
+                    }
                     // Alone it exceeds the axis limits only where it takes over from a motion in a way that
                     // its own limits are too low for. That motion may go on instead.
                     let motion = Motion::along(plan);
-                    let range = self.range(layer.taken);
                     let fits = !self.exceeds(&motion, &limits)
                         && base.is_none_or(|rest| self.planner.fits(rest, (&plan, 0), axis, range));
                     if fits {
@@ -246,6 +261,7 @@ impl<P: Planner> Axis<P> {
         command.halting = self.factors.halt();
         command.planned = false;
         layer.try_soon();
+        self.stir();
         self.layer = Some(layer);
         self.try_again(scan, log);
     }
@@ -261,15 +277,17 @@ impl<P: Planner> Axis<P> {
         if (command.planned && !command.lowered) || !due {
             return;
         }
-        // What the planner took once it takes again; if not, everything stays as it is.
-        let proposed = self.propose(layer, command).unwrap_or(None);
-        self.add(proposed, scan, log);
+        // What the planner took once it takes again; if not, or while it is barred, everything stays as it is.
+        if let Ok(proposed) = self.propose(layer, command) {
+            self.add(proposed, scan, log);
+        }
     }
 
     /// The limits that hold for the state published last: those of the motion in progress, both together if
     /// there are two, but never more than the axis has; `own` if there is none.
     pub(in crate::axis) fn limits_before(&self, own: &Limits) -> Limits {
-        let base = matches!(self.motion, Motion::Run { .. }).then_some(&self.in_force);
+        let base = self.limits_of_owner();
+        let base = base.as_ref();
         let Some(layer) = self.layer.as_ref().filter(|layer| layer.moves()) else {
             return *base.unwrap_or(own);
         };
@@ -290,11 +308,21 @@ impl<P: Planner> Axis<P> {
     /// It starts at the real set position. If what is added leaves room for it, it starts with the velocity
     /// its predecessor alone has. If not, the velocity of what is added passes to it, and what is left of the
     /// added distance starts again from rest when there is room.
-    pub(in crate::axis) fn plan_next(&mut self, entry: &Entry) -> Result<Option<Motion<P::Plan>>, ErrorId> {
+    pub(in crate::axis) fn plan_next(
+        &mut self,
+        entry: &mut Entry,
+    ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
+        // MC_Home names a position at rest. What was to bring the axis there may have failed.
+        if matches!(entry.work, Work::Home(_)) {
+            if self.is_superimposing() {
+                return Ok(None);
+            }
+            if !matches!(self.state, AxisState::Standstill | AxisState::Homing) {
+                return Err(ErrorId::InMotion);
+            }
+        }
         match self.layer {
             None => self.plan_for(entry).map(Some),
-            // MC_Home names a position at rest.
-            Some(_) if matches!(entry.work, Work::Home(_)) && self.is_superimposing() => Ok(None),
             Some(layer) => self.plan_under(layer, entry),
         }
     }
@@ -303,7 +331,7 @@ impl<P: Planner> Axis<P> {
     fn plan_under(
         &mut self,
         mut layer: Layer<P::Plan>,
-        entry: &Entry,
+        entry: &mut Entry,
     ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
         let start = Setpoint {
             position: self.setpoint.position,
@@ -314,8 +342,11 @@ impl<P: Planner> Axis<P> {
         } else {
             entry.limits
         };
-        let mut motion = self.plan_from(entry, &start, &in_force)?;
-        if let (Motion::Run { plan, .. }, false) = (&motion, entry.is_endless()) {
+        let motion = self.plan_from(entry, &start, &in_force)?;
+        let mut motion = self.kept_inside(entry, motion, &start, &in_force);
+        // A stop is never refused: on its way out it is watched.
+        let leads_somewhere = !entry.is_endless() && entry.end.is_some();
+        if let (Motion::Run { plan, .. }, true) = (&motion, leads_somewhere) {
             self.allowed(plan.at(u64::from(plan.scans())).position + layer.left())?;
         }
         layer.base = start;
@@ -329,6 +360,7 @@ impl<P: Planner> Axis<P> {
             layer.pass_velocity(self.setpoint);
         }
         layer.try_soon();
+        self.stir();
         self.layer = Some(layer);
         Ok(Some(motion))
     }
@@ -350,11 +382,6 @@ impl<P: Planner> Axis<P> {
 
     /// Whether a plan within `limits` must exceed those of the axis.
     pub(in crate::axis) fn exceeds(&self, motion: &Motion<P::Plan>, limits: &Limits) -> bool {
-        let Motion::Run { plan, .. } = motion else {
-            return false;
-        };
-        plan.excess()
-            .and_then(|excess| self.beyond_axis(excess, limits))
-            .is_some()
+        self.excess_of(motion, limits).is_some()
     }
 }

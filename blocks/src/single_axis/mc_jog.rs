@@ -1,0 +1,200 @@
+//! `MC_Jog`: moves an axis by hand, as long as a button is held or by a step.
+//!
+//! Source: none, this block is not in the PLCopen standard; pins and outputs follow its rules R8, R19 to R38 as far as
+//! a level of two buttons has an edge. What the block does stands in docs/jogging.md.
+
+use standstill_axis::{Axis, AxisId, Command, CommandId, Dynamics, ErrorId, Log, Planner, Request, Source};
+use standstill_fb::{Block, Context, Group, Phase, pins};
+
+pins! {
+    in_outs {
+        /// The axis to move.
+        Axis => axis: AxisId;
+    }
+    inputs {}
+    vendor_inputs {
+        /// TRUE moves towards larger positions, with the values of the call in which it rises. FALSE, or both TRUE,
+        /// stops.
+        JogForward => jog_forward: bool = false, "";
+        /// The same towards smaller positions.
+        JogBackward => jog_backward: bool = false, "";
+        /// Length of a step, after which the axis stands though the button is held; 0 goes on while it is held.
+        Distance => distance: f64 = 0.0, "u";
+        /// Largest velocity; above 0, the buttons give the direction.
+        Velocity => velocity: f64 = 0.0, "u/s";
+        /// Rate while the speed grows; 0 takes the axis default.
+        Acceleration => acceleration: f64 = 0.0, "u/s^2";
+        /// Rate while the speed falls, at the release too; 0 takes the axis default.
+        Deceleration => deceleration: f64 = 0.0, "u/s^2";
+        /// Jerk; 0 takes the axis default, and no limit if there is none.
+        Jerk => jerk: f64 = 0.0, "u/s^3";
+        /// Snap; 0 takes the axis default, and no limit if there is none.
+        Snap => snap: f64 = 0.0, "u/s^4";
+    }
+    outputs {}
+    vendor_outputs {
+        /// The axis stands after the release or the step.
+        Done => done: bool, "";
+        /// Moving, or braking after the release.
+        Busy => busy: bool, "";
+        /// The block controls the axis.
+        Active => active: bool, "";
+        /// Interrupted by another command; the button has to be released before the next try.
+        CommandAborted => command_aborted: bool, "";
+        /// Refused, or ended by an error; the button has to be released before the next try.
+        Error => error: bool, "";
+        /// Why; 0 without an error.
+        ErrorID => error_id: ErrorId, "";
+    }
+}
+
+/// A command given, and the values it stops with.
+#[derive(Clone, Copy, Debug)]
+struct Given {
+    axis: AxisId,
+    id: CommandId,
+    dynamics: Dynamics,
+}
+
+/// State kept between calls.
+#[doc(alias = "MC_Jog")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct McJog {
+    /// The button of the last call: forward or backward.
+    held: Option<bool>,
+    given: Option<Given>,
+    /// The last result; of no meaning while there is a command.
+    phase: Phase,
+}
+
+impl McJog {
+    /// A button is pressed: one motion, which replaces the one this instance has.
+    fn press<P: Planner>(
+        &mut self,
+        forward: bool,
+        inputs: &Inputs,
+        context: &mut Context<'_, P>,
+    ) -> Result<Given, ErrorId> {
+        let replaces = self.given.map(|given| given.id);
+        let (axis, log, source) = context.axis(inputs.axis)?;
+        let dynamics = Dynamics {
+            velocity: inputs.velocity,
+            acceleration: inputs.acceleration,
+            deceleration: inputs.deceleration,
+            jerk: inputs.jerk,
+            snap: inputs.snap,
+        };
+        let command = Command::Jog {
+            forward,
+            distance: inputs.distance,
+            dynamics,
+        };
+        let id = axis.command(
+            &Request {
+                replaces,
+                ..Request::aborting(command)
+            },
+            source,
+            log,
+        )?;
+        Ok(Given {
+            axis: inputs.axis,
+            id,
+            dynamics,
+        })
+    }
+
+    /// No button, or both: what this instance set in motion comes to rest.
+    fn release<P: Planner>(&mut self, context: &mut Context<'_, P>) -> Result<(), ErrorId> {
+        let Some(given) = &mut self.given else {
+            return Ok(());
+        };
+        let (axis, log, source) = context.axis(given.axis)?;
+        if Phase::from(axis.fate(given.id)).is_busy() {
+            let gentle = halt(axis, given.dynamics, source, log);
+            // A ramp that would take too long is no reason to go on.
+            given.id = gentle.or_else(|_| halt(axis, Dynamics::default(), source, log))?;
+        }
+        Ok(())
+    }
+
+    /// A button was pressed or released.
+    #[inline(never)]
+    fn change<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Result<(), ErrorId> {
+        let Some(forward) = self.held else {
+            return self.release(context);
+        };
+        match self.press(forward, inputs, context) {
+            Ok(given) => {
+                self.given = Some(given);
+                Ok(())
+            }
+            Err(error) => {
+                // The other button is no longer held: its motion must not go on.
+                let released = self.release(context);
+                self.given = None;
+                released.and(Err(error))
+            }
+        }
+    }
+
+    fn phase<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Phase {
+        let held = match (inputs.jog_forward, inputs.jog_backward) {
+            (true, false) => Some(true),
+            (false, true) => Some(false),
+            (true, true) | (false, false) => None,
+        };
+        if held != self.held {
+            self.held = held;
+            if let Err(error) = self.change(inputs, context) {
+                self.phase = Phase::Failed(error);
+                return self.phase;
+            }
+        }
+        let phase = match &self.given {
+            Some(given) => match context.axes.get(given.axis.index()) {
+                Some(axis) => axis.fate(given.id).into(),
+                None => Phase::Failed(ErrorId::AxisUnknown),
+            },
+            // A result was already shown in an earlier call; without a button it goes.
+            None if held.is_none() => Phase::Idle,
+            None => self.phase,
+        };
+        if !phase.is_busy() {
+            self.given = None;
+        }
+        self.phase = phase;
+        phase
+    }
+}
+
+/// MC_Halt with these values.
+fn halt<P: Planner>(
+    axis: &mut Axis<P>,
+    dynamics: Dynamics,
+    source: Source,
+    log: &mut Log,
+) -> Result<CommandId, ErrorId> {
+    axis.command(&Request::aborting(Command::Halt { dynamics }), source, log)
+}
+
+impl Block for McJog {
+    const NAME: &'static str = "MC_Jog";
+    const GROUP: Group = Group::SingleAxis;
+    const DOC: &'static str =
+        "Moves one axis by hand, while a button is held or by a step. Vendor extension, not in the standard.";
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+
+    fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
+        let phase = self.phase(inputs, context);
+        Outputs {
+            done: phase.is_done(),
+            busy: phase.is_busy(),
+            active: phase.is_active(),
+            command_aborted: phase.is_aborted(),
+            error: phase.is_error(),
+            error_id: phase.error_id(),
+        }
+    }
+}

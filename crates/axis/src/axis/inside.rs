@@ -1,0 +1,135 @@
+//! Take-overs that keep the axis inside its limits.
+//!
+//! A command may ask for less jerk or snap than the motion it takes over from. From a state that only that motion's
+//! own limits can bring back, its velocity would leave those of the axis. What can be avoided with the limits that
+//! held until now, or with those of the axis, is not unavoidable: the command then gets them, as far as necessary.
+
+use super::queue::Entry;
+use super::{Axis, Motion, Source};
+use crate::{Event, Log};
+use standstill_planner::{Excess, Limits, Plan, Planner, Setpoint};
+
+/// A higher limit must take at least this much off what is exceeded.
+const WORTH: f64 = 0.99;
+
+impl<P: Planner> Axis<P> {
+    /// What `motion` within `limits` exceeds of the axis limits.
+    pub(super) fn excess_of(&self, motion: &Motion<P::Plan>, limits: &Limits) -> Option<Excess> {
+        let Motion::Run { plan, .. } = motion else {
+            return None;
+        };
+        plan.excess().and_then(|excess| self.beyond_axis(excess, limits))
+    }
+
+    /// `motion`, which is planned for `entry`, or one with higher limits that exceeds those of the axis by less; `entry`
+    /// then has them. Cost: at most two plans, for a motion that exceeds.
+    pub(super) fn kept_inside(
+        &self,
+        entry: &mut Entry,
+        motion: Motion<P::Plan>,
+        start: &Setpoint,
+        before: &Limits,
+    ) -> Motion<P::Plan> {
+        match self.excess_of(&motion, &entry.limits) {
+            None => motion,
+            Some(excess) => self.planned_higher(entry, motion, excess, (start, before)),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn planned_higher(
+        &self,
+        entry: &mut Entry,
+        motion: Motion<P::Plan>,
+        mut excess: Excess,
+        (start, before): (&Setpoint, &Limits),
+    ) -> Motion<P::Plan> {
+        let mut kept = motion;
+        for limits in self.higher(&entry.limits, before) {
+            let raised = Entry { limits, ..*entry };
+            let Ok(motion) = self.plan_from(&raised, start, before) else {
+                continue;
+            };
+            let left = self.excess_of(&motion, &limits);
+            if is_less(left, &excess) {
+                (kept, *entry) = (motion, raised);
+                match left {
+                    Some(left) => excess = left,
+                    None => break,
+                }
+            }
+        }
+        kept
+    }
+
+    /// The same for a ramp to rest nobody commanded.
+    pub(super) fn stopped_inside(&self, plan: P::Plan, limits: &mut Limits) -> P::Plan {
+        let Some(mut excess) = plan.excess().and_then(|excess| self.beyond_axis(excess, limits)) else {
+            return plan;
+        };
+        let mut kept = plan;
+        for higher in self.higher(limits, &self.in_force) {
+            let Ok(plan) = self.planner.ramp_to(&self.setpoint, 0.0, &higher, &self.in_force) else {
+                continue;
+            };
+            let left = plan.excess().and_then(|excess| self.beyond_axis(excess, &higher));
+            if is_less(left, &excess) {
+                (kept, *limits) = (plan, higher);
+                match left {
+                    Some(left) => excess = left,
+                    None => break,
+                }
+            }
+        }
+        kept
+    }
+
+    /// Jerk and snap as they were before, then those of the axis with its accelerations, too.
+    fn higher(&self, limits: &Limits, before: &Limits) -> [Limits; 2] {
+        let axis = &self.config.limits;
+        [
+            Limits {
+                jerk: limits.jerk.max(before.jerk),
+                snap: limits.snap.max(before.snap),
+                ..*limits
+            },
+            Limits {
+                velocity: limits.velocity,
+                acceleration: limits.acceleration.max(axis.acceleration),
+                deceleration: limits.deceleration.max(axis.deceleration),
+                jerk: limits.jerk.max(axis.jerk),
+                snap: limits.snap.max(axis.snap),
+            },
+        ]
+    }
+
+    /// Tells which limits of a command were raised.
+    pub(super) fn record_raised(&self, asked: &Limits, used: &Limits, source: Source, log: &mut Log) {
+        let pins = [
+            ("Acceleration", asked.acceleration, used.acceleration),
+            ("Deceleration", asked.deceleration, used.deceleration),
+            ("Jerk", asked.jerk, used.jerk),
+            ("Snap", asked.snap, used.snap),
+        ];
+        for (pin, value, limit) in pins {
+            if limit > value {
+                self.record(Event::Raised { pin, value, limit }, source, log);
+            }
+        }
+    }
+}
+
+/// Whether `left` is clearly less than `excess`: in velocity, else in acceleration, else in jerk.
+fn is_less(left: Option<Excess>, excess: &Excess) -> bool {
+    let Some(left) = left else { return true };
+    let parts = [
+        (left.velocity, excess.velocity),
+        (left.acceleration, excess.acceleration),
+        (left.jerk, excess.jerk),
+    ];
+    let differing = parts
+        .iter()
+        .find(|(left, was)| *left < *was * WORTH || *was < *left * WORTH);
+    differing.is_some_and(|(left, was)| left < was)
+}

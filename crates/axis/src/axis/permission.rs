@@ -1,0 +1,240 @@
+//! Directions MC_Power bars: what would move in one is refused, what does pauses.
+//!
+//! A motion is barred if it goes further in a barred direction than braking at once within its limits does: from
+//! rest, if it goes there at all. A command that is barred when its turn comes is an error. A motion that is barred
+//! while it runs brakes with the stop dynamics; its command stays the owner, and goes on to its end or velocity when
+//! what it then needs is permitted. What brings the axis to rest is never barred, so it pauses nothing either.
+//!
+//! A superimposed motion has a direction of its own. When either motion is barred the sum brakes; what is left of the
+//! superimposed distance waits as it does for room.
+//!
+//! Source: PLCopen Motion Control Part 1, MC_Power; V9.
+
+use super::queue::{Entry, Place, Work};
+use super::{Axis, Motion};
+use crate::{AxisEvent, ErrorId, Event, Fate, Log};
+use standstill_planner::{Limits, Plan, Planner, Setpoint};
+
+/// How much further than a stop is none: rounding, relative to the way.
+const ROUNDING: f64 = 1e-9;
+
+/// Rounding of a position, relative to it.
+const RESOLUTION: f64 = 64.0 * f64::EPSILON;
+
+/// The directions an axis may move in: EnablePositive and EnableNegative of MC_Power.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Permission {
+    /// Towards larger positions.
+    pub positive: bool,
+    /// Towards smaller positions.
+    pub negative: bool,
+}
+
+impl Permission {
+    /// Both directions: how an axis starts.
+    pub const BOTH: Self = Self {
+        positive: true,
+        negative: true,
+    };
+
+    /// Why a motion that leads so far up or down is barred, if it is.
+    pub(super) fn bars(self, up: bool, down: bool) -> Option<ErrorId> {
+        if up && !self.positive {
+            Some(ErrorId::PositiveBarred)
+        } else if down && !self.negative {
+            Some(ErrorId::NegativeBarred)
+        } else {
+            None
+        }
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// MC_Power permits other directions than before.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn permit(&mut self, permitted: Permission, scan: u64, log: &mut Log) {
+        self.power.permitted = permitted;
+        if let Some(error) = self.barred_now() {
+            self.pause(error, scan, log);
+        }
+        if let Some(layer) = &mut self.layer {
+            layer.try_soon();
+        }
+        self.resume(scan, log);
+    }
+
+    /// Whether the owner has been stopped by MC_Power and waits to go on.
+    #[inline]
+    pub(super) fn is_paused(&self) -> bool {
+        self.owner.as_ref().is_some_and(|owner| owner.paused)
+    }
+
+    /// Refuses `plan` of `entry`, after a motion within `before`, if it needs a barred direction. One that was
+    /// paused may go no further than its stop.
+    #[inline]
+    pub(super) fn permitted(&self, entry: &Entry, plan: &P::Plan, before: &Limits) -> Result<(), ErrorId> {
+        let brakes = entry.halted && !entry.paused;
+        if self.power.permitted == Permission::BOTH || brakes || !entry.leads_on() {
+            return Ok(());
+        }
+        let limits = if entry.paused {
+            self.stop_limits()
+        } else {
+            entry.limits
+        };
+        self.barred((plan, 0), &limits, before).map_or(Ok(()), Err)
+    }
+
+    /// Why the rest of a plan is barred. Cost: one ramp.
+    #[inline(never)]
+    pub(super) fn barred(&self, rest: (&P::Plan, u64), limits: &Limits, before: &Limits) -> Option<ErrorId> {
+        if self.power.permitted == Permission::BOTH {
+            return None;
+        }
+        let (plan, elapsed) = rest;
+        let (start, goal) = (plan.at(elapsed), plan.at(u64::from(plan.scans())).velocity);
+        let (up, down) = self.planner.ways(rest);
+        // Braking is no motion of its own, wherever it leads.
+        let (braking_up, braking_down) = match self.planner.ramp_to(&start, 0.0, limits, before) {
+            Ok(ramp) if !start.is_at_rest() => self.planner.ways((&ramp, 0)),
+            _ => (0.0, 0.0),
+        };
+        let small = ROUNDING * (up + down) + RESOLUTION * start.position.abs();
+        self.power.permitted.bars(
+            goal > 0.0 || up > braking_up + small,
+            goal < 0.0 || down > braking_down + small,
+        )
+    }
+
+    /// Why a motion in progress is barred.
+    fn barred_now(&self) -> Option<ErrorId> {
+        let limits = self.stop_limits();
+        let owner = match (&self.motion, &self.owner) {
+            (Motion::Run { plan, elapsed, .. }, Some(owner)) if owner.leads_on() && !owner.paused => {
+                self.barred((plan, *elapsed), &limits, &self.in_force)
+            }
+            _ => None,
+        };
+        owner.or_else(|| self.barred_behind_the_end()).or_else(|| {
+            let (rest, in_force) = self.layer.as_ref()?.distance_in_progress()?;
+            self.barred(rest, &limits, in_force)
+        })
+    }
+
+    /// Why a command is barred that the owner is about to pass its end for.
+    fn barred_behind_the_end(&self) -> Option<ErrorId> {
+        let owner = self
+            .owner
+            .as_ref()
+            .filter(|owner| !owner.paused && owner.passage.wanted > 0.0)?;
+        let passage = self.passage(owner, self.setpoint.position, 0);
+        let permitted = self.power.permitted;
+        permitted.bars(true, true).filter(|_| passage.wanted <= 0.0)
+    }
+
+    /// Everything brakes: from now on there is one motion, with the velocity of the sum. What is superimposed on an
+    /// axis that stands brakes by itself, so that its way counts.
+    pub(super) fn pause(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
+        let source = self.owner_source(scan);
+        self.record(Event::Paused { error }, source, log);
+        if !matches!(self.motion, Motion::Run { .. }) {
+            return self.brake_superimposed();
+        }
+        if let Some(mut owner) = self.owner.filter(Entry::leads_on) {
+            self.note_passing(&mut owner);
+            owner.paused = true;
+            owner.turns = 0;
+            self.owner = Some(owner);
+        }
+        self.replan_due = false;
+        self.in_force = self.limits_before(&self.in_force);
+        if let Some(layer) = &mut self.layer {
+            layer.pass_velocity(Setpoint {
+                position: layer.base.position,
+                ..self.setpoint
+            });
+        }
+        let (start, limits) = (self.base(), self.stop_limits());
+        self.motion = match self.planner.ramp_to(&start, 0.0, &limits, &self.in_force) {
+            Ok(plan) if !start.is_at_rest() => {
+                if let Some(excess) = plan.excess().and_then(|excess| self.beyond_axis(excess, &limits)) {
+                    self.record(Event::Unavoidable(excess), source, log);
+                }
+                Motion::along(plan)
+            }
+            _ => Motion::Hold,
+        };
+        self.in_force = limits;
+        self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
+    }
+
+    /// The owner goes on from where it is, if all it needs is permitted. One that can't any more fails at rest.
+    #[inline(never)]
+    pub(super) fn resume(&mut self, scan: u64, log: &mut Log) {
+        let Some(mut owner) = self.owner.filter(|owner| owner.paused) else {
+            return;
+        };
+        if owner.turns == 0 {
+            self.stay_in_direction(&mut owner, &self.base());
+        }
+        match self.plan_anew(owner, scan, log) {
+            Ok(()) | Err(ErrorId::PositiveBarred | ErrorId::NegativeBarred) => {}
+            Err(error) if self.setpoint.is_at_rest() && self.layer.is_none() => {
+                let source = self.owner_source(scan);
+                self.refuse_plan(&owner, error, source, log);
+                self.end_owner(Fate::Failed(error));
+                self.motion = Motion::Hold;
+                self.enter(AxisEvent::MotionDone);
+                self.hand_over(self.setpoint.position, scan, log);
+            }
+            // It brakes on, and is asked again at rest.
+            Err(_) => {}
+        }
+    }
+
+    /// The paused owner stands. What it needs now may be permitted: the stop may have passed its end.
+    #[cold]
+    pub(super) fn settle_paused(&mut self, scan: u64, log: &mut Log) {
+        if self.is_paused() && matches!(self.motion, Motion::Run { .. }) {
+            self.motion = Motion::Hold;
+            self.resume(scan, log);
+        }
+    }
+
+    /// The coordinates moved by `by` (u) under a paused owner: an absolute end keeps its number.
+    #[cold]
+    pub(super) fn shift_paused(&mut self, by: f64) {
+        if let Motion::Run { plan, .. } = &mut self.motion {
+            plan.shift(by);
+        }
+        let Some(mut owner) = self.owner else { return };
+        if matches!(owner.place(), Some(Place::At(_))) {
+            self.aim(&mut owner, self.setpoint.position);
+        } else {
+            owner.end = owner.end.map(|end| end + by);
+            owner.from += by;
+        }
+        self.owner = Some(owner);
+    }
+
+    /// Whether a direction is barred.
+    pub(super) fn bars_any(&self) -> bool {
+        self.power.permitted != Permission::BOTH
+    }
+
+    /// A direction in which nothing may be added to a layer at rest.
+    pub(super) fn way_barred(&self, way: f64) -> Option<ErrorId> {
+        self.power.permitted.bars(way > 0.0, way < 0.0)
+    }
+}
+
+impl Entry {
+    /// Whether it leads anywhere, so that it could be barred.
+    fn leads_on(&self) -> bool {
+        match self.work {
+            Work::Position(_) | Work::Distance(_) | Work::Through { .. } | Work::Velocity { .. } => true,
+            Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => false,
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! Directions barred at random, under moves at random: in a barred direction an axis does nothing but brake, and
+//! what was paused comes to its end when it may.
+
+use standstill_axis::{
+    Axis, AxisConfig, AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Factors, Fate,
+    InstanceId, Limits, Log, Permission, Plan, Planner, Raw, Request, Source, Standard, StartState,
+    Superimpose,
+};
+
+const CYCLE: f64 = 0.01;
+const CASES: u64 = 4_000;
+/// Scans with random commands and permissions; afterwards everything is permitted.
+const RESTLESS: u64 = 400;
+/// A case that takes longer is a motion that never ends.
+const MOST_SCANS: u64 = 20_000;
+
+/// Random numbers: a linear congruential generator, whose high bits suffice here.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, count: u64) -> u64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % count
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.below(1 << 20) as f64 / f64::from(1 << 20))
+    }
+
+    fn limits(&mut self) -> Limits {
+        let order = self.below(3);
+        Limits {
+            velocity: self.between(20.0, 200.0),
+            acceleration: self.between(200.0, 2000.0),
+            deceleration: self.between(200.0, 2000.0),
+            jerk: if order > 0 {
+                self.between(5e3, 5e4)
+            } else {
+                f64::INFINITY
+            },
+            snap: if order > 1 {
+                self.between(2e5, 2e6)
+            } else {
+                f64::INFINITY
+            },
+        }
+    }
+
+    fn command(&mut self, limits: &Limits) -> Command {
+        let dynamics = Dynamics {
+            velocity: limits.velocity * self.between(0.1, 1.0),
+            ..Dynamics::default()
+        };
+        let way = self.between(-60.0, 60.0);
+        let direction = Raw::from(Direction::Unset);
+        match self.below(7) {
+            0 | 1 => Command::MoveAbsolute {
+                position: way,
+                dynamics,
+                direction,
+            },
+            2 => Command::MoveRelative {
+                distance: way,
+                dynamics,
+            },
+            3 => Command::MoveAdditive {
+                distance: way,
+                dynamics,
+            },
+            4 => Command::MoveContinuousRelative {
+                distance: way,
+                end_velocity: dynamics.velocity * self.between(-1.0, 1.0),
+                dynamics,
+            },
+            5 => Command::MoveVelocity {
+                dynamics: Dynamics {
+                    velocity: dynamics.velocity * self.between(-1.0, 1.0),
+                    ..dynamics
+                },
+                direction,
+            },
+            _ => Command::Halt { dynamics },
+        }
+    }
+}
+
+struct Case {
+    axis: Axis,
+    log: Log,
+    random: Random,
+    permitted: Permission,
+    scan: u64,
+    given: Vec<CommandId>,
+}
+
+impl Case {
+    fn new(seed: u64) -> Self {
+        let mut random = Random(seed);
+        let limits = random.limits();
+        let config = AxisConfig {
+            start: StartState::Standstill,
+            stop_deceleration: (random.below(2) == 0).then_some(limits.deceleration * 0.4),
+            ..AxisConfig::new(limits)
+        };
+        Self {
+            axis: Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).unwrap(),
+            log: Log::default(),
+            random,
+            permitted: Permission::BOTH,
+            scan: 0,
+            given: Vec::new(),
+        }
+    }
+
+    fn source(&self) -> Source {
+        Source {
+            scan: self.scan,
+            instance: InstanceId(0),
+        }
+    }
+
+    /// Whether `error` is one a barred command may show.
+    fn is_fair(&self, error: ErrorId) -> bool {
+        match error {
+            ErrorId::PositiveBarred => !self.permitted.positive,
+            ErrorId::NegativeBarred => !self.permitted.negative,
+            ErrorId::BufferFull => true,
+            _ => false,
+        }
+    }
+
+    /// How far braking at once still leads up and down (u).
+    fn braking(&self) -> [f64; 2] {
+        let config = self.axis.config();
+        let limits = Limits {
+            deceleration: config.stop_deceleration.unwrap_or(config.limits.deceleration),
+            ..config.limits
+        };
+        let planner = Standard::new(CYCLE);
+        let ramp = planner
+            .ramp_to(&self.axis.setpoint(), 0.0, &limits, &limits)
+            .unwrap();
+        let (up, down) = planner.ways((&ramp, 0));
+        [up, down]
+    }
+
+    /// What the axis recorded last.
+    fn story(&self) -> String {
+        let last = self.log.total().saturating_sub(12);
+        self.log.since(last).fold(String::new(), |story, record| {
+            format!("{story}\n{} {:?}", record.scan, record.event)
+        })
+    }
+
+    fn disturb(&mut self, superimposes: bool) {
+        let source = self.source();
+        if self.random.below(30) == 0 {
+            self.permitted = Permission {
+                positive: self.random.below(2) == 0,
+                negative: self.random.below(2) == 0,
+            };
+        }
+        self.axis.set_power(true, self.permitted, source, &mut self.log);
+        if self.random.below(40) == 0 {
+            let factors = Factors {
+                velocity: [0.0, 0.3, 1.0][self.random.below(3) as usize],
+                acceleration: self.random.between(0.2, 1.0),
+                ..Factors::ONE
+            };
+            let changed = self.axis.set_override(factors, source, &mut self.log);
+            assert!(changed.is_ok(), "{changed:?} in {}: {}", self.scan, self.story());
+        }
+        let limits = self.axis.config().limits;
+        if self.random.below(25) == 0 {
+            let mode = match self.random.below(4) {
+                0 => BufferMode::Buffered,
+                1 if !superimposes => BufferMode::BlendingHigh,
+                _ => BufferMode::Aborting,
+            };
+            let request = Request {
+                buffer_mode: mode.into(),
+                ..Request::aborting(self.random.command(&limits))
+            };
+            match self.axis.command(&request, source, &mut self.log) {
+                Ok(id) => self.given.push(id),
+                Err(error) => assert!(
+                    self.is_fair(error),
+                    "{error:?} for {request:?} in {}: {}",
+                    self.scan,
+                    self.story()
+                ),
+            }
+        }
+        if superimposes && self.random.below(40) == 0 {
+            let request = Superimpose {
+                distance: self.random.between(-20.0, 20.0),
+                dynamics: Dynamics {
+                    velocity: limits.velocity * 0.3,
+                    ..Dynamics::default()
+                },
+            };
+            match self.axis.superimpose(&request, source, &mut self.log) {
+                Ok(id) => self.given.push(id),
+                Err(error) => assert!(
+                    self.is_fair(error),
+                    "{error:?} for {request:?} in {}: {}",
+                    self.scan,
+                    self.story()
+                ),
+            }
+        }
+    }
+}
+
+/// Covers: V9
+#[test]
+fn in_a_barred_direction_an_axis_only_brakes() {
+    let mut paused = 0;
+    for seed in 0..CASES {
+        let mut case = Case::new(seed);
+        // Each direction was barred in the scan before, and braking would not have led that way.
+        let mut over = [false; 2];
+        for _ in 0..RESTLESS {
+            case.disturb(false);
+            case.axis.advance(case.scan, &mut case.log);
+            case.scan += 1;
+            let outlook = case.axis.outlook();
+            paused += u64::from(outlook.paused);
+            let velocity = case.axis.setpoint().velocity;
+            let barred = [!case.permitted.positive, !case.permitted.negative];
+            let ahead = [velocity, -velocity].into_iter().zip(case.braking());
+            for ((over, barred), (speed, braking)) in over.iter_mut().zip(barred).zip(ahead) {
+                let what = || format!("seed {seed}, scan {}: {}", case.scan, case.story());
+                assert!(!*over || !barred || speed <= 1e-6, "{velocity} in {}", what());
+                *over = barred && braking < 1e-9;
+            }
+        }
+    }
+    assert!(paused > CASES, "{paused} scans paused");
+}
+
+/// Covers: V9
+#[test]
+fn what_was_paused_comes_to_its_end() {
+    for seed in 0..CASES / 4 {
+        let mut case = Case::new(seed);
+        for _ in 0..RESTLESS {
+            case.disturb(true);
+            case.axis.advance(case.scan, &mut case.log);
+            case.scan += 1;
+        }
+        while !case.axis.outlook().waiting.iter().all(Option::is_none)
+            || case.axis.outlook().paused
+            || case
+                .axis
+                .plan()
+                .is_some_and(|(plan, elapsed)| elapsed < u64::from(plan.scans()))
+            || case
+                .axis
+                .outlook()
+                .superimposed
+                .is_some_and(|beside| beside.command.is_some())
+        {
+            let source = case.source();
+            case.axis.set_power(true, Permission::BOTH, source, &mut case.log);
+            let changed = case.axis.set_override(Factors::ONE, source, &mut case.log);
+            assert!(changed.is_ok(), "seed {seed}: {changed:?}");
+            case.axis.advance(case.scan, &mut case.log);
+            case.scan += 1;
+            assert!(case.scan < MOST_SCANS, "seed {seed}: {:?}", case.axis.outlook());
+        }
+        for id in &case.given {
+            let fate = case.axis.fate(*id);
+            let fair = match fate {
+                Fate::Done | Fate::Aborted | Fate::Active { .. } => true,
+                Fate::Failed(error) => matches!(
+                    error,
+                    ErrorId::PositiveBarred | ErrorId::NegativeBarred | ErrorId::FateLost
+                ),
+                Fate::Waiting => false,
+            };
+            assert!(fair, "seed {seed}: {fate:?}");
+        }
+    }
+}

@@ -1,0 +1,296 @@
+//! Commands that take over from random motions, with limits of their own: what the axis promises of all of them.
+//!
+//! Set-points are held against the limits of the axis by the rules of `standstill-soak`. 10^4 take-overs of each
+//! kind by default; `STANDSTILL_TAKE_OVERS=1000000` in the environment tries a million. The numbers are seeded and
+//! a failing case prints its own.
+
+use standstill_axis::{
+    Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Event, Fate,
+    Limits, Log, Plan, Request, Setpoint, Source, Standard, StartState,
+};
+use standstill_soak::Random;
+use standstill_soak::rules::limits::{Track, check_excess};
+
+const CYCLE: f64 = 0.001;
+
+/// Longest motion that is followed to its end (scans).
+const LONGEST: u64 = 100_000;
+
+fn take_overs() -> u64 {
+    std::env::var("STANDSTILL_TAKE_OVERS").map_or(10_000, |count| count.parse().expect("a count"))
+}
+
+/// Limits of order 2, 3 or 4 whose parts all take a few scans.
+fn limits(random: &mut Random) -> Limits {
+    let order = random.below(4);
+    let velocity = random.log_between(0.5, 200.0);
+    let times = [(); 3].map(|()| CYCLE * random.log_between(2.0, 60.0));
+    let acceleration = velocity / times[0];
+    let jerk = acceleration / times[1];
+    Limits {
+        velocity,
+        acceleration,
+        deceleration: if random.one_in(2) {
+            acceleration
+        } else {
+            acceleration * random.between(0.3, 3.0)
+        },
+        jerk: if order >= 1 { jerk } else { f64::INFINITY },
+        snap: if order >= 2 {
+            jerk / times[2]
+        } else {
+            f64::INFINITY
+        },
+    }
+}
+
+/// An axis under way, its records and what its set-points are held against.
+struct Rig {
+    axis: Axis,
+    log: Log,
+    scan: u64,
+    records: u64,
+    track: Track,
+    limits: Limits,
+    /// Stops recorded to turn back since the last command.
+    turns_back: bool,
+}
+
+impl Rig {
+    fn new(limits: Limits) -> Self {
+        let config = AxisConfig {
+            start: StartState::Standstill,
+            ..AxisConfig::new(limits)
+        };
+        let axis = Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).expect("a good configuration");
+        Self {
+            track: Track::new(&axis, CYCLE),
+            axis,
+            log: Log::default(),
+            scan: 0,
+            records: 0,
+            limits,
+            turns_back: false,
+        }
+    }
+
+    fn command(&mut self, command: Command) -> CommandId {
+        self.turns_back = false;
+        let request = Request {
+            command,
+            buffer_mode: BufferMode::Aborting.into(),
+            replaces: None,
+        };
+        let source = Source {
+            scan: self.scan,
+            ..Source::default()
+        };
+        self.axis
+            .command(&request, source, &mut self.log)
+            .unwrap_or_else(|error| panic!("refused: {error:?} {command:?} {:?}", self.axis.setpoint()))
+    }
+
+    fn scan(&mut self) -> Setpoint {
+        self.axis.advance(self.scan, &mut self.log);
+        self.scan += 1;
+        for record in self.log.since(self.records) {
+            match (record.event, self.axis.plan()) {
+                (Event::Unavoidable(excess), _) => {
+                    self.turns_back = true;
+                    check_excess(&excess, &self.limits).expect("a stop that turns back, and nothing else");
+                }
+                (Event::Planned { .. }, Some((plan, _))) => {
+                    let end = plan.at(u64::from(plan.scans()));
+                    self.track.leads(plan.at(0).position, end.position);
+                }
+                _ => {}
+            }
+        }
+        self.records = self.log.total();
+        let setpoint = self.axis.setpoint();
+        if let Err(broken) = self.track.check(&setpoint) {
+            panic!("{broken:?}: {setpoint:?} {:?}", self.limits);
+        }
+        assert_ne!(self.axis.state(), AxisState::ErrorStop);
+        setpoint
+    }
+
+    /// Dynamic values of a command's own, each between a twentieth of the axis limit and all of it.
+    fn dynamics(&self, random: &mut Random) -> Dynamics {
+        let mut part = |limit: f64| {
+            if limit.is_finite() && !random.one_in(4) {
+                limit * random.log_between(0.05, 1.0)
+            } else {
+                0.0
+            }
+        };
+        let [acceleration, deceleration, jerk, snap] = [
+            self.limits.acceleration,
+            self.limits.deceleration,
+            self.limits.jerk,
+            self.limits.snap,
+        ]
+        .map(&mut part);
+        Dynamics {
+            velocity: self.limits.velocity * random.between(0.05, 1.0),
+            acceleration,
+            deceleration,
+            jerk,
+            snap,
+        }
+    }
+
+    /// A place some scans' way off.
+    fn place(&self, random: &mut Random) -> f64 {
+        let way = self.limits.velocity * CYCLE * random.log_between(0.5, 300.0);
+        self.axis.setpoint().position + random.signed(way)
+    }
+
+    /// Some motion with limits of its own, left after some of its scans.
+    fn stir(&mut self, random: &mut Random) {
+        let dynamics = self.dynamics(random);
+        if random.one_in(2) {
+            self.endless(dynamics, random);
+        } else {
+            let position = self.place(random);
+            self.command(Command::MoveAbsolute {
+                position,
+                direction: Direction::Unset.into(),
+                dynamics,
+            });
+        }
+        for _ in 0..random.log_between(1.0, 120.0) as u64 {
+            self.scan();
+        }
+    }
+
+    fn endless(&mut self, dynamics: Dynamics, random: &mut Random) -> (CommandId, f64) {
+        let velocity = random.signed(dynamics.velocity);
+        let id = self.command(Command::MoveVelocity {
+            dynamics: Dynamics { velocity, ..dynamics },
+            direction: Direction::Unset.into(),
+        });
+        (id, velocity)
+    }
+}
+
+/// Calls `one` with rigs in random motion, each for a few take-overs.
+fn for_each(stream: u64, mut one: impl FnMut(&mut Rig, &mut Random)) {
+    let mut left = take_overs();
+    let mut number = 0;
+    while left > 0 {
+        let mut random = Random::new(stream, number);
+        number += 1;
+        let limits = limits(&mut random);
+        let mut rig = Rig::new(limits);
+        for _ in 0..left.min(10) {
+            rig.stir(&mut random);
+            one(&mut rig, &mut random);
+            left -= 1;
+        }
+    }
+}
+
+/// MC_Stop and MC_Halt come to rest without turning back, but from the middle of a reversal.
+///
+/// Covers: S1
+#[test]
+fn stops_keep_their_direction_and_every_limit() {
+    let (mut straight, mut turned) = (0_u64, 0_u64);
+    for_each(1, |rig, random| {
+        let start = rig.axis.setpoint();
+        let dynamics = rig.dynamics(random);
+        let stop = random.one_in(2);
+        let id = rig.command(if stop {
+            Command::Stop { dynamics }
+        } else {
+            Command::Halt { dynamics }
+        });
+        let heading = start.velocity.signum();
+        let mut turns = false;
+        let mut scans = 0;
+        loop {
+            let setpoint = rig.scan();
+            turns |= setpoint.velocity * heading < -1e-9 * rig.limits.velocity;
+            if setpoint.is_at_rest() {
+                break;
+            }
+            scans += 1;
+            assert!(scans < LONGEST, "{start:?} {dynamics:?} {:?}", rig.limits);
+        }
+        if rig.turns_back || start.velocity.abs() <= 1e-9 * rig.limits.velocity {
+            turned += 1;
+        } else {
+            assert!(!turns, "{start:?} {dynamics:?} {:?}", rig.limits);
+            straight += 1;
+        }
+        if stop {
+            rig.axis.release_stop(id);
+        }
+        rig.scan();
+        assert_eq!(rig.axis.fate(id), Fate::Done);
+        assert_eq!(rig.axis.state(), AxisState::Standstill);
+    });
+    println!("{straight} without turning, {turned} from rest or from the middle of a reversal");
+    assert!(straight > 10 * turned);
+}
+
+/// Whatever was going on, a move with its own limits is taken and ends exactly on its target.
+///
+/// Covers: B6, R25
+#[test]
+fn every_move_is_taken_and_lands_exactly() {
+    let mut raised = 0_u64;
+    for_each(2, |rig, random| {
+        let start = rig.axis.setpoint();
+        let (position, dynamics) = (rig.place(random), rig.dynamics(random));
+        let records = rig.log.total();
+        let id = rig.command(Command::MoveAbsolute {
+            position,
+            direction: Direction::Unset.into(),
+            dynamics,
+        });
+        raised += u64::from(
+            rig.log
+                .since(records)
+                .any(|record| matches!(record.event, Event::Raised { .. })),
+        );
+        let mut scans = 0;
+        while rig.axis.fate(id) != Fate::Done {
+            rig.scan();
+            scans += 1;
+            assert!(scans < LONGEST, "{start:?} {dynamics:?} {:?}", rig.limits);
+        }
+        // The highest derivative is the one in force just before.
+        let end = rig.axis.setpoint();
+        assert_eq!((end.position, end.velocity), (position, 0.0));
+        assert_eq!(rig.axis.state(), AxisState::Standstill);
+        assert!(!rig.turns_back, "{start:?} {dynamics:?} {:?}", rig.limits);
+    });
+    println!("{raised} with more jerk or snap than asked for");
+    assert!(raised > 0);
+}
+
+/// MC_MoveVelocity comes to its velocity within every limit.
+///
+/// Covers: R39
+#[test]
+fn endless_motions_keep_every_limit() {
+    for_each(3, |rig, random| {
+        let start = rig.axis.setpoint();
+        let dynamics = rig.dynamics(random);
+        let (id, velocity) = rig.endless(dynamics, random);
+        let mut scans = 0;
+        while rig.axis.fate(id) != (Fate::Active { reached: true }) {
+            rig.scan();
+            scans += 1;
+            assert!(scans < LONGEST, "{start:?} {dynamics:?} {:?}", rig.limits);
+        }
+        let setpoint = rig.axis.setpoint();
+        assert_eq!((setpoint.velocity, setpoint.acceleration), (velocity, 0.0));
+        for _ in 0..3 {
+            rig.scan();
+        }
+        assert!(!rig.turns_back, "{start:?} {dynamics:?} {:?}", rig.limits);
+    });
+}

@@ -1,0 +1,227 @@
+//! Many axes in one runtime, each moving in a way of its own.
+
+use crate::{CYCLE, LIMITS};
+use standstill_axis::{
+    Axis, AxisConfig, AxisId, AxisState, BufferMode, Comms, ConfigError, DriveFeedback, DrivePosition,
+    DriveSignals, InstanceId, Log, Scaling, Standard, StartState,
+};
+use standstill_blocks::BlockInstance;
+use standstill_fb::{AnyInstance, Context, Value};
+
+/// Axes of [`ManyAxes`].
+pub const AXES: u16 = 64;
+
+/// Scans after the start in which every axis of [`ManyAxes`] is in motion.
+pub const IN_MOTION: u64 = 800;
+
+/// Ways to move; in the mixture axis n moves in way n modulo their number.
+pub const WAYS: [&str; 8] = [
+    "MC_MoveAbsolute",
+    "MC_MoveRelative after MC_MoveVelocity",
+    "MC_MoveVelocity",
+    "MC_MoveVelocity, modulo axis",
+    "MC_MoveAbsolute, drive that counts",
+    "MC_MoveSuperimposed on MC_MoveRelative, software limits",
+    "three blended MC_MoveRelative",
+    "MC_Jog under MC_SetOverride",
+];
+
+/// 64 axes with MC_Power and one to three motion blocks each, and drives that follow at once: moves on the grid and
+/// from motion, endless motions on linear and modulo axes, steps of a drive that counts, a superimposed distance, a
+/// blended chain, a jog, a move under an override.
+#[derive(Clone, Debug)]
+pub struct ManyAxes {
+    /// The axes.
+    pub axes: Vec<Axis>,
+    log: Log,
+    /// Blocks in call order, those of an axis one after the other.
+    blocks: Vec<BlockInstance>,
+    feedback: Vec<DriveFeedback>,
+    scan: u64,
+}
+
+impl ManyAxes {
+    /// The axes at rest, powered: a mixture of [`WAYS`], or `only` one of them.
+    ///
+    /// # Errors
+    /// None with these constants.
+    pub fn at_rest(only: Option<usize>) -> Result<Self, ConfigError> {
+        let mut rig = Self {
+            axes: Vec::new(),
+            log: Log::default(),
+            blocks: Vec::new(),
+            feedback: Vec::new(),
+            scan: 0,
+        };
+        for number in 0..AXES {
+            let way = only.unwrap_or(usize::from(number) % WAYS.len());
+            let config = AxisConfig {
+                start: StartState::Standstill,
+                modulo: (way == 3).then_some(1.0),
+                scaling: if way == 4 {
+                    Scaling::new(100_000, 1, false, 0.0).ok()
+                } else {
+                    None
+                },
+                software_limits: (way == 5).then_some((-10.0, 10.0)),
+                ..AxisConfig::new(LIMITS)
+            };
+            rig.axes
+                .push(Axis::new(AxisId::new(number), config, Standard::new(CYCLE))?);
+            rig.feedback.push(DriveFeedback {
+                enabled: true,
+                voltage: true,
+                fault: None,
+                position: if way == 4 {
+                    DrivePosition::Increments(0)
+                } else {
+                    DrivePosition::Units(0.0)
+                },
+                comms: Comms::Ok,
+                signals: DriveSignals::default(),
+            });
+            rig.add(number, "MC_Power", &[("Enable", Value::Bool(true))]);
+            // A little apart, so that they do not switch in the same scans.
+            let part = f64::from(number) / f64::from(AXES);
+            let velocity = ("Velocity", Value::Lreal(1.0 + 0.2 * part));
+            let distance = |times: f64| ("Distance", Value::Lreal(times * (1.4 + 0.1 * part)));
+            let position = ("Position", Value::Lreal(1.4 + 0.1 * part));
+            let blended = ("BufferMode", Value::Enum(BufferMode::BlendingLow as i32));
+            match way {
+                0 | 4 => rig.add(number, "MC_MoveAbsolute", &[position, velocity]),
+                1 => {
+                    rig.add(number, "MC_MoveVelocity", &[velocity]);
+                    rig.add(number, "MC_MoveRelative", &[distance(1.0), velocity]);
+                }
+                2 | 3 => rig.add(number, "MC_MoveVelocity", &[velocity]),
+                5 => {
+                    rig.add(number, "MC_MoveRelative", &[distance(1.0), velocity]);
+                    let least = ("VelocityDiff", Value::Lreal(0.1));
+                    let rate = ("Acceleration", Value::Lreal(1.0));
+                    rig.add(number, "MC_MoveSuperimposed", &[distance(-0.1), least, rate]);
+                }
+                6 => {
+                    rig.add(number, "MC_MoveRelative", &[distance(0.4), velocity]);
+                    rig.add(number, "MC_MoveRelative", &[distance(0.4), velocity, blended]);
+                    rig.add(number, "MC_MoveRelative", &[distance(0.4), velocity, blended]);
+                }
+                _ => {
+                    let half = ("VelFactor", Value::Lreal(0.5));
+                    rig.add(number, "MC_SetOverride", &[("Enable", Value::Bool(true)), half]);
+                    rig.add(number, "MC_Jog", &[velocity]);
+                }
+            }
+        }
+        rig.scan();
+        Ok(rig)
+    }
+
+    fn add(&mut self, axis: u16, name: &str, pins: &[(&str, Value)]) {
+        let Some(mut block) = BlockInstance::new(name) else {
+            return;
+        };
+        let wire = ("Axis", Value::Axis(AxisId::new(axis)));
+        for (pin, value) in pins.iter().chain([&wire]) {
+            if let Some((index, _)) = block.info().pin(pin) {
+                let set = block.set(index, *value);
+                debug_assert_eq!(set, Ok(()), "{name}.{pin}");
+            }
+        }
+        self.blocks.push(block);
+    }
+
+    /// The axes in motion: for [`IN_MOTION`] scans more all of them are.
+    ///
+    /// # Errors
+    /// None with these constants.
+    pub fn in_motion(only: Option<usize>) -> Result<Self, ConfigError> {
+        let mut rig = Self::at_rest(only)?;
+        // Block after block, so that the second of an axis takes over from the first, or waits behind it.
+        for round in 0..3 {
+            let mut last = (AxisId::NONE, 0);
+            for block in &mut rig.blocks {
+                let info = block.info();
+                let trigger = ["Execute", "JogForward"]
+                    .into_iter()
+                    .find_map(|name| Some(info.pin(name)?.0));
+                let axis = info.pin("Axis").and_then(|(index, _)| block.get(index));
+                if let (Some(index), Some(Value::Axis(axis))) = (trigger, axis) {
+                    last = (axis, if last.0 == axis { last.1 + 1 } else { 0 });
+                    if last.1 == round {
+                        let set = block.set(index, Value::Bool(true));
+                        debug_assert_eq!(set, Ok(()));
+                    }
+                }
+            }
+            for _ in 0..100 {
+                rig.scan();
+            }
+        }
+        Ok(rig)
+    }
+
+    /// Axes in DiscreteMotion or ContinuousMotion whose set-point moves.
+    pub fn moving(&self) -> usize {
+        let moves = |axis: &&Axis| {
+            let moving = matches!(
+                axis.state(),
+                AxisState::DiscreteMotion | AxisState::ContinuousMotion
+            );
+            moving && axis.setpoint().velocity != 0.0
+        };
+        self.axes.iter().filter(moves).count()
+    }
+
+    /// One scan of all axes: feedback, blocks, motion steps, drive commands.
+    pub fn scan(&mut self) {
+        let Self { axes, log, .. } = self;
+        for (axis, feedback) in axes.iter_mut().zip(&self.feedback) {
+            axis.follow_feedback(feedback, self.scan, log);
+        }
+        let mut context = Context {
+            now_ns: self.scan as i64 * 1_000_000,
+            scan: self.scan,
+            instance: InstanceId(0),
+            axes,
+            log,
+        };
+        for (number, block) in (0..).zip(&mut self.blocks) {
+            context.instance = InstanceId(number);
+            block.call(&mut context);
+        }
+        for (axis, feedback) in self.axes.iter_mut().zip(&mut self.feedback) {
+            axis.advance(self.scan, &mut self.log);
+            feedback.position = axis.drive_command().position;
+        }
+        self.scan += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_axes_move_all_the_time_and_no_block_complains() {
+        let mut rig = ManyAxes::in_motion(None).unwrap();
+        for scan in 0..IN_MOTION {
+            rig.scan();
+            assert_eq!(rig.moving(), usize::from(AXES), "scan {scan}");
+        }
+        for block in &rig.blocks {
+            let error = block
+                .info()
+                .pin("ErrorID")
+                .and_then(|(index, _)| block.get(index));
+            assert_eq!(error, Some(Value::Word(0)), "{}", block.info().name);
+        }
+        let waiting: usize = rig.axes.iter().map(Axis::waiting).sum();
+        assert!(waiting > 0, "a chain");
+        let beside = rig
+            .axes
+            .iter()
+            .filter(|axis| axis.outlook().superimposed.is_some())
+            .count();
+        assert_eq!(beside, usize::from(AXES) / WAYS.len());
+    }
+}

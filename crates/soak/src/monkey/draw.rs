@@ -1,0 +1,184 @@
+//! Random machines.
+
+use super::scenario::{AxisSetup, BlockSetup, Scenario};
+use crate::random::Random;
+use standstill_axis::{
+    AboveLimit, AxisConfig, Defaults, Limits, MoveProfile, PowerOff, QUEUE_MAX, Scaling, StartState,
+};
+use standstill_blocks::REGISTRY;
+use standstill_fb::{BlockInfo, Value};
+
+use crate::rules::Kind;
+
+/// Most axes of a machine.
+const AXES: u64 = 3;
+
+/// Lengths of a scan (ns).
+const CYCLES: [i64; 4] = [1_000_000, 250_000, 2_000_000, 10_000_000];
+
+/// A machine and a program, for so many scans.
+pub fn scenario(random: &mut Random, scans: u64) -> Scenario {
+    let cycle_ns = CYCLES[random.below(CYCLES.len() as u64) as usize];
+    let count = 1 + random.below(AXES);
+    let axes: Vec<_> = (0..count).map(|_| axis(random, cycle_ns as f64 / 1e9)).collect();
+    let blocks = (0..axes.len()).flat_map(|axis| blocks(random, axis)).collect();
+    let mut scenario = Scenario {
+        cycle_ns,
+        scans,
+        axes,
+        blocks,
+        steps: Vec::new(),
+    };
+    shuffle(random, &mut scenario.blocks);
+    scenario
+}
+
+fn shuffle<T>(random: &mut Random, list: &mut [T]) {
+    for last in (1..list.len()).rev() {
+        list.swap(last, random.below(last as u64 + 1) as usize);
+    }
+}
+
+/// A list's entry at random.
+pub fn one_of<T: Copy>(random: &mut Random, list: &[T]) -> T {
+    list[random.below(list.len() as u64) as usize]
+}
+
+/// Limits of order 2, 3 or 4 whose parts all take a few scans.
+fn limits(random: &mut Random, cycle: f64) -> Limits {
+    let order = random.below(4);
+    let velocity = random.log_between(0.5, 200.0);
+    let times = [(); 3].map(|()| cycle * random.log_between(2.0, 30.0));
+    let acceleration = velocity / times[0];
+    let jerk = acceleration / times[1];
+    Limits {
+        velocity,
+        acceleration,
+        deceleration: if random.one_in(2) {
+            acceleration
+        } else {
+            acceleration * random.between(0.3, 3.0)
+        },
+        jerk: if order >= 1 { jerk } else { f64::INFINITY },
+        snap: if order >= 2 {
+            jerk / times[2]
+        } else {
+            f64::INFINITY
+        },
+    }
+}
+
+/// An axis; every part of its configuration differs from the default once in some axes.
+fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
+    let limits = limits(random, cycle);
+    let way = limits.velocity * cycle;
+    let mut config = AxisConfig::new(limits);
+    if !random.one_in(8) {
+        config.start = StartState::Standstill;
+    }
+    match random.below(4) {
+        0 => config.modulo = Some(way * random.log_between(5.0, 500.0)),
+        1 => {
+            let reach = way * random.log_between(30.0, 1000.0);
+            config.software_limits = Some((-reach * random.between(0.1, 1.0), reach));
+        }
+        _ => {}
+    }
+    if random.one_in(3) {
+        config.profile = one_of(random, &MoveProfile::ALL);
+    }
+    if random.one_in(4) {
+        config.queue = random.below(QUEUE_MAX as u64 + 1) as usize;
+    }
+    if random.one_in(8) {
+        config.above_limit = AboveLimit::Error;
+    }
+    if random.one_in(3) {
+        config.on_power_off = one_of(random, &[PowerOff::Coast, PowerOff::Drive]);
+    }
+    if random.one_in(4) {
+        config.stop_deceleration = Some(limits.deceleration * random.between(0.2, 1.0));
+    }
+    if random.one_in(4) && limits.jerk.is_finite() {
+        config.stop_jerk = Some(limits.jerk * random.between(0.2, 1.0));
+    }
+    config.needs_homed = random.one_in(20);
+    if random.one_in(4) {
+        let mut part = |limit: f64| limit.is_finite().then(|| limit * random.between(0.2, 1.0));
+        config.defaults = Defaults {
+            acceleration: part(limits.acceleration),
+            deceleration: part(limits.deceleration),
+            jerk: part(limits.jerk),
+            snap: part(limits.snap),
+        };
+    }
+    if random.one_in(6) {
+        let increments = one_of(random, &[1000, 65536, 1 << 20]);
+        config.scaling = Scaling::new(increments, one_of(random, &[1, 7, 360]), random.one_in(2), 0.0).ok();
+    }
+    // What the configuration says no to goes.
+    if config.check().is_err() {
+        config.profile = MoveProfile::Overlapped;
+    }
+    if config.check().is_err() {
+        config.scaling = None;
+    }
+    AxisSetup {
+        config,
+        delay: if random.one_in(2) {
+            0
+        } else {
+            random.below(4) as usize
+        },
+        power_on: if random.one_in(2) {
+            0
+        } else {
+            random.below(6) as u32
+        },
+    }
+}
+
+/// MC_Power, MC_Reset and some more for an axis.
+fn blocks(random: &mut Random, axis: usize) -> Vec<BlockSetup> {
+    let of = |kinds: &[Kind]| -> Vec<&'static BlockInfo> {
+        REGISTRY
+            .iter()
+            .filter(|info| kinds.contains(&Kind::of(info)))
+            .collect()
+    };
+    let owners = of(&[
+        Kind::Motion,
+        Kind::Stop,
+        Kind::Superimposed,
+        Kind::HaltSuperimposed,
+    ]);
+    let others = of(&[Kind::Administrative, Kind::Reading]);
+    let mut names = vec!["MC_Power", "MC_Reset"];
+    for _ in 0..2 + random.below(3) {
+        names.push(one_of(random, &owners).name);
+    }
+    if random.one_in(2) {
+        names.push(one_of(random, &others).name);
+    }
+    let setup = |block: &'static str| BlockSetup {
+        block,
+        axis,
+        constants: match Kind::of(one(block)) {
+            Kind::Power => one(block)
+                .pin("Enable")
+                .map(|(pin, _)| (pin, Value::Bool(true)))
+                .into_iter()
+                .collect(),
+            _ => Vec::new(),
+        },
+    };
+    names.into_iter().map(setup).collect()
+}
+
+/// A block of the registry by its name there.
+fn one(name: &'static str) -> &'static BlockInfo {
+    REGISTRY
+        .iter()
+        .find(|info| info.name == name)
+        .unwrap_or(&REGISTRY[0])
+}

@@ -1,0 +1,264 @@
+//! Who does things: a monkey that presses everything, and its minutes read out again.
+
+use super::draw::one_of;
+use super::run::{Hands, Instance};
+use super::scenario::{Action, Bench, FaultKind, Scenario, Step};
+use crate::random::Random;
+use crate::rules::Kind;
+use standstill_axis::{Axis, AxisState};
+use standstill_fb::{AnyInstance, Direction, Pin, PinType, Value};
+
+/// Longest pause between two bursts of actions (scans).
+const PAUSE: f64 = 150.0;
+
+/// One in so many numbers is none a pin should have.
+const BAD: u64 = 60;
+
+/// Numbers no pin should have.
+const BAD_NUMBERS: [f64; 9] = [
+    f64::NAN,
+    1e-300,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    -1.0,
+    0.0,
+    1e300,
+    -1e300,
+    1e9,
+];
+
+/// Presses at random, and keeps minutes.
+#[derive(Debug)]
+pub struct Monkey<'a> {
+    random: &'a mut Random,
+    /// Length of a scan (s).
+    cycle: f64,
+    next: u64,
+    /// What is still to be done in this scan, last first.
+    todo: Vec<Action>,
+    /// Axes with a cause that persists.
+    broken: Vec<bool>,
+    /// Everything done.
+    pub minutes: Vec<Step>,
+}
+
+impl<'a> Monkey<'a> {
+    /// Draws from `random` as it goes.
+    pub fn new(random: &'a mut Random, cycle: f64) -> Self {
+        Self {
+            random,
+            cycle,
+            next: 0,
+            todo: Vec::new(),
+            broken: Vec::new(),
+            minutes: Vec::new(),
+        }
+    }
+
+    /// What is done in this scan.
+    fn draw(&mut self, machine: &Bench, instances: &[Instance]) {
+        self.broken.resize(machine.axes().len(), false);
+        let axis = self.random.below(machine.axes().len() as u64) as usize;
+        let mut actions = Vec::new();
+        for _ in 0..1 + self.random.below(3) {
+            self.press(axis, machine, instances, &mut actions);
+        }
+        actions.reverse();
+        self.todo = actions;
+    }
+
+    fn press(&mut self, axis: usize, machine: &Bench, instances: &[Instance], actions: &mut Vec<Action>) {
+        let state = machine.axes()[axis].state();
+        if self.broken[axis] && self.random.one_in(3) {
+            self.broken[axis] = false;
+            actions.push(Action::Clear { axis });
+            return;
+        }
+        if self.random.one_in(100) {
+            let kinds = [
+                FaultKind::Axis,
+                FaultKind::Drive,
+                FaultKind::Power,
+                FaultKind::Communication,
+            ];
+            self.broken[axis] = true;
+            actions.push(Action::Fault {
+                axis,
+                kind: one_of(self.random, &kinds),
+            });
+            return;
+        }
+        // Out of operation what brings it back is pressed more often.
+        let wanted = match state {
+            AxisState::ErrorStop if self.random.one_in(2) => Some("MC_Reset"),
+            AxisState::Disabled if self.random.one_in(2) => Some("MC_Power"),
+            _ => None,
+        };
+        let of_axis: Vec<_> = (0..instances.len())
+            .filter(|index| {
+                let instance = &instances[*index];
+                instance.axis == axis && wanted.is_none_or(|name| instance.block.info().name == name)
+            })
+            .collect();
+        if of_axis.is_empty() {
+            return;
+        }
+        let block = one_of(self.random, &of_axis);
+        let instance = &instances[block];
+        let Some(trigger) = instance.trigger else { return };
+        // Power is left on most of the time.
+        if instance.kind == Kind::Power && instance.on && !self.random.one_in(15) {
+            return;
+        }
+        if !instance.on || self.random.one_in(10) {
+            self.fill_in(block, instance, &machine.axes()[axis], actions);
+        }
+        actions.push(Action::Set {
+            block,
+            pin: trigger,
+            value: Value::Bool(!instance.on),
+        });
+    }
+
+    /// Some inputs of an instance take other values.
+    fn fill_in(&mut self, block: usize, instance: &Instance, axis: &Axis, actions: &mut Vec<Action>) {
+        for (pin, entry) in instance.block.info().pins().enumerate() {
+            if entry.direction != Direction::Input || Some(pin) == instance.trigger {
+                continue;
+            }
+            if let Some(value) = self.value(instance.kind, entry, axis)
+                && instance.block.get(pin) != Some(value)
+            {
+                actions.push(Action::Set { block, pin, value });
+            }
+        }
+    }
+
+    /// A value for a pin; none leaves it as it is.
+    fn value(&mut self, kind: Kind, pin: &Pin, axis: &Axis) -> Option<Value> {
+        match pin.ty {
+            PinType::Bool => {
+                let odds = match (kind, pin.name) {
+                    // Both are needed to switch on.
+                    (Kind::Power, _) => return Some(Value::Bool(!self.random.one_in(20))),
+                    (_, "Relative") => 2,
+                    _ => 12,
+                };
+                Some(Value::Bool(self.random.one_in(odds)))
+            }
+            PinType::Enum(info) => Some(Value::Enum(if self.random.one_in(30) {
+                99
+            } else {
+                one_of(self.random, info.elements).1
+            })),
+            PinType::Lreal if self.random.one_in(BAD) => {
+                Some(Value::Lreal(one_of(self.random, &BAD_NUMBERS)))
+            }
+            PinType::Lreal => self.number(pin.name, axis).map(Value::Lreal),
+            PinType::Int | PinType::Word | PinType::Time | PinType::Axis(_) => None,
+        }
+    }
+
+    /// A number that makes sense at a pin.
+    fn number(&mut self, pin: &str, axis: &Axis) -> Option<f64> {
+        let config = axis.config();
+        let limits = &config.limits;
+        let way = limits.velocity * self.cycle;
+        match pin {
+            "Position" => {
+                let near = axis.setpoint().position + self.length(way);
+                Some(match config.modulo {
+                    Some(turn) if !self.random.one_in(20) => near.rem_euclid(turn).min(turn.next_down()),
+                    _ => near,
+                })
+            }
+            "Distance" => Some(self.length(way)),
+            "Velocity" | "VelocityDiff" | "EndVelocity" => {
+                let part = self.part(limits.velocity)?;
+                let part = if pin == "EndVelocity" { 0.5 * part } else { part };
+                Some(if self.random.one_in(8) { -part } else { part })
+            }
+            "Acceleration" => self.magnitude(limits.acceleration),
+            "Deceleration" => self.magnitude(limits.deceleration),
+            // Unlimited, every power is as good.
+            "Jerk" if limits.jerk.is_infinite() => {
+                Some(limits.acceleration / self.cycle * self.random.log_between(1e-3, 1e18))
+            }
+            "Snap" if limits.snap.is_infinite() => {
+                let jerk = limits.jerk.min(limits.acceleration / self.cycle);
+                Some(jerk / self.cycle * self.random.log_between(1e-3, 1e18))
+            }
+            "Jerk" => self.magnitude(limits.jerk),
+            "Snap" => self.magnitude(limits.snap),
+            // Factors, and whatever comes: around 1.
+            _ => Some(self.random.between(0.0, 1.25)),
+        }
+    }
+
+    /// Some scans' way, in either direction, now and then none.
+    fn length(&mut self, way: f64) -> f64 {
+        if self.random.one_in(12) {
+            return 0.0;
+        }
+        let length = way * self.random.log_between(0.1, 300.0);
+        self.random.signed(length)
+    }
+
+    /// Half of the time what the axis has.
+    fn magnitude(&mut self, limit: f64) -> Option<f64> {
+        if self.random.one_in(2) {
+            Some(0.0)
+        } else {
+            self.part(limit)
+        }
+    }
+
+    /// Part of a limit, now and then more than it.
+    fn part(&mut self, limit: f64) -> Option<f64> {
+        limit.is_finite().then(|| {
+            let part = if self.random.one_in(20) { 1.5 } else { 1.0 };
+            limit * part * self.random.between(0.05, 1.0)
+        })
+    }
+}
+
+impl Hands for Monkey<'_> {
+    fn next(&mut self, scan: u64, machine: &Bench, instances: &[Instance]) -> Option<Action> {
+        if self.todo.is_empty() {
+            if scan < self.next {
+                return None;
+            }
+            self.draw(machine, instances);
+            self.next = scan + 1 + self.random.log_between(1.0, PAUSE) as u64;
+        }
+        let action = self.todo.pop()?;
+        self.minutes.push(Step { scan, action });
+        Some(action)
+    }
+}
+
+/// Does what stands in the steps of a scenario.
+#[derive(Debug)]
+pub struct Replay<'a> {
+    steps: core::slice::Iter<'a, Step>,
+}
+
+impl<'a> Replay<'a> {
+    /// Of `scenario`.
+    pub fn new(scenario: &'a Scenario) -> Self {
+        Self {
+            steps: scenario.steps.iter(),
+        }
+    }
+}
+
+impl Hands for Replay<'_> {
+    fn next(&mut self, scan: u64, _: &Bench, _: &[Instance]) -> Option<Action> {
+        let step = self.steps.as_slice().first()?;
+        if step.scan > scan {
+            return None;
+        }
+        self.steps.next();
+        Some(step.action)
+    }
+}

@@ -1,0 +1,51 @@
+//! A monkey at the pins of real blocks over real axes: random programs, and every rule held in every scan.
+//!
+//! An episode is a machine drawn at random and what a monkey does with it for some scans. What it does is written
+//! down, so an episode that breaks a rule can be repeated, made smaller and told as a scan script.
+
+mod draw;
+mod hands;
+mod run;
+mod scenario;
+mod script;
+mod shrink;
+
+pub use run::{Failure, Seen, Who};
+pub use scenario::{Action, AxisSetup, BlockSetup, FaultKind, Scenario, Step};
+pub use shrink::shrink;
+
+use crate::random::Random;
+use hands::{Monkey, Replay};
+
+/// What came of an episode.
+#[derive(Clone, Debug)]
+pub struct Episode {
+    /// What was seen.
+    pub seen: Seen,
+    /// The first rule that was broken, and what it takes to do so.
+    pub failure: Option<(Failure, Scenario)>,
+}
+
+/// Lets the monkey play for so many scans; everything follows from `seed` and `number`.
+pub fn play(seed: u64, number: u64, scans: u64) -> Episode {
+    let (seen, failure, scenario) = record(seed, number, scans);
+    Episode {
+        seen,
+        failure: failure.map(|failure| (failure, scenario)),
+    }
+}
+
+/// As [`play`], with the minutes whatever came of it.
+pub fn record(seed: u64, number: u64, scans: u64) -> (Seen, Option<Failure>, Scenario) {
+    let mut random = Random::new(seed, number);
+    let mut scenario = draw::scenario(&mut random, scans);
+    let mut monkey = Monkey::new(&mut random, scenario.cycle());
+    let (seen, failure) = run::run(&scenario, &mut monkey);
+    scenario.steps = monkey.minutes;
+    (seen, failure, scenario)
+}
+
+/// Runs a scenario with its own steps.
+pub fn replay(scenario: &Scenario) -> (Seen, Option<Failure>) {
+    run::run(scenario, &mut Replay::new(scenario))
+}

@@ -1,0 +1,512 @@
+//! The run of a scenario through the executor, with every rule held in every scan.
+
+use super::scenario::{Action, Bench, FAULT_CODE, FaultKind, Scenario, axis_id};
+use crate::rules::arrows::{Part, Reach};
+use crate::rules::limits::{Track, check_excess};
+use crate::rules::{Broken, Call, Held, Kind, Outputs, Shown, Truth, check_call, check_truth};
+use standstill_axis::{
+    Axis, AxisState, CommandId, ErrorId, Event, Fate, IdealDrive, InstanceId, Plan, Standard,
+};
+use standstill_blocks::BlockInstance;
+use standstill_fb::{AnyInstance, Context, Value};
+use standstill_scan::{Executor, ProgramConfig, ProgramFault, ProgramId, Programs, ScanTime, TaskConfig};
+
+/// Who does something in a scan.
+pub trait Hands {
+    /// What is done at the latch of `scan`; called with the machine and the instances as the scan before left
+    /// them.
+    fn next(&mut self, scan: u64, machine: &Bench, instances: &[Instance]) -> Option<Action>;
+}
+
+/// An instance at work.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// The block.
+    pub block: BlockInstance,
+    /// What it is to the rules.
+    pub kind: Kind,
+    /// Index of its axis.
+    pub axis: usize,
+    /// What its last call left.
+    pub shown: Shown,
+    /// Execute or Enable, if it has one of them.
+    pub trigger: Option<usize>,
+    /// Execute or Enable as it stands, and as it stood at the last call.
+    pub on: bool,
+    was_on: bool,
+    outputs: Outputs,
+    command: Option<CommandId>,
+    fate: Option<Fate>,
+}
+
+/// A rule that was broken in a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Failure {
+    /// In this scan.
+    pub scan: u64,
+    /// By whom.
+    pub who: Who,
+    /// The rule.
+    pub broken: Broken,
+    /// What the instance shows.
+    pub shown: Option<Shown>,
+    /// The state of the axis.
+    pub state: Option<AxisState>,
+}
+
+/// Who breaks a rule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Who {
+    /// A block instance, by index.
+    Instance(usize),
+    /// An axis, by index.
+    Axis(usize),
+}
+
+/// What was seen in a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seen {
+    /// Scans done.
+    pub scans: u64,
+    /// Commands accepted.
+    pub accepted: u64,
+    /// Commands that ended in Done, CommandAborted and Error; those replaced by their own instance are not among
+    /// them.
+    pub ended: [u64; 3],
+    /// Commands refused.
+    pub refused: u64,
+    /// Faults injected.
+    pub faults: u64,
+    /// Stops in the middle of a reversal, which turned back.
+    pub turned_back: u64,
+    /// Folds what was published and shown, to the bit.
+    pub digest: u64,
+}
+
+impl Seen {
+    fn fold(&mut self, word: u64) {
+        // FNV-1a over whole words.
+        self.digest = (self.digest ^ word).wrapping_mul(0x0000_0100_0000_01b3);
+        self.digest ^= self.digest >> 29;
+    }
+}
+
+/// One program: calls every instance and holds the rules.
+struct Run<'a, H> {
+    hands: &'a mut H,
+    instances: Vec<Instance>,
+    reach: Reach,
+    tracks: Vec<Track>,
+    /// The state of each axis as last seen.
+    states: Vec<AxisState>,
+    following: Vec<bool>,
+    records: u64,
+    failure: Option<Failure>,
+    seen: Seen,
+}
+
+impl Instance {
+    fn new(block: BlockInstance, axis: usize) -> Self {
+        let info = block.info();
+        let place = |pin: &str| info.pin(pin).map(|(place, _)| place);
+        let trigger = place("Execute").or_else(|| place("Enable"));
+        let on = trigger.and_then(|pin| block.get(pin)) == Some(Value::Bool(true));
+        Self {
+            kind: Kind::of(info),
+            outputs: Outputs::of(info),
+            axis,
+            shown: Shown::default(),
+            trigger,
+            on,
+            was_on: false,
+            command: None,
+            fate: None,
+            block,
+        }
+    }
+
+    /// Writes an input.
+    fn set(&mut self, pin: usize, value: Value) {
+        // Drawn for the pin's type, or from a script that was.
+        if self.block.set(pin, value).is_ok() && Some(pin) == self.trigger {
+            self.on = value == Value::Bool(true);
+        }
+    }
+
+    fn follows_commands(&self) -> bool {
+        matches!(
+            self.kind,
+            Kind::Motion | Kind::Stop | Kind::Superimposed | Kind::HaltSuperimposed
+        )
+    }
+}
+
+/// Runs `scenario` with `hands` doing what happens instead of its steps.
+///
+/// Ends at the first broken rule.
+pub fn run(scenario: &Scenario, hands: &mut impl Hands) -> (Seen, Option<Failure>) {
+    let made = scenario.machine().zip(scenario.instances());
+    let (Some((mut machine, blocks)), Some(mut executor)) = (made, executor(scenario)) else {
+        return (Seen::default(), None);
+    };
+    let instances = blocks
+        .into_iter()
+        .zip(&scenario.blocks)
+        .map(|(block, setup)| Instance::new(block, setup.axis));
+    let mut run = Run {
+        hands,
+        instances: instances.collect(),
+        reach: Reach::default(),
+        tracks: machine
+            .axes()
+            .iter()
+            .map(|axis| Track::new(axis, scenario.cycle()))
+            .collect(),
+        states: machine.axes().iter().map(Axis::state).collect(),
+        following: vec![true; machine.axes().len()],
+        records: 0,
+        failure: None,
+        seen: Seen::default(),
+    };
+    for scan in 0..scenario.scans {
+        let now_ns = scenario.cycle_ns.saturating_mul(scan.cast_signed());
+        if executor.scan(now_ns, &mut run, &mut machine).is_err() || run.failure.is_some() {
+            break;
+        }
+    }
+    (run.seen, run.failure)
+}
+
+fn executor(scenario: &Scenario) -> Option<Executor> {
+    let cycle_ns = scenario.cycle_ns.unsigned_abs();
+    Executor::new(
+        cycle_ns,
+        &[TaskConfig::every("main", cycle_ns)],
+        &[ProgramConfig::with("main", "main")],
+    )
+    .ok()
+}
+
+impl<H: Hands> Run<'_, H> {
+    #[cold]
+    fn fail(&mut self, scan: u64, who: Who, broken: Broken) {
+        let (shown, state) = match who {
+            Who::Instance(index) => (self.instances.get(index).map(|instance| instance.shown), None),
+            Who::Axis(index) => (None, self.states.get(index).copied()),
+        };
+        self.failure.get_or_insert(Failure {
+            scan,
+            who,
+            broken,
+            shown,
+            state,
+        });
+    }
+
+    fn apply(&mut self, action: Action, time: ScanTime, machine: &mut Bench) {
+        match action {
+            Action::Set { block, pin, value } => {
+                if let Some(instance) = self.instances.get_mut(block) {
+                    instance.set(pin, value);
+                }
+            }
+            Action::Fault { axis, kind } => {
+                self.seen.faults += 1;
+                fail(axis, kind, time, machine);
+            }
+            Action::Clear { axis } => {
+                if let Some(drive) = machine.drives_mut().get_mut(axis) {
+                    drive.clear_cause();
+                }
+                if let Some(axis) = machine.axes_mut().get_mut(axis) {
+                    axis.clear_cause();
+                }
+            }
+        }
+    }
+
+    /// State changes of all axes since they were last looked at.
+    fn follow_states(&mut self, part: Part, scan: u64, axes: &[Axis<Standard>]) {
+        for (index, axis) in axes.iter().enumerate() {
+            let (was, now) = (self.states[index], axis.state());
+            if was != now {
+                self.states[index] = now;
+                if let Err(broken) = self.reach.check(part, was, now) {
+                    self.fail(scan, Who::Axis(index), broken);
+                }
+            }
+        }
+    }
+
+    /// Calls an instance and looks at what it shows.
+    fn call(&mut self, index: usize, context: &mut Context<'_, Standard>) -> Result<(), Broken> {
+        let instance = &mut self.instances[index];
+        let axis = &context.axes[instance.axis];
+        let state = axis.state();
+        let refusing = matches!(state, AxisState::Disabled | AxisState::ErrorStop);
+        instance.block.call(context);
+        let axis = &context.axes[instance.axis];
+        let (was, now) = (instance.shown, instance.outputs.read(&instance.block));
+        let (executed, execute) = (instance.was_on, instance.on);
+        instance.was_on = execute;
+        instance.shown = now;
+        if was != now {
+            self.seen.fold(
+                index as u64 ^ u64::from(now.error_id) << 16
+                    | u64::from(now.busy) << 40
+                    | u64::from(now.active) << 41
+                    | u64::from(now.done) << 42
+                    | u64::from(now.aborted) << 43
+                    | u64::from(now.reached) << 44
+                    | u64::from(now.status) << 45
+                    | u64::from(now.valid) << 46,
+            );
+        }
+        let call = Call {
+            kind: instance.kind,
+            executed,
+            execute,
+            was,
+            now,
+            refusing,
+            powered: axis.is_powered(),
+        };
+        check_call(&call)?;
+        if instance.follows_commands() {
+            let rising = execute && !executed;
+            if rising {
+                self.seen.accepted += u64::from(now.busy);
+                self.seen.refused += u64::from(now.error);
+                instance.command = now.busy.then(|| axis.newest_command());
+                instance.fate = None;
+            }
+            if let Some(id) = instance.command {
+                let fate = axis.fate(id);
+                let [done, aborted, failed] = ended(fate);
+                let agrees = (now.busy, now.done, now.aborted, now.error)
+                    == (!(done | aborted | failed), done, aborted, failed);
+                if !agrees {
+                    return Err(Broken {
+                        id: "R21",
+                        what: "an instance does not show what became of its command",
+                    });
+                }
+                if !now.busy {
+                    instance.command = None;
+                    for (count, ended) in self.seen.ended.iter_mut().zip([done, aborted, failed]) {
+                        *count += u64::from(ended);
+                    }
+                }
+            }
+        }
+        let (was, now) = (state, axis.state());
+        if was != now {
+            self.states[instance.axis] = now;
+            self.reach.check(Part::Call, was, now)?;
+        }
+        Ok(())
+    }
+
+    /// What is so after the motion step.
+    fn check_axis(&mut self, index: usize, axis: &Axis<Standard>) -> Result<(), Broken> {
+        let state = axis.state();
+        let setpoint = axis.setpoint();
+        self.seen.fold(setpoint.position.to_bits() ^ (state as u64) << 52);
+        let following = axis.is_following();
+        if following || self.following[index] {
+            // On its way back into operation it takes over where the feedback is.
+            self.tracks[index].forget();
+        }
+        self.following[index] = following;
+        if !following {
+            self.tracks[index].check(&setpoint)?;
+        }
+        if state == AxisState::ErrorStop && axis.error_id().number() >= 900 {
+            return Err(Broken {
+                id: "R79",
+                what: "a defect is reported",
+            });
+        }
+        self.check_commands(index, axis)
+    }
+
+    fn check_commands(&mut self, index: usize, axis: &Axis<Standard>) -> Result<(), Broken> {
+        let mut beside_held = false;
+        for instance in &mut self.instances {
+            if instance.axis != index {
+                continue;
+            }
+            let Some(id) = instance.command else { continue };
+            let fate = axis.fate(id);
+            if Some(fate) != instance.fate {
+                let was = instance.fate.replace(fate);
+                check_life(was, fate, instance.kind)?;
+            }
+            beside_held |= instance.kind.is_superimposed();
+        }
+        let (state, owned) = (axis.state(), axis.active_command().is_some());
+        // What is superimposed is asked for only where there may be something: the answer is long.
+        let added = if beside_held || (state == AxisState::DiscreteMotion && !owned) {
+            axis.outlook().superimposed.and_then(|beside| beside.command)
+        } else {
+            None
+        };
+        let holds = |id| {
+            self.instances
+                .iter()
+                .any(|one| one.axis == index && one.command == Some(id))
+        };
+        let truth = Truth {
+            state,
+            owned,
+            stopping: owned && state == AxisState::Stopping,
+            waiting: axis.waiting(),
+            shift_due: state == AxisState::Standstill && axis.waiting() > 0 && shift_is_due(axis),
+            added: added.map(|(.., own)| own),
+            orphaned: added.is_some_and(|(id, ..)| !holds(id)),
+        };
+        let held = self.instances.iter().filter(|instance| instance.axis == index);
+        check_truth(
+            &truth,
+            held.filter_map(|instance| {
+                let superimposed = instance.kind.is_superimposed();
+                let fate = instance.fate.filter(|_| instance.command.is_some())?;
+                let active = matches!(fate, Fate::Active { .. }) && instance.kind != Kind::Stop;
+                let busy = matches!(fate, Fate::Active { .. } | Fate::Waiting);
+                Some(Held {
+                    superimposed,
+                    busy,
+                    active,
+                })
+            }),
+        )
+    }
+
+    /// What was recorded in this scan, for the limits.
+    fn read_records(&mut self, time: ScanTime, machine: &Bench) {
+        let total = machine.log().total();
+        if total == self.records {
+            return;
+        }
+        let mut found = None;
+        for record in machine.log().since(self.records) {
+            let Some(track) = self.tracks.get_mut(record.axis.index()) else {
+                continue;
+            };
+            match record.event {
+                Event::Unavoidable(excess) => {
+                    let index = record.axis.index();
+                    let limits = &machine.axes()[index].config().limits;
+                    self.seen.turned_back += 1;
+                    if let Err(broken) = check_excess(&excess, limits) {
+                        found = Some((index, broken));
+                    }
+                }
+                Event::Shifted { .. } => track.forget(),
+                Event::Planned { .. } => {
+                    if let Some((plan, _)) = machine.axes()[record.axis.index()].plan() {
+                        track.leads(plan.at(0).position, plan.at(u64::from(plan.scans())).position);
+                    }
+                }
+                Event::Refused { .. }
+                | Event::Clamped { .. }
+                | Event::Raised { .. }
+                | Event::Superimposed { .. }
+                | Event::RoomAwaited
+                | Event::Paused { .. }
+                | Event::Fault { .. } => {}
+            }
+        }
+        self.records = total;
+        if let Some((axis, broken)) = found {
+            self.fail(time.scan, Who::Axis(axis), broken);
+        }
+    }
+}
+
+/// Whether MC_SetPosition is the first command that waits.
+#[cold]
+fn shift_is_due(axis: &Axis<Standard>) -> bool {
+    let [first, ..] = axis.outlook().waiting;
+    first.is_some_and(|(_, kind, _)| kind == "set position")
+}
+
+/// Done, CommandAborted and Error of a fate.
+fn ended(fate: Fate) -> [bool; 3] {
+    match fate {
+        Fate::Waiting | Fate::Active { .. } => [false; 3],
+        Fate::Done => [true, false, false],
+        Fate::Aborted => [false, true, false],
+        Fate::Failed(_) => [false, false, true],
+    }
+}
+
+/// A command waits, is active, ends, and nothing of that twice; MC_Stop is done while it holds the axis, and a
+/// superimposed one may have to wait again.
+fn check_life(was: Option<Fate>, now: Fate, kind: Kind) -> Result<(), Broken> {
+    let stage = |fate: Fate| match fate {
+        Fate::Waiting => 0,
+        Fate::Active { .. } => 1,
+        Fate::Done => 2,
+        Fate::Aborted => 3,
+        Fate::Failed(_) => 4,
+    };
+    let Some(was) = was.map(stage) else { return Ok(()) };
+    let now = stage(now);
+    let lives_on = was < 2 && (now >= was || kind.is_superimposed());
+    if lives_on || was == now {
+        Ok(())
+    } else {
+        Err(Broken {
+            id: "R26",
+            what: "a command that ended ends again, or one that was active waits",
+        })
+    }
+}
+
+/// Makes an axis or its drive fail.
+fn fail(axis: usize, kind: FaultKind, time: ScanTime, machine: &mut Bench) {
+    let drive = machine.drives_mut().get_mut(axis);
+    match (kind, drive) {
+        (FaultKind::Drive, Some(drive)) => drive.fail(FAULT_CODE),
+        (FaultKind::Power, Some(drive)) => drive.cut_power(),
+        (FaultKind::Communication, Some(drive)) => drive.cut_communication(),
+        (FaultKind::Axis, _) => {
+            let mut context = machine.context(time, InstanceId::default());
+            if let Ok((axis, log, source)) = context.axis(axis_id(axis)) {
+                axis.raise(ErrorId::AxisFault, FAULT_CODE, source, log);
+            }
+        }
+        (FaultKind::Drive | FaultKind::Power | FaultKind::Communication, None) => {}
+    }
+}
+
+impl<H: Hands> Programs<Standard, IdealDrive> for Run<'_, H> {
+    fn latch(&mut self, time: ScanTime, machine: &mut Bench) {
+        while let Some(action) = self.hands.next(time.scan, machine, &self.instances) {
+            self.apply(action, time, machine);
+        }
+    }
+
+    fn run(&mut self, _: ProgramId, context: &mut Context<'_, Standard>) -> Result<u64, ProgramFault> {
+        self.follow_states(Part::Feedback, context.scan, context.axes);
+        for index in 0..self.instances.len() {
+            context.instance = u16::try_from(index + 1).map_or(InstanceId::default(), InstanceId);
+            if let Err(broken) = self.call(index, context) {
+                self.fail(context.scan, Who::Instance(index), broken);
+            }
+        }
+        Ok(0)
+    }
+
+    fn published(&mut self, time: ScanTime, machine: &Bench) {
+        self.seen.scans += 1;
+        self.follow_states(Part::Motion, time.scan, machine.axes());
+        self.read_records(time, machine);
+        for (index, axis) in machine.axes().iter().enumerate() {
+            if let Err(broken) = self.check_axis(index, axis) {
+                self.fail(time.scan, Who::Axis(index), broken);
+            }
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! Makes a scenario that breaks a rule smaller: fewer instances, fewer steps, fewer changes, rounder numbers.
+
+use super::replay;
+use super::run::Failure;
+use super::scenario::{Action, Scenario, Step};
+use standstill_axis::{AxisConfig, Limits, StartState};
+use standstill_fb::Value;
+
+/// Scans run at most to find a smaller one.
+const BUDGET: u64 = 4_000_000;
+
+struct Shrinker {
+    best: Scenario,
+    failure: Failure,
+    /// Scans left to run.
+    budget: u64,
+}
+
+/// The smallest scenario found that breaks the same rule as `scenario`, and how it does so.
+pub fn shrink(failure: Failure, scenario: Scenario) -> (Failure, Scenario) {
+    let mut shrinker = Shrinker {
+        best: scenario,
+        failure,
+        budget: BUDGET,
+    };
+    shrinker.end();
+    // Each pass may make room for another; most need two rounds.
+    for _ in 0..6 {
+        let before = shrinker.best.clone();
+        shrinker.fewer_blocks();
+        shrinker.fewer_steps();
+        shrinker.fewer_axes();
+        shrinker.plainer_axes();
+        shrinker.fewer_changes();
+        shrinker.sooner();
+        shrinker.rounder();
+        if shrinker.best == before || shrinker.budget == 0 {
+            break;
+        }
+    }
+    (shrinker.failure, shrinker.best)
+}
+
+impl Shrinker {
+    /// Takes `candidate` if it breaks the same rule.
+    fn attempt(&mut self, candidate: Scenario) -> bool {
+        if candidate == self.best || self.budget < candidate.scans {
+            return false;
+        }
+        let (seen, failure) = replay(&candidate);
+        self.budget -= seen.scans;
+        match failure {
+            Some(failure) if failure.broken == self.failure.broken => {
+                self.failure = failure;
+                self.best = candidate;
+                self.end();
+                true
+            }
+            Some(_) | None => false,
+        }
+    }
+
+    /// Nothing happens after the failure.
+    fn end(&mut self) {
+        let last = self.failure.scan;
+        self.best.scans = last + 1;
+        self.best.steps.retain(|step| step.scan <= last);
+    }
+
+    fn fewer_blocks(&mut self) {
+        for index in (0..self.best.blocks.len()).rev() {
+            let mut less = self.best.clone();
+            less.blocks.remove(index);
+            less.steps.retain_mut(|step| match &mut step.action {
+                Action::Set { block, .. } if *block == index => false,
+                Action::Set { block, .. } => {
+                    *block -= usize::from(*block > index);
+                    true
+                }
+                Action::Fault { .. } | Action::Clear { .. } => true,
+            });
+            self.attempt(less);
+        }
+    }
+
+    fn fewer_axes(&mut self) {
+        for index in (0..self.best.axes.len()).rev() {
+            if self.best.axes.len() == 1 || self.best.blocks.iter().any(|block| block.axis == index) {
+                continue;
+            }
+            let mut less = self.best.clone();
+            less.axes.remove(index);
+            for block in &mut less.blocks {
+                block.axis -= usize::from(block.axis > index);
+            }
+            less.steps.retain_mut(|step| match &mut step.action {
+                Action::Fault { axis, .. } | Action::Clear { axis } if *axis == index => false,
+                Action::Fault { axis, .. } | Action::Clear { axis } => {
+                    *axis -= usize::from(*axis > index);
+                    true
+                }
+                Action::Set { .. } => true,
+            });
+            self.attempt(less);
+        }
+    }
+
+    /// Halves, quarters and so on of the steps, down to single ones.
+    fn fewer_steps(&mut self) {
+        let mut length = self.best.steps.len().div_ceil(2).max(1);
+        loop {
+            let mut start = 0;
+            while start < self.best.steps.len() {
+                let mut less = self.best.clone();
+                let end = (start + length).min(less.steps.len());
+                less.steps.drain(start..end);
+                if !self.attempt(less) {
+                    start += length;
+                }
+            }
+            if length == 1 {
+                return;
+            }
+            length = length.div_ceil(2);
+        }
+    }
+
+    /// Every part of a configuration as it is by default.
+    fn plainer_axes(&mut self) {
+        let plainer: [fn(&mut AxisConfig); 15] = [
+            |config| config.start = StartState::Standstill,
+            |config| config.modulo = None,
+            |config| config.software_limits = None,
+            |config| config.scaling = None,
+            |config| config.profile = Default::default(),
+            |config| config.queue = AxisConfig::new(Limits::NONE).queue,
+            |config| config.above_limit = Default::default(),
+            |config| config.on_power_off = Default::default(),
+            |config| config.stop_deceleration = None,
+            |config| config.stop_jerk = None,
+            |config| config.needs_homed = false,
+            |config| config.defaults = Default::default(),
+            |config| config.limits.snap = f64::INFINITY,
+            |config| {
+                (config.limits.jerk, config.limits.snap) = (f64::INFINITY, f64::INFINITY);
+                config.defaults = Default::default();
+            },
+            |config| config.limits.deceleration = config.limits.acceleration,
+        ];
+        for axis in 0..self.best.axes.len() {
+            for change in plainer {
+                let mut less = self.best.clone();
+                change(&mut less.axes[axis].config);
+                self.attempt(less);
+            }
+            let mut less = self.best.clone();
+            (less.axes[axis].delay, less.axes[axis].power_on) = (0, 0);
+            self.attempt(less);
+        }
+    }
+
+    /// Values that hold from the start, instead of steps.
+    fn fewer_changes(&mut self) {
+        let mut index = 0;
+        while index < self.best.steps.len() {
+            let mut less = self.best.clone();
+            let step = less.steps.remove(index);
+            let taken = match step.action {
+                Action::Set { block, pin, value } => {
+                    let constants = &mut less.blocks[block].constants;
+                    constants.retain(|(other, _)| *other != pin);
+                    constants.push((pin, value));
+                    self.attempt(less)
+                }
+                Action::Fault { .. } | Action::Clear { .. } => false,
+            };
+            index += usize::from(!taken);
+        }
+        for block in 0..self.best.blocks.len() {
+            for place in (0..self.best.blocks[block].constants.len()).rev() {
+                let mut less = self.best.clone();
+                less.blocks[block].constants.remove(place);
+                self.attempt(less);
+            }
+        }
+    }
+
+    /// Shorter pauses.
+    fn sooner(&mut self) {
+        for index in 0..self.best.steps.len() {
+            let mut by = self.pause_before(index);
+            while by > 0 {
+                let mut less = self.best.clone();
+                for Step { scan, .. } in &mut less.steps[index..] {
+                    *scan -= by;
+                }
+                if self.attempt(less) {
+                    by = self.pause_before(index).min(by);
+                } else {
+                    by /= 2;
+                }
+                if index >= self.best.steps.len() {
+                    return;
+                }
+            }
+        }
+    }
+
+    fn pause_before(&self, index: usize) -> u64 {
+        let scan = |index: usize| self.best.steps.get(index).map_or(0, |step| step.scan);
+        match index.checked_sub(1) {
+            Some(before) => scan(index) - scan(before),
+            // A script's edge needs a scan before it.
+            None => scan(index).saturating_sub(1),
+        }
+    }
+
+    /// Numbers of one, two, three digits.
+    fn rounder(&mut self) {
+        for index in 0..numbers(&mut self.best.clone()).len() {
+            for digits in 1..=4 {
+                let mut less = self.best.clone();
+                let mut numbers = numbers(&mut less);
+                let Some(number) = numbers.get_mut(index) else {
+                    return;
+                };
+                let round = rounded(**number, digits);
+                if round == **number {
+                    break;
+                }
+                **number = round;
+                if self.attempt(less) {
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// Every number of a scenario that could be another one.
+fn numbers(scenario: &mut Scenario) -> Vec<&mut f64> {
+    let mut all = Vec::new();
+    for axis in &mut scenario.axes {
+        let config = &mut axis.config;
+        let limits = &mut config.limits;
+        all.extend([
+            &mut limits.velocity,
+            &mut limits.acceleration,
+            &mut limits.deceleration,
+            &mut limits.jerk,
+            &mut limits.snap,
+        ]);
+        let defaults = &mut config.defaults;
+        all.extend(
+            [
+                &mut defaults.acceleration,
+                &mut defaults.deceleration,
+                &mut defaults.jerk,
+                &mut defaults.snap,
+                &mut config.stop_deceleration,
+                &mut config.stop_jerk,
+                &mut config.modulo,
+            ]
+            .into_iter()
+            .flatten(),
+        );
+        if let Some((min, max)) = &mut config.software_limits {
+            all.extend([min, max]);
+        }
+    }
+    let constants = scenario.blocks.iter_mut().flat_map(|block| &mut block.constants);
+    let constants = constants.map(|(_, value)| value);
+    let steps = scenario
+        .steps
+        .iter_mut()
+        .filter_map(|step| match &mut step.action {
+            Action::Set { value, .. } => Some(value),
+            Action::Fault { .. } | Action::Clear { .. } => None,
+        });
+    all.extend(constants.chain(steps).filter_map(|value| match value {
+        Value::Lreal(number) => Some(number),
+        _ => None,
+    }));
+    all
+}
+
+/// `number` to so many significant digits.
+fn rounded(number: f64, digits: usize) -> f64 {
+    if !number.is_finite() {
+        return number;
+    }
+    format!("{number:.*e}", digits - 1).parse().unwrap_or(number)
+}

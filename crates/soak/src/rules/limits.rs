@@ -1,0 +1,234 @@
+//! Set-points and their differences keep the limits of the axis.
+//!
+//! A set-point tells velocity, acceleration, jerk and snap of the motion at an instant; the backward differences
+//! of the published positions tell them without trusting that. Both are held against the limits of the axis,
+//! superimposed motions included, because what is published is the sum. Nothing is allowed beyond them: what a motion
+//! within the limits of the axis led to, its limits can bring back. The one thing that cannot always be avoided is
+//! that a stop in the middle of a reversal turns back, and only this may be recorded ([`check_excess`]).
+
+use super::{Broken, rule};
+use standstill_axis::{Axis, Excess, Limits, Planner, Setpoint};
+
+/// By how much a limit may be exceeded, relative to it.
+const RELATIVE: f64 = 1e-9;
+
+/// Up to this part of the velocity limit the direction of motion is not told by the velocity.
+const STILL: f64 = 1e-9;
+
+/// What a 64-bit instant of a plan resolves, relative to the time since its start.
+const TICK: f64 = 2.0 * f64::EPSILON;
+
+/// Differences of positions, newest first; what the next scan's are made of.
+const KEPT: usize = 4;
+
+/// Positions that makes.
+const KNOWN: usize = KEPT + 1;
+
+/// What one axis published lately.
+#[derive(Clone, Debug)]
+pub struct Track {
+    limits: Limits,
+    cycle: f64,
+    turn: Option<f64>,
+    /// Powers of the cycle from 1 to 4, by which differences of that order are divided.
+    over: [f64; KEPT],
+    /// The last position, the ways to it and to those before, and how many positions that is made of.
+    position: f64,
+    ways: [f64; KEPT],
+    known: usize,
+    /// The largest magnitude of unwrapped positions.
+    largest: f64,
+    unwrapped: f64,
+    /// Scans since the axis was at rest.
+    moving: u32,
+    /// The last motion is what it was in the scan before, so nothing has to be looked at.
+    resting: bool,
+}
+
+/// What may be recorded as unavoidable: that a stop turns back, with no more than the velocity limit.
+///
+/// # Errors
+/// The rule that does not hold.
+pub fn check_excess(excess: &Excess, limits: &Limits) -> Result<(), Broken> {
+    rule(
+        excess.acceleration == 0.0 && excess.jerk == 0.0 && excess.velocity <= limits.velocity,
+        "limits",
+        "a motion is recorded to exceed the limits of the axis",
+    )
+}
+
+impl Track {
+    /// An axis that stands.
+    pub fn new<P: Planner>(axis: &Axis<P>, cycle: f64) -> Self {
+        let position = axis.setpoint().position;
+        let turn = axis.config().modulo;
+        Self {
+            limits: axis.config().limits,
+            cycle,
+            turn,
+            over: [
+                cycle,
+                cycle * cycle,
+                cycle * cycle * cycle,
+                cycle * cycle * cycle * cycle,
+            ],
+            position,
+            ways: [0.0; KEPT],
+            known: KNOWN,
+            largest: position.abs().max(turn.unwrap_or(0.0)),
+            unwrapped: position,
+            moving: 0,
+            resting: false,
+        }
+    }
+
+    /// Differences across this scan mean nothing: coordinates moved, or the set-point follows the feedback.
+    pub fn forget(&mut self) {
+        self.known = 0;
+        self.resting = false;
+    }
+
+    /// A motion is planned that leads from one position to another, perhaps some turns away: what it publishes is
+    /// rounded there.
+    pub fn leads(&mut self, from: f64, to: f64) {
+        self.largest = self.largest.max(from.abs()).max(to.abs());
+        self.resting = false;
+    }
+
+    /// Holds the set-point published in a scan, and the differences it makes, against the limits.
+    ///
+    /// # Errors
+    /// The rule that does not hold.
+    #[inline]
+    pub fn check(&mut self, setpoint: &Setpoint) -> Result<(), Broken> {
+        let still = setpoint.position == self.position && setpoint.is_at_rest();
+        if still && self.resting {
+            return Ok(());
+        }
+        self.check_motion(setpoint, still)
+    }
+
+    #[inline(never)]
+    fn check_motion(&mut self, setpoint: &Setpoint, still: bool) -> Result<(), Broken> {
+        rule(setpoint.is_finite(), "finite", "a set-point is not finite")?;
+        self.moving = if setpoint.is_at_rest() {
+            0
+        } else {
+            self.moving.saturating_add(1)
+        };
+        self.check_state(setpoint)?;
+        self.push(setpoint.position);
+        self.check_differences()?;
+        // All that is looked back at is at rest.
+        self.resting = still && self.known == KNOWN && self.ways == [0.0; KEPT];
+        Ok(())
+    }
+
+    fn check_state(&self, setpoint: &Setpoint) -> Result<(), Broken> {
+        let limits = &self.limits;
+        // What the clock of the plan resolves: an instant late by a tick has another state.
+        let tick = TICK * f64::from(self.moving) * self.cycle;
+        let inside =
+            |value: f64, limit: f64, rate: f64| value.abs() <= limit * (1.0 + RELATIVE) + tick * rate;
+        let acceleration = if setpoint.velocity.abs() <= STILL * limits.velocity {
+            limits.acceleration.max(limits.deceleration)
+        } else if setpoint.velocity * setpoint.acceleration > 0.0 {
+            limits.acceleration
+        } else {
+            limits.deceleration
+        };
+        let rates = [
+            acceleration,
+            if limits.jerk.is_finite() { limits.jerk } else { 0.0 },
+            if limits.snap.is_finite() { limits.snap } else { 0.0 },
+        ];
+        rule(
+            inside(setpoint.velocity, limits.velocity, rates[0]),
+            "limits",
+            "the velocity exceeds the limit of the axis",
+        )?;
+        rule(
+            inside(setpoint.acceleration, acceleration, rates[1]),
+            "limits",
+            "the acceleration exceeds the limit of the axis",
+        )?;
+        rule(
+            inside(setpoint.jerk, limits.jerk, rates[2]),
+            "limits",
+            "the jerk exceeds the limit of the axis",
+        )?;
+        rule(
+            inside(setpoint.snap, limits.snap, 0.0),
+            "limits",
+            "the snap exceeds the limit of the axis",
+        )?;
+        Ok(())
+    }
+
+    /// The way to a position, the shorter one on a modulo axis.
+    fn push(&mut self, position: f64) {
+        let mut way = position - self.position;
+        self.position = position;
+        if let Some(turn) = self.turn
+            && way.abs() > 0.5 * turn
+        {
+            way -= turn.copysign(way);
+        }
+        self.ways.rotate_right(1);
+        self.ways[0] = way;
+        self.known = KNOWN.min(self.known + 1);
+        if self.known == 1 {
+            // It is not known where it came from.
+            self.ways = [0.0; KEPT];
+            self.unwrapped = position;
+        } else {
+            self.unwrapped += way;
+        }
+        self.largest = self.largest.max(self.unwrapped.abs()).max(position.abs());
+    }
+
+    /// `|d_k| <= limit_k (1 + 1e-9) + 2^k r / cycle^k`: the continuous plan keeps the limits, so its differences do,
+    /// and each position is off by at most r, a unit in the last place of the largest position so far and what the
+    /// velocity makes of two in that of the time since rest.
+    fn check_differences(&mut self) -> Result<(), Broken> {
+        const WHAT: [&str; KEPT] = [
+            "the first difference of positions exceeds the velocity limit",
+            "the second difference of positions exceeds the acceleration limit",
+            "the third difference of positions exceeds the jerk limit",
+            "the fourth difference of positions exceeds the snap limit",
+        ];
+        // The first position that is known has no way to it.
+        let known = self.known - 1;
+        let limits = &self.limits;
+        let [now, before, ..] = self.ways;
+        // The velocity may have changed its sign within the scans looked at: it did so from or to no more than this.
+        let higher_bound = limits.acceleration.max(limits.deceleration);
+        let may_turn = now * before <= 0.0 || now.abs().min(before.abs()) <= higher_bound * self.over[1];
+        let acceleration = if known < 2 || may_turn {
+            higher_bound
+        } else if now.abs() > before.abs() {
+            limits.acceleration
+        } else {
+            limits.deceleration
+        };
+        let bounds = [limits.velocity, acceleration, limits.jerk, limits.snap];
+        let unit = self.largest.next_up() - self.largest;
+        let unit = unit + TICK * f64::from(self.moving) * self.cycle * limits.velocity;
+        let mut differences = self.ways;
+        let mut slack = unit;
+        for order in 0..known {
+            slack *= 2.0;
+            let value = differences[0].abs();
+            let resolved = slack;
+            rule(
+                value <= bounds[order] * self.over[order] * (1.0 + RELATIVE) + resolved,
+                "limits",
+                WHAT[order],
+            )?;
+            for place in 0..KEPT - 1 - order {
+                differences[place] -= differences[place + 1];
+            }
+        }
+        Ok(())
+    }
+}
