@@ -238,6 +238,8 @@ pub struct Axis<P: Planner = Standard> {
     factors: Factors,
     /// The owner has values that its motion does not have yet, for lack of room beside something superimposed.
     replan_due: bool,
+    /// In operation with nothing pending, see [`Axis::is_calm`]; FALSE may be stale, TRUE never.
+    calm: bool,
 }
 
 impl<P: Planner> Axis<P> {
@@ -296,6 +298,7 @@ impl<P: Planner> Axis<P> {
             shift_due: false,
             factors: Factors::ONE,
             replan_due: false,
+            calm: false,
         })
     }
 
@@ -449,10 +452,7 @@ impl<P: Planner> Axis<P> {
     /// The drive's command for this scan.
     #[inline]
     pub fn drive_command(&mut self) -> DriveCommand {
-        let rename = self.rename;
-        if rename.is_some() {
-            self.rename = None;
-        }
+        let rename = if self.calm { None } else { self.rename.take() };
         DriveCommand {
             request: self.drive_request(),
             position: self.position_at_drive(),
@@ -491,6 +491,7 @@ impl<P: Planner> Axis<P> {
 
     /// The one place where the state changes.
     fn enter(&mut self, event: AxisEvent) {
+        self.stir();
         match state::next(self.state, event) {
             Ok(next) => self.state = next,
             Err(_) => debug_assert!(false, "{:?} in {:?}", event, self.state),

@@ -79,6 +79,7 @@ impl<P: Planner> Axis<P> {
             layer.pass_velocity(sum);
         }
         layer.try_soon();
+        self.stir();
         self.layer = Some(layer);
         Ok(Some(motion))
     }

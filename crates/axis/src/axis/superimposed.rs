@@ -186,6 +186,7 @@ impl<P: Planner> Axis<P> {
             self.enter(AxisEvent::StartDiscrete);
         }
         self.end_superimposed_command(Fate::Aborted);
+        self.stir();
         let layer = self.layer.get_or_insert(layer);
         layer.command = Some(command);
         self.add(proposed, source.scan, log);
@@ -224,6 +225,7 @@ impl<P: Planner> Axis<P> {
             None
         };
         self.end_superimposed_command(Fate::Aborted);
+        self.stir();
         self.layer.get_or_insert(layer).command = Some(command);
         if !command.planned {
             self.add(proposed, source.scan, log);

@@ -251,6 +251,7 @@ impl<P: Planner> Axis<P> {
         command.halting = self.factors.halt();
         command.planned = false;
         layer.try_soon();
+        self.stir();
         self.layer = Some(layer);
         self.try_again(scan, log);
     }
@@ -335,6 +336,7 @@ impl<P: Planner> Axis<P> {
             layer.pass_velocity(self.setpoint);
         }
         layer.try_soon();
+        self.stir();
         self.layer = Some(layer);
         Ok(Some(motion))
     }

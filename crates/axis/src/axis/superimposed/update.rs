@@ -36,6 +36,7 @@ impl<P: Planner> Axis<P> {
             .map_err(|error| self.refuse("Distance", request.distance, f64::NAN, error, source, log))?;
         layer.command = Some(command);
         layer.try_soon();
+        self.stir();
         self.layer = Some(layer);
         self.add(proposed, source.scan, log);
         Ok(())
