@@ -139,11 +139,16 @@ impl<P: Planner> Axis<P> {
         if !matches!(self.motion, Motion::Run { .. }) {
             return None;
         }
-        let wider = self.in_force.or_larger(&self.before);
-        if wider == self.in_force || self.is_inside(&self.base(), &self.in_force) {
-            Some(self.in_force)
+        Some(self.limits_in_state(&self.base(), &self.in_force, &self.before))
+    }
+
+    /// `own` limits of a motion in `state`, and those `before` until it is inside. Cost: at most one ramp.
+    pub(super) fn limits_in_state(&self, state: &Setpoint, own: &Limits, before: &Limits) -> Limits {
+        let wider = own.or_larger(before);
+        if wider == *own || self.is_inside(state, own) {
+            *own
         } else {
-            Some(wider)
+            wider
         }
     }
 
