@@ -60,7 +60,6 @@ impl Block for McHome {
                     position: inputs.position,
                 },
                 buffer_mode: inputs.buffer_mode,
-                continuous_update: false,
                 replaces,
             };
             axis.command(&request, source, log).map(|id| (inputs.axis, id))

@@ -69,7 +69,6 @@ impl Block for McHalt {
                     },
                 },
                 buffer_mode: inputs.buffer_mode,
-                continuous_update: false,
                 replaces,
             };
             axis.command(&request, source, log).map(|id| (inputs.axis, id))

@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
 use standstill_axis::{AxisId, BufferMode, Command, Dynamics, ErrorId, Planner, Raw, Request};
-use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
+use standstill_fb::{Block, Context, Group, Move, UpdateCore, pins};
 
 pins! {
     in_outs {
@@ -13,7 +13,7 @@ pins! {
     inputs {
         /// A rising edge starts the move with the values of that call.
         Execute => execute: bool = false, "";
-        /// Apply later input changes to the running motion; not supported yet, must be FALSE.
+        /// Changed inputs hold for the motion in progress while TRUE, if it was TRUE at the rising edge.
         ContinuousUpdate => continuous_update: bool = false, "";
         /// Signed distance from the last commanded target; finite. From the set position at the start where there
         /// is no such target: in Standstill and behind or during an endless motion.
@@ -54,7 +54,7 @@ pins! {
 #[doc(alias = "MC_MoveAdditive")]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct McMoveAdditive {
-    core: ExecuteCore,
+    core: UpdateCore<Command>,
 }
 
 impl Block for McMoveAdditive {
@@ -65,25 +65,31 @@ impl Block for McMoveAdditive {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let phase = self.core.scan(inputs.execute, context, |context, replaces| {
-            let (axis, log, source) = context.axis(inputs.axis)?;
-            let request = Request {
-                command: Command::MoveAdditive {
-                    distance: inputs.distance,
-                    dynamics: Dynamics {
-                        velocity: inputs.velocity,
-                        acceleration: inputs.acceleration,
-                        deceleration: inputs.deceleration,
-                        jerk: inputs.jerk,
-                        snap: inputs.snap,
-                    },
-                },
-                buffer_mode: inputs.buffer_mode,
-                continuous_update: inputs.continuous_update,
-                replaces,
-            };
-            axis.command(&request, source, log).map(|id| (inputs.axis, id))
-        });
+        let pins = Move {
+            axis: inputs.axis,
+            execute: inputs.execute,
+            continuous_update: inputs.continuous_update,
+        };
+        let values = || Command::MoveAdditive {
+            distance: inputs.distance,
+            dynamics: Dynamics {
+                velocity: inputs.velocity,
+                acceleration: inputs.acceleration,
+                deceleration: inputs.deceleration,
+                jerk: inputs.jerk,
+                snap: inputs.snap,
+            },
+        };
+        let phase = self
+            .core
+            .scan(pins, context, values, |axis, command, replaces, source, log| {
+                let request = Request {
+                    command,
+                    buffer_mode: inputs.buffer_mode,
+                    replaces,
+                };
+                axis.command(&request, source, log)
+            });
         Outputs {
             done: phase.is_done(),
             busy: phase.is_busy(),

@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section of that name; rules R51, R65, R66, S9, V14.
 
 use standstill_axis::{AxisId, CommandId, Dynamics, ErrorId, Planner, Superimpose};
-use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
+use standstill_fb::{Block, Context, Group, Move, UpdateCore, pins};
 
 pins! {
     in_outs {
@@ -13,7 +13,7 @@ pins! {
     inputs {
         /// A rising edge starts the added motion with the values of that call.
         Execute => execute: bool = false, "";
-        /// Apply later input changes to the running motion; not supported yet, must be FALSE.
+        /// Changed inputs hold for the added motion while TRUE, if it was TRUE at the rising edge.
         ContinuousUpdate => continuous_update: bool = false, "";
         /// Signed distance to add; finite.
         Distance => distance: f64 = 0.0, "u";
@@ -54,7 +54,7 @@ pins! {
 #[doc(alias = "MC_MoveSuperimposed")]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct McMoveSuperimposed {
-    core: ExecuteCore,
+    core: UpdateCore<Superimpose>,
     command: Option<(AxisId, CommandId)>,
     covered: f64,
 }
@@ -67,25 +67,30 @@ impl Block for McMoveSuperimposed {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
+        let pins = Move {
+            axis: inputs.axis,
+            execute: inputs.execute,
+            continuous_update: inputs.continuous_update,
+        };
+        let values = || Superimpose {
+            distance: inputs.distance,
+            dynamics: Dynamics {
+                velocity: inputs.velocity_diff,
+                acceleration: inputs.acceleration,
+                deceleration: inputs.deceleration,
+                jerk: inputs.jerk,
+                snap: inputs.snap,
+            },
+        };
         let (command, covered) = (&mut self.command, &mut self.covered);
-        let phase = self.core.scan(inputs.execute, context, |context, _| {
-            (*command, *covered) = (None, 0.0);
-            let (axis, log, source) = context.axis(inputs.axis)?;
-            let request = Superimpose {
-                distance: inputs.distance,
-                dynamics: Dynamics {
-                    velocity: inputs.velocity_diff,
-                    acceleration: inputs.acceleration,
-                    deceleration: inputs.deceleration,
-                    jerk: inputs.jerk,
-                    snap: inputs.snap,
-                },
-                continuous_update: inputs.continuous_update,
-            };
-            let id = axis.superimpose(&request, source, log)?;
-            *command = Some((inputs.axis, id));
-            Ok((inputs.axis, id))
-        });
+        let phase = self
+            .core
+            .scan(pins, context, values, |axis, request, _, source, log| {
+                (*command, *covered) = (None, 0.0);
+                let id = axis.superimpose(&request, source, log)?;
+                *command = Some((inputs.axis, id));
+                Ok(id)
+            });
         if let Some((axis, id)) = self.command {
             if let Some(now) = context
                 .axes

@@ -68,7 +68,6 @@ impl Block for McStop {
                     },
                 },
                 buffer_mode: BufferMode::Aborting.into(),
-                continuous_update: false,
                 replaces,
             };
             axis.command(&request, source, log)

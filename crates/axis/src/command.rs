@@ -268,6 +268,61 @@ pub enum Command {
     },
 }
 
+impl Dynamics {
+    fn bits(&self) -> [u64; 5] {
+        let values = [
+            self.velocity,
+            self.acceleration,
+            self.deceleration,
+            self.jerk,
+            self.snap,
+        ];
+        values.map(f64::to_bits)
+    }
+}
+
+impl Command {
+    /// Whether `other` has the same values, to the bit.
+    pub fn is_same(&self, other: &Self) -> bool {
+        core::mem::discriminant(self) == core::mem::discriminant(other) && self.bits() == other.bits()
+    }
+
+    /// All its values: two numbers, the direction, the dynamic values.
+    fn bits(&self) -> ([u64; 2], i32, [u64; 5]) {
+        let none = Dynamics::default();
+        let (first, second, direction, dynamics) = match self {
+            Self::MoveAbsolute {
+                position,
+                dynamics,
+                direction,
+            } => (*position, 0.0, direction.number(), dynamics),
+            Self::MoveContinuousAbsolute {
+                position,
+                end_velocity,
+                dynamics,
+                direction,
+            } => (*position, *end_velocity, direction.number(), dynamics),
+            Self::MoveRelative { distance, dynamics } | Self::MoveAdditive { distance, dynamics } => {
+                (*distance, 0.0, 0, dynamics)
+            }
+            Self::MoveContinuousRelative {
+                distance,
+                end_velocity,
+                dynamics,
+            } => (*distance, *end_velocity, 0, dynamics),
+            Self::MoveVelocity { dynamics, direction } => (0.0, 0.0, direction.number(), dynamics),
+            Self::Jog {
+                forward,
+                distance,
+                dynamics,
+            } => (*distance, 0.0, i32::from(*forward), dynamics),
+            Self::Halt { dynamics } | Self::Stop { dynamics } => (0.0, 0.0, 0, dynamics),
+            Self::Home { position } => (*position, 0.0, 0, &none),
+        };
+        ([first.to_bits(), second.to_bits()], direction, dynamics.bits())
+    }
+}
+
 /// A command and how it enters the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
@@ -275,8 +330,6 @@ pub struct Request {
     pub command: Command,
     /// How it follows the motion in progress.
     pub buffer_mode: Raw<BufferMode>,
-    /// The ContinuousUpdate pin.
-    pub continuous_update: bool,
     /// The command the same instance holds, which this one replaces (R32).
     pub replaces: Option<CommandId>,
 }
@@ -287,7 +340,6 @@ impl Request {
         Self {
             command,
             buffer_mode: BufferMode::Aborting.into(),
-            continuous_update: false,
             replaces: None,
         }
     }
@@ -300,6 +352,11 @@ pub struct Superimpose {
     pub distance: f64,
     /// Dynamic values of what is added; the velocity (VelocityDiff) must be positive.
     pub dynamics: Dynamics,
-    /// The ContinuousUpdate pin.
-    pub continuous_update: bool,
+}
+
+impl Superimpose {
+    /// Whether `other` has the same values, to the bit.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.distance.to_bits() == other.distance.to_bits() && self.dynamics.bits() == other.dynamics.bits()
+    }
 }

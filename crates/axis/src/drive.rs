@@ -91,11 +91,68 @@ pub struct DriveCommand {
     pub rename: Option<f64>,
 }
 
-/// A drive. `read` then `write`, each exactly once a scan.
+/// Touch probes of a drive.
+pub const PROBES: usize = 2;
+
+/// What a probe has seen since it was armed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ProbeReport {
+    /// It waits for edges, as ordered.
+    pub armed: bool,
+    /// The position at the first edge since it was armed, measured between scans; none before.
+    pub latched: Option<DrivePosition>,
+}
+
+/// What a drive tells beside its motion. What it does not know stays as in the default.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DriveReport {
+    /// Actual torque or force, in the unit the drive is set up with; none if it does not measure it.
+    pub torque: Option<f64>,
+    /// Its digital inputs, 0 to 31, one bit each.
+    pub inputs: u32,
+    /// What its digital outputs show, 0 to 31.
+    pub outputs: u32,
+    /// Its probes.
+    pub probes: [ProbeReport; PROBES],
+}
+
+/// The edge of a probe's input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edge {
+    /// From FALSE to TRUE.
+    Rising,
+    /// From TRUE to FALSE.
+    Falling,
+}
+
+/// What a drive is asked beside its motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DriveOrder {
+    /// Its digital outputs.
+    pub outputs: u32,
+    /// Which edge each probe is to latch; none disarms it. A probe is armed anew by one scan without an edge.
+    pub probes: [Option<Edge>; PROBES],
+    /// The torque to hold instead of the position (in the drive's unit), and the largest speed at it (u/s).
+    pub torque: Option<(f64, f64)>,
+}
+
+/// A drive. `read` then `write`, each exactly once a scan; then `report` right after the one and `order` right
+/// before the other, for what a drive has beside its motion.
 pub trait Drive {
     /// This scan's feedback.
     fn read(&mut self, now_ns: i64) -> DriveFeedback;
 
     /// This scan's command.
     fn write(&mut self, now_ns: i64, command: &DriveCommand);
+
+    /// Fills in what the drive has to tell in this scan; a drive that has nothing leaves it alone.
+    fn report(&mut self, _report: &mut DriveReport) {}
+
+    /// What the drive is asked in this scan; a drive that knows none of it leaves it alone.
+    fn order(&mut self, _order: &DriveOrder) {}
+
+    /// Whether it can hold a torque instead of a position.
+    fn holds_torque(&self) -> bool {
+        false
+    }
 }

@@ -154,9 +154,6 @@ error_ids! {
     CommunicationLost = 601, "The communication with the drive was lost.",
         "Restore it, then call MC_Reset.";
 
-    ContinuousUpdateUnsupported = 702, "ContinuousUpdate is not supported yet.",
-        "Leave ContinuousUpdate FALSE and give a new command instead.";
-
     SetpointBroken = 901, "A plan gave a set-point that is not finite.",
         "This is a defect of standstill: please report the trace.";
     FateLost = 902, "The instance was not called while 64 later commands of the axis ended, so its result is gone.",
@@ -168,6 +165,7 @@ error_ids! {
 /// Numbers that earlier versions showed and no version will show again, each with what it said.
 pub const RETIRED: &[(u16, &str)] = &[
     (701, "Blending buffer modes were not supported."),
+    (702, "ContinuousUpdate was not supported."),
     (703, "EnablePositive and EnableNegative were not supported."),
 ];
 

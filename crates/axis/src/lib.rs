@@ -28,7 +28,8 @@ pub use command::{
 };
 pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, MODULO_MAX, PowerOff, StartState};
 pub use drive::{
-    Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals, Fault,
+    Comms, Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, DriveRequest,
+    DriveSignals, Edge, Fault, PROBES, ProbeReport,
 };
 pub use error_id::{ErrorClass, ErrorId, RETIRED};
 pub use fate::{FATES_KEPT, Fate};

@@ -194,7 +194,6 @@ fn judge(seed: u64) -> Result<Seen, String> {
                     direction: standstill_axis::Raw::new(0),
                 },
                 buffer_mode: next.mode.into(),
-                continuous_update: false,
                 replaces: None,
             };
             let before = axis.setpoint();

@@ -201,7 +201,6 @@ impl Case {
                     velocity: limits.velocity * 0.3,
                     ..Dynamics::default()
                 },
-                continuous_update: false,
             };
             match self.axis.superimpose(&request, source, &mut self.log) {
                 Ok(id) => self.given.push(id),

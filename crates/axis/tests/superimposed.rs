@@ -202,7 +202,6 @@ impl Case {
         let request = Superimpose {
             distance,
             dynamics: self.random.dynamics(&self.limits),
-            continuous_update: false,
         };
         let id = self
             .with

@@ -84,7 +84,6 @@ impl Monkey {
         Some(match ty {
             // Power stays on most of the time, and both directions are permitted.
             PinType::Bool if name.starts_with("Enable") => Value::Bool(!random.bits().is_multiple_of(8)),
-            PinType::Bool if name == "ContinuousUpdate" => Value::Bool(random.bits().is_multiple_of(32)),
             PinType::Bool => Value::Bool(random.bits().is_multiple_of(2)),
             PinType::Lreal => Value::Lreal(match random.bits() % 16 {
                 0 => f64::NAN,

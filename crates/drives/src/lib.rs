@@ -13,3 +13,4 @@ extern crate std;
 
 pub mod cia402;
 pub mod mechanism;
+pub mod peripherals;

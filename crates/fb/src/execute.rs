@@ -133,6 +133,12 @@ impl ExecuteCore {
         phase
     }
 
+    /// The command that goes on in a call with `execute`: none if it ended, or a rising edge is about to replace it.
+    pub(crate) fn running(&self, execute: bool) -> Option<(AxisId, CommandId)> {
+        let rising = execute && !self.executed;
+        self.command.filter(|_| !rising)
+    }
+
     // Apart, so that what a call at an edge keeps in registers does not burden all the others.
     #[inline(never)]
     fn start<P: Planner>(

@@ -12,8 +12,10 @@ mod block;
 mod enable;
 mod execute;
 mod pins;
+mod update;
 
 pub use block::{AnyInstance, Block, BlockInfo, Context, Described, Group, Instance};
 pub use enable::{EnableCore, Reading};
 pub use execute::{ExecuteCore, Phase};
 pub use pins::{Direction, EnumInfo, Int, Pin, PinError, PinType, PinValue, Pins, Time, Value};
+pub use update::{Move, UpdateCore, Values};

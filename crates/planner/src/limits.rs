@@ -69,6 +69,20 @@ impl Limits {
         }
     }
 
+    /// The larger one of each finite pair; an infinite bound of `before` says nothing, that of these limits stays.
+    pub fn or_larger(&self, before: &Self) -> Self {
+        let larger = |new: f64, old: f64| {
+            if old.is_finite() && old > new { old } else { new }
+        };
+        Self {
+            velocity: larger(self.velocity, before.velocity),
+            acceleration: larger(self.acceleration, before.acceleration),
+            deceleration: larger(self.deceleration, before.deceleration),
+            jerk: larger(self.jerk, before.jerk),
+            snap: larger(self.snap, before.snap),
+        }
+    }
+
     /// Whether no bound is given at all.
     pub const fn is_unbounded(&self) -> bool {
         self.velocity.is_infinite()

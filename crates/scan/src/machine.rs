@@ -134,6 +134,9 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         for (axis, feedback) in self.axes.iter_mut().zip(&self.feedback) {
             axis.follow_feedback(feedback, time.scan, &mut self.log);
         }
+        for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
+            drive.report(axis.report_mut());
+        }
     }
 
     /// Advances every axis by one nominal tick, in advance order; a late scan does not stretch a motion.
@@ -148,6 +151,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
     /// Writes every drive once, in axis order.
     pub(crate) fn publish(&mut self, time: ScanTime) {
         for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
+            drive.order(axis.order());
             drive.write(time.now_ns, &axis.drive_command());
         }
     }

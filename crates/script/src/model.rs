@@ -245,6 +245,22 @@ pub enum DriveChange {
     Remote(bool),
     /// A CiA 402 drive shows a warning, or does not.
     Warning(bool),
+    /// A digital input.
+    Input {
+        /// From 0.
+        number: u32,
+        /// What it shows from this scan on.
+        level: bool,
+    },
+    /// The input of a touch probe.
+    Probe {
+        /// From 0.
+        number: usize,
+        /// The part of the scan that ends with this feedback (0 to 1).
+        at: f64,
+        /// What it shows from there on.
+        level: bool,
+    },
 }
 
 /// What fails.

@@ -11,8 +11,9 @@ use crate::read::step::FAULT_KINDS;
 use crate::read::value::NUMBER_WORDS;
 use crate::read::{SCANS_MAX, VERSION};
 use serde_json::{Map, Value, json};
-use standstill_axis::{DELAY_MAX, QUEUE_MAX};
+use standstill_axis::{DELAY_MAX, PROBES, QUEUE_MAX};
 use standstill_blocks::REGISTRY;
+use standstill_drives::peripherals::DIGITAL;
 use standstill_fb::{BlockInfo, Direction, PinType};
 
 /// The JSON Schema (draft 2020-12) of scan scripts, in the layout of [`format`](crate::format).
@@ -368,6 +369,21 @@ fn step() -> Value {
             object(&shape::DRIVE_STEP, |key| match key {
                 "displace" => of("finite"),
                 "remote" | "warning" => json!({"type": "boolean"}),
+                "input" => required(
+                    &["number", "value"],
+                    object(&shape::DRIVE_INPUT, |key| match key {
+                        "number" => integer(0, i64::from(DIGITAL) - 1),
+                        _ => json!({"type": "boolean"}),
+                    }),
+                ),
+                "probe" => required(
+                    &["number", "value"],
+                    object(&shape::DRIVE_PROBE, |key| match key {
+                        "number" => integer(1, PROBES as i64),
+                        "at" => of("finite"),
+                        _ => json!({"type": "boolean"}),
+                    }),
+                ),
                 _ => text(),
             }),
         ),

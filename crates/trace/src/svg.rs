@@ -86,14 +86,28 @@ pub fn svg(trace: &Trace, signals: &[&str]) -> String {
         picture.grid(&ticks, top, picture.y + 4.0);
     }
     picture.body.push_str(&waves);
-    picture.time(trace, &ticks);
-    let height = picture.y + GAP;
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH:.0} {height:.0}\" font-family=\"sans-serif\" \
-         font-size=\"12\">\n<title>{}</title>\n{STYLE}{}</svg>\n",
-        escaped(&trace.header().title),
-        picture.body
-    )
+    picture.time(trace.header().cycle_ns, &ticks);
+    picture.finish(&trace.header().title)
+}
+
+/// Curves of one value a scan each, below each other: a title and its values, over scans of `cycle_ns`. All are drawn
+/// in one range, so that they can be compared.
+#[must_use]
+pub fn chart(title: &str, cycle_ns: u64, curves: &[(String, Vec<f64>)]) -> String {
+    let scans = curves.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
+    let mut picture = Picture {
+        body: String::new(),
+        y: GAP,
+        scans,
+    };
+    let ticks = ticks(scans);
+    let all = || curves.iter().flat_map(|(_, values)| values).copied();
+    let range = Range::of(all().fold(0.0, f64::min), all().fold(0.0, f64::max));
+    for (title, values) in curves {
+        picture.line_of(title, values, &range, &[], &ticks);
+    }
+    picture.time(cycle_ns, &ticks);
+    picture.finish(title)
 }
 
 /// A picture that grows downwards.
@@ -154,21 +168,26 @@ impl Picture {
     }
 
     fn curve(&mut self, curve: &Curve<'_>, ticks: &[usize]) {
+        let range = Range::of(curve.least, curve.greatest);
+        self.line_of(&curve.title, &curve.values, &range, &limits(curve), ticks);
+    }
+
+    /// A panel with one curve.
+    fn line_of(&mut self, title: &str, values: &[f64], range: &Range, limits: &[f64], ticks: &[usize]) {
         let (top, bottom) = (self.y, self.y + CURVE);
-        let range = Range::of(curve);
         let height = |value: f64| bottom - CURVE * range.part(value);
         self.grid(ticks, top, bottom);
-        if curve.least < 0.0 && curve.greatest > 0.0 {
+        if range.least < 0.0 && range.greatest > 0.0 {
             let zero = format!("M{GUTTER} {:.1}H{:.1}", height(0.0), WIDTH - MARGIN);
             self.line("frame", &zero);
         }
-        for limit in limits(curve).into_iter().filter(|limit| range.has(*limit)) {
-            let y = height(limit);
+        for limit in limits.iter().filter(|limit| range.has(**limit)) {
+            let y = height(*limit);
             self.line("limit", &format!("M{GUTTER} {y:.1}H{:.1}", WIDTH - MARGIN));
         }
         let points: Vec<[f64; 2]> = (0..)
             .map(|scan| self.x(scan))
-            .zip(curve.values.iter().map(|value| height(*value)))
+            .zip(values.iter().map(|value| height(*value)))
             .map(|(x, y)| [x, y])
             .collect();
         for part in points
@@ -177,8 +196,8 @@ impl Picture {
         {
             self.line("curve", &path(part));
         }
-        self.label("", top + 0.5 * CURVE, &curve.title);
-        for value in [curve.greatest, curve.least] {
+        self.label("", top + 0.5 * CURVE, title);
+        for value in [range.greatest, range.least] {
             let y = height(value).clamp(top + 6.0, bottom - 2.0) + 3.0;
             if (y - top - 0.5 * CURVE).abs() > 12.0 {
                 self.label("small unit", y, &compact(value));
@@ -220,14 +239,25 @@ impl Picture {
         self.y += ROW;
     }
 
+    /// All of it, below a title that readers of pages are told.
+    fn finish(self, title: &str) -> String {
+        let height = self.y + GAP;
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH:.0} {height:.0}\" font-family=\"sans-serif\" \
+             font-size=\"12\">\n<title>{}</title>\n{STYLE}{}</svg>\n",
+            escaped(title),
+            self.body
+        )
+    }
+
     /// The time axis.
-    fn time(&mut self, trace: &Trace, ticks: &[usize]) {
+    fn time(&mut self, cycle_ns: u64, ticks: &[usize]) {
         let bottom = self.y + 4.0;
         for tick in ticks {
             let place = [self.x(*tick), bottom + 12.0];
             self.text("small", "middle", place, &tick.to_string());
         }
-        let cycle = time_literal(trace.header().cycle_ns);
+        let cycle = time_literal(cycle_ns);
         self.label("small unit", bottom + 12.0, &format!("scan of {cycle}"));
         self.y = bottom + 12.0;
     }
@@ -235,20 +265,24 @@ impl Picture {
 
 /// What a curve is drawn in: its values, with some room around them.
 struct Range {
+    least: f64,
+    greatest: f64,
     low: f64,
     high: f64,
 }
 
 impl Range {
-    fn of(curve: &Curve<'_>) -> Self {
+    fn of(least: f64, greatest: f64) -> Self {
         // Halved first, so that no difference of finite numbers overflows.
-        let room = match 0.15 * (0.5 * curve.greatest - 0.5 * curve.least) {
-            0.0 => 1.0_f64.max(0.5 * curve.greatest.abs()),
+        let room = match 0.15 * (0.5 * greatest - 0.5 * least) {
+            0.0 => 1.0_f64.max(0.5 * greatest.abs()),
             room => room,
         };
         Self {
-            low: curve.least - room,
-            high: curve.greatest + room,
+            least,
+            greatest,
+            low: least - room,
+            high: greatest + room,
         }
     }
 

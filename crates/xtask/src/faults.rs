@@ -87,8 +87,15 @@ impl Faults {
                 ..*scene
             });
         }
+        // A refusal at the edge tells more than the end of a command that waited.
+        self.first(|event| event.shows(id.number()) && event.text.starts_with("+Execute"))
+            .or_else(|| self.first(|event| event.shows(id.number())))
+    }
+
+    /// The first such event of the goldens in the order of their names, alone.
+    fn first(&self, is_wanted: impl Fn(&Event) -> bool) -> Option<Scene> {
         self.goldens.iter().find_map(|(script, golden)| {
-            let event = golden.events.iter().find(|event| event.shows(id.number()))?;
+            let event = golden.events.iter().find(|event| is_wanted(event))?;
             Some(Scene {
                 script: script.clone(),
                 subjects: vec![event.subject.clone()],

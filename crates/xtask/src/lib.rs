@@ -12,6 +12,7 @@ mod faults;
 mod pictures;
 mod requirements;
 mod states;
+mod vibration;
 
 pub use compliance::Compliance;
 pub use faults::Faults;
@@ -38,6 +39,7 @@ pub fn generated() -> Vec<Generated> {
     files.push(bad_input::page());
     files.extend(Compliance::read().pages());
     files.extend(states::pages());
+    files.extend(vibration::pages());
     files.extend(requirements.pages());
     files
 }

@@ -194,7 +194,9 @@ fn layers_depend_only_downwards() {
             &[
                 "standstill-axis",
                 "standstill-blocks",
+                "standstill-drives",
                 "standstill-fb",
+                "standstill-planner",
                 "standstill-script",
                 "standstill-trace",
             ],

@@ -12,7 +12,7 @@ use crate::{
 use standstill_planner::{Excess, Field, Limits, Passage, PlanError, Planner, Setpoint};
 
 /// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 
 /// At its end a command comes to rest.
 pub(super) const REST: Passage = Passage {
@@ -22,7 +22,7 @@ pub(super) const REST: Passage = Passage {
 
 /// The Direction pin of a command to a position; the checks refuse undefined numbers. MC_MoveAdditive leads to a
 /// position of the frame.
-fn direction_of(command: &Command) -> Option<Direction> {
+pub(super) fn direction_of(command: &Command) -> Option<Direction> {
     match command {
         Command::MoveAbsolute { direction, .. } | Command::MoveContinuousAbsolute { direction, .. } => {
             direction.get()
@@ -86,6 +86,9 @@ impl<P: Planner> Axis<P> {
         let mut entry = Entry::new(self.new_id(), source.instance, work, limits, mode);
         entry.direction = direction_of(&request.command);
         self.override_entry(&mut entry);
+        if let (Command::MoveAdditive { .. }, Work::Position(_)) = (&request.command, work) {
+            entry.from = self.commanded_target().unwrap_or(self.setpoint.position);
+        }
         match way {
             Way::Wait => {
                 self.queue.push(entry);
@@ -97,8 +100,9 @@ impl<P: Planner> Axis<P> {
                 let motion = self
                     .plan_for(&entry)
                     .map_err(|error| self.refuse_plan(&entry, error, source, log))?;
+                let before = self.limits_before(&entry.limits);
                 self.end_all(Fate::Aborted, Fate::Aborted);
-                self.begin(entry, motion, source.scan, log);
+                self.begin(entry, motion, before, source.scan, log);
             }
         }
         Ok(entry.id)
@@ -127,9 +131,6 @@ impl<P: Planner> Axis<P> {
     }
 
     fn way(&self, request: &Request, buffered: bool) -> Result<Way, (&'static str, ErrorId)> {
-        if request.continuous_update {
-            return Err(("ContinuousUpdate", ErrorId::ContinuousUpdateUnsupported));
-        }
         if self.power.going_off {
             return Err(("", ErrorId::PoweringOff));
         }
@@ -181,7 +182,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The values at the pins.
-    fn check(
+    pub(super) fn check(
         &self,
         command: &Command,
         way: Way,
@@ -295,7 +296,13 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Refuses a target outside the software limits.
-    fn inside(&self, pin: &'static str, target: f64, source: Source, log: &mut Log) -> Result<(), ErrorId> {
+    pub(super) fn inside(
+        &self,
+        pin: &'static str,
+        target: f64,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(), ErrorId> {
         match self.allowed(target) {
             Ok(_) => Ok(()),
             Err(error) => {
@@ -493,15 +500,22 @@ impl<P: Planner> Axis<P> {
         (beyond != Excess::default()).then_some(beyond)
     }
 
-    /// Makes `entry` the owner.
-    pub(super) fn begin(&mut self, entry: Entry, motion: Motion<P::Plan>, scan: u64, log: &mut Log) {
+    /// Makes `entry` the owner; it takes over from a motion within `before`.
+    pub(super) fn begin(
+        &mut self,
+        entry: Entry,
+        motion: Motion<P::Plan>,
+        before: Limits,
+        scan: u64,
+        log: &mut Log,
+    ) {
         self.enter(match entry.work {
             Work::Position(_) | Work::Distance(_) | Work::Halt => AxisEvent::StartDiscrete,
             Work::Velocity { .. } | Work::Through { .. } => AxisEvent::StartContinuous,
             Work::Stop => AxisEvent::Stop,
             Work::Home(_) | Work::SetPosition { .. } => AxisEvent::StartHoming,
         });
-        self.before = self.limits_before(&entry.limits);
+        self.before = before;
         self.adopt(entry, motion, scan, log);
     }
 }

@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; rules B1 to B17. What the
 //! standard leaves open is told in `docs/buffering.md`. The maths is the planner's.
 
-use super::accept::REST;
+use super::accept::{REST, ROUNDING};
 use super::power::Reaction;
 use super::queue::{Entry, Work};
 use super::{Axis, Motion};
@@ -55,8 +55,14 @@ impl<P: Planner> Axis<P> {
         let planned = self
             .planner
             .blend(start, end, &entry.passage, &entry.limits, before);
-        // What can't be planned blended is planned as a move to rest, whose error would be the same.
-        planned.ok().flatten()
+        // What can't be planned blended is planned as a move to rest, whose error would be the same. So is what comes
+        // out faster than it may because the limits were lowered too late: it passes its end, turns and comes back.
+        let planned = planned.ok().flatten();
+        planned.filter(|plan| {
+            let end = plan.at(u64::from(plan.scans())).velocity.abs();
+            let most = self.config.limits.velocity * (1.0 + ROUNDING);
+            end <= if entry.passage.wanted > 0.0 { most } else { 0.0 }
+        })
     }
 
     /// `limits` of a motion, with the velocity its plan ends with, should that be larger (B3).

@@ -87,6 +87,7 @@ impl<P: Planner> Axis<P> {
     /// Whether the next command in the buffer moves the coordinates. It does so at the next latch, so that
     /// this scan still publishes what it was about to.
     pub(super) fn queue_waits_for_shift(&mut self) -> bool {
+        self.stir();
         self.shift_due = self
             .queue
             .first()
@@ -158,6 +159,7 @@ impl<P: Planner> Axis<P> {
             self.shift += by;
         } else {
             // Out of operation the drive stands at its actual position, where it may have been pushed to.
+            self.stir();
             self.rename = Some(self.setpoint().position);
         }
         self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
@@ -199,6 +201,7 @@ impl<P: Planner> Axis<P> {
         if self.config.scaling.is_some() {
             self.shift += position - self.setpoint.position;
         } else {
+            self.stir();
             self.rename = Some(position);
         }
         self.setpoint = Setpoint::at_rest(position);

@@ -2,7 +2,8 @@
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`superimposed`] adds a second motion,
-//! [`factors`] is the override, [`replan`] changes the owner's motion while it runs, [`jog`] checks what MC_Jog asks for,
+//! [`factors`] is the override, [`replan`] changes the owner's motion while it runs, [`update`] gives it new values,
+//! [`jog`] checks what MC_Jog asks for,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`permission`] out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
@@ -22,12 +23,13 @@ mod replan;
 mod software_limits;
 mod step;
 mod superimposed;
+mod update;
 
 use crate::fate::Fates;
 use crate::{
     AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, Comms, ConfigError, DriveCommand,
-    DrivePosition, DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log, QUEUE_MAX, Record, StartState,
-    state,
+    DriveOrder, DrivePosition, DriveReport, DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log,
+    QUEUE_MAX, Record, StartState, state,
 };
 pub use factors::Factors;
 use modulo::Modulo;
@@ -78,6 +80,13 @@ impl<P: Plan> Motion<P> {
             }
         }
     }
+}
+
+/// What goes to and comes from a drive beside its motion.
+#[derive(Clone, Copy, Debug, Default)]
+struct BesideMotion {
+    report: DriveReport,
+    order: DriveOrder,
 }
 
 /// What is known of the power stage.
@@ -200,6 +209,8 @@ pub struct Axis<P: Planner = Standard> {
     past: reading::Past,
     /// What the drive reported last beside its position.
     signals: DriveSignals,
+    /// What the drive has beside its motion.
+    beside: BesideMotion,
     motion: Motion<P::Plan>,
     /// A second motion on top of it.
     layer: Option<superimposed::Layer<P::Plan>>,
@@ -237,6 +248,8 @@ pub struct Axis<P: Planner = Standard> {
     factors: Factors,
     /// The owner has values that its motion does not have yet, for lack of room beside something superimposed.
     replan_due: bool,
+    /// In operation with nothing pending, see [`Axis::is_calm`]; FALSE may be stale, TRUE never.
+    calm: bool,
 }
 
 impl<P: Planner> Axis<P> {
@@ -261,6 +274,7 @@ impl<P: Planner> Axis<P> {
             modulo: Modulo::new(&config),
             past: reading::Past::new(config.position),
             signals: DriveSignals::default(),
+            beside: BesideMotion::default(),
             motion: if powered { Motion::Hold } else { Motion::Follow },
             layer: None,
             covered: None,
@@ -295,6 +309,7 @@ impl<P: Planner> Axis<P> {
             shift_due: false,
             factors: Factors::ONE,
             replan_due: false,
+            calm: false,
         })
     }
 
@@ -432,13 +447,25 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// What the drive told last beside its motion; the machine writes it before the blocks are called.
+    pub fn report(&self) -> &DriveReport {
+        &self.beside.report
+    }
+
+    /// As [`Axis::report`], for the machine.
+    pub fn report_mut(&mut self) -> &mut DriveReport {
+        &mut self.beside.report
+    }
+
+    /// What the drive is asked beside its motion.
+    pub fn order(&self) -> &DriveOrder {
+        &self.beside.order
+    }
+
     /// The drive's command for this scan.
     #[inline]
     pub fn drive_command(&mut self) -> DriveCommand {
-        let rename = self.rename;
-        if rename.is_some() {
-            self.rename = None;
-        }
+        let rename = if self.calm { None } else { self.rename.take() };
         DriveCommand {
             request: self.drive_request(),
             position: self.position_at_drive(),
@@ -481,6 +508,7 @@ impl<P: Planner> Axis<P> {
 
     /// The one place where the state changes.
     fn enter(&mut self, event: AxisEvent) {
+        self.stir();
         match state::next(self.state, event) {
             Ok(next) => self.state = next,
             Err(_) => debug_assert!(false, "{:?} in {:?}", event, self.state),

@@ -167,21 +167,31 @@ impl<P: Planner> Axis<P> {
         if let Some(Place::By(_)) = entry.place() {
             entry.from = from;
         }
+        if self.modulo.is_none() {
+            entry.end = entry.work.end(from);
+            return start;
+        }
+        let here = Setpoint {
+            position: start,
+            ..self.base()
+        };
+        self.aim_from(entry, &here, from)
+    }
+
+    /// The same from the state `here`.
+    #[inline(never)]
+    pub(super) fn aim_from(&self, entry: &mut Entry, here: &Setpoint, from: f64) -> f64 {
         match &self.modulo {
-            Some(modulo) => self.aim_round(entry, from, modulo.length),
+            Some(modulo) => self.aim_round(entry, here, from, modulo.length),
             None => {
                 entry.end = entry.work.end(from);
-                start
+                here.position
             }
         }
     }
 
     #[inline(never)]
-    fn aim_round(&self, entry: &mut Entry, from: f64, length: f64) -> f64 {
-        let start = Setpoint {
-            position: self.setpoint.position,
-            ..self.base()
-        };
+    fn aim_round(&self, entry: &mut Entry, start: &Setpoint, from: f64, length: f64) -> f64 {
         (entry.turns, entry.end) = match (entry.place(), entry.direction) {
             (None, _) => (split(start.position, length).0, None),
             (Some(Place::At(target)), Some(direction)) => {
@@ -191,13 +201,12 @@ impl<P: Planner> Axis<P> {
                     length,
                     self.heading(direction, self.last_velocity > 0.0),
                 );
-                (
-                    self.never_back(entry, &start, target, turns, length),
-                    Some(target),
-                )
+                (self.never_back(entry, start, target, turns, length), Some(target))
             }
             (Some(Place::At(target)), None) => {
                 let (turns, target) = split(target, length);
+                // In the frame it is to move in, for whoever asks again.
+                entry.work = entry.work.at(target);
                 (turns, Some(target))
             }
             (Some(Place::By(distance)), _) => {

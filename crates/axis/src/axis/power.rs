@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, notes 1 to 5 of the state diagram, MC_Power, MC_Reset; V9a, V10a,
 //! S10 to S14; iec61131-executor CI-5, CI-8.
 
-use super::{Axis, Motion, Permission, Source};
+use super::{Axis, Motion, Permission, Power, Source};
 use crate::{
     AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
     Log, PowerOff,
@@ -31,12 +31,16 @@ pub(super) struct Reset {
 
 impl<P: Planner> Axis<P> {
     /// Latches the drive's feedback of this scan and lets the state follow it. Called before any block.
-    #[inline]
+    // In line with its caller, as `advance`: what a call alone costs is a tenth of a calm scan.
+    #[inline(always)]
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
         // In most scans nothing but the position changes.
-        if self.is_steady(feedback) {
-            debug_assert!(self.power.fault.is_none() && self.power.comms == Comms::Ok);
-            let position = self.position_of(feedback);
+        if self.calm && feedback.enabled && feedback.fault.is_none() && feedback.comms == Comms::Ok {
+            debug_assert!(self.is_calm());
+            let position = match feedback.position {
+                DrivePosition::Units(units) => units,
+                DrivePosition::Increments(increments) => self.position_at_increment(increments),
+            };
             self.latch(position);
             self.signals = feedback.signals;
             self.power.voltage = feedback.voltage;
@@ -45,20 +49,37 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the axis is in operation and stays so, with nothing to react to.
-    #[inline]
-    fn is_steady(&self, feedback: &DriveFeedback) -> bool {
-        self.power.on
-            && feedback.enabled
-            && feedback.fault.is_none()
-            && feedback.comms == Comms::Ok
-            && self.reset.is_none()
-            && !self.shift_due
-            && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop)
+    /// Whether the axis is in operation with nothing pending and nothing superimposed: it reacts to nothing but
+    /// its feedback, is asked for what it was asked for, and its positions need no care.
+    ///
+    /// Looked at once, when that may have begun; whatever ends it says so ([`Axis::stir`]). A scan saves ten
+    /// comparisons by it.
+    fn is_calm(&self) -> bool {
+        let Power {
+            wanted,
+            on,
+            going_off,
+            tripped,
+            overruled,
+            fault,
+            comms,
+            ..
+        } = self.power;
+        let is_powered = on && wanted && !going_off && !tripped && overruled.is_none();
+        let is_well = fault.is_none()
+            && comms == Comms::Ok
+            && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
+        let is_pending = self.reset.is_some() || self.shift_due || self.rename.is_some();
+        let is_plain = self.modulo.is_none() && self.layer.is_none() && self.past.is_whole();
+        is_powered && is_well && !is_pending && is_plain
+    }
+
+    /// Something is pending, or may be.
+    pub(super) fn stir(&mut self) {
+        self.calm = false;
     }
 
     /// The actual position (u).
-    #[inline]
     fn position_of(&mut self, feedback: &DriveFeedback) -> f64 {
         match (feedback.position, &mut self.modulo) {
             (DrivePosition::Units(units), None) => units,
@@ -87,13 +108,14 @@ impl<P: Planner> Axis<P> {
             self.trip(ErrorId::CommunicationLost, 0, Reaction::Ramp, scan, log);
         } else {
             let position = self.position_of(feedback);
-            self.latch(position);
+            self.latch_and_mend(position);
             self.follow_power(feedback, scan, log);
             if self.shift_due {
                 self.take_queued_shifts(scan, log);
             }
         }
         self.finish_reset();
+        self.calm = self.is_calm();
     }
 
     fn follow_power(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
@@ -143,6 +165,7 @@ impl<P: Planner> Axis<P> {
         match self.power.decider {
             Some(decider) if decider != source.instance => {
                 self.power.overruled = Some((wanted, permitted, source.instance));
+                self.stir();
                 return;
             }
             Some(_) => {}
@@ -187,6 +210,7 @@ impl<P: Planner> Axis<P> {
 
     #[inline(never)]
     fn switch_to_off(&mut self, source: Source, log: &mut Log) {
+        self.stir();
         self.power.tripped = false;
         let idle = matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         if idle || self.power.going_off {
@@ -270,6 +294,7 @@ impl<P: Planner> Axis<P> {
         }
         let id = self.new_id();
         self.reset = Some(Reset { id, waited: 0 });
+        self.stir();
         Ok(id)
     }
 
@@ -324,7 +349,11 @@ impl<P: Planner> Axis<P> {
     }
 
     /// What is asked of the power stage in this scan.
+    #[inline]
     pub(super) fn drive_request(&self) -> DriveRequest {
+        if self.calm {
+            return DriveRequest::Enable;
+        }
         let ramping = matches!(self.motion, Motion::Run { .. });
         if self.reset.is_some() && self.is_resetting_drive() {
             DriveRequest::FaultReset

@@ -54,6 +54,18 @@ impl Work {
         }
     }
 
+    /// Where it leads, if anywhere.
+    pub fn place(&self) -> Option<Place> {
+        match *self {
+            Self::Position(position) => Some(Place::At(position)),
+            Self::Distance(distance) => Some(Place::By(distance)),
+            Self::Through { to, .. } => Some(to),
+            Self::Velocity { .. } | Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } => {
+                None
+            }
+        }
+    }
+
     /// The velocity (u/s) it goes on with, 0 if it ends at rest.
     pub fn velocity(&self) -> f64 {
         match *self {
@@ -82,6 +94,14 @@ impl Work {
             | Self::Stop
             | Self::Home(_)
             | Self::SetPosition { .. } => self,
+        }
+    }
+
+    /// To `position` (u), if it leads to a position.
+    pub fn at(self, position: f64) -> Self {
+        match self {
+            Self::Position(_) => Self::Position(position),
+            other => other,
         }
     }
 
@@ -178,14 +198,7 @@ impl Entry {
 
     /// Where it leads, if anywhere.
     pub fn place(&self) -> Option<Place> {
-        match self.work {
-            Work::Position(position) => Some(Place::At(position)),
-            Work::Distance(distance) => Some(Place::By(distance)),
-            Work::Through { to, .. } => Some(to),
-            Work::Velocity { .. } | Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } => {
-                None
-            }
-        }
+        self.work.place()
     }
 
     /// Whether it goes on until another command takes over.

@@ -94,6 +94,11 @@ impl Past {
         }
     }
 
+    /// The positions it holds are comparable with the next one.
+    pub fn is_whole(&self) -> bool {
+        self.seam.is_none()
+    }
+
     fn seam(&mut self) -> &mut Seam {
         self.seam.get_or_insert_default()
     }
@@ -144,6 +149,11 @@ impl<P: Planner> Axis<P> {
         self.past.earlier = self.past.before;
         self.past.before = self.actual;
         self.actual = position;
+    }
+
+    /// The same, and what came before is called by names that fit.
+    pub(super) fn latch_and_mend(&mut self, position: f64) {
+        self.latch(position);
         if self.past.seam.is_some() {
             self.past.mend(position);
         }
@@ -154,12 +164,14 @@ impl<P: Planner> Axis<P> {
 
     /// This scan has no fresh actual position.
     pub(super) fn latch_nothing(&mut self) {
+        self.stir();
         let seam = self.past.seam();
         seam.lost = seam.lost.saturating_add(1);
     }
 
     /// From the next feedback on, what is called `old` (u) is called `name` (u); no motion.
     pub(super) fn rename_actual(&mut self, old: f64, name: f64) {
+        self.stir();
         self.past.seam().renamed = Some((old, name));
     }
 

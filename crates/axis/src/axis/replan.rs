@@ -13,18 +13,6 @@ use super::{Axis, Motion, Source};
 use crate::{ErrorId, Event, Goal, Log};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
-/// The larger one of each limit.
-pub(super) fn larger(a: &Limits, b: &Limits) -> Limits {
-    let max = |a: f64, b: f64| if b > a { b } else { a };
-    Limits {
-        velocity: max(a.velocity, b.velocity),
-        acceleration: max(a.acceleration, b.acceleration),
-        deceleration: max(a.deceleration, b.deceleration),
-        jerk: max(a.jerk, b.jerk),
-        snap: max(a.snap, b.snap),
-    }
-}
-
 impl<P: Planner> Axis<P> {
     /// Plans `owner`, the present one with other values, from the present state. With something superimposed it
     /// may find no room just now: then it is tried again in every scan.
@@ -65,7 +53,7 @@ impl<P: Planner> Axis<P> {
             .in_frame_of(&owner, &here)
             .map_or(here.position, |framed| framed.position);
         owner.passage = self.passage(&owner, start, 0);
-        let before = larger(&self.before, &self.in_force);
+        let before = self.limits_of_owner().unwrap_or(owner.limits);
         let motion = match self.layer {
             None => Some(self.plan_from(&owner, &here, &before)?),
             Some(layer) => self.plan_beside(layer, &owner, &before)?,
@@ -101,7 +89,7 @@ impl<P: Planner> Axis<P> {
                 position: layer.base.position,
                 ..self.setpoint
             };
-            let both = larger(before, &self.limits_before(&owner.limits));
+            let both = self.limits_before(&owner.limits).or_larger(before);
             motion = self.plan_from(owner, &sum, &both)?;
             if self.exceeds(&motion, &owner.limits) {
                 return Ok(None);
@@ -109,6 +97,7 @@ impl<P: Planner> Axis<P> {
             layer.pass_velocity(sum);
         }
         layer.try_soon();
+        self.stir();
         self.layer = Some(layer);
         Ok(Some(motion))
     }
@@ -126,7 +115,7 @@ impl<P: Planner> Axis<P> {
     /// Notes that an endless owner has passed the place it led through: what comes leads from there on.
     pub(super) fn note_passing(&self, owner: &mut Entry) {
         let through = matches!(owner.work, Work::Through { .. });
-        owner.passed |= through && !owner.halted && !self.replan_due && self.goal_reached();
+        owner.passed |= through && !owner.halted && !owner.paused && !self.replan_due && self.goal_reached();
     }
 
     /// An owner that must not turn back goes on to the next time round if it can't stop before its target (B8).
@@ -139,6 +128,28 @@ impl<P: Planner> Axis<P> {
         if !owner.halted && !owner.passed {
             owner.turns = self.never_back(owner, here, end, 0, modulo.length);
         }
+    }
+
+    /// The limits that hold for the owner's motion in its present state: its own, and until it is inside them
+    /// those it took over from, too. None if it has no motion. Cost: at most one ramp.
+    pub(super) fn limits_of_owner(&self) -> Option<Limits> {
+        if !matches!(self.motion, Motion::Run { .. }) {
+            return None;
+        }
+        let wider = self.in_force.or_larger(&self.before);
+        if wider == self.in_force || self.is_inside(&self.base(), &self.in_force) {
+            Some(self.in_force)
+        } else {
+            Some(wider)
+        }
+    }
+
+    /// Whether a motion can go on from `state` without leaving `limits`.
+    #[inline(never)]
+    fn is_inside(&self, state: &Setpoint, limits: &Limits) -> bool {
+        self.planner
+            .ramp_to(state, 0.0, limits, limits)
+            .is_ok_and(|ramp| ramp.excess().is_none())
     }
 
     /// Sets `entry`, which is the owner or becomes it, in motion.

@@ -12,19 +12,33 @@ impl<P: Planner> Axis<P> {
     ///
     /// Cost: one evaluation of the plan; at a hand-over at most one plan per waiting command; with software
     /// limits one ramp plan per scan of an endless motion or a stop.
-    #[inline]
+    // See `follow_feedback`.
+    #[inline(always)]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
-        self.apply_power(scan, log);
         // Short of the goal a plan needs a step and nothing else.
-        if let Motion::Run { elapsed, scans, .. } = &self.motion
-            && elapsed.wrapping_add(1) < *scans
-            && self.layer.is_none()
-        {
+        if self.calm && self.is_short_of_goal() {
+            self.step_along_plan(scan, log);
+        } else {
+            self.advance_with_care(scan, log);
+        }
+    }
+
+    /// As [`Axis::advance`] when something is pending, superimposed, or about to be reached.
+    #[inline(never)]
+    fn advance_with_care(&mut self, scan: u64, log: &mut Log) {
+        self.apply_power(scan, log);
+        if self.layer.is_none() && self.is_short_of_goal() {
             self.step_along_plan(scan, log);
         } else {
             self.step_at_goal(scan, log);
         }
         self.finish_reset();
+    }
+
+    /// The next set-point is not the last of the plan.
+    #[inline]
+    fn is_short_of_goal(&self) -> bool {
+        matches!(&self.motion, Motion::Run { elapsed, scans, .. } if elapsed.wrapping_add(1) < *scans)
     }
 
     /// The next set-point of the plan, if it may be published.
@@ -165,6 +179,7 @@ impl<P: Planner> Axis<P> {
             }
             let passage_from = self.aim(&mut next, from);
             next.passage = self.passage(&next, passage_from, 1);
+            let before = self.limits_before(&next.limits);
             let planned = self.plan_next(&next);
             if let Ok(None) = planned {
                 return;
@@ -175,10 +190,8 @@ impl<P: Planner> Axis<P> {
                 Ok(Some(motion)) => {
                     let blended = self.passes_its_end();
                     self.end_owner(self.fate_at_hand_over());
-                    self.begin(next, motion, scan, log);
-                    if blended {
-                        self.before = next.limits;
-                    }
+                    let before = if blended { next.limits } else { before };
+                    self.begin(next, motion, before, scan, log);
                     return;
                 }
                 Err(error) => {

@@ -8,6 +8,7 @@
 //! R66, S9, V14, V14a.
 
 mod plan;
+mod update;
 
 use super::queue::Work;
 use super::{Axis, Motion, Source};
@@ -178,49 +179,21 @@ impl<P: Planner> Axis<P> {
         source: Source,
         log: &mut Log,
     ) -> Result<CommandId, ErrorId> {
-        self.admit_superimposed(request)
-            .map_err(|(pin, error)| self.refuse(pin, f64::NAN, f64::NAN, error, source, log))?;
-        let limits = self.superimposed_limits(&request.dynamics, source, log)?;
-        let layer = self.layer.unwrap_or_else(|| Layer::on(self.setpoint, &limits));
-        let (distance, origin) = (request.distance, layer.added.position);
-        let target = origin + distance;
-        let end = self.base_end(&layer) + (target - layer.taken);
-        // NaN where the owner has no end.
-        if !target.is_finite() || end.is_infinite() {
-            return Err(self.refuse(
-                "Distance",
-                distance,
-                f64::NAN,
-                ErrorId::PositionInvalid,
-                source,
-                log,
-            ));
-        }
-        self.allowed(end).map_err(|error| {
-            let limit = self.broken_software_limit(end);
-            self.refuse("Distance", distance, limit, error, source, log)
-        })?;
-        let command = Added {
-            id: self.new_id(),
-            instance: source.instance,
-            adds: Adds::Distance {
-                distance,
-                origin,
-                target,
-            },
-            limits: self.factors.of(&limits, &self.config.limits),
-            asked: limits,
-            halting: self.factors.halt(),
-            planned: false,
-            lowered: false,
-        };
+        self.admit_superimposed()
+            .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, source, log))?;
+        let layer = self
+            .layer
+            .unwrap_or_else(|| Layer::on(self.setpoint, &self.config.limits));
+        let id = self.new_id();
+        let command = self.added(id, layer.added.position, &layer, request, source, log)?;
         let proposed = self
             .propose(&layer, &command)
-            .map_err(|error| self.refuse("Distance", distance, f64::NAN, error, source, log))?;
+            .map_err(|error| self.refuse("Distance", request.distance, f64::NAN, error, source, log))?;
         if self.state == AxisState::Standstill {
             self.enter(AxisEvent::StartDiscrete);
         }
         self.end_superimposed_command(Fate::Aborted);
+        self.stir();
         let layer = self.layer.get_or_insert(layer);
         layer.command = Some(command);
         self.add(proposed, source.scan, log);
@@ -259,6 +232,7 @@ impl<P: Planner> Axis<P> {
             None
         };
         self.end_superimposed_command(Fate::Aborted);
+        self.stir();
         self.layer.get_or_insert(layer).command = Some(command);
         if !command.planned {
             self.add(proposed, source.scan, log);
@@ -303,18 +277,15 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The states it may start in (R64, S9).
-    fn admit_superimposed(&self, request: &Superimpose) -> Result<(), (&'static str, ErrorId)> {
-        if request.continuous_update {
-            return Err(("ContinuousUpdate", ErrorId::ContinuousUpdateUnsupported));
-        }
+    fn admit_superimposed(&self) -> Result<(), ErrorId> {
         if self.power.going_off {
-            return Err(("", ErrorId::PoweringOff));
+            return Err(ErrorId::PoweringOff);
         }
         match self.state {
-            AxisState::Disabled => Err(("", ErrorId::NotPowered)),
-            AxisState::ErrorStop => Err(("", ErrorId::InErrorStop)),
-            AxisState::Stopping => Err(("", ErrorId::InStopping)),
-            AxisState::Homing => Err(("", ErrorId::InHoming)),
+            AxisState::Disabled => Err(ErrorId::NotPowered),
+            AxisState::ErrorStop => Err(ErrorId::InErrorStop),
+            AxisState::Stopping => Err(ErrorId::InStopping),
+            AxisState::Homing => Err(ErrorId::InHoming),
             AxisState::Standstill
             | AxisState::DiscreteMotion
             | AxisState::ContinuousMotion

@@ -125,7 +125,6 @@ fn command(axis: &mut Axis, log: &mut Log) {
     let request = Request {
         command: any(Command::Home { position: any(0.0) }),
         buffer_mode: any(Raw::<BufferMode>::new(any(0))),
-        continuous_update: any(false),
         replaces: any(axis.active_command()),
     };
     let id = any(axis.command(&request, source, log));

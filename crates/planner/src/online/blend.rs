@@ -8,7 +8,6 @@ use super::search::{Search, follow};
 use super::{OnlinePlan, Rung, check};
 use crate::kernel::{NOISE, ON_LIMIT, Point, zero};
 use crate::ramp::solve::{Course, Ramps, heading};
-use crate::ramp::wider;
 use crate::{Limits, PlanError, Setpoint};
 
 /// Halvings of the search for a speed below the wanted one; the speed is found to 2^-24 of it.
@@ -68,7 +67,7 @@ impl OnlinePlan {
             velocity: limits.velocity.max(wanted).max(arrested),
             ..*limits
         };
-        let ramps = Ramps::new(&raised, &wider(&raised, before));
+        let ramps = Ramps::new(&raised, &raised.or_larger(before));
         let way = Way {
             start,
             target,

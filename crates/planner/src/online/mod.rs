@@ -120,7 +120,7 @@ impl OnlinePlan {
         cycle: f64,
     ) -> Result<Self, PlanError> {
         check(start, target, end_velocity, limits, before, cycle)?;
-        let wider = ramp::wider(limits, before);
+        let wider = limits.or_larger(before);
         let mut plan = Self {
             start: *start,
             target,

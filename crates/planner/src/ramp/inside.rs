@@ -63,6 +63,14 @@ impl Box4 {
         }
     }
 
+    /// Mirrored for a velocity that goes through zero: until it has, what brings it back is an acceleration.
+    fn turned(&self) -> Self {
+        Self {
+            brake_before: self.a.plus,
+            ..self.mirrored()
+        }
+    }
+
     /// Whether the old limits allow a falling velocity more than the new ones.
     fn is_lowered(&self) -> bool {
         self.brake_before > self.a.minus || self.jerk_before > self.jerk || self.snap_before > 1.0
@@ -107,6 +115,12 @@ pub(super) fn lead_in(state: State, goal: f64, (low, high): (f64, f64), bounds: 
     if bounds.is_lowered() && state.v.max(lead.rest) > high * (1.0 + ON_LIMIT) {
         let (spans, steps) = hasten(state, high, goal, low, bounds);
         lead.add(&spans, steps, bounds.jerk);
+        return lead;
+    }
+    // The same on the other side of zero, where it is bound to come to.
+    if bounds.is_lowered() && lead.rest < low * (1.0 + ON_LIMIT) && low < 0.0 {
+        let (spans, steps) = hasten(state.mirrored(), -low, -goal, -high, &bounds.turned());
+        lead.add(&spans.mirrored(), steps, bounds.jerk);
         return lead;
     }
     lead.add(&enter(state, bounds), 0, bounds.jerk);

@@ -98,7 +98,7 @@ impl RampPlan {
         check(start, velocity, limits, before, cycle)?;
         let order = limits.order();
         let heading = heading(start, velocity, limits.velocity, order);
-        let ramps = Ramps::new(limits, &wider(limits, before));
+        let ramps = Ramps::new(limits, &limits.or_larger(before));
         let proposed = |course| {
             let Ramp {
                 spans, steps, viable, ..
@@ -285,20 +285,6 @@ pub(crate) fn check(
         return invalid(Field::EndVelocity, velocity);
     }
     Ok(())
-}
-
-/// The larger one of each finite pair; an infinite old bound says nothing, the new one stays.
-pub(crate) fn wider(limits: &Limits, before: &Limits) -> Limits {
-    let larger = |new: f64, old: f64| {
-        if old.is_finite() && old > new { old } else { new }
-    };
-    Limits {
-        velocity: larger(limits.velocity, before.velocity),
-        acceleration: larger(limits.acceleration, before.acceleration),
-        deceleration: larger(limits.deceleration, before.deceleration),
-        jerk: larger(limits.jerk, before.jerk),
-        snap: larger(limits.snap, before.snap),
-    }
 }
 
 /// The least whole number of cycles that covers `duration`, but for [`GRID_SLACK`]; none if it is too large.

@@ -52,6 +52,22 @@ impl Slope {
             ..
         } = *bounds;
         let is_lowered = jerk > 1.0 || brake > down;
+        // Bound to come through zero and out on the other side; until it is through, what brings it back is an
+        // acceleration.
+        if jerk > 1.0 && self.rest() < -limit * (1.0 + ON_LIMIT) {
+            let turned = Box3 {
+                up: down,
+                down: bounds.up,
+                brake_before: bounds.up,
+                jerk_before: jerk,
+            };
+            let mirrored = Self {
+                v: -self.v,
+                a: -self.a,
+            };
+            let (spans, steps) = mirrored.lead_in(-goal, limit, &turned);
+            return (spans.mirrored(), steps);
+        }
         if !is_lowered || self.v.max(self.rest()) <= limit * (1.0 + ON_LIMIT) {
             let mut spans = Spans::new();
             spans.extend(&self.enter(bounds));

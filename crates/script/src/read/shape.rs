@@ -135,9 +135,11 @@ pub(crate) const STEP: Shape = shape(
 pub(crate) const FAULT: Shape = shape("`fault`", &["axis", "kind", "code", "note"]);
 pub(crate) const CLEAR: Shape = shape("`clear`", &["axis", "note"]);
 pub(crate) const DRIVE_STEP: Shape = shape(
-    "a `drive` step; every drive knows `displace`, a CiA 402 drive `remote` and `warning`, too",
-    &["axis", "displace", "remote", "warning", "note"],
+    "a `drive` step",
+    &["axis", "displace", "remote", "warning", "input", "probe", "note"],
 );
+pub(crate) const DRIVE_INPUT: Shape = shape("`input` of a drive", &["number", "value", "note"]);
+pub(crate) const DRIVE_PROBE: Shape = shape("`probe` of a drive", &["number", "at", "value", "note"]);
 
 pub(crate) const COMPARISON: Shape = shape(
     "a comparison",

@@ -5,6 +5,8 @@ use super::value::Fields;
 use super::{Reader, is_note, shape};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::model::{Action, DriveChange, DriveSetup, FaultKind, Point, Span, Step, When};
+use standstill_axis::PROBES;
+use standstill_drives::peripherals::DIGITAL;
 use std::collections::BTreeMap;
 
 pub(crate) const FAULT_KINDS: [(&str, FaultKind); 4] = [
@@ -188,6 +190,8 @@ impl Reader {
                 "displace" => self.finite(value, &name).map(DriveChange::Displace),
                 "remote" => self.boolean(value, &name).map(DriveChange::Remote),
                 "warning" => self.boolean(value, &name).map(DriveChange::Warning),
+                "input" => self.input(value),
+                "probe" => self.probe(value),
                 _ => continue,
             };
             let change = change.filter(|change| axis.is_none_or(|axis| self.knows_change(key, axis, change)));
@@ -200,8 +204,9 @@ impl Reader {
         if changes.is_empty() {
             let message = "a `drive` step needs what is to happen";
             self.report(
-                Diagnostic::new(Code::MissingKey, fields.brace(), message)
-                    .help("give `displace`, or for a CiA 402 drive `remote` or `warning`"),
+                Diagnostic::new(Code::MissingKey, fields.brace(), message).help(
+                    "give `displace`, `input` or `probe`, or for a CiA 402 drive `remote` or `warning`",
+                ),
             );
             return None;
         }
@@ -209,11 +214,52 @@ impl Reader {
         Some(actions.map(|change| Action::Drive { axis, change }).collect())
     }
 
+    fn input(&mut self, node: &Node) -> Option<DriveChange> {
+        let fields = self.fields(node, &shape::DRIVE_INPUT)?;
+        let last = i64::from(DIGITAL) - 1;
+        let number = self
+            .require(&fields, "number", "`input`")
+            .and_then(|node| self.whole(node, "`number`", 0..=last));
+        let level = self
+            .require(&fields, "value", "`input`")
+            .and_then(|node| self.boolean(node, "`value`"));
+        Some(DriveChange::Input {
+            number: u32::try_from(number?).ok()?,
+            level: level?,
+        })
+    }
+
+    fn probe(&mut self, node: &Node) -> Option<DriveChange> {
+        let fields = self.fields(node, &shape::DRIVE_PROBE)?;
+        let last = PROBES as i64;
+        let number = self
+            .require(&fields, "number", "`probe`")
+            .and_then(|node| self.whole(node, "`number`", 1..=last));
+        let at = fields
+            .get("at")
+            .map_or(Some(1.0), |node| self.finite(node, "`at`"));
+        let level = self
+            .require(&fields, "value", "`probe`")
+            .and_then(|node| self.boolean(node, "`value`"));
+        let (number, at, level) = (number?, at?, level?);
+        if !(0.0..=1.0).contains(&at) {
+            let message = format!("`at` is {at:?}, a part of a scan is from 0 to 1");
+            self.report(Diagnostic::new(Code::BadValue, fields.brace(), message));
+            return None;
+        }
+        Some(DriveChange::Probe {
+            number: usize::try_from(number - 1).ok()?,
+            at,
+            level,
+        })
+    }
+
     /// Whether the drive of `axis` knows the change; drives that could not be read were reported.
     fn knows_change(&mut self, key: &Key, axis: usize, change: &DriveChange) -> bool {
         let drive = self.drives.get(axis).copied().flatten();
         match (change, drive) {
-            (DriveChange::Displace(_), _) | (_, None | Some(DriveSetup::Cia402(_))) => true,
+            (DriveChange::Displace(_) | DriveChange::Input { .. } | DriveChange::Probe { .. }, _)
+            | (_, None | Some(DriveSetup::Cia402(_))) => true,
             (DriveChange::Remote(_) | DriveChange::Warning(_), Some(_)) => {
                 let message = format!("only a CiA 402 drive has `{}`", key.text);
                 self.report(

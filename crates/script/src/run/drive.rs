@@ -1,13 +1,26 @@
 //! The drives a script can have.
 
 use crate::model::{Axis, Cia402Setup, DriveChange, DriveSetup, IdealDriveSetup, PlantSetup};
-use standstill_axis::{Drive, DriveCommand, DriveFeedback, DrivePosition, IdealDrive, Powered, StartState};
+use standstill_axis::{
+    Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, IdealDrive, Powered,
+    StartState,
+};
 use standstill_drives::cia402::{Cia402Drive, Settings};
 use standstill_drives::mechanism::{Mechanism, MechanismError, PlantDrive, Servo};
+use standstill_drives::peripherals::Peripherals;
 
-/// One of them.
+/// A drive, and what it has beside its motion.
 #[derive(Clone, Debug)]
-pub(crate) enum ScriptDrive {
+pub(crate) struct ScriptDrive {
+    kind: Kind,
+    peripherals: Peripherals,
+    /// As last fed back.
+    position: DrivePosition,
+}
+
+/// What moves.
+#[derive(Clone, Debug)]
+enum Kind {
     Ideal(Box<IdealDrive>),
     Cia402(Box<Cia402Drive>),
     Plant(Box<PlantDrive>),
@@ -20,13 +33,13 @@ impl ScriptDrive {
         let increments = |position: f64| axis.config.scaling.map(|scaling| scaling.to_increments(position));
         let position = increments(axis.config.position);
         let enabled = axis.config.start == StartState::Standstill;
-        Ok(match axis.drive {
+        let kind = match axis.drive {
             DriveSetup::Ideal(IdealDriveSetup { delay, power_on }) => {
                 let position = match position {
                     Some(increments) => DrivePosition::Increments(increments),
                     None => DrivePosition::Units(axis.config.position),
                 };
-                Self::Ideal(Box::new(IdealDrive::new(position, delay, power_on, enabled)))
+                Kind::Ideal(Box::new(IdealDrive::new(position, delay, power_on, enabled)))
             }
             DriveSetup::Cia402(setup) => {
                 let ordered = |(one, other): (f64, f64)| {
@@ -34,7 +47,7 @@ impl ScriptDrive {
                     // The drive may count the other way.
                     Some((one.min(other), one.max(other)))
                 };
-                Self::Cia402(Box::new(Cia402Drive::simulated_node(Settings {
+                Kind::Cia402(Box::new(Cia402Drive::simulated_node(Settings {
                     position: position.unwrap_or_default(),
                     enabled,
                     deceleration: deceleration(axis, &setup, cycle_ns),
@@ -60,44 +73,52 @@ impl ScriptDrive {
                     let ratio = f64::from(scaling.increments()) / f64::from(scaling.units());
                     (if scaling.invert() { -ratio } else { ratio }, scaling.offset())
                 });
-                Self::Plant(Box::new(PlantDrive::new(servo, counts, power_on, enabled)))
+                Kind::Plant(Box::new(PlantDrive::new(servo, counts, power_on, enabled)))
             }
+        };
+        Ok(Self {
+            kind,
+            peripherals: Peripherals::default(),
+            position: position.map_or(
+                DrivePosition::Units(axis.config.position),
+                DrivePosition::Increments,
+            ),
         })
     }
 
     /// A drive fault with the drive's own `code`.
     pub(crate) fn fail(&mut self, code: u16) {
-        match self {
-            Self::Ideal(drive) => drive.fail(code),
-            Self::Cia402(drive) => drive.node_mut().fail(code),
-            Self::Plant(drive) => drive.fail(code),
+        match &mut self.kind {
+            Kind::Ideal(drive) => drive.fail(code),
+            Kind::Cia402(drive) => drive.node_mut().fail(code),
+            Kind::Plant(drive) => drive.fail(code),
         }
     }
 
     /// The power stage loses its supply.
     pub(crate) fn cut_power(&mut self) {
-        match self {
-            Self::Ideal(drive) => drive.cut_power(),
-            Self::Cia402(drive) => drive.node_mut().cut_power(),
-            Self::Plant(drive) => drive.cut_power(),
+        match &mut self.kind {
+            Kind::Ideal(drive) => drive.cut_power(),
+            Kind::Cia402(drive) => drive.node_mut().cut_power(),
+            Kind::Plant(drive) => drive.cut_power(),
         }
     }
 
     /// Feedback no longer arrives.
     pub(crate) fn cut_communication(&mut self) {
-        match self {
-            Self::Ideal(drive) => drive.cut_communication(),
-            Self::Cia402(drive) => drive.node_mut().cut_communication(),
-            Self::Plant(drive) => drive.cut_communication(),
+        match &mut self.kind {
+            Kind::Ideal(drive) => drive.cut_communication(),
+            Kind::Cia402(drive) => drive.node_mut().cut_communication(),
+            Kind::Plant(drive) => drive.cut_communication(),
         }
     }
 
     /// The cause of whatever fault is gone.
     pub(crate) fn clear_cause(&mut self) {
-        match self {
-            Self::Ideal(drive) => drive.clear_cause(),
-            Self::Cia402(drive) => drive.node_mut().clear_cause(),
-            Self::Plant(drive) => drive.clear_cause(),
+        match &mut self.kind {
+            Kind::Ideal(drive) => drive.clear_cause(),
+            Kind::Cia402(drive) => drive.node_mut().clear_cause(),
+            Kind::Plant(drive) => drive.clear_cause(),
         }
     }
 
@@ -106,21 +127,29 @@ impl ScriptDrive {
     /// # Errors
     /// [`Powered`] if it is to be pushed while it has torque.
     pub(crate) fn change(&mut self, change: DriveChange) -> Result<(), Powered> {
-        match (self, change) {
-            (Self::Ideal(drive), DriveChange::Displace(distance)) => drive.displace(distance),
-            (Self::Plant(drive), DriveChange::Displace(distance)) => drive.displace(distance),
-            (Self::Cia402(drive), DriveChange::Displace(distance)) => {
+        match (&mut self.kind, change) {
+            (Kind::Ideal(drive), DriveChange::Displace(distance)) => drive.displace(distance),
+            (Kind::Plant(drive), DriveChange::Displace(distance)) => drive.displace(distance),
+            (Kind::Cia402(drive), DriveChange::Displace(distance)) => {
                 drive.node_mut().displace(distance as i64).map_err(|_| Powered)
             }
-            (Self::Cia402(drive), DriveChange::Remote(remote)) => {
+            (Kind::Cia402(drive), DriveChange::Remote(remote)) => {
                 drive.node_mut().set_remote(remote);
                 Ok(())
             }
-            (Self::Cia402(drive), DriveChange::Warning(warning)) => {
+            (Kind::Cia402(drive), DriveChange::Warning(warning)) => {
                 drive.node_mut().set_warning(warning);
                 Ok(())
             }
-            (Self::Ideal(_) | Self::Plant(_), DriveChange::Remote(_) | DriveChange::Warning(_)) => Ok(()),
+            (Kind::Ideal(_) | Kind::Plant(_), DriveChange::Remote(_) | DriveChange::Warning(_)) => Ok(()),
+            (_, DriveChange::Input { number, level }) => {
+                self.peripherals.set_input(number, level);
+                Ok(())
+            }
+            (_, DriveChange::Probe { number, at, level }) => {
+                self.peripherals.set_probe(number, at, level);
+                Ok(())
+            }
         }
     }
 }
@@ -137,18 +166,46 @@ fn deceleration(axis: &Axis, setup: &Cia402Setup, cycle_ns: i64) -> f64 {
 
 impl Drive for ScriptDrive {
     fn read(&mut self, now_ns: i64) -> DriveFeedback {
-        match self {
-            Self::Ideal(drive) => drive.read(now_ns),
-            Self::Cia402(drive) => drive.read(now_ns),
-            Self::Plant(drive) => drive.read(now_ns),
-        }
+        let feedback = match &mut self.kind {
+            Kind::Ideal(drive) => drive.read(now_ns),
+            Kind::Cia402(drive) => drive.read(now_ns),
+            Kind::Plant(drive) => drive.read(now_ns),
+        };
+        self.position = feedback.position;
+        feedback
     }
 
     fn write(&mut self, now_ns: i64, command: &DriveCommand) {
-        match self {
-            Self::Ideal(drive) => drive.write(now_ns, command),
-            Self::Cia402(drive) => drive.write(now_ns, command),
-            Self::Plant(drive) => drive.write(now_ns, command),
+        match &mut self.kind {
+            Kind::Ideal(drive) => drive.write(now_ns, command),
+            Kind::Cia402(drive) => drive.write(now_ns, command),
+            Kind::Plant(drive) => drive.write(now_ns, command),
+        }
+    }
+
+    fn report(&mut self, report: &mut DriveReport) {
+        match &mut self.kind {
+            Kind::Ideal(drive) => drive.report(report),
+            Kind::Cia402(drive) => drive.report(report),
+            Kind::Plant(drive) => drive.report(report),
+        }
+        self.peripherals.report(self.position, report);
+    }
+
+    fn order(&mut self, order: &DriveOrder) {
+        match &mut self.kind {
+            Kind::Ideal(drive) => drive.order(order),
+            Kind::Cia402(drive) => drive.order(order),
+            Kind::Plant(drive) => drive.order(order),
+        }
+        self.peripherals.order(order);
+    }
+
+    fn holds_torque(&self) -> bool {
+        match &self.kind {
+            Kind::Ideal(drive) => drive.holds_torque(),
+            Kind::Cia402(drive) => drive.holds_torque(),
+            Kind::Plant(drive) => drive.holds_torque(),
         }
     }
 }

@@ -100,8 +100,6 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
                 "" => String::new(),
                 // Numbers of an enumeration.
                 "BufferMode" | "Direction" | "ExecutionMode" => format!(", {pin} {value}"),
-                // A BOOL: its name says it.
-                "ContinuousUpdate" => format!(", {pin}"),
                 pin => format!(", {pin} {}", shortest(value)),
             };
             let limit = if limit.is_nan() {

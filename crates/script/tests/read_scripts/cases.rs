@@ -752,6 +752,20 @@ pub fn cases() -> Vec<Case> {
             "{\"at\": 1, \"drive\": {\"axis\": \"X\", \"remote\": false}}",
         ),
         case(
+            "bad_value",
+            Schema,
+            "an input beyond the last",
+            STEP,
+            "{\"at\": 1, \"drive\": {\"axis\": \"X\", \"input\": {\"number\": 32, \"value\": true}}}",
+        ),
+        case(
+            "bad_value",
+            Reader,
+            "a probe after the end of its scan",
+            STEP,
+            "{\"at\": 1, \"drive\": {\"axis\": \"X\", \"probe\": {\"number\": 1, \"at\": 1.5, \"value\": true}}}",
+        ),
+        case(
             "unknown_key",
             Schema,
             "a drive step no drive knows",

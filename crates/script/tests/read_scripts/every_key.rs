@@ -211,6 +211,17 @@ fn steps_and_claims_take_all_their_forms() {
         script.steps[5].actions,
         [of_z(DriveChange::Remote(false)), of_z(DriveChange::Warning(true))]
     );
+    let of_y = |change| Action::Drive { axis: 1, change };
+    let input = DriveChange::Input {
+        number: 7,
+        level: true,
+    };
+    let probe = DriveChange::Probe {
+        number: 1,
+        at: 0.25,
+        level: true,
+    };
+    assert_eq!(script.steps[6].actions, [of_y(input), of_y(probe)]);
 
     let kinds: Vec<_> = script.claims.iter().map(|claim| &claim.kind).collect();
     assert!(matches!(kinds[0], ClaimKind::At(40, that) if that.len() == 3

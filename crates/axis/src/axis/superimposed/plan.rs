@@ -257,6 +257,7 @@ impl<P: Planner> Axis<P> {
         command.halting = self.factors.halt();
         command.planned = false;
         layer.try_soon();
+        self.stir();
         self.layer = Some(layer);
         self.try_again(scan, log);
     }
@@ -281,7 +282,8 @@ impl<P: Planner> Axis<P> {
     /// The limits that hold for the state published last: those of the motion in progress, both together if
     /// there are two, but never more than the axis has; `own` if there is none.
     pub(in crate::axis) fn limits_before(&self, own: &Limits) -> Limits {
-        let base = matches!(self.motion, Motion::Run { .. }).then_some(&self.in_force);
+        let base = self.limits_of_owner();
+        let base = base.as_ref();
         let Some(layer) = self.layer.as_ref().filter(|layer| layer.moves()) else {
             return *base.unwrap_or(own);
         };
@@ -341,6 +343,7 @@ impl<P: Planner> Axis<P> {
             layer.pass_velocity(self.setpoint);
         }
         layer.try_soon();
+        self.stir();
         self.layer = Some(layer);
         Ok(Some(motion))
     }

@@ -1,0 +1,83 @@
+//! The values at the pins of MC_MoveSuperimposed: as a new command, and changed while it runs.
+
+use super::{Added, Adds, Layer};
+use crate::axis::{Axis, Source};
+use crate::{CommandId, ErrorId, Log, Superimpose};
+use standstill_planner::Planner;
+
+impl<P: Planner> Axis<P> {
+    /// ContinuousUpdate of MC_MoveSuperimposed: command `id` goes on with other values from where it is. Its distance
+    /// counts from where it did (R13). One that has ended does not mind.
+    ///
+    /// Cost: that of a new command.
+    ///
+    /// # Errors
+    /// What a new command with these values would show. It is recorded, and the command goes on as it was.
+    pub fn update_superimposed(
+        &mut self,
+        id: CommandId,
+        request: &Superimpose,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(), ErrorId> {
+        let Some(mut layer) = self.layer else {
+            return Ok(());
+        };
+        let Some(Added {
+            adds: Adds::Distance { origin, .. },
+            ..
+        }) = layer.command.filter(|command| command.id == id)
+        else {
+            return Ok(());
+        };
+        let command = self.added(id, origin, &layer, request, source, log)?;
+        let proposed = self
+            .propose(&layer, &command)
+            .map_err(|error| self.refuse("Distance", request.distance, f64::NAN, error, source, log))?;
+        layer.command = Some(command);
+        layer.try_soon();
+        self.stir();
+        self.layer = Some(layer);
+        self.add(proposed, source.scan, log);
+        Ok(())
+    }
+
+    /// A command on `layer` whose distance counts from `origin` (u), if its values and its end are good.
+    pub(super) fn added(
+        &self,
+        id: CommandId,
+        origin: f64,
+        layer: &Layer<P::Plan>,
+        request: &Superimpose,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<Added, ErrorId> {
+        let asked = self.superimposed_limits(&request.dynamics, source, log)?;
+        let distance = request.distance;
+        let target = origin + distance;
+        let end = self.base_end(layer) + (target - layer.taken);
+        // NaN where the owner has no end.
+        if !target.is_finite() || end.is_infinite() {
+            let error = ErrorId::PositionInvalid;
+            return Err(self.refuse("Distance", distance, f64::NAN, error, source, log));
+        }
+        self.allowed(end).map_err(|error| {
+            let limit = self.broken_software_limit(end);
+            self.refuse("Distance", distance, limit, error, source, log)
+        })?;
+        Ok(Added {
+            id,
+            instance: source.instance,
+            adds: Adds::Distance {
+                distance,
+                origin,
+                target,
+            },
+            limits: self.factors.of(&asked, &self.config.limits),
+            asked,
+            halting: self.factors.halt(),
+            planned: false,
+            lowered: false,
+        })
+    }
+}

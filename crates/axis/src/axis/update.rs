@@ -1,0 +1,145 @@
+//! ContinuousUpdate: new values at the pins of a command that is not finished.
+//!
+//! Whether a block may update, and whether anything changed, is the block's business. Here the new values are
+//! checked as those of a new command are, and the owner is planned anew from the last set-point. It stays the
+//! same command: the state, the buffer and what is superimposed are not touched, and a distance counts from where
+//! it counted from at the start. Values that are no good change nothing and are recorded.
+//!
+//! Source: PLCopen Motion Control Part 1, section on ContinuousUpdate; R9 to R13, B16, T39a to T39c.
+
+use super::accept::{REST, Way, direction_of};
+use super::queue::{Asked, Entry, Place, Work};
+use super::{Axis, Motion, Source};
+use crate::{BufferMode, Command, CommandId, ErrorId, Log};
+use standstill_planner::{Limits, Planner};
+
+impl<P: Planner> Axis<P> {
+    /// Gives command `id` the values of `command`, which is of the same kind. A command that waits has them when its
+    /// turn comes; one that has ended, or none that moves, does not mind.
+    ///
+    /// Cost: that of a new command.
+    ///
+    /// # Errors
+    /// What a new command with these values would show. It is recorded, and the command goes on as it was.
+    pub fn update(
+        &mut self,
+        id: CommandId,
+        command: &Command,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(), ErrorId> {
+        match self.owner {
+            Some(owner) if owner.id == id => self.update_owner(owner, command, source, log),
+            _ => self.update_waiting(id, command, source, log),
+        }
+    }
+
+    fn update_owner(
+        &mut self,
+        mut owner: Entry,
+        command: &Command,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(), ErrorId> {
+        let Some((work, limits)) = self.check_update(&owner, command, source, log)? else {
+            return Ok(());
+        };
+        let direction = direction_of(command);
+        let moved = work.place() != owner.work.place() || direction != owner.direction;
+        let same_work = work == owner.work.with_velocity(owner.asked.velocity);
+        if same_work && !moved && limits == owner.asked.limits {
+            // Back at the values it has, from others that were refused.
+            return Ok(());
+        }
+        self.note_passing(&mut owner);
+        self.take_values(&mut owner, work, limits);
+        owner.direction = direction;
+        let planned = if moved {
+            owner.passed = false;
+            self.aim_anew(&mut owner);
+            self.replan_aimed(owner, source.scan, log)
+        } else {
+            self.replan(owner, source.scan, log)
+        };
+        planned.map_err(|error| self.refuse_plan(&owner, error, source, log))
+    }
+
+    fn update_waiting(
+        &mut self,
+        id: CommandId,
+        command: &Command,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(), ErrorId> {
+        let Some(mut entry) = self.queue.iter().find(|entry| entry.id == id).copied() else {
+            return Ok(());
+        };
+        let Some((work, limits)) = self.check_update(&entry, command, source, log)? else {
+            return Ok(());
+        };
+        self.take_values(&mut entry, work, limits);
+        entry.direction = direction_of(command);
+        for slot in self.queue.iter_mut().filter(|slot| slot.id == id) {
+            *slot = entry;
+        }
+        self.arm_anew(source.scan, log);
+        Ok(())
+    }
+
+    /// The new values, checked; `None` if they are of another kind of command, or of one that does not move.
+    fn check_update(
+        &self,
+        entry: &Entry,
+        command: &Command,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<Option<(Work, Limits)>, ErrorId> {
+        // It does not count from the last target again, but from where it did.
+        let (work, limits) = match (*command, entry.work) {
+            (Command::MoveAdditive { distance, dynamics }, Work::Position(_)) => {
+                let added = Command::MoveRelative { distance, dynamics };
+                let (_, limits) = self.check(&added, Way::Wait, source, log)?;
+                let position = self.finite("Distance", entry.from + distance, source, log)?;
+                self.inside("Distance", position, source, log)?;
+                (Work::Position(position), limits)
+            }
+            _ => self.check(command, Way::Wait, source, log)?,
+        };
+        let same_kind = work.kind() == entry.work.kind() && work.obeys_override();
+        Ok(same_kind.then_some((work, limits)))
+    }
+
+    fn take_values(&self, entry: &mut Entry, work: Work, limits: Limits) {
+        entry.work = work;
+        entry.limits = limits;
+        entry.asked = Asked {
+            limits,
+            velocity: work.velocity(),
+        };
+        self.override_entry(entry);
+    }
+
+    /// Where the owner leads, as seen from where it is now.
+    fn aim_anew(&self, owner: &mut Entry) {
+        let base = self.base();
+        let from = match owner.place() {
+            // The way round a modulo axis is that from here.
+            Some(Place::At(_)) | None => base.position,
+            Some(Place::By(_)) => owner.from,
+        };
+        self.aim_from(owner, &base, from);
+    }
+
+    /// A command that waits has changed: the owner may have to pass its end at another speed (B16).
+    fn arm_anew(&mut self, scan: u64, log: &mut Log) {
+        let Some(owner) = self.owner.filter(|owner| owner.end.is_some()) else {
+            return;
+        };
+        if owner.passage == REST || self.passage(&owner, self.base().position, 0) != REST {
+            return self.arm(BufferMode::BlendingPrevious, scan, log);
+        }
+        if matches!(self.motion, Motion::Run { .. }) && self.replan(owner, scan, log).is_err() {
+            // To rest from here it would take too long: it goes on as it was planned.
+        }
+    }
+}

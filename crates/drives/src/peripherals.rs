@@ -1,0 +1,169 @@
+//! Digital inputs, outputs and probes of a simulated drive.
+
+use standstill_axis::{DriveOrder, DrivePosition, DriveReport, Edge, PROBES, ProbeReport};
+
+/// Inputs and outputs are numbered 0 to one less.
+pub const DIGITAL: u32 = 32;
+
+/// A probe's input and what it has seen.
+#[derive(Clone, Copy, Debug, Default)]
+struct Probe {
+    level: bool,
+    ordered: Option<Edge>,
+    latched: Option<DrivePosition>,
+    /// The level changes at this part of the interval that ends with the next feedback.
+    change: Option<(f64, bool)>,
+}
+
+/// What a simulated drive has beside its motion.
+///
+/// Between two feedbacks the position is taken as linear: a probe's edge at a part of that interval latches the
+/// position there, in increments the nearest one.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Peripherals {
+    inputs: u32,
+    outputs: u32,
+    probes: [Probe; PROBES],
+    /// The position of the feedback before.
+    before: Option<DrivePosition>,
+}
+
+impl Peripherals {
+    /// Sets the digital input `number`; those from [`DIGITAL`] on do not exist.
+    pub fn set_input(&mut self, number: u32, level: bool) {
+        if let Some(bit) = 1_u32.checked_shl(number) {
+            self.inputs = if level {
+                self.inputs | bit
+            } else {
+                self.inputs & !bit
+            };
+        }
+    }
+
+    /// The input of probe `number`, from 0, is at `level` from the part `at` (0 to 1) of the interval on that ends
+    /// with the next feedback. A second call for that interval replaces the first.
+    pub fn set_probe(&mut self, number: usize, at: f64, level: bool) {
+        if let Some(probe) = self.probes.get_mut(number) {
+            probe.change = Some((at.clamp(0.0, 1.0), level));
+        }
+    }
+
+    /// Takes the position (as fed back in this scan) and fills in what the drive tells.
+    pub fn report(&mut self, position: DrivePosition, report: &mut DriveReport) {
+        let before = self.before.replace(position).unwrap_or(position);
+        for (probe, told) in self.probes.iter_mut().zip(&mut report.probes) {
+            if let Some((at, level)) = probe.change.take() {
+                let edge = match (probe.level, level) {
+                    (false, true) => Some(Edge::Rising),
+                    (true, false) => Some(Edge::Falling),
+                    _ => None,
+                };
+                probe.level = level;
+                if edge.is_some() && edge == probe.ordered && probe.latched.is_none() {
+                    probe.latched = Some(between(before, position, at));
+                }
+            }
+            *told = ProbeReport {
+                armed: probe.ordered.is_some(),
+                latched: probe.latched,
+            };
+        }
+        (report.inputs, report.outputs) = (self.inputs, self.outputs);
+    }
+
+    /// Takes what the drive is asked.
+    pub fn order(&mut self, order: &DriveOrder) {
+        self.outputs = order.outputs;
+        for (probe, edge) in self.probes.iter_mut().zip(order.probes) {
+            // A probe starts afresh when it is armed for another edge, or after it was disarmed.
+            if probe.ordered != edge {
+                probe.latched = None;
+            }
+            probe.ordered = edge;
+        }
+    }
+}
+
+/// The position at a part of the way from one to the other.
+fn between(from: DrivePosition, to: DrivePosition, part: f64) -> DrivePosition {
+    match (from, to) {
+        (DrivePosition::Units(from), DrivePosition::Units(to)) => {
+            DrivePosition::Units(from + part * (to - from))
+        }
+        (DrivePosition::Increments(from), DrivePosition::Increments(to)) => {
+            let exact = part * to.saturating_sub(from) as f64;
+            let nearest = (if exact < 0.0 { exact - 0.5 } else { exact + 0.5 }) as i64;
+            DrivePosition::Increments(from.saturating_add(nearest))
+        }
+        // A drive does not change what it speaks.
+        (_, to) => to,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use DrivePosition::{Increments, Units};
+
+    fn armed(edge: Option<Edge>) -> DriveOrder {
+        DriveOrder {
+            probes: [edge, None],
+            ..DriveOrder::default()
+        }
+    }
+
+    #[test]
+    fn the_first_edge_of_the_right_kind_is_latched_where_it_was() {
+        let mut device = Peripherals::default();
+        let mut report = DriveReport::default();
+        device.report(Units(10.0), &mut report);
+        device.order(&armed(Some(Edge::Rising)));
+        // Rising at a quarter of the way from 10 to 14.
+        device.set_probe(0, 0.25, true);
+        device.report(Units(14.0), &mut report);
+        let seen = ProbeReport {
+            armed: true,
+            latched: Some(Units(11.0)),
+        };
+        assert_eq!(report.probes, [seen, ProbeReport::default()]);
+        // Later edges count no more, until it is armed anew.
+        for (level, position) in [(false, 15.0), (true, 16.0)] {
+            device.set_probe(0, 0.5, level);
+            device.report(Units(position), &mut report);
+            assert_eq!(report.probes[0], seen);
+        }
+        device.order(&armed(None));
+        device.report(Units(17.0), &mut report);
+        assert_eq!(report.probes[0], ProbeReport::default());
+        device.order(&armed(Some(Edge::Falling)));
+        device.set_probe(0, 1.0, false);
+        device.report(Units(19.0), &mut report);
+        assert_eq!(report.probes[0].latched, Some(Units(19.0)));
+    }
+
+    #[test]
+    fn increments_are_latched_to_the_nearest() {
+        for (from, to, part, expected) in [(0, 10, 0.26, 3), (0, -10, 0.26, -3), (-5, 5, 0.5, 0)] {
+            assert_eq!(
+                between(Increments(from), Increments(to), part),
+                Increments(expected)
+            );
+        }
+    }
+
+    #[test]
+    fn inputs_are_set_and_outputs_shown() {
+        let mut device = Peripherals::default();
+        let mut report = DriveReport::default();
+        device.set_input(31, true);
+        device.set_input(2, true);
+        device.set_input(2, false);
+        device.set_input(32, true);
+        device.order(&DriveOrder {
+            outputs: 5,
+            ..DriveOrder::default()
+        });
+        device.report(Units(0.0), &mut report);
+        assert_eq!((report.inputs, report.outputs), (1 << 31, 5));
+    }
+}

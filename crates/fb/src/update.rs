@@ -1,0 +1,109 @@
+//! The core of moves that take new values while they run: an Execute core with ContinuousUpdate.
+//!
+//! Source: PLCopen Motion Control Part 1, sections on Execute/Done and ContinuousUpdate; R8 to R14.
+
+use crate::{Context, ExecuteCore, Phase};
+use standstill_axis::{Axis, AxisId, Command, CommandId, ErrorId, Log, Planner, Source, Superimpose};
+
+/// What a block commands, as it stands at its pins.
+pub trait Values: Copy {
+    /// Whether `other` is the same, to the bit.
+    fn is_same(&self, other: &Self) -> bool;
+
+    /// Gives the running command `id` these values. Values that are no good change nothing; the axis records them.
+    fn apply<P: Planner>(&self, axis: &mut Axis<P>, id: CommandId, source: Source, log: &mut Log);
+}
+
+impl Values for Command {
+    fn is_same(&self, other: &Self) -> bool {
+        self.is_same(other)
+    }
+
+    fn apply<P: Planner>(&self, axis: &mut Axis<P>, id: CommandId, source: Source, log: &mut Log) {
+        // The block shows no Error: its command goes on as it was (R21).
+        let _recorded = axis.update(id, self, source, log);
+    }
+}
+
+impl Values for Superimpose {
+    fn is_same(&self, other: &Self) -> bool {
+        self.is_same(other)
+    }
+
+    fn apply<P: Planner>(&self, axis: &mut Axis<P>, id: CommandId, source: Source, log: &mut Log) {
+        let _recorded = axis.update_superimposed(id, self, source, log);
+    }
+}
+
+/// The pins every such block has.
+#[derive(Clone, Copy, Debug)]
+pub struct Move {
+    /// Axis.
+    pub axis: AxisId,
+    /// Execute.
+    pub execute: bool,
+    /// ContinuousUpdate.
+    pub continuous_update: bool,
+}
+
+/// State kept between calls.
+#[derive(Clone, Copy, Debug)]
+pub struct UpdateCore<V> {
+    execute: ExecuteCore,
+    /// The values last seen, while changes count: from a rising edge with ContinuousUpdate TRUE until it is FALSE or
+    /// the command has ended (R10, R11).
+    seen: Option<V>,
+}
+
+impl<V> Default for UpdateCore<V> {
+    fn default() -> Self {
+        Self {
+            execute: ExecuteCore::default(),
+            seen: None,
+        }
+    }
+}
+
+impl<V: Values> UpdateCore<V> {
+    /// One call. `values` reads the pins; `issue` gives the command at a rising edge, as for [`ExecuteCore::scan`].
+    // In line for the same reason as that.
+    #[inline(always)]
+    pub fn scan<P: Planner>(
+        &mut self,
+        pins: Move,
+        context: &mut Context<'_, P>,
+        values: impl Fn() -> V,
+        issue: impl FnOnce(&mut Axis<P>, V, Option<CommandId>, Source, &mut Log) -> Result<CommandId, ErrorId>,
+    ) -> Phase {
+        if self.seen.is_some() {
+            self.update(pins, &mut context.reborrow(), &values);
+        }
+        let seen = &mut self.seen;
+        self.execute.scan(pins.execute, context, |context, replaces| {
+            let (axis, log, source) = context.axis(pins.axis)?;
+            let given = values();
+            let id = issue(axis, given, replaces, source, log)?;
+            *seen = pins.continuous_update.then_some(given);
+            Ok((pins.axis, id))
+        })
+    }
+
+    /// Before the fate is asked for, so that what the new values change shows in the same call.
+    #[cold]
+    #[inline(never)]
+    fn update<P: Planner>(&mut self, pins: Move, context: &mut Context<'_, P>, values: &impl Fn() -> V) {
+        let values = values();
+        let running = self.execute.running(pins.execute);
+        let (Some((axis, id)), Some(seen), true) = (running, &mut self.seen, pins.continuous_update) else {
+            self.seen = None;
+            return;
+        };
+        if seen.is_same(&values) {
+            return;
+        }
+        *seen = values;
+        if let Ok((axis, log, source)) = context.axis(axis) {
+            values.apply(axis, id, source, log);
+        }
+    }
+}
