@@ -118,7 +118,7 @@ impl<P: Planner> Axis<P> {
     /// Notes that an endless owner has passed the place it led through: what comes leads from there on.
     pub(super) fn note_passing(&self, owner: &mut Entry) {
         let through = matches!(owner.work, Work::Through { .. });
-        owner.passed |= through && !owner.halted && !self.replan_due && self.goal_reached();
+        owner.passed |= through && !owner.halted && !owner.paused && !self.replan_due && self.goal_reached();
     }
 
     /// An owner that must not turn back goes on to the next time round if it can't stop before its target (B8).
