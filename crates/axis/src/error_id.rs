@@ -162,7 +162,6 @@ error_ids! {
     CommunicationLost = 601, "The communication with the drive was lost.",
         "Restore it, then call MC_Reset.";
 
-
     SetpointBroken = 901, "A plan gave a set-point that is not finite.",
         "This is a defect of standstill: please report the trace.";
     FateLost = 902, "The instance was not called while 64 later commands of the axis ended, so its result is gone.",

@@ -118,7 +118,7 @@ impl<P: Planner> Axis<P> {
     /// Notes that an endless owner has passed the place it led through: what comes leads from there on.
     pub(super) fn note_passing(&self, owner: &mut Entry) {
         let through = matches!(owner.work, Work::Through { .. });
-        owner.passed |= through && !owner.halted && !self.replan_due && self.goal_reached();
+        owner.passed |= through && !owner.halted && !owner.paused && !self.replan_due && self.goal_reached();
     }
 
     /// An owner that must not turn back goes on to the next time round if it can't stop before its target (B8).
@@ -139,11 +139,16 @@ impl<P: Planner> Axis<P> {
         if !matches!(self.motion, Motion::Run { .. }) {
             return None;
         }
-        let wider = self.in_force.or_larger(&self.before);
-        if wider == self.in_force || self.is_inside(&self.base(), &self.in_force) {
-            Some(self.in_force)
+        Some(self.limits_in_state(&self.base(), &self.in_force, &self.before))
+    }
+
+    /// `own` limits of a motion in `state`, and those `before` until it is inside. Cost: at most one ramp.
+    pub(super) fn limits_in_state(&self, state: &Setpoint, own: &Limits, before: &Limits) -> Limits {
+        let wider = own.or_larger(before);
+        if wider == *own || self.is_inside(state, own) {
+            *own
         } else {
-            Some(wider)
+            wider
         }
     }
 

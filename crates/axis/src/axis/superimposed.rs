@@ -62,6 +62,8 @@ pub(super) struct Layer<Plan> {
     motion: Motion<Plan>,
     /// Limits of that motion.
     in_force: Limits,
+    /// Limits of the one it took over from.
+    before: Limits,
     command: Option<Added>,
     /// Scan of the owner's plan from which on a command that waits or was lowered may find more room.
     retry: u64,
@@ -75,6 +77,7 @@ impl<P: Plan> Layer<P> {
             taken: 0.0,
             motion: Motion::Hold,
             in_force: *limits,
+            before: *limits,
             command: None,
             retry: 0,
         }

@@ -135,6 +135,7 @@ impl<P: Planner> Axis<P> {
         let still = Setpoint::at_rest(layer.base.position);
         let hold = range.and_then(|_| self.planner.ramp_to(&still, 0.0, axis, axis).ok());
         let base = base.or(hold.as_ref().map(|plan| (plan, 0)));
+        let moving = self.limits_in_state(&layer.added, &layer.in_force, &layer.before);
         let mut last = None;
         for index in 0..PROPOSALS {
             let limits = limits_of(index, &command.limits, &room);
@@ -142,7 +143,7 @@ impl<P: Planner> Axis<P> {
                 continue;
             };
             last = Some(limits);
-            let before = if layer.moves() { &layer.in_force } else { &limits };
+            let before = if layer.moves() { &moving } else { &limits };
             let planned = match command.adds {
                 Adds::Distance { .. } if command.halting => {
                     self.planner.ramp_to(&layer.added, 0.0, &limits, before)
@@ -189,10 +190,13 @@ impl<P: Planner> Axis<P> {
         let next_switch = self
             .rest_of_base()
             .map(|rest| (self.planner.next_switch(rest), rest.1));
+        let Some(layer) = &self.layer else { return };
+        let before = self.limits_in_state(&layer.added, &layer.in_force, &layer.before);
         let Some(layer) = &mut self.layer else { return };
         let moves = layer.moves();
         let Some(command) = &mut layer.command else { return };
         let first = layer.retry == 0;
+        let before = if moves { before } else { layer.in_force };
         layer.retry = match next_switch {
             Some((switch, now)) if switch > now => switch,
             // Nothing changes until the owner does.
@@ -211,6 +215,7 @@ impl<P: Planner> Axis<P> {
                 command.planned = true;
                 command.lowered = lowered;
                 let command = *command;
+                layer.before = before;
                 layer.in_force = limits;
                 layer.motion = Motion::along(plan);
                 self.record_lowered(&command, &limits, scan, log);
