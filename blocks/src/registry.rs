@@ -1,12 +1,12 @@
 //! Every block the runtime knows, by its IEC name.
 
 use crate::administrative::{
-    mc_abort_trigger::McAbortTrigger, mc_power::McPower, mc_read_actual_position::McReadActualPosition,
-    mc_read_actual_velocity::McReadActualVelocity, mc_read_axis_error::McReadAxisError,
-    mc_read_axis_info::McReadAxisInfo, mc_read_digital_input::McReadDigitalInput,
-    mc_read_digital_output::McReadDigitalOutput, mc_read_motion_state::McReadMotionState,
-    mc_read_status::McReadStatus, mc_reset::McReset, mc_set_override::McSetOverride,
-    mc_set_position::McSetPosition, mc_touch_probe::McTouchProbe,
+    mc_abort_trigger::McAbortTrigger, mc_digital_cam_switch::McDigitalCamSwitch, mc_power::McPower,
+    mc_read_actual_position::McReadActualPosition, mc_read_actual_velocity::McReadActualVelocity,
+    mc_read_axis_error::McReadAxisError, mc_read_axis_info::McReadAxisInfo,
+    mc_read_digital_input::McReadDigitalInput, mc_read_digital_output::McReadDigitalOutput,
+    mc_read_motion_state::McReadMotionState, mc_read_status::McReadStatus, mc_reset::McReset,
+    mc_set_override::McSetOverride, mc_set_position::McSetPosition, mc_touch_probe::McTouchProbe,
     mc_write_digital_output::McWriteDigitalOutput,
 };
 use crate::homing::mc_home::McHome;
@@ -21,7 +21,7 @@ use crate::standard::{
     ctd::Ctd, ctu::Ctu, ctud::Ctud, f_trig::FTrig, r_trig::RTrig, rs::Rs, sr::Sr, tof::Tof, ton::Ton, tp::Tp,
 };
 use standstill_axis::Planner;
-use standstill_fb::{AnyInstance, BlockInfo, Context, Described, Instance, PinError, Value};
+use standstill_fb::{AnyInstance, AnyTable, BlockInfo, Context, Described, Instance, PinError, Value};
 
 macro_rules! registry {
     ($($block:ident)*) => {
@@ -67,7 +67,7 @@ registry! {
     McPower McReset McReadStatus McReadMotionState McReadAxisInfo McReadAxisError
     McReadActualPosition McReadActualVelocity McSetPosition McSetOverride
     McReadDigitalInput McReadDigitalOutput McWriteDigitalOutput
-    McTouchProbe McAbortTrigger
+    McTouchProbe McAbortTrigger McDigitalCamSwitch
     McHome
     McStop McHalt McMoveAbsolute McMoveRelative McMoveAdditive McMoveVelocity
     McMoveContinuousAbsolute McMoveContinuousRelative McMoveSuperimposed McHaltSuperimposed McJog
@@ -85,6 +85,10 @@ impl AnyInstance for BlockInstance {
 
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError> {
         self.any_mut().set(index, value)
+    }
+
+    fn table(&mut self, index: usize) -> Option<&mut dyn AnyTable> {
+        self.any_mut().table(index)
     }
 }
 
@@ -172,7 +176,10 @@ mod tests {
                 assert!(!pin.doc.is_empty(), "{}.{}", info.name, pin.name);
                 if index < info.input_count() {
                     assert_eq!(info.default_of(index), Some(value), "{}.{}", info.name, pin.name);
-                    assert_eq!(instance.set(index, value), Ok(()));
+                    // A table is no value: its records are written one by one.
+                    let is_table = matches!(pin.ty, standstill_fb::PinType::Table(_));
+                    assert_eq!(instance.set(index, value).is_ok(), !is_table);
+                    assert_eq!(instance.table(index).is_some(), is_table);
                 } else {
                     assert_eq!(instance.set(index, value), Err(PinError::NotWritable));
                 }

@@ -1,6 +1,8 @@
 //! Blocks that switch, reset and read; they move nothing.
 
+mod cams;
 pub mod mc_abort_trigger;
+pub mod mc_digital_cam_switch;
 pub mod mc_power;
 pub mod mc_read_actual_position;
 pub mod mc_read_actual_velocity;

@@ -119,6 +119,10 @@ error_ids! {
         "Use a value from mcProbe1Rising (0) to mcProbe2Falling (3).";
     WindowInvalid = 132, "LastPosition is below FirstPosition on an axis without turns, so the window is empty.",
         "Give the window in positive direction; only on a modulo axis it may go on behind the end of the turn.";
+    CamSwitchInvalid = 133, "A record of Switches has a position that is not finite or not in the first turn, an empty cam, or a direction, mode or duration out of range.",
+        "Give positions of the axis, FirstOnPosition not above LastOnPosition but on modulo axes, AxisDirection 0 to 2, CamSwitchMode 0 or 1, in time mode a Duration above 0.";
+    CamTrackInvalid = 134, "A TrackNumber is not from 1 to 32, or the Hysteresis of a track is NaN, infinite or negative.",
+        "Number tracks from 1 to 32, and give a Hysteresis of 0 or above.";
 
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";

@@ -36,6 +36,7 @@ pub use fate::{FATES_KEPT, Fate};
 pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
 pub use log::{Event, Goal, LOG_KEPT, Log, Record};
 pub use scaling::{Scaling, Turn};
+pub use standstill_planner::turns::split;
 pub use standstill_planner::{
     Excess, Limits, MoveProfile, Order, Passage, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
 };

@@ -96,7 +96,8 @@ impl Monkey {
             PinType::Int => Value::Int(3),
             PinType::Time => Value::Time(10_000_000),
             PinType::Enum(_) => Value::Enum((random.bits() % 8) as i32 - 1),
-            PinType::Word | PinType::Axis(_) => return None,
+            PinType::Dword => Value::Dword(random.bits() as u32),
+            PinType::Word | PinType::Axis(_) | PinType::Table(_) => return None,
         })
     }
 }

@@ -12,6 +12,7 @@ mod block;
 mod enable;
 mod execute;
 mod pins;
+mod table;
 mod update;
 
 pub use block::{AnyInstance, Block, BlockInfo, Context, Described, Group, Instance};
@@ -20,4 +21,5 @@ pub use execute::{ExecuteCore, Phase};
 pub use pins::{
     Direction, EnumInfo, InputRef, Int, OutputRef, Pin, PinError, PinType, PinValue, Pins, Time, Value,
 };
+pub use table::{AnyTable, Record, Table, TableInfo};
 pub use update::{Move, UpdateCore, Values};

@@ -84,6 +84,12 @@ impl<P: Planner> Axis<P> {
         self.hand_over(self.setpoint.position, scan, log);
     }
 
+    /// Grows whenever coordinates move (MC_SetPosition, MC_Home), and comes round: positions taken at different numbers
+    /// cannot be compared.
+    pub fn coordinates(&self) -> u32 {
+        self.coordinates
+    }
+
     fn move_coordinates(
         &mut self,
         position: f64,
@@ -114,6 +120,7 @@ impl<P: Planner> Axis<P> {
             (self.setpoint, self.layer) = before;
             return Err(error);
         }
+        self.coordinates = self.coordinates.wrapping_add(1);
         self.shift_actual(by);
         if !relative {
             self.actual = position;
@@ -171,6 +178,7 @@ impl<P: Planner> Axis<P> {
         if by != 0.0 {
             self.record(Event::Shifted { by }, self.owner_source(scan), log);
         }
+        self.coordinates = self.coordinates.wrapping_add(1);
         self.rename_actual(self.setpoint.position, position);
         if self.config.scaling.is_some() {
             self.shift += position - self.setpoint.position;

@@ -219,6 +219,8 @@ pub struct Axis<P: Planner = Standard> {
     beside: BesideMotion,
     /// Touch probes.
     probes: probe::Probes,
+    /// How often coordinates have moved.
+    coordinates: u32,
     motion: Motion<P::Plan>,
     /// A second motion on top of it.
     layer: Option<superimposed::Layer<P::Plan>>,
@@ -284,6 +286,7 @@ impl<P: Planner> Axis<P> {
             signals: DriveSignals::default(),
             beside: BesideMotion::default(),
             probes: probe::Probes::default(),
+            coordinates: 0,
             motion: if powered { Motion::Hold } else { Motion::Follow },
             layer: None,
             covered: None,

@@ -14,6 +14,7 @@ pub(crate) mod json;
 pub(crate) mod names;
 pub(crate) mod shape;
 pub(crate) mod step;
+mod table;
 mod task;
 pub(crate) mod time;
 pub(crate) mod value;
