@@ -21,7 +21,9 @@ mod log;
 mod scaling;
 mod state;
 
-pub use axis::{Axis, Beside, Factors, MotionState, Outlook, Pace, Permission, Source, TouchProbe, Way};
+pub use axis::{
+    Axis, Beside, CamTrack, Factors, MotionState, Outlook, Pace, Permission, Source, TouchProbe, Way,
+};
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,
     QUEUE_MAX, Raw, Request, Superimpose, Trigger, ValueSource,
