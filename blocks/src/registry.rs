@@ -1,10 +1,13 @@
 //! Every block the runtime knows, by its IEC name.
 
 use crate::administrative::{
-    mc_power::McPower, mc_read_actual_position::McReadActualPosition,
-    mc_read_actual_velocity::McReadActualVelocity, mc_read_axis_error::McReadAxisError,
-    mc_read_axis_info::McReadAxisInfo, mc_read_motion_state::McReadMotionState, mc_read_status::McReadStatus,
-    mc_reset::McReset, mc_set_override::McSetOverride, mc_set_position::McSetPosition,
+    mc_abort_trigger::McAbortTrigger, mc_digital_cam_switch::McDigitalCamSwitch, mc_power::McPower,
+    mc_read_actual_position::McReadActualPosition, mc_read_actual_velocity::McReadActualVelocity,
+    mc_read_axis_error::McReadAxisError, mc_read_axis_info::McReadAxisInfo,
+    mc_read_digital_input::McReadDigitalInput, mc_read_digital_output::McReadDigitalOutput,
+    mc_read_motion_state::McReadMotionState, mc_read_status::McReadStatus, mc_reset::McReset,
+    mc_set_override::McSetOverride, mc_set_position::McSetPosition, mc_touch_probe::McTouchProbe,
+    mc_write_digital_output::McWriteDigitalOutput,
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
@@ -18,7 +21,7 @@ use crate::standard::{
     ctd::Ctd, ctu::Ctu, ctud::Ctud, f_trig::FTrig, r_trig::RTrig, rs::Rs, sr::Sr, tof::Tof, ton::Ton, tp::Tp,
 };
 use standstill_axis::Planner;
-use standstill_fb::{AnyInstance, BlockInfo, Context, Described, Instance, PinError, Value};
+use standstill_fb::{AnyInstance, AnyTable, BlockInfo, Context, Described, Instance, PinError, Value};
 
 macro_rules! registry {
     ($($block:ident)*) => {
@@ -63,6 +66,8 @@ macro_rules! registry {
 registry! {
     McPower McReset McReadStatus McReadMotionState McReadAxisInfo McReadAxisError
     McReadActualPosition McReadActualVelocity McSetPosition McSetOverride
+    McReadDigitalInput McReadDigitalOutput McWriteDigitalOutput
+    McTouchProbe McAbortTrigger McDigitalCamSwitch
     McHome
     McStop McHalt McMoveAbsolute McMoveRelative McMoveAdditive McMoveVelocity
     McMoveContinuousAbsolute McMoveContinuousRelative McMoveSuperimposed McHaltSuperimposed McJog
@@ -80,6 +85,10 @@ impl AnyInstance for BlockInstance {
 
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError> {
         self.any_mut().set(index, value)
+    }
+
+    fn table(&mut self, index: usize) -> Option<&mut dyn AnyTable> {
+        self.any_mut().table(index)
     }
 }
 
@@ -111,13 +120,19 @@ mod tests {
 
     /// Covers: R3, R7
     #[test]
-    fn mc_blocks_have_one_axis_and_numbers_are_lreal() {
+    fn mc_blocks_have_one_axis_first_and_numbers_are_lreal() {
         for info in REGISTRY.iter().filter(|info| info.name.starts_with("MC_")) {
-            let axes: Vec<_> = info.pins_of(standstill_fb::Direction::InOut).collect();
-            assert_eq!(axes.len(), 1, "{}", info.name);
-            assert_eq!(
-                (axes[0].name, axes[0].ty.iec_name()),
-                ("Axis", "AXIS_REF"),
+            let mut in_outs = info.pins_of(standstill_fb::Direction::InOut);
+            let first = in_outs.next().map(|pin| (pin.name, pin.ty.iec_name()));
+            // What reads and writes inputs and outputs has a reference to those instead.
+            let expected = match info.name {
+                "MC_ReadDigitalInput" => ("Input", "MC_INPUT_REF"),
+                "MC_ReadDigitalOutput" | "MC_WriteDigitalOutput" => ("Output", "MC_OUTPUT_REF"),
+                _ => ("Axis", "AXIS_REF"),
+            };
+            assert_eq!(first, Some(expected), "{}", info.name);
+            assert!(
+                in_outs.all(|pin| pin.ty.iec_name() != "AXIS_REF"),
                 "{}",
                 info.name
             );
@@ -136,6 +151,7 @@ mod tests {
                 "MC_DIRECTION" => (0..=4).collect(),
                 "MC_SOURCE" => (0..=2).collect(),
                 "MC_EXECUTION_MODE" => (0..=1).collect(),
+                "MC_TRIGGER_REF" => (0..=3).collect(),
                 _ => panic!("state the numbers of {name} here"),
             }
         };
@@ -160,7 +176,10 @@ mod tests {
                 assert!(!pin.doc.is_empty(), "{}.{}", info.name, pin.name);
                 if index < info.input_count() {
                     assert_eq!(info.default_of(index), Some(value), "{}.{}", info.name, pin.name);
-                    assert_eq!(instance.set(index, value), Ok(()));
+                    // A table is no value: its records are written one by one.
+                    let is_table = matches!(pin.ty, standstill_fb::PinType::Table(_));
+                    assert_eq!(instance.set(index, value).is_ok(), !is_table);
+                    assert_eq!(instance.table(index).is_some(), is_table);
                 } else {
                     assert_eq!(instance.set(index, value), Err(PinError::NotWritable));
                 }

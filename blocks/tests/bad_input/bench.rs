@@ -7,7 +7,7 @@ use standstill_axis::{
     InstanceId, Limits, Log, Source, Standard, StartState,
 };
 use standstill_blocks::BlockInstance;
-use standstill_fb::{AnyInstance, Context, Value};
+use standstill_fb::{AnyInstance, Context, PinType, Value};
 
 /// Sample time (s).
 const CYCLE: f64 = 0.001;
@@ -63,8 +63,8 @@ impl Bench {
     /// An instance of the block, wired to the first axis, with values a motion can start with.
     pub fn block(&self, name: &str) -> BlockInstance {
         let mut block = BlockInstance::new(name).unwrap();
+        self.wire(&mut block, AXIS);
         let good = [
-            ("Axis", Value::Axis(AXIS)),
             ("Position", Value::Lreal(1.0)),
             ("Distance", Value::Lreal(1.0)),
             ("Velocity", Value::Lreal(5.0)),
@@ -78,6 +78,15 @@ impl Bench {
             }
         }
         block
+    }
+
+    /// Wires every reference of the block to this axis.
+    pub fn wire(&self, block: &mut BlockInstance, axis: AxisId) {
+        for (index, pin) in block.info().pins().enumerate() {
+            if let PinType::Axis(_) = pin.ty {
+                block.set(index, Value::Axis(axis)).unwrap();
+            }
+        }
     }
 
     pub fn set(&self, block: &mut BlockInstance, pin: &str, value: Value) {

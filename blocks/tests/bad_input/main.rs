@@ -11,6 +11,7 @@ mod states;
 
 use standstill_axis::AxisState;
 use standstill_blocks::BlockInstance;
+use standstill_fb::{BlockInfo, PinType};
 
 /// What a table expects of one call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +61,11 @@ fn trigger(block: &BlockInstance) -> Option<&'static str> {
     ["Execute", "Enable", "JogForward"]
         .into_iter()
         .find(|name| block.info().pin(name).is_some())
+}
+
+/// Whether the block has an axis, or something of a drive.
+fn refers_to_axis(info: &BlockInfo) -> bool {
+    info.pins().any(|pin| matches!(pin.ty, PinType::Axis(_)))
 }
 
 /// Whether two benches show the same motion, to the bit.

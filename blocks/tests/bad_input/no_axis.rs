@@ -1,7 +1,7 @@
 //! Every block wired to no axis, or to one that does not exist.
 
 use crate::bench::{AXIS, Bench};
-use crate::{same_motion, trigger};
+use crate::{refers_to_axis, same_motion, trigger};
 use standstill_axis::{AxisId, ErrorId};
 use standstill_blocks::REGISTRY;
 use standstill_fb::Value;
@@ -9,13 +9,13 @@ use standstill_fb::Value;
 /// Covers: R38, R55, R57, T39f
 #[test]
 fn an_axis_that_does_not_exist_is_an_error_until_the_next_edge() {
-    for info in REGISTRY.iter().filter(|info| info.pin("Axis").is_some()) {
+    for info in REGISTRY.iter().filter(|info| refers_to_axis(info)) {
         for nowhere in [AxisId::NONE, AxisId::new(2)] {
             let mut bench = Bench::new();
             let mut without = bench.clone();
             let mut block = bench.block(info.name);
             let trigger = trigger(&block).unwrap();
-            bench.set(&mut block, "Axis", Value::Axis(nowhere));
+            bench.wire(&mut block, nowhere);
             bench.scan(&mut [&mut block]);
             assert!(
                 !bench.flag(&block, "Error"),
@@ -40,7 +40,7 @@ fn an_axis_that_does_not_exist_is_an_error_until_the_next_edge() {
                 without.scan(&mut []);
             }
             assert!(same_motion(&bench, &without, 0) && same_motion(&bench, &without, 1));
-            bench.set(&mut block, "Axis", Value::Axis(AXIS));
+            bench.wire(&mut block, AXIS);
             bench.set(&mut block, trigger, Value::Bool(false));
             bench.scan(&mut [&mut block]);
             assert!(

@@ -1,7 +1,7 @@
 //! Every block in every state.
 
 use crate::bench::{AXIS, Bench};
-use crate::{Cell, rows, same_motion, trigger};
+use crate::{Cell, refers_to_axis, rows, same_motion, trigger};
 use standstill_axis::{AxisState, BufferMode, ErrorId, StartState};
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::Value;
@@ -25,7 +25,7 @@ fn table() -> Vec<(&'static str, &'static str, Vec<Cell>)> {
 #[test]
 fn every_block_with_an_axis_has_its_rows() {
     let mut expected = Vec::new();
-    for info in REGISTRY.iter().filter(|info| info.pin("Axis").is_some()) {
+    for info in REGISTRY.iter().filter(|info| refers_to_axis(info)) {
         if info.pin("BufferMode").is_some() {
             expected.push((info.name, "aborting", COLUMNS.len()));
             expected.push((info.name, "buffered", COLUMNS.len()));
@@ -57,11 +57,7 @@ fn brought_to(column: usize) -> Bench {
         StartState::Standstill
     });
     let mut neighbour = executed(&bench, "MC_MoveVelocity");
-    bench.set(
-        &mut neighbour,
-        "Axis",
-        Value::Axis(standstill_axis::AxisId::new(1)),
-    );
+    bench.wire(&mut neighbour, standstill_axis::AxisId::new(1));
     bench.scan(&mut [&mut neighbour]);
     let motion = match column {
         3 | 5 => Some("MC_MoveVelocity"),

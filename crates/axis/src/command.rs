@@ -1,5 +1,7 @@
 //! The words blocks and axes share: who, what, and in which order.
 
+use crate::Edge;
+
 /// Handle of an axis: its place in the slice of axes. It holds no live state, so it means the same when
 /// copied in and out around a call as when passed by reference (IEC 61131-3 VAR_IN_OUT).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -63,6 +65,13 @@ impl<E> Copy for Raw<E> {}
 impl<E> PartialEq for Raw<E> {
     fn eq(&self, other: &Self) -> bool {
         self.number == other.number
+    }
+}
+
+/// The number 0, which an enumeration has.
+impl<E: IecEnum> Default for Raw<E> {
+    fn default() -> Self {
+        Self::new(0)
     }
 }
 
@@ -166,6 +175,33 @@ iec_enum! {
         Immediately = "mcImmediately", 0;
         /// Like a buffered motion: when what was commanded before has finished.
         Queued = "mcQueued", 1;
+    }
+}
+
+iec_enum! {
+    /// What triggers a touch probe (MC_TRIGGER_REF, vendor specific): an edge at one of the probe inputs of the
+    /// axis's drive.
+    Trigger = "MC_TRIGGER_REF" {
+        /// The first probe, from FALSE to TRUE.
+        Probe1Rising = "mcProbe1Rising", 0;
+        /// The first probe, from TRUE to FALSE.
+        Probe1Falling = "mcProbe1Falling", 1;
+        /// The second probe, from FALSE to TRUE.
+        Probe2Rising = "mcProbe2Rising", 2;
+        /// The second probe, from TRUE to FALSE.
+        Probe2Falling = "mcProbe2Falling", 3;
+    }
+}
+
+impl Trigger {
+    /// The probe, counted from 0, and the edge.
+    pub const fn source(self) -> (usize, Edge) {
+        match self {
+            Self::Probe1Rising => (0, Edge::Rising),
+            Self::Probe1Falling => (0, Edge::Falling),
+            Self::Probe2Rising => (1, Edge::Rising),
+            Self::Probe2Falling => (1, Edge::Falling),
+        }
     }
 }
 

@@ -91,6 +91,9 @@ pub struct DriveCommand {
     pub rename: Option<f64>,
 }
 
+/// Digital inputs, and outputs, of a drive: numbered from 0 to one less, a bit each (V26).
+pub const DIGITAL: u32 = u32::BITS;
+
 /// Touch probes of a drive.
 pub const PROBES: usize = 2;
 

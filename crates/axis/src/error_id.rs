@@ -61,8 +61,8 @@ macro_rules! error_ids {
 error_ids! {
     None = 0, "No error.", "Nothing to do.";
 
-    AxisUnknown = 100, "The Axis pin names no axis of this runtime.",
-        "Wire Axis to a configured axis.";
+    AxisUnknown = 100, "The Axis, Input or Output pin names no axis of this runtime.",
+        "Wire it to a configured axis.";
     PositionInvalid = 101, "Position or Distance is NaN or infinite, or the target is not representable.",
         "Give a finite number.";
     VelocityInvalid = 102, "Velocity is NaN or infinite, or zero or negative where a positive value is needed.",
@@ -113,6 +113,16 @@ error_ids! {
         "Give VelFactor from 0, AccFactor and JerkFactor from above 0, each at most 1 or the override_max of the axis.";
     JogDistanceInvalid = 125, "Distance of MC_Jog is NaN, infinite or negative.",
         "Give 0 to move while the button is held, or the length of a step above 0; the buttons give the direction.";
+    DigitalNumberInvalid = 130, "InputNumber or OutputNumber is not the number of a digital input or output.",
+        "Give a number from 0 to 31.";
+    TriggerInvalid = 131, "TriggerInput is not a number of MC_TRIGGER_REF.",
+        "Use a value from mcProbe1Rising (0) to mcProbe2Falling (3).";
+    WindowInvalid = 132, "LastPosition is below FirstPosition on an axis without turns, so the window is empty.",
+        "Give the window in positive direction; only on a modulo axis it may go on behind the end of the turn.";
+    CamSwitchInvalid = 133, "A record of Switches has a position that is not finite or not in the first turn, an empty cam, or a direction, mode or duration out of range.",
+        "Give positions of the axis, FirstOnPosition not above LastOnPosition but on modulo axes, AxisDirection 0 to 2, CamSwitchMode 0 or 1, in time mode a Duration above 0.";
+    CamTrackInvalid = 134, "A TrackNumber is not from 1 to 32, or the Hysteresis of a track is NaN, infinite or negative.",
+        "Number tracks from 1 to 32, and give a Hysteresis of 0 or above.";
 
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";
@@ -132,6 +142,8 @@ error_ids! {
         "Set EnablePositive to TRUE at the MC_Power instance called last, or move the other way.";
     NegativeBarred = 209, "The motion needs the negative direction, and EnableNegative of MC_Power is FALSE.",
         "Set EnableNegative to TRUE at the MC_Power instance called last, or move the other way.";
+    TriggerTaken = 215, "Another instance waits for this probe.",
+        "Wait for it, or abort it with MC_AbortTrigger; each probe serves one instance at a time.";
 
     BufferFull = 301, "All places of the command buffer are taken.",
         "Wait for a buffered command to become active, or enlarge the queue of the axis.";

@@ -21,14 +21,14 @@ mod log;
 mod scaling;
 mod state;
 
-pub use axis::{Axis, Beside, Factors, MotionState, Outlook, Pace, Permission, Source, Way};
+pub use axis::{Axis, Beside, Factors, MotionState, Outlook, Pace, Permission, Source, TouchProbe, Way};
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,
-    QUEUE_MAX, Raw, Request, Superimpose, ValueSource,
+    QUEUE_MAX, Raw, Request, Superimpose, Trigger, ValueSource,
 };
 pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, MODULO_MAX, PowerOff, StartState};
 pub use drive::{
-    Comms, Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, DriveRequest,
+    Comms, DIGITAL, Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, DriveRequest,
     DriveSignals, Edge, Fault, PROBES, ProbeReport,
 };
 pub use error_id::{ErrorClass, ErrorId, RETIRED};
@@ -36,6 +36,7 @@ pub use fate::{FATES_KEPT, Fate};
 pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
 pub use log::{Event, Goal, LOG_KEPT, Log, Record};
 pub use scaling::{Scaling, Turn};
+pub use standstill_planner::turns::split;
 pub use standstill_planner::{
     Excess, Limits, MoveProfile, Order, Passage, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
 };

@@ -63,10 +63,12 @@ impl Monkey {
         let of_axis = |axis| {
             let wired = |info: &standstill_fb::BlockInfo| {
                 let mut block = BlockInstance::new(info.name).expect("registered");
-                if let Some((pin, _)) = block.info().pin("Axis") {
-                    block
-                        .set(pin, Value::Axis(AxisId::new(axis)))
-                        .expect("an axis pin");
+                for (pin, info) in block.info().pins().enumerate() {
+                    if let PinType::Axis(_) = info.ty {
+                        block
+                            .set(pin, Value::Axis(AxisId::new(axis)))
+                            .expect("an axis pin");
+                    }
                 }
                 block
             };
@@ -94,7 +96,8 @@ impl Monkey {
             PinType::Int => Value::Int(3),
             PinType::Time => Value::Time(10_000_000),
             PinType::Enum(_) => Value::Enum((random.bits() % 8) as i32 - 1),
-            PinType::Word | PinType::Axis => return None,
+            PinType::Dword => Value::Dword(random.bits() as u32),
+            PinType::Word | PinType::Axis(_) | PinType::Table(_) => return None,
         })
     }
 }

@@ -2,9 +2,6 @@
 
 use standstill_axis::{DriveOrder, DrivePosition, DriveReport, Edge, PROBES, ProbeReport};
 
-/// Inputs and outputs are numbered 0 to one less.
-pub const DIGITAL: u32 = 32;
-
 /// A probe's input and what it has seen.
 #[derive(Clone, Copy, Debug, Default)]
 struct Probe {
@@ -26,10 +23,27 @@ pub struct Peripherals {
     probes: [Probe; PROBES],
     /// The position of the feedback before.
     before: Option<DrivePosition>,
+    /// Length of a turn (u) of a drive that speaks units and whose positions come round.
+    turn: Option<f64>,
 }
 
 impl Peripherals {
-    /// Sets the digital input `number`; those from [`DIGITAL`] on do not exist.
+    /// Those of a drive whose positions in units, if it speaks such, come round after `turn` (u).
+    pub fn new(turn: Option<f64>) -> Self {
+        Self {
+            turn,
+            ..Self::default()
+        }
+    }
+
+    /// From now on positions in units are called `by` (u) more: the drive was told a new name.
+    pub fn shift(&mut self, by: f64) {
+        if let Some(DrivePosition::Units(before)) = &mut self.before {
+            *before += by;
+        }
+    }
+
+    /// Sets the digital input `number`; those from [`standstill_axis::DIGITAL`] on do not exist.
     pub fn set_input(&mut self, number: u32, level: bool) {
         if let Some(bit) = 1_u32.checked_shl(number) {
             self.inputs = if level {
@@ -60,7 +74,7 @@ impl Peripherals {
                 };
                 probe.level = level;
                 if edge.is_some() && edge == probe.ordered && probe.latched.is_none() {
-                    probe.latched = Some(between(before, position, at));
+                    probe.latched = Some(between(before, position, at, self.turn));
                 }
             }
             *told = ProbeReport {
@@ -84,11 +98,16 @@ impl Peripherals {
     }
 }
 
-/// The position at a part of the way from one to the other.
-fn between(from: DrivePosition, to: DrivePosition, part: f64) -> DrivePosition {
+/// The position at a part of the way from one to the other, the shorter one where positions in units come round.
+fn between(from: DrivePosition, to: DrivePosition, part: f64, turn: Option<f64>) -> DrivePosition {
     match (from, to) {
         (DrivePosition::Units(from), DrivePosition::Units(to)) => {
-            DrivePosition::Units(from + part * (to - from))
+            let way = match turn {
+                Some(turn) if to - from > 0.5 * turn => to - from - turn,
+                Some(turn) if to - from < -0.5 * turn => to - from + turn,
+                _ => to - from,
+            };
+            DrivePosition::Units(from + part * way)
         }
         (DrivePosition::Increments(from), DrivePosition::Increments(to)) => {
             let exact = part * to.saturating_sub(from) as f64;
@@ -145,10 +164,30 @@ mod tests {
     fn increments_are_latched_to_the_nearest() {
         for (from, to, part, expected) in [(0, 10, 0.26, 3), (0, -10, 0.26, -3), (-5, 5, 0.5, 0)] {
             assert_eq!(
-                between(Increments(from), Increments(to), part),
+                between(Increments(from), Increments(to), part, None),
                 Increments(expected)
             );
         }
+    }
+
+    #[test]
+    fn units_that_come_round_are_latched_on_the_shorter_way() {
+        for (from, to, expected) in [(358.0, 2.0, 361.0), (2.0, 358.0, -1.0), (10.0, 14.0, 13.0)] {
+            let seen = between(Units(from), Units(to), 0.75, Some(360.0));
+            assert_eq!(seen, Units(expected), "the axis brings it into the turn");
+        }
+    }
+
+    #[test]
+    fn a_new_name_is_no_way() {
+        let mut device = Peripherals::default();
+        let mut report = DriveReport::default();
+        device.report(Units(10.0), &mut report);
+        device.order(&armed(Some(Edge::Rising)));
+        device.shift(-10.0);
+        device.set_probe(0, 0.5, true);
+        device.report(Units(2.0), &mut report);
+        assert_eq!(report.probes[0].latched, Some(Units(1.0)));
     }
 
     #[test]

@@ -12,10 +12,14 @@ mod block;
 mod enable;
 mod execute;
 mod pins;
+mod table;
 mod update;
 
 pub use block::{AnyInstance, Block, BlockInfo, Context, Described, Group, Instance};
 pub use enable::{EnableCore, Reading};
 pub use execute::{ExecuteCore, Phase};
-pub use pins::{Direction, EnumInfo, Int, Pin, PinError, PinType, PinValue, Pins, Time, Value};
+pub use pins::{
+    Direction, EnumInfo, InputRef, Int, OutputRef, Pin, PinError, PinType, PinValue, Pins, Time, Value,
+};
+pub use table::{AnyTable, Record, Table, TableInfo};
 pub use update::{Move, UpdateCore, Values};

@@ -1,5 +1,6 @@
 //! Pins as data: one table per block, from which structs, docs, script names and traces come.
 
+use crate::{AnyTable, TableInfo};
 use core::fmt;
 use standstill_axis::{AxisId, ErrorId, IecEnum, Raw};
 
@@ -52,12 +53,16 @@ pub enum PinType {
     Lreal,
     /// WORD, shown as a decimal number; ErrorID pins.
     Word,
+    /// DWORD, a bit field.
+    Dword,
     /// TIME, in nanoseconds.
     Time,
-    /// AXIS_REF.
-    Axis,
+    /// An axis, by the name of the reference: AXIS_REF, or what stands for something its drive has.
+    Axis(&'static str),
     /// An enumeration.
     Enum(EnumInfo),
+    /// An array of records.
+    Table(TableInfo),
 }
 
 impl PinType {
@@ -68,9 +73,11 @@ impl PinType {
             Self::Int => "INT",
             Self::Lreal => "LREAL",
             Self::Word => "WORD",
+            Self::Dword => "DWORD",
             Self::Time => "TIME",
-            Self::Axis => "AXIS_REF",
+            Self::Axis(name) => name,
             Self::Enum(info) => info.name,
+            Self::Table(info) => info.name,
         }
     }
 }
@@ -86,12 +93,16 @@ pub enum Value {
     Lreal(f64),
     /// WORD.
     Word(u16),
+    /// DWORD.
+    Dword(u32),
     /// TIME in nanoseconds.
     Time(i64),
-    /// AXIS_REF.
+    /// An axis.
     Axis(AxisId),
     /// An enumeration's number, defined or not.
     Enum(i32),
+    /// Records of a table, which is no value itself.
+    Rows(u16),
 }
 
 /// INT as a pin's Rust type.
@@ -106,9 +117,13 @@ pub trait PinValue: Copy {
     /// Its IEC type.
     const TYPE: PinType;
     /// To data.
-    fn into_value(self) -> Value;
+    fn to_value(&self) -> Value;
     /// From data, if the type fits.
     fn from_value(value: Value) -> Option<Self>;
+    /// The table, if it is one.
+    fn as_table(&mut self) -> Option<&mut dyn AnyTable> {
+        None
+    }
 }
 
 macro_rules! pin_value {
@@ -116,8 +131,8 @@ macro_rules! pin_value {
         impl PinValue for $rust {
             const TYPE: PinType = PinType::$ty;
 
-            fn into_value(self) -> Value {
-                Value::$variant(self)
+            fn to_value(&self) -> Value {
+                Value::$variant(*self)
             }
 
             fn from_value(value: Value) -> Option<Self> {
@@ -133,13 +148,57 @@ macro_rules! pin_value {
 
 pin_value!(bool, Bool, Bool);
 pin_value!(i16, Int, Int);
+pin_value!(u32, Dword, Dword);
 pin_value!(f64, Lreal, Lreal);
-pin_value!(AxisId, Axis, Axis);
+
+macro_rules! axis_value {
+    ($rust:ty, $name:literal, $id:ident => $made:expr) => {
+        impl PinValue for $rust {
+            const TYPE: PinType = PinType::Axis($name);
+
+            fn to_value(&self) -> Value {
+                Value::Axis((*self).into())
+            }
+
+            fn from_value(value: Value) -> Option<Self> {
+                if let Value::Axis($id) = value {
+                    Some($made)
+                } else {
+                    None
+                }
+            }
+        }
+    };
+}
+
+/// MC_INPUT_REF: the axis whose drive has the inputs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct InputRef(pub AxisId);
+
+/// MC_OUTPUT_REF: the axis whose drive has the outputs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OutputRef(pub AxisId);
+
+impl From<InputRef> for AxisId {
+    fn from(input: InputRef) -> Self {
+        input.0
+    }
+}
+
+impl From<OutputRef> for AxisId {
+    fn from(output: OutputRef) -> Self {
+        output.0
+    }
+}
+
+axis_value!(AxisId, "AXIS_REF", id => id);
+axis_value!(InputRef, "MC_INPUT_REF", id => Self(id));
+axis_value!(OutputRef, "MC_OUTPUT_REF", id => Self(id));
 
 impl PinValue for Time {
     const TYPE: PinType = PinType::Time;
 
-    fn into_value(self) -> Value {
+    fn to_value(&self) -> Value {
         Value::Time(self.0)
     }
 
@@ -155,7 +214,7 @@ impl PinValue for Time {
 impl PinValue for ErrorId {
     const TYPE: PinType = PinType::Word;
 
-    fn into_value(self) -> Value {
+    fn to_value(&self) -> Value {
         Value::Word(self.number())
     }
 
@@ -174,7 +233,7 @@ impl<E: IecEnum> PinValue for Raw<E> {
         elements: E::ELEMENTS,
     });
 
-    fn into_value(self) -> Value {
+    fn to_value(&self) -> Value {
         Value::Enum(self.number())
     }
 
@@ -188,7 +247,7 @@ impl<E: IecEnum> PinValue for Raw<E> {
 }
 
 /// One pin of a block.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pin {
     /// IEC name.
     pub name: &'static str,
@@ -237,6 +296,9 @@ pub trait Pins: Copy + Default {
     /// # Errors
     /// [`PinError`] if there is no such pin or the type differs.
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError>;
+
+    /// The table at pin `index`, if there is one.
+    fn table(&mut self, index: usize) -> Option<&mut dyn AnyTable>;
 }
 
 /// Declares the `Inputs` and `Outputs` structs of a block and their tables.
@@ -315,7 +377,7 @@ macro_rules! pins {
             }),*];
 
             fn get(&self, index: usize) -> Option<$crate::Value> {
-                let values = [$(<$ty as $crate::PinValue>::into_value(self.$field)),*];
+                let values = [$(<$ty as $crate::PinValue>::to_value(&self.$field)),*];
                 values.get(index).copied()
             }
 
@@ -331,6 +393,18 @@ macro_rules! pins {
                 )*
                 let _ = (place, value);
                 Err($crate::PinError::NotWritable)
+            }
+
+            fn table(&mut self, index: usize) -> Option<&mut dyn $crate::AnyTable> {
+                let mut place = 0_usize;
+                $(
+                    if place == index {
+                        return <$ty as $crate::PinValue>::as_table(&mut self.$field);
+                    }
+                    place += 1;
+                )*
+                let _ = place;
+                None
             }
         }
     };

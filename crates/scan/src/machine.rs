@@ -131,11 +131,12 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         self.feedback.clear();
         self.feedback
             .extend(self.drives.iter_mut().map(|drive| drive.read(time.now_ns)));
-        for (axis, feedback) in self.axes.iter_mut().zip(&self.feedback) {
-            axis.follow_feedback(feedback, time.scan, &mut self.log);
-        }
         for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
             drive.report(axis.report_mut());
+            axis.follow_report();
+        }
+        for (axis, feedback) in self.axes.iter_mut().zip(&self.feedback) {
+            axis.follow_feedback(feedback, time.scan, &mut self.log);
         }
     }
 

@@ -122,6 +122,9 @@ pub struct Input {
     pub initial: Value,
 }
 
+/// Records of a table: of each the fields that were given, by their place.
+pub type Rows = Vec<Vec<(usize, Value)>>;
+
 /// A block instance.
 #[derive(Clone, Debug)]
 pub struct Instance {
@@ -133,6 +136,8 @@ pub struct Instance {
     pub task: usize,
     /// Constants, by pin index; in_outs included.
     pub constants: Vec<(usize, Value)>,
+    /// Tables, by pin index.
+    pub tables: Vec<(usize, Rows)>,
     /// Wires, by pin index.
     pub wires: Vec<(usize, Wire)>,
 }

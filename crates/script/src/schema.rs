@@ -4,6 +4,7 @@
 //! (which names exist, the types of wires, multiples of the cycle) only the reader checks.
 
 use crate::read::axis::{ABOVE_LIMIT, ON_POWER_OFF, PROFILES, START_STATES};
+use crate::read::block::is_needed;
 use crate::read::drive::REACTIONS;
 use crate::read::names::KEYWORDS;
 use crate::read::shape::{self, Shape};
@@ -11,10 +12,9 @@ use crate::read::step::FAULT_KINDS;
 use crate::read::value::NUMBER_WORDS;
 use crate::read::{SCANS_MAX, VERSION};
 use serde_json::{Map, Value, json};
-use standstill_axis::{DELAY_MAX, PROBES, QUEUE_MAX};
+use standstill_axis::{DELAY_MAX, DIGITAL, PROBES, QUEUE_MAX};
 use standstill_blocks::REGISTRY;
-use standstill_drives::peripherals::DIGITAL;
-use standstill_fb::{BlockInfo, Direction, PinType};
+use standstill_fb::{BlockInfo, Direction, PinType, TableInfo};
 
 /// The JSON Schema (draft 2020-12) of scan scripts, in the layout of [`format`](crate::format).
 ///
@@ -309,7 +309,10 @@ fn pins(info: &BlockInfo) -> Value {
         } else {
             format!(" Unit: {}.", pin.unit)
         };
-        let mut schema = any(&[constant(pin.ty), of("wire")]);
+        let mut schema = match pin.ty {
+            PinType::Table(_) => constant(pin.ty),
+            _ => any(&[constant(pin.ty), of("wire")]),
+        };
         add(
             &mut schema,
             "description",
@@ -317,12 +320,16 @@ fn pins(info: &BlockInfo) -> Value {
         );
         properties.insert(pin.name.to_owned(), schema);
     }
-    let in_outs: Vec<&str> = info.pins_of(Direction::InOut).map(|pin| pin.name).collect();
+    let needed: Vec<&str> = info
+        .pins()
+        .filter(|pin| is_needed(pin))
+        .map(|pin| pin.name)
+        .collect();
     json!({
         "description": info.doc,
         "type": "object",
         "properties": properties,
-        "required": in_outs,
+        "required": needed,
         "additionalProperties": false,
     })
 }
@@ -333,10 +340,27 @@ fn constant(ty: PinType) -> Value {
         PinType::Int => integer(i16::MIN.into(), i16::MAX.into()),
         PinType::Lreal => of("number"),
         PinType::Word => integer(0, u16::MAX.into()),
+        PinType::Dword => integer(0, u32::MAX.into()),
+        PinType::Table(info) => table(info),
         PinType::Time => of("scans"),
-        PinType::Axis => of("identifier"),
+        PinType::Axis(_) => of("identifier"),
         PinType::Enum(info) => any(&[words(info.elements), integer(i32::MIN.into(), i32::MAX.into())]),
     }
+}
+
+fn table(info: TableInfo) -> Value {
+    let mut properties = Map::new();
+    properties.insert("note".to_owned(), text());
+    for field in info.fields {
+        let mut schema = constant(field.ty);
+        add(&mut schema, "description", json!(field.doc.trim()));
+        properties.insert(field.name.to_owned(), schema);
+    }
+    json!({
+        "type": "array",
+        "maxItems": info.most,
+        "items": {"type": "object", "properties": properties, "additionalProperties": false},
+    })
 }
 
 fn wire() -> Value {

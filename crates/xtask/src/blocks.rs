@@ -130,9 +130,27 @@ fn page(info: &BlockInfo) -> Generated {
             );
         }
     }
+    tables(&mut text, info);
     Generated {
         path: format!("docs/blocks/{}", file_name(info)),
         text,
+    }
+}
+
+/// The records of the block's tables.
+fn tables(text: &mut String, info: &BlockInfo) {
+    for pin in info.pins() {
+        let PinType::Table(table) = pin.ty else { continue };
+        let _ = write!(
+            text,
+            "\n## {}\n\nAt most {} records of these fields; in a script a list of objects, and what is left out of one is \
+             0.\n\n| field | type | unit | meaning |\n| --- | --- | --- | --- |\n",
+            table.name, table.most
+        );
+        for field in table.fields {
+            let (ty, doc) = (field.ty.iec_name(), field.doc.trim());
+            let _ = writeln!(text, "| {} | {ty} | {} | {doc} |", field.name, field.unit);
+        }
     }
 }
 
@@ -145,8 +163,9 @@ fn default(info: &BlockInfo, index: usize, pin: &Pin) -> String {
         (Some(Value::Int(value)), _) => value.to_string(),
         (Some(Value::Lreal(value)), _) => format!("{value:?}"),
         (Some(Value::Word(value)), _) => value.to_string(),
+        (Some(Value::Dword(value)), _) => value.to_string(),
         (Some(Value::Time(ns)), _) => format!("T#{}ms", ns / 1_000_000),
         (Some(Value::Enum(number)), PinType::Enum(info)) => info.name_of(number).unwrap_or("").into(),
-        (Some(Value::Axis(_) | Value::Enum(_)) | None, _) => String::new(),
+        (Some(Value::Axis(_) | Value::Enum(_) | Value::Rows(_)) | None, _) => String::new(),
     }
 }

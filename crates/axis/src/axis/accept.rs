@@ -187,9 +187,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether a command that waits now would follow a motion without an end, so not start at rest.
     fn predecessor_is_endless(&self) -> bool {
-        // MC_SetPosition moves nothing: what counts is what comes before it.
-        let moves = |entry: &&Entry| !matches!(entry.work, Work::SetPosition { .. });
-        let last = self.queue.iter().filter(moves).last().or(self.owner.as_ref());
+        let last = self.queue.last_motion().or(self.owner.as_ref());
         last.is_some_and(Entry::is_endless)
     }
 
@@ -349,7 +347,8 @@ impl<P: Planner> Axis<P> {
             | Work::Velocity { .. }
             | Work::Stop
             | Work::Home(_)
-            | Work::SetPosition { .. } => None,
+            | Work::SetPosition { .. }
+            | Work::Output { .. } => None,
         }
     }
 
@@ -445,7 +444,7 @@ impl<P: Planner> Axis<P> {
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
             Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
-            Work::Home(_) | Work::SetPosition { .. } => return Ok(Motion::Hold),
+            Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => return Ok(Motion::Hold),
         };
         match planned {
             Ok(plan) => {
@@ -478,6 +477,7 @@ impl<P: Planner> Axis<P> {
             Work::Velocity { velocity, .. } => ("Velocity", velocity),
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),
             Work::Home(position) | Work::SetPosition { position, .. } => ("Position", position),
+            Work::Output { .. } => ("OutputNumber", f64::NAN),
         };
         let limit = match error {
             ErrorId::TargetOutsideSoftwareLimits | ErrorId::OutwardFromSoftwareLimit => {
@@ -532,7 +532,7 @@ impl<P: Planner> Axis<P> {
             Work::Position(_) | Work::Distance(_) | Work::Halt => AxisEvent::StartDiscrete,
             Work::Velocity { .. } | Work::Through { .. } => AxisEvent::StartContinuous,
             Work::Stop => AxisEvent::Stop,
-            Work::Home(_) | Work::SetPosition { .. } => AxisEvent::StartHoming,
+            Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => AxisEvent::StartHoming,
         });
         self.before = before;
         self.adopt(entry, motion, scan, log);

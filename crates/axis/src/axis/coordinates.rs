@@ -8,7 +8,7 @@
 
 use super::queue::{Entry, Place, Work};
 use super::{Axis, Motion, Source};
-use crate::{AxisState, BufferMode, CommandId, ErrorId, Event, ExecutionMode, Fate, Log, QUEUE_MAX, Raw};
+use crate::{CommandId, ErrorId, Event, ExecutionMode, Fate, Log, QUEUE_MAX, Raw};
 use standstill_planner::turns::split;
 use standstill_planner::{Plan, Planner, Setpoint};
 
@@ -33,55 +33,20 @@ impl<P: Planner> Axis<P> {
         source: Source,
         log: &mut Log,
     ) -> Result<CommandId, ErrorId> {
-        let Some(defined) = mode.get() else {
-            let number = f64::from(mode.number());
-            return Err(self.refuse(
-                "ExecutionMode",
-                number,
-                1.0,
-                ErrorId::ExecutionModeInvalid,
-                source,
-                log,
-            ));
-        };
+        let queued = self.is_queued(mode, source, log)?;
         self.finite("Position", position, source, log)?;
         if !relative {
             self.in_first_turn(position)
                 .map_err(|(length, error)| self.refuse("Position", position, length, error, source, log))?;
         }
-        if defined == ExecutionMode::Queued && self.is_owned() {
-            self.wait()
-                .map_err(|(_, error)| self.refuse("ExecutionMode", 1.0, f64::NAN, error, source, log))?;
-            let work = Work::SetPosition { position, relative };
-            let id = self.new_id();
-            let entry = Entry::new(
-                id,
-                source.instance,
-                work,
-                self.config.limits,
-                BufferMode::Buffered,
-            );
-            self.queue.push(entry);
-            return Ok(id);
+        if queued {
+            return self.enqueue(Work::SetPosition { position, relative }, source, log);
         }
         self.move_coordinates(position, relative, source, log)
             .map_err(|error| self.refuse("Position", position, f64::NAN, error, source, log))?;
         let id = self.new_id();
         self.fates.record(id, Fate::Done);
         Ok(id)
-    }
-
-    /// Whether something is there that a queued command waits for.
-    fn is_owned(&self) -> bool {
-        match self.state {
-            AxisState::Disabled | AxisState::ErrorStop => false,
-            AxisState::Standstill
-            | AxisState::Homing
-            | AxisState::Stopping
-            | AxisState::DiscreteMotion
-            | AxisState::ContinuousMotion
-            | AxisState::SynchronizedMotion => self.owner.is_some() || !self.queue.is_empty(),
-        }
     }
 
     /// Whether the next command in the buffer moves the coordinates. It does so at the next latch, so that
@@ -119,6 +84,12 @@ impl<P: Planner> Axis<P> {
         self.hand_over(self.setpoint.position, scan, log);
     }
 
+    /// Grows whenever coordinates move (MC_SetPosition, MC_Home), and comes round: positions taken at different numbers
+    /// cannot be compared.
+    pub fn coordinates(&self) -> u32 {
+        self.coordinates
+    }
+
     fn move_coordinates(
         &mut self,
         position: f64,
@@ -149,6 +120,7 @@ impl<P: Planner> Axis<P> {
             (self.setpoint, self.layer) = before;
             return Err(error);
         }
+        self.coordinates = self.coordinates.wrapping_add(1);
         self.shift_actual(by);
         if !relative {
             self.actual = position;
@@ -206,6 +178,7 @@ impl<P: Planner> Axis<P> {
         if by != 0.0 {
             self.record(Event::Shifted { by }, self.owner_source(scan), log);
         }
+        self.coordinates = self.coordinates.wrapping_add(1);
         self.rename_actual(self.setpoint.position, position);
         if self.config.scaling.is_some() {
             self.shift += position - self.setpoint.position;

@@ -219,6 +219,19 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Records a refusal and passes its error on.
+    /// Records that a block which only looks at the axis refuses the value at `pin`.
+    pub fn note_refusal(
+        &self,
+        pin: &'static str,
+        value: f64,
+        limit: f64,
+        error: ErrorId,
+        source: Source,
+        log: &mut Log,
+    ) {
+        self.refuse(pin, value, limit, error, source, log);
+    }
+
     pub(super) fn refuse(
         &self,
         pin: &'static str,

@@ -3,7 +3,8 @@
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`inside`] keeps take-overs within the axis
 //! limits, [`superimposed`] adds a second motion, [`factors`] is the override, [`replan`] changes the owner's motion
-//! while it runs, [`update`] gives it new values, [`jog`] checks what MC_Jog asks for,
+//! while it runs, [`update`] gives it new values, [`jog`] checks what MC_Jog asks for, [`queued`] lets administrative
+//! commands wait, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`permission`] out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
@@ -16,9 +17,12 @@ mod factors;
 mod inside;
 mod jog;
 mod modulo;
+mod outputs;
 mod permission;
 mod power;
+mod probe;
 mod queue;
+mod queued;
 mod reading;
 mod replan;
 mod software_limits;
@@ -35,6 +39,7 @@ use crate::{
 pub use factors::Factors;
 use modulo::Modulo;
 pub use permission::Permission;
+pub use probe::TouchProbe;
 use queue::{Entry, Queue, Work};
 pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
@@ -212,6 +217,10 @@ pub struct Axis<P: Planner = Standard> {
     signals: DriveSignals,
     /// What the drive has beside its motion.
     beside: BesideMotion,
+    /// Touch probes.
+    probes: probe::Probes,
+    /// How often coordinates have moved.
+    coordinates: u32,
     motion: Motion<P::Plan>,
     /// A second motion on top of it.
     layer: Option<superimposed::Layer<P::Plan>>,
@@ -276,6 +285,8 @@ impl<P: Planner> Axis<P> {
             past: reading::Past::new(config.position),
             signals: DriveSignals::default(),
             beside: BesideMotion::default(),
+            probes: probe::Probes::default(),
+            coordinates: 0,
             motion: if powered { Motion::Hold } else { Motion::Follow },
             layer: None,
             covered: None,
@@ -407,7 +418,8 @@ impl<P: Planner> Axis<P> {
                 | Work::Halt
                 | Work::Stop
                 | Work::Home(_)
-                | Work::SetPosition { .. } => Fate::Active { reached: false },
+                | Work::SetPosition { .. }
+                | Work::Output { .. } => Fate::Active { reached: false },
             };
         }
         self.fate_of_other(id)
@@ -416,7 +428,10 @@ impl<P: Planner> Axis<P> {
     /// What became of a command that is not the owner.
     #[inline(never)]
     fn fate_of_other(&self, id: CommandId) -> Fate {
-        if self.queue.contains(id) || self.reset.as_ref().is_some_and(|reset| reset.id == id) {
+        if self.queue.contains(id)
+            || self.probes.is_waiting(id)
+            || self.reset.as_ref().is_some_and(|reset| reset.id == id)
+        {
             return Fate::Waiting;
         }
         if let Some(fate) = self.superimposed_fate(id) {

@@ -73,6 +73,14 @@ impl Modulo {
     /// The actual position (u) in the first turn.
     #[inline(never)]
     pub fn latch(&mut self, config: &AxisConfig, feedback: DrivePosition, shift: f64) -> f64 {
+        let (turns, position) = self.place_of(config, feedback, shift);
+        self.actual_turns = turns;
+        position
+    }
+
+    /// A position at the drive in whole turns and in the first one (u).
+    #[inline]
+    pub fn place_of(&self, config: &AxisConfig, feedback: DrivePosition, shift: f64) -> (i64, f64) {
         let (turns, position) = match (feedback, config.scaling, &self.turn) {
             (DrivePosition::Increments(increments), Some(scaling), Some(turn)) => {
                 Scaling::to_units_turned(&scaling, turn, self.length, increments)
@@ -82,8 +90,7 @@ impl Modulo {
             (DrivePosition::Increments(increments), ..) => split(increments as f64, self.length),
         };
         let (further, position) = split(position + shift, self.length);
-        self.actual_turns = turns.saturating_add(further);
-        position
+        (turns.saturating_add(further), position)
     }
 }
 

@@ -89,7 +89,7 @@ impl<P: Planner> Axis<P> {
     }
 
     #[inline(never)]
-    fn position_at_increment(&self, increments: i64) -> f64 {
+    pub(super) fn position_at_increment(&self, increments: i64) -> f64 {
         match self.config.scaling {
             Some(scaling) => scaling.to_units(increments) + self.shift,
             // A drive that counts increments needs a scaling; take one increment as one unit.

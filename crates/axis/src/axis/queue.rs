@@ -32,6 +32,8 @@ pub(super) enum Work {
     Home(f64),
     /// The coordinates move: the actual position becomes this, or grows by it (u).
     SetPosition { position: f64, relative: bool },
+    /// A digital output of the drive gets a value.
+    Output { bit: u32, value: bool },
 }
 
 impl Work {
@@ -48,9 +50,12 @@ impl Work {
                 to: Place::By(distance),
                 ..
             } => Some(from + distance),
-            Self::Velocity { .. } | Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } => {
-                None
-            }
+            Self::Velocity { .. }
+            | Self::Halt
+            | Self::Stop
+            | Self::Home(_)
+            | Self::SetPosition { .. }
+            | Self::Output { .. } => None,
         }
     }
 
@@ -60,9 +65,12 @@ impl Work {
             Self::Position(position) => Some(Place::At(position)),
             Self::Distance(distance) => Some(Place::By(distance)),
             Self::Through { to, .. } => Some(to),
-            Self::Velocity { .. } | Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } => {
-                None
-            }
+            Self::Velocity { .. }
+            | Self::Halt
+            | Self::Stop
+            | Self::Home(_)
+            | Self::SetPosition { .. }
+            | Self::Output { .. } => None,
         }
     }
 
@@ -76,7 +84,8 @@ impl Work {
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
-            | Self::SetPosition { .. } => 0.0,
+            | Self::SetPosition { .. }
+            | Self::Output { .. } => 0.0,
         }
     }
 
@@ -93,7 +102,8 @@ impl Work {
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
-            | Self::SetPosition { .. } => self,
+            | Self::SetPosition { .. }
+            | Self::Output { .. } => self,
         }
     }
 
@@ -109,7 +119,7 @@ impl Work {
     pub fn obeys_override(&self) -> bool {
         match self {
             Self::Position(_) | Self::Distance(_) | Self::Through { .. } | Self::Velocity { .. } => true,
-            Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } => false,
+            Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } | Self::Output { .. } => false,
         }
     }
 
@@ -123,6 +133,7 @@ impl Work {
             Self::Stop => "stop",
             Self::Home(_) => "home",
             Self::SetPosition { .. } => "set position",
+            Self::Output { .. } => "output",
         }
     }
 }
@@ -201,6 +212,11 @@ impl Entry {
         self.work.place()
     }
 
+    /// Whether it moves the axis when its turn comes, rather than writing something.
+    pub fn is_motion(&self) -> bool {
+        !matches!(self.work, Work::SetPosition { .. } | Work::Output { .. })
+    }
+
     /// Whether it goes on until another command takes over.
     pub fn is_endless(&self) -> bool {
         matches!(self.work, Work::Velocity { .. } | Work::Through { .. })
@@ -240,6 +256,11 @@ impl Queue {
 
     pub fn first(&self) -> Option<&Entry> {
         self.entries.first()?.as_ref()
+    }
+
+    /// The last one that will move the axis.
+    pub fn last_motion(&self) -> Option<&Entry> {
+        self.iter().filter(|entry| entry.is_motion()).last()
     }
 
     pub fn iter(&self) -> impl Iterator<Item = &Entry> {

@@ -61,7 +61,7 @@ impl<P: Planner> Axis<P> {
                 outside(self.end_of_plan())
                     || (!self.setpoint.is_at_rest() && outside(self.rest(&self.setpoint, &entry.limits)))
             }
-            Work::Home(_) | Work::SetPosition { .. } => false,
+            Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => false,
         }
     }
 
@@ -96,7 +96,7 @@ impl<P: Planner> Axis<P> {
             Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
                 leaves(self.end_of_plan()) || leaves(self.rest(next, &owner.limits))
             }
-            Work::Home(_) | Work::SetPosition { .. } => false,
+            Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => false,
         };
         leaving && leaves(self.rest(next, &self.stop_limits()))
     }

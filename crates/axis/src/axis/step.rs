@@ -153,8 +153,8 @@ impl<P: Planner> Axis<P> {
             }
             // An endless motion gives way when it has reached its velocity.
             Work::Velocity { .. } | Work::Through { .. } => self.hand_over(self.passed_end(), scan, log),
-            // It never owns the axis.
-            Work::SetPosition { .. } => {}
+            // They never own the axis.
+            Work::SetPosition { .. } | Work::Output { .. } => {}
         }
     }
 
@@ -183,6 +183,9 @@ impl<P: Planner> Axis<P> {
             };
             if self.queue_waits_for_shift() {
                 return;
+            }
+            if self.write_queued_output() {
+                continue;
             }
             let passage_from = self.aim(&mut next, from);
             next.passage = self.passage(&next, passage_from, 1);

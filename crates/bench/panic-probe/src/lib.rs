@@ -114,7 +114,9 @@ fn input(ty: PinType) -> Value {
         PinType::Lreal => Value::Lreal(any(1.0)),
         PinType::Word => Value::Word(any(1)),
         PinType::Time => Value::Time(any(Time(1)).0),
-        PinType::Axis => Value::Axis(AxisId::new(any(0))),
+        PinType::Dword => Value::Dword(any(1)),
+        PinType::Table(_) => Value::Rows(any(1)),
+        PinType::Axis(_) => Value::Axis(AxisId::new(any(0))),
         PinType::Enum(_) => Value::Enum(any(1)),
     })
 }

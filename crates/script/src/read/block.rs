@@ -7,8 +7,13 @@ use super::wire::is_wire;
 use super::{Reader, circle, is_note, shape};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::model::{Instance, Span, Task};
-use standstill_fb::{BlockInfo, Direction, Pin};
+use standstill_fb::{BlockInfo, Direction, Pin, PinType};
 use std::collections::BTreeMap;
+
+/// Whether a pin must be connected: the in_outs that stand for something there is. Others have a variable of their own.
+pub(crate) fn is_needed(pin: &Pin) -> bool {
+    pin.direction == Direction::InOut && matches!(pin.ty, PinType::Axis(_))
+}
 
 impl Reader {
     pub(super) fn blocks(&mut self, fields: &Fields<'_>, tasks: Option<&[Task]>) -> Option<Vec<Instance>> {
@@ -41,6 +46,7 @@ impl Reader {
             block,
             task: task?,
             constants: Vec::new(),
+            tables: Vec::new(),
             wires: Vec::new(),
         };
         self.pins(index, &fields, &mut instance)?;
@@ -73,7 +79,11 @@ impl Reader {
                 good = false;
             }
             let what = format!("{} ({})", quoted(pin.name), pin.ty.iec_name());
-            if !is_wire(node) {
+            if let PinType::Table(info) = pin.ty {
+                let rows = self.table(node, info, &what);
+                good &= rows.is_some();
+                instance.tables.extend(rows.map(|rows| (pin_index, rows)));
+            } else if !is_wire(node) {
                 let value = self.value(node, pin.ty, &what);
                 good &= value.is_some();
                 instance.constants.extend(value.map(|value| (pin_index, value)));
@@ -88,7 +98,7 @@ impl Reader {
         let unconnected = block
             .pins()
             .enumerate()
-            .find(|(index, pin)| pin.direction == Direction::InOut && !seen.contains_key(index));
+            .find(|(index, pin)| is_needed(pin) && !seen.contains_key(index));
         match unconnected {
             // With a slip in a name, the in_out may well be the pin that was meant.
             _ if !good => None,

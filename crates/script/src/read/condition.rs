@@ -30,7 +30,7 @@ impl Kind {
     fn is_numeric(self) -> bool {
         matches!(
             self,
-            Self::Pin(PinType::Lreal | PinType::Int | PinType::Word | PinType::Time)
+            Self::Pin(PinType::Lreal | PinType::Int | PinType::Word | PinType::Dword | PinType::Time)
         )
     }
 
@@ -96,7 +96,9 @@ impl Reader {
                     .map(|state| Test::State(*state))
             }
             Kind::Pin(PinType::Bool) => self.boolean(node, what).map(Test::Bool),
-            Kind::Pin(ty @ (PinType::Axis | PinType::Enum(_))) => self.value(node, ty, what).map(Test::Named),
+            Kind::Pin(ty @ (PinType::Axis(_) | PinType::Enum(_) | PinType::Table(_))) => {
+                self.value(node, ty, what).map(Test::Named)
+            }
             Kind::Pin(_) => self.scalar(node, kind, what).map(Test::Exactly),
         }
     }

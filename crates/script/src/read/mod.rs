@@ -5,7 +5,7 @@
 //! wrong and goes on, so that one run shows all mistakes; a script is only given out if there was none.
 
 pub(crate) mod axis;
-mod block;
+pub(crate) mod block;
 mod circle;
 mod condition;
 pub(crate) mod drive;
@@ -14,6 +14,7 @@ pub(crate) mod json;
 pub(crate) mod names;
 pub(crate) mod shape;
 pub(crate) mod step;
+mod table;
 mod task;
 pub(crate) mod time;
 pub(crate) mod value;

@@ -5,8 +5,7 @@ use super::value::Fields;
 use super::{Reader, is_note, shape};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::model::{Action, DriveChange, DriveSetup, FaultKind, Point, Span, Step, When};
-use standstill_axis::PROBES;
-use standstill_drives::peripherals::DIGITAL;
+use standstill_axis::{DIGITAL, PROBES};
 use std::collections::BTreeMap;
 
 pub(crate) const FAULT_KINDS: [(&str, FaultKind); 4] = [

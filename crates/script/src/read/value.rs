@@ -336,8 +336,21 @@ impl Reader {
                 let value = self.whole(node, what, 0..=u16::MAX.into())?;
                 u16::try_from(value).ok().map(Value::Word)
             }
+            PinType::Dword => {
+                let value = self.whole(node, what, 0..=u32::MAX.into())?;
+                u32::try_from(value).ok().map(Value::Dword)
+            }
             PinType::Time => self.duration(node, what).map(Value::Time),
-            PinType::Axis => {
+            // Where a table may stand it was read before.
+            PinType::Table(_) => {
+                let message = format!("{what} is a table: steps, wires and records do not set one");
+                self.report(
+                    Diagnostic::new(Code::Unsupported, node.span, message)
+                        .help("write its records at the pin of the instance"),
+                );
+                None
+            }
+            PinType::Axis(_) => {
                 let index = self.axis_index(node, what)?;
                 u16::try_from(index)
                     .ok()

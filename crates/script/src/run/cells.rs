@@ -6,18 +6,30 @@ use standstill_fb::{EnumInfo, PinType, Value};
 use standstill_trace::{Cell, cell_text};
 use std::collections::BTreeMap;
 
-/// Texts for enum numbers that have no name; a cell only borrows its text.
+/// Texts for enum numbers that have no name, and for tables; a cell only borrows its text.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Undefined(BTreeMap<i32, String>);
+pub(crate) struct Undefined {
+    numbers: BTreeMap<i32, String>,
+    tables: BTreeMap<u16, String>,
+}
 
 impl Undefined {
     /// Makes the text of a value that will need one.
     pub(crate) fn prepare(&mut self, ty: PinType, value: Value) {
-        if let (PinType::Enum(info), Value::Enum(number)) = (ty, value)
-            && info.name_of(number).is_none()
-        {
-            self.0.entry(number).or_insert_with(|| number.to_string());
+        match (ty, value) {
+            (PinType::Enum(info), Value::Enum(number)) if info.name_of(number).is_none() => {
+                self.number(number);
+            }
+            (_, Value::Rows(count)) => {
+                let text = || format!("{count} record{}", if count == 1 { "" } else { "s" });
+                self.tables.entry(count).or_insert_with(text);
+            }
+            _ => {}
         }
+    }
+
+    fn number(&mut self, number: i32) {
+        self.numbers.entry(number).or_insert_with(|| number.to_string());
     }
 
     /// The cell of a value at a pin of type `ty`, once it has been prepared.
@@ -27,10 +39,12 @@ impl Undefined {
             Value::Int(value) => Cell::Integer(value.into()),
             Value::Lreal(value) => Cell::Real(value),
             Value::Word(value) => Cell::Integer(value.into()),
+            Value::Dword(value) => Cell::Integer(value.into()),
+            Value::Rows(count) => Cell::Name(self.tables.get(&count).map_or("", String::as_str)),
             Value::Time(ns) => Cell::Integer(ns),
             Value::Axis(id) => Cell::Name(axis_name(script, id)),
             Value::Enum(number) => Cell::Name(
-                enum_name(ty, number).unwrap_or_else(|| self.0.get(&number).map_or("", String::as_str)),
+                enum_name(ty, number).unwrap_or_else(|| self.numbers.get(&number).map_or("", String::as_str)),
             ),
         }
     }
@@ -57,7 +71,7 @@ pub(crate) fn value_text(script: &Script, ty: Option<PinType>, value: Value) -> 
     let mut undefined = Undefined::default();
     let ty = ty.unwrap_or(PinType::Lreal);
     if let Value::Enum(number) = value {
-        undefined.0.insert(number, number.to_string());
+        undefined.number(number);
     }
     cell_text(undefined.cell(script, ty, value))
 }
@@ -81,8 +95,9 @@ pub(crate) fn convert(value: Value, ty: PinType) -> Option<Value> {
         | (Value::Int(_), PinType::Int)
         | (Value::Lreal(_), PinType::Lreal)
         | (Value::Word(_), PinType::Word)
+        | (Value::Dword(_), PinType::Dword)
         | (Value::Time(_), PinType::Time)
-        | (Value::Axis(_), PinType::Axis)
+        | (Value::Axis(_), PinType::Axis(_))
         | (Value::Enum(_), PinType::Enum(_)) => Some(value),
         (_, PinType::Lreal) => match value {
             Value::Time(ns) => Some(Value::Lreal(ns as f64)),
@@ -90,9 +105,10 @@ pub(crate) fn convert(value: Value, ty: PinType) -> Option<Value> {
         },
         (_, PinType::Int) => Some(Value::Int(whole(value)?.try_into().ok()?)),
         (_, PinType::Word) => Some(Value::Word(whole(value)?.try_into().ok()?)),
+        (_, PinType::Dword) => Some(Value::Dword(whole(value)?.try_into().ok()?)),
         (_, PinType::Time) => Some(Value::Time(whole(value)?)),
         (_, PinType::Enum(_)) => Some(Value::Enum(whole(value)?.try_into().ok()?)),
-        (_, PinType::Bool | PinType::Axis) => None,
+        (_, PinType::Bool | PinType::Axis(_) | PinType::Table(_)) => None,
     }
 }
 
@@ -101,6 +117,7 @@ fn whole(value: Value) -> Option<i64> {
     match value {
         Value::Int(value) => Some(value.into()),
         Value::Word(value) => Some(value.into()),
+        Value::Dword(value) => Some(value.into()),
         Value::Time(ns) => Some(ns),
         Value::Enum(number) => Some(number.into()),
         Value::Lreal(value) => {
@@ -108,6 +125,6 @@ fn whole(value: Value) -> Option<i64> {
             let cast = value as i64;
             (cast as f64 == value && cast != i64::MAX).then_some(cast)
         }
-        Value::Bool(_) | Value::Axis(_) => None,
+        Value::Bool(_) | Value::Axis(_) | Value::Rows(_) => None,
     }
 }

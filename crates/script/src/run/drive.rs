@@ -16,6 +16,8 @@ pub(crate) struct ScriptDrive {
     peripherals: Peripherals,
     /// As last fed back.
     position: DrivePosition,
+    /// The last command in units.
+    commanded: f64,
 }
 
 /// What moves.
@@ -78,7 +80,8 @@ impl ScriptDrive {
         };
         Ok(Self {
             kind,
-            peripherals: Peripherals::default(),
+            peripherals: Peripherals::new(axis.config.modulo),
+            commanded: axis.config.position,
             position: position.map_or(
                 DrivePosition::Units(axis.config.position),
                 DrivePosition::Increments,
@@ -176,6 +179,12 @@ impl Drive for ScriptDrive {
     }
 
     fn write(&mut self, now_ns: i64, command: &DriveCommand) {
+        if let Some(name) = command.rename {
+            self.peripherals.shift(name - self.commanded);
+        }
+        if let DrivePosition::Units(position) = command.position {
+            self.commanded = position;
+        }
         match &mut self.kind {
             Kind::Ideal(drive) => drive.write(now_ns, command),
             Kind::Cia402(drive) => drive.write(now_ns, command),

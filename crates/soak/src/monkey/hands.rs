@@ -155,7 +155,12 @@ impl<'a> Monkey<'a> {
                 Some(Value::Lreal(one_of(self.random, &BAD_NUMBERS)))
             }
             PinType::Lreal => self.number(pin.name, axis).map(Value::Lreal),
-            PinType::Int | PinType::Word | PinType::Time | PinType::Axis => None,
+            PinType::Int
+            | PinType::Word
+            | PinType::Dword
+            | PinType::Time
+            | PinType::Axis(_)
+            | PinType::Table(_) => None,
         }
     }
 

@@ -261,6 +261,9 @@ fn shown(value: Value) -> String {
         Value::Enum(value) => value.to_string(),
         Value::Int(value) => value.to_string(),
         Value::Word(value) => value.to_string(),
+        Value::Dword(value) => value.to_string(),
+        // Only tables without records are drawn.
+        Value::Rows(_) => "[]".to_owned(),
         Value::Time(value) => value.to_string(),
         Value::Axis(axis) => format!("\"{}\"", axis_name(axis.index())),
     }

@@ -73,7 +73,7 @@ fn called(info: &BlockInfo, values: &[(&str, &str)]) -> Option<Trace> {
         let value = match (given, pin.direction, pin.ty) {
             (_, Direction::Output, _) => continue,
             (Some((_, value)), ..) => (*value).to_owned(),
-            (None, _, PinType::Axis) => {
+            (None, _, PinType::Axis(_)) => {
                 axes.push(format!(
                     "\"{0}\": {{\"limits\": {{\"velocity\": 100, \"acceleration\": 1000, \"jerk\": 10000, \"snap\": \
                      100000}}, \"software_limits\": {{\"min\": -1000, \"max\": 1000}}, \"state\": \"Standstill\"}}",

@@ -59,6 +59,10 @@ impl Compliance {
                         .map(|(name, number)| format!("{number} {name}"))
                         .collect::<Vec<_>>()
                         .join(", "),
+                    Some(PinType::Table(info)) => {
+                        let fields: Vec<_> = info.fields.iter().map(|field| field.name).collect();
+                        format!("array of {}", fields.join(", "))
+                    }
                     _ => String::new(),
                 };
                 let remark = self.standard.remark(name).map(|remark| remark.text.clone());

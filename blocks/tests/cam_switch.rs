@@ -1,0 +1,261 @@
+//! Cams switch in the right scan, at every speed, either way, on axes with and without turns.
+//!
+//! What must be on is found without the block's arithmetic: the position is followed without turns, and every turn has
+//! cams of its own.
+
+use standstill_axis::{
+    Axis, AxisConfig, AxisId, Command, Comms, Direction, DriveFeedback, DrivePosition, DriveSignals,
+    Dynamics, InstanceId, Limits, Log, Request, Source, Standard, StartState,
+};
+use standstill_blocks::administrative::mc_digital_cam_switch::{
+    CamSwitch, Inputs, McDigitalCamSwitch, TrackOption,
+};
+use standstill_fb::{Context, Instance, OutputRef, Table, Time};
+
+const CYCLE_NS: i64 = 1_000_000;
+const CYCLE: f64 = 1e-3;
+const TURN: f64 = 360.0;
+
+const LIMITS: Limits = Limits {
+    velocity: 1e6,
+    acceleration: 1e8,
+    deceleration: 1e8,
+    jerk: f64::INFINITY,
+    snap: f64::INFINITY,
+};
+
+/// splitmix64.
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        mixed ^ (mixed >> 31)
+    }
+
+    /// From 0 to 1.
+    fn part(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn coin(&mut self) -> bool {
+        self.bits().is_multiple_of(2)
+    }
+
+    /// Up to 20 scans, either sign, to the microsecond.
+    fn compensation(&mut self) -> Time {
+        Time((self.bits() % 40_000) as i64 * 1000 - 20 * CYCLE_NS)
+    }
+}
+
+/// The cams in the scan of a position, in units without turns.
+struct Judge {
+    first: f64,
+    last: f64,
+    velocity: f64,
+    on: f64,
+    off: f64,
+    turns: core::ops::RangeInclusive<i64>,
+    /// Too near to an edge to tell.
+    close: f64,
+}
+
+enum Verdict {
+    On,
+    Off,
+    Open,
+}
+
+impl Judge {
+    fn position_mode(&self, position: f64) -> Verdict {
+        let (enter, leave) = (self.velocity * self.on, self.velocity * self.off);
+        let forward = self.velocity > 0.0;
+        let before = position - self.velocity * CYCLE;
+        let mut on = false;
+        for turn in self.turns.clone() {
+            let shift = turn as f64 * TURN;
+            let (first, last) = (self.first + shift, self.last + shift);
+            let (lower, upper) = if forward {
+                (first + enter, last + leave)
+            } else {
+                (first + leave, last + enter)
+            };
+            let near = |edge: f64| (edge - position).abs() < self.close || (edge - before).abs() < self.close;
+            if (upper - lower).abs() < self.close || near(lower) || near(upper) {
+                return Verdict::Open;
+            }
+            if upper < lower {
+                continue;
+            }
+            let passed = if forward {
+                before < lower && lower <= position
+            } else {
+                position <= upper && upper < before
+            };
+            on |= passed || (lower <= position && position <= upper);
+        }
+        if on { Verdict::On } else { Verdict::Off }
+    }
+
+    /// Scans since the edge of a cam in time mode was met last.
+    fn since_met(&self, position: f64) -> Option<f64> {
+        let edges = self.turns.clone().map(|turn| {
+            let edge = self.first + turn as f64 * TURN + self.velocity * self.on;
+            (position - edge) / (self.velocity * CYCLE)
+        });
+        edges.filter(|scans| *scans >= 0.0).reduce(f64::min)
+    }
+}
+
+/// Covers: T39h
+#[test]
+fn cams_switch_in_the_right_scan_at_every_speed() {
+    let mut random = Random(5);
+    let (mut judged, mut ons, mut open) = (0_u32, 0_u32, 0_u32);
+    for case in 0..600 {
+        // From a creep to 150 degrees a scan.
+        let speed = 1.5e5 * random.part().powi(4) + 1.0;
+        let velocity = if random.coin() { speed } else { -speed };
+        let modulo = random.coin();
+        let config = AxisConfig {
+            start: StartState::Standstill,
+            modulo: modulo.then_some(TURN),
+            ..AxisConfig::new(LIMITS)
+        };
+        let id = AxisId::new(0);
+        let mut axes = [Axis::new(id, config, Standard::new(CYCLE)).expect("a good configuration")];
+        let mut log = Log::default();
+        let (on, off) = (random.compensation(), random.compensation());
+        let (first, last) = if modulo {
+            (TURN * random.part(), TURN * random.part())
+        } else {
+            // Somewhere on the way of the run.
+            let (one, other) = (random.part() * 100.0, random.part() * 100.0);
+            let way = velocity * CYCLE;
+            ((one * way).min(other * way), (one * way).max(other * way))
+        };
+        let duration = Time((1 + random.bits() % 30) as i64 * CYCLE_NS);
+        let cam = CamSwitch {
+            track_number: 1,
+            first_on: first,
+            last_on: last,
+            ..CamSwitch::default()
+        };
+        let timed = CamSwitch {
+            track_number: 2,
+            mode: 1,
+            duration,
+            ..cam
+        };
+        let option = TrackOption {
+            on_compensation: on,
+            off_compensation: off,
+            hysteresis: 0.0,
+        };
+        let mut block = Instance::<McDigitalCamSwitch>::default();
+        block.inputs = Inputs {
+            axis: id,
+            outputs: OutputRef(id),
+            switches: Table::of(&[cam, timed]),
+            track_options: Table::of(&[option, option]),
+            enable: true,
+            enable_mask: 3,
+            ..Inputs::default()
+        };
+        let seconds = |time: Time| time.0 as f64 * 1e-9;
+        let far = 4 + (speed * 0.3 / TURN) as i64;
+        let judge = Judge {
+            first,
+            last: if modulo && first > last { last + TURN } else { last },
+            velocity,
+            on: seconds(on),
+            off: seconds(off),
+            turns: if modulo { -far..=far } else { 0..=0 },
+            close: 1e-6 * (1.0 + speed * 0.2),
+        };
+        // The position at the beginning of the scan, without turns.
+        let mut position = 0.0;
+        for scan in 0..150 {
+            let feedback = DriveFeedback {
+                enabled: true,
+                voltage: true,
+                fault: None,
+                position: DrivePosition::Units(0.0),
+                comms: Comms::Ok,
+                signals: DriveSignals::default(),
+            };
+            axes[0].follow_feedback(&feedback, scan, &mut log);
+            let source = Source {
+                scan,
+                instance: InstanceId(0),
+            };
+            if scan == 0 {
+                let command = Command::MoveVelocity {
+                    dynamics: Dynamics {
+                        velocity,
+                        ..Dynamics::default()
+                    },
+                    direction: Direction::Unset.into(),
+                };
+                let request = Request::aborting(command);
+                axes[0].command(&request, source, &mut log).expect("a motion");
+            }
+            let steady = axes[0].setpoint().velocity == velocity;
+            block.call(&mut Context {
+                now_ns: scan as i64 * CYCLE_NS,
+                scan,
+                instance: InstanceId(0),
+                axes: &mut axes,
+                log: &mut log,
+            });
+            assert!(block.outputs.in_operation);
+            let outputs = axes[0].order().outputs;
+            // The look ahead counts with the velocity of now, so only from the second steady scan on.
+            if steady && scan > 5 {
+                let what = format!("case {case}, scan {scan}: {velocity} u/s, cam {first} to {last}");
+                match judge.position_mode(position) {
+                    Verdict::Open => open += 1,
+                    Verdict::On => {
+                        assert_eq!(outputs & 1, 1, "{what}: on");
+                        (judged, ons) = (judged + 1, ons + 1);
+                    }
+                    Verdict::Off => {
+                        assert_eq!(outputs & 1, 0, "{what}: off");
+                        judged += 1;
+                    }
+                }
+                // What was met before the steady part is not judged.
+                let length = seconds(duration) - seconds(on) + seconds(off);
+                if let Some(since) = judge
+                    .since_met(position)
+                    .filter(|since| *since < scan as f64 - 8.0)
+                {
+                    let scans = since.floor();
+                    let whole = (since - since.round()).abs() < 1e-3 || (scans - length / CYCLE).abs() < 1e-3;
+                    if !whole {
+                        let expected = scans * CYCLE < length;
+                        assert_eq!(outputs & 2 != 0, expected, "{what}: timed, met {since} scans ago");
+                        judged += 1;
+                    }
+                }
+            }
+            let before = axes[0].setpoint();
+            axes[0].advance(scan, &mut log);
+            let after = axes[0].setpoint();
+            let shown = after.position - before.position;
+            // Of the ways that fit what is shown the one nearest to what the velocities say.
+            let expected = 0.5 * (before.velocity + after.velocity) * CYCLE;
+            let turns = if modulo {
+                ((expected - shown) / TURN).round()
+            } else {
+                0.0
+            };
+            position += shown + turns * TURN;
+        }
+    }
+    println!("{judged} judged, {ons} of them on, {open} too near to an edge");
+    assert!(judged > 50_000 && ons > 10_000 && open < judged / 10);
+}

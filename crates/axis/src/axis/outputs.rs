@@ -1,0 +1,100 @@
+//! Digital inputs and outputs of the drive under an axis.
+//!
+//! Source: PLCopen Motion Control Part 1, MC_ReadDigitalInput, MC_ReadDigitalOutput, MC_WriteDigitalOutput; V26.
+
+use super::queue::Work;
+use super::{Axis, Source};
+use crate::{CommandId, Comms, DIGITAL, ErrorId, ExecutionMode, Fate, Log, Raw};
+use standstill_planner::Planner;
+
+/// The bit of input or output `number`.
+fn bit_of(number: i16) -> Result<u32, ErrorId> {
+    // As many as bits: from DIGITAL on there is none.
+    let number = u32::try_from(number).ok();
+    let bit = number.and_then(|number| 1_u32.checked_shl(number));
+    bit.ok_or(ErrorId::DigitalNumberInvalid)
+}
+
+impl<P: Planner> Axis<P> {
+    /// Digital input `number` as the drive told it in this scan.
+    ///
+    /// # Errors
+    /// [`ErrorId::DigitalNumberInvalid`], or [`ErrorId::CommunicationLost`] if what is known is old.
+    pub fn digital_input(&self, number: i16) -> Result<bool, ErrorId> {
+        let bit = bit_of(number)?;
+        self.told()?;
+        Ok(self.report().inputs & bit != 0)
+    }
+
+    /// What the drive shows at digital output `number`, read back in this scan.
+    ///
+    /// # Errors
+    /// As [`Axis::digital_input`].
+    pub fn digital_output(&self, number: i16) -> Result<bool, ErrorId> {
+        let bit = bit_of(number)?;
+        self.told()?;
+        Ok(self.report().outputs & bit != 0)
+    }
+
+    /// MC_WriteDigitalOutput: digital output `number` gets `value` at the end of this scan, in every state. With
+    /// `mcQueued` it waits like a buffered command while the axis has an owner.
+    ///
+    /// # Errors
+    /// The [`ErrorId`] the block shows: a number out of range, an undefined mode, a lost communication, a full
+    /// buffer. Nothing changes then.
+    pub fn write_output(
+        &mut self,
+        number: i16,
+        value: bool,
+        mode: Raw<ExecutionMode>,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<CommandId, ErrorId> {
+        let queued = self.is_queued(mode, source, log)?;
+        let bit = bit_of(number).map_err(|error| {
+            let most = f64::from(DIGITAL - 1);
+            self.refuse("OutputNumber", number.into(), most, error, source, log)
+        })?;
+        self.told()
+            .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, source, log))?;
+        if queued {
+            return self.enqueue(Work::Output { bit, value }, source, log);
+        }
+        self.set_output(bit, value);
+        let id = self.new_id();
+        self.fates.record(id, Fate::Done);
+        Ok(id)
+    }
+
+    /// Outputs of `mask` get the levels of `on` at the end of this scan.
+    pub fn write_outputs(&mut self, mask: u32, on: u32) {
+        let outputs = &mut self.beside.order.outputs;
+        *outputs = (*outputs & !mask) | (on & mask);
+    }
+
+    /// Writes what waits at the head of the buffer; `false` if that is no output.
+    pub(super) fn write_queued_output(&mut self) -> bool {
+        let Some(entry) = self.queue.first() else {
+            return false;
+        };
+        let (id, Work::Output { bit, value }) = (entry.id, entry.work) else {
+            return false;
+        };
+        self.queue.pop();
+        self.set_output(bit, value);
+        self.fates.record(id, Fate::Done);
+        true
+    }
+
+    fn set_output(&mut self, bit: u32, value: bool) {
+        self.write_outputs(bit, if value { bit } else { 0 });
+    }
+
+    /// What the drive tells is of this scan.
+    fn told(&self) -> Result<(), ErrorId> {
+        match self.power.comms {
+            Comms::Ok => Ok(()),
+            Comms::Lost => Err(ErrorId::CommunicationLost),
+        }
+    }
+}

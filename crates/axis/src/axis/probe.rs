@@ -1,0 +1,231 @@
+//! Touch probes: the position at an edge of a probe's input.
+//!
+//! The drive latches the position at the first edge after it was armed, between scans. Whether that edge counts is
+//! decided here, at the latch of the next scan: with a window, one outside it does not, and the probe is armed
+//! anew. A drive is armed anew by one scan without an edge, so edges in that scan are not seen.
+//!
+//! Source: PLCopen Motion Control Part 1, MC_TouchProbe and MC_AbortTrigger; V23, T39 g.
+
+use super::{Axis, Source};
+use crate::{CommandId, DrivePosition, Edge, ErrorId, Fate, Log, PROBES, Raw, Trigger};
+use standstill_planner::Planner;
+
+/// MC_TouchProbe: values as they stand at the pins, unchecked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TouchProbe {
+    /// The probe and its edge.
+    pub trigger: Raw<Trigger>,
+    /// First and last position (u) at which an edge counts, both included; none: everywhere.
+    pub window: Option<(f64, f64)>,
+    /// The probing the same instance commanded before, which this one replaces should it still wait (V23).
+    pub replaces: Option<CommandId>,
+}
+
+/// A command that waits for an edge.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    id: CommandId,
+    edge: Edge,
+    window: Option<(f64, f64)>,
+    /// The drive was asked to latch for it.
+    armed: bool,
+}
+
+/// The probes of an axis.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Probes {
+    waiting: [Option<Waiting>; PROBES],
+    /// The last position each recorded (u), and for which command.
+    recorded: [Option<(CommandId, f64)>; PROBES],
+}
+
+impl Probes {
+    pub fn is_waiting(&self, id: CommandId) -> bool {
+        self.waiting.iter().flatten().any(|waiting| waiting.id == id)
+    }
+}
+
+/// Whether `position` (u) lies in a window that was checked.
+fn is_inside((first, last): (f64, f64), position: f64) -> bool {
+    if first <= last {
+        first <= position && position <= last
+    } else {
+        first <= position || position <= last
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// MC_TouchProbe: records the position at the next edge that counts, in every state.
+    ///
+    /// # Errors
+    /// The [`ErrorId`] the block shows: an undefined trigger, a window that is none, or a probe that another
+    /// command waits for. Nothing changes then.
+    pub fn touch_probe(
+        &mut self,
+        request: &TouchProbe,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<CommandId, ErrorId> {
+        let (probe, edge) = self.trigger(request.trigger, source, log)?;
+        if let Some(window) = request.window {
+            self.check_window(window, source, log)?;
+        }
+        let before = self.probes.waiting.get(probe).copied().flatten();
+        if before.is_some_and(|before| Some(before.id) != request.replaces) {
+            let number = f64::from(request.trigger.number());
+            let error = ErrorId::TriggerTaken;
+            return Err(self.refuse("TriggerInput", number, f64::NAN, error, source, log));
+        }
+        if let Some(id) = request.replaces {
+            self.forget_probe(id);
+        }
+        let id = self.new_id();
+        // A drive that waits for this edge already goes on waiting: nothing that comes now is missed.
+        let armed = before.is_some_and(|before| before.armed && before.edge == edge);
+        if let Some(slot) = self.probes.waiting.get_mut(probe) {
+            *slot = Some(Waiting {
+                id,
+                edge,
+                window: request.window,
+                armed,
+            });
+        }
+        if armed {
+            self.order_probe(probe, Some(edge));
+        } else {
+            self.arm_probe(probe);
+        }
+        Ok(id)
+    }
+
+    /// MC_AbortTrigger: whoever waits for an edge of this probe, the other edge included, waits no longer.
+    ///
+    /// # Errors
+    /// [`ErrorId::TriggerInvalid`].
+    pub fn abort_trigger(
+        &mut self,
+        trigger: Raw<Trigger>,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<CommandId, ErrorId> {
+        let (probe, _) = self.trigger(trigger, source, log)?;
+        if let Some(waiting) = self.end_probing(probe) {
+            self.fates.record(waiting.id, Fate::Aborted);
+        }
+        let id = self.new_id();
+        self.fates.record(id, Fate::Done);
+        Ok(id)
+    }
+
+    /// What command `id` recorded (u), in the coordinates that were in force then; each probe remembers the last one.
+    pub fn recorded_position(&self, id: CommandId) -> Option<f64> {
+        let mut recorded = self.probes.recorded.iter().flatten();
+        recorded.find(|(of, _)| *of == id).map(|(_, position)| *position)
+    }
+
+    /// Command `id` waits no longer, and nobody is told.
+    pub fn forget_probe(&mut self, id: CommandId) {
+        for probe in 0..PROBES {
+            let waiting = self.probes.waiting.get(probe).copied().flatten();
+            if waiting.is_some_and(|waiting| waiting.id == id) {
+                self.end_probing(probe);
+            }
+        }
+    }
+
+    /// Takes what the drive told in this scan, before the feedback: what it latched carries the names that were in
+    /// force until now.
+    #[inline]
+    pub fn follow_report(&mut self) {
+        if self.probes.waiting.iter().any(Option::is_some) {
+            self.follow_probes();
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn follow_probes(&mut self) {
+        for probe in 0..PROBES {
+            let waiting = self.probes.waiting.get(probe).copied().flatten();
+            let told = self.beside.report.probes.get(probe).copied();
+            let (Some(waiting), Some(told)) = (waiting, told) else {
+                continue;
+            };
+            if !waiting.armed {
+                self.arm_probe(probe);
+            } else if let Some(latched) = told.latched.filter(|_| told.armed) {
+                let position = self.place_of(latched);
+                self.end_probing(probe);
+                if waiting.window.is_none_or(|window| is_inside(window, position)) {
+                    if let Some(slot) = self.probes.recorded.get_mut(probe) {
+                        *slot = Some((waiting.id, position));
+                    }
+                    self.fates.record(waiting.id, Fate::Done);
+                } else if let Some(slot) = self.probes.waiting.get_mut(probe) {
+                    *slot = Some(Waiting {
+                        armed: false,
+                        ..waiting
+                    });
+                }
+            }
+        }
+    }
+
+    /// Asks the drive to latch, as soon as it has let go of what it latched before.
+    fn arm_probe(&mut self, probe: usize) {
+        let told = self.beside.report.probes.get(probe);
+        let free = told.is_some_and(|told| !told.armed);
+        let Some(Some(waiting)) = self.probes.waiting.get_mut(probe) else {
+            return;
+        };
+        waiting.armed = free;
+        let edge = free.then_some(waiting.edge);
+        self.order_probe(probe, edge);
+    }
+
+    fn order_probe(&mut self, probe: usize, edge: Option<Edge>) {
+        if let Some(order) = self.beside.order.probes.get_mut(probe) {
+            *order = edge;
+        }
+    }
+
+    fn end_probing(&mut self, probe: usize) -> Option<Waiting> {
+        self.order_probe(probe, None);
+        self.probes.waiting.get_mut(probe)?.take()
+    }
+
+    fn trigger(
+        &self,
+        trigger: Raw<Trigger>,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(usize, Edge), ErrorId> {
+        trigger.get().map(Trigger::source).ok_or_else(|| {
+            let (number, error) = (f64::from(trigger.number()), ErrorId::TriggerInvalid);
+            self.refuse("TriggerInput", number, 3.0, error, source, log)
+        })
+    }
+
+    fn check_window(&self, (first, last): (f64, f64), source: Source, log: &mut Log) -> Result<(), ErrorId> {
+        for (pin, position) in [("FirstPosition", first), ("LastPosition", last)] {
+            self.finite(pin, position, source, log)?;
+            self.in_first_turn(position)
+                .map_err(|(length, error)| self.refuse(pin, position, length, error, source, log))?;
+        }
+        // Only on a modulo axis does a window go on behind the end of the turn.
+        if first > last && self.modulo.is_none() {
+            let error = ErrorId::WindowInvalid;
+            return Err(self.refuse("LastPosition", last, first, error, source, log));
+        }
+        Ok(())
+    }
+
+    /// A position at the drive as programs see it (u).
+    fn place_of(&self, latched: DrivePosition) -> f64 {
+        match (latched, &self.modulo) {
+            (position, Some(modulo)) => modulo.place_of(&self.config, position, self.shift).1,
+            (DrivePosition::Units(units), None) => units,
+            (DrivePosition::Increments(increments), None) => self.position_at_increment(increments),
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Administrative commands that wait their turn: `mcQueued`.
+//!
+//! Source: PLCopen Motion Control Part 1, MC_EXECUTION_MODE and the sections of the blocks that have it. They wait
+//! like buffered motions, never own the axis, and do not change its state.
+
+use super::queue::{Entry, Work};
+use super::{Axis, Source};
+use crate::{AxisState, BufferMode, CommandId, ErrorId, ExecutionMode, Log, Raw};
+use standstill_planner::Planner;
+
+impl<P: Planner> Axis<P> {
+    /// Whether a command with this `ExecutionMode` is to wait: the axis has an owner, or others wait already.
+    ///
+    /// # Errors
+    /// [`ErrorId::ExecutionModeInvalid`] if the number is undefined.
+    pub(super) fn is_queued(
+        &self,
+        mode: Raw<ExecutionMode>,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<bool, ErrorId> {
+        match mode.get() {
+            Some(mode) => Ok(mode == ExecutionMode::Queued && self.is_owned()),
+            None => {
+                let number = f64::from(mode.number());
+                let error = ErrorId::ExecutionModeInvalid;
+                Err(self.refuse("ExecutionMode", number, 1.0, error, source, log))
+            }
+        }
+    }
+
+    /// `work` waits behind all that waits already.
+    ///
+    /// # Errors
+    /// [`ErrorId::BufferFull`].
+    pub(super) fn enqueue(
+        &mut self,
+        work: Work,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<CommandId, ErrorId> {
+        self.wait()
+            .map_err(|(_, error)| self.refuse("ExecutionMode", 1.0, f64::NAN, error, source, log))?;
+        let id = self.new_id();
+        let entry = Entry::new(
+            id,
+            source.instance,
+            work,
+            self.config.limits,
+            BufferMode::Buffered,
+        );
+        self.queue.push(entry);
+        Ok(id)
+    }
+
+    /// Whether something is there that a queued command waits for.
+    fn is_owned(&self) -> bool {
+        match self.state {
+            AxisState::Disabled | AxisState::ErrorStop => false,
+            AxisState::Standstill
+            | AxisState::Homing
+            | AxisState::Stopping
+            | AxisState::DiscreteMotion
+            | AxisState::ContinuousMotion
+            | AxisState::SynchronizedMotion => self.owner.is_some() || !self.queue.is_empty(),
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! An edge of a probe between two scans, at any place of the scan and any speed.
+
+use standstill_axis::{
+    Axis, AxisConfig, AxisId, Command, Direction, Drive, DrivePosition, Dynamics, Fate, IdealDrive,
+    InstanceId, Limits, Log, Request, Source, Standard, StartState, TouchProbe, Trigger,
+};
+use standstill_drives::peripherals::Peripherals;
+
+const CYCLE: f64 = 0.001;
+
+const LIMITS: Limits = Limits {
+    velocity: 1e4,
+    acceleration: 1e6,
+    deceleration: 1e6,
+    jerk: 1e9,
+    snap: f64::INFINITY,
+};
+
+/// splitmix64.
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        mixed ^ (mixed >> 31)
+    }
+
+    /// From 0 to 1.
+    fn part(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+struct Rig {
+    axis: Axis,
+    drive: IdealDrive,
+    device: Peripherals,
+    log: Log,
+    scan: u64,
+}
+
+impl Rig {
+    fn new(modulo: Option<f64>, delay: usize) -> Self {
+        let config = AxisConfig {
+            start: StartState::Standstill,
+            modulo,
+            ..AxisConfig::new(LIMITS)
+        };
+        Self {
+            axis: Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).expect("a good configuration"),
+            drive: IdealDrive::new(DrivePosition::Units(0.0), delay, Some(0), true),
+            device: Peripherals::new(modulo),
+            log: Log::default(),
+            scan: 0,
+        }
+    }
+
+    fn source(&self) -> Source {
+        Source {
+            scan: self.scan,
+            instance: InstanceId(0),
+        }
+    }
+
+    /// A scan with these commands in its middle.
+    fn scan(&mut self, commands: impl FnOnce(&mut Self)) {
+        let feedback = self.drive.read(0);
+        self.device.report(feedback.position, self.axis.report_mut());
+        self.axis.follow_report();
+        self.axis.follow_feedback(&feedback, self.scan, &mut self.log);
+        commands(self);
+        self.axis.advance(self.scan, &mut self.log);
+        self.device.order(self.axis.order());
+        self.drive.write(0, &self.axis.drive_command());
+        self.scan += 1;
+    }
+}
+
+/// The way from one actual position to the next, the shorter one on a modulo axis.
+fn way(from: f64, to: f64, modulo: Option<f64>) -> f64 {
+    let nearest = |turn: f64| [-turn, 0.0, turn].map(|turns| to - from + turns);
+    let nearest = modulo.map_or([to - from; 3], nearest);
+    let shorter = |one: f64, other: f64| if other.abs() < one.abs() { other } else { one };
+    nearest.into_iter().fold(f64::INFINITY, shorter)
+}
+
+/// Covers: T39g
+#[test]
+fn an_edge_between_scans_is_recorded_to_a_millionth_of_the_way() {
+    let mut random = Random(11);
+    let mut worst = 0.0_f64;
+    for case in 0..2000 {
+        let modulo = (case % 2 == 1).then_some(360.0);
+        let mut rig = Rig::new(modulo, case % 3);
+        // From a creep to ten units a scan, either way.
+        let speed = 1e4 * random.part() * random.part() * random.part() + 0.1;
+        let velocity = if random.bits().is_multiple_of(2) {
+            speed
+        } else {
+            -speed
+        };
+        let dynamics = Dynamics {
+            velocity,
+            ..Dynamics::default()
+        };
+        let command = Command::MoveVelocity {
+            dynamics,
+            direction: Direction::Unset.into(),
+        };
+        let mut probing = None;
+        rig.scan(|rig| {
+            let source = rig.source();
+            let request = Request::aborting(command);
+            rig.axis
+                .command(&request, source, &mut rig.log)
+                .expect("a motion");
+            let request = TouchProbe {
+                trigger: Trigger::Probe1Rising.into(),
+                window: None,
+                replaces: None,
+            };
+            let id = rig.axis.touch_probe(&request, source, &mut rig.log);
+            probing = Some(id.expect("a free probe"));
+        });
+        let probing = probing.expect("the scan was called");
+        // In the ramp, or far behind it.
+        for _ in 0..4 + random.bits() % 60 {
+            rig.scan(|_| ());
+            assert_eq!(rig.axis.fate(probing), Fate::Waiting);
+        }
+        let at = random.part();
+        let before = rig.axis.actual_position();
+        rig.device.set_probe(0, at, true);
+        rig.scan(|_| ());
+        assert_eq!(rig.axis.fate(probing), Fate::Done);
+        let travel = way(before, rig.axis.actual_position(), modulo);
+        let recorded = rig.axis.recorded_position(probing).expect("recorded");
+        let error = way(before + at * travel, recorded, modulo).abs();
+        // What positions of this size resolve comes on top.
+        let resolved = 4.0 * f64::EPSILON * before.abs().max(recorded.abs()).max(360.0);
+        assert!(
+            error <= 1e-6 * travel.abs() + resolved,
+            "case {case}: {error} of {travel}"
+        );
+        if travel != 0.0 {
+            worst = worst.max((error - resolved).max(0.0) / travel.abs());
+        }
+    }
+    println!("worst error {worst} of the way of its scan");
+}
