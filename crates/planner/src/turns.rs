@@ -49,16 +49,18 @@ fn split_far(position: f64, length: f64) -> (i64, f64) {
         (position - whole) - error
     };
     let mut turns = (position / length) as i64;
+    let mut left = rest(turns);
     // The quotient is off by one at most.
-    if rest(turns) < 0.0 {
+    if left < 0.0 {
         turns = turns.saturating_sub(1);
-    } else if rest(turns) >= length {
+        left = rest(turns);
+    } else if left >= length {
         turns = turns.saturating_add(1);
+        left = rest(turns);
     }
-    let rest = rest(turns);
-    if rest >= 0.0 && rest < length {
-        (turns, rest + 0.0)
-    } else if rest >= length {
+    if left >= 0.0 && left < length {
+        (turns, left + 0.0)
+    } else if left >= length {
         (turns.saturating_add(1), 0.0)
     } else {
         (turns, 0.0)

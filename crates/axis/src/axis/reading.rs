@@ -107,6 +107,9 @@ impl Past {
     #[inline(never)]
     fn come_round(&mut self, actual: f64, length: f64) {
         let nearest = |place: f64, to: f64| {
+            if (place - to).abs() < length / 2.0 {
+                return place;
+            }
             let (_, ahead) = split(place - to, length);
             to + if ahead > length / 2.0 {
                 ahead - length

@@ -2,7 +2,7 @@
 //!
 //! It comes after all block calls of a scan, so what it decides shows in the next one (R70).
 
-use super::queue::Work;
+use super::queue::{Entry, Work};
 use super::{Axis, Motion, Source, power::Reaction};
 use crate::{AxisEvent, AxisState, ErrorId, Fate, InstanceId, Log, QUEUE_MAX};
 use standstill_planner::{Plan, Planner, Setpoint};
@@ -15,8 +15,8 @@ impl<P: Planner> Axis<P> {
     // See `follow_feedback`.
     #[inline(always)]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
-        // Short of the goal a plan needs a step and nothing else.
-        if self.calm && self.is_short_of_goal() {
+        // Short of the goal a plan needs a step and nothing else, and so does an endless motion nobody waits for.
+        if self.calm && (self.is_short_of_goal() || self.is_cruising()) {
             self.step_along_plan(scan, log);
         } else {
             self.advance_with_care(scan, log);
@@ -39,6 +39,13 @@ impl<P: Planner> Axis<P> {
     #[inline]
     fn is_short_of_goal(&self) -> bool {
         matches!(&self.motion, Motion::Run { elapsed, scans, .. } if elapsed.wrapping_add(1) < *scans)
+    }
+
+    /// An endless motion has come to its velocity, or is about to, and nobody waits for that.
+    #[inline]
+    fn is_cruising(&self) -> bool {
+        let is_endless = self.owner.as_ref().is_some_and(Entry::is_endless);
+        is_endless && self.queue.is_empty() && !self.is_held_up()
     }
 
     /// The next set-point of the plan, if it may be published.
