@@ -221,6 +221,13 @@ impl OnlinePlan {
         self.found.excess
     }
 
+    /// What of [`OnlinePlan::excess`] is beyond `limits`, too, which are no lower than those of the plan; found as
+    /// by [`RampPlan::excess_over`], in at most 30 pieces.
+    pub fn excess_over(&self, limits: &Limits) -> Option<Excess> {
+        self.found.excess?;
+        excess::excess(&self.found.path, self.end_velocity, None, limits)
+    }
+
     /// Time until the target (s), not rounded to scans but where a grid plan ends it.
     pub fn duration(&self) -> f64 {
         match &self.found.tail {
