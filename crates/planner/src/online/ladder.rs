@@ -58,6 +58,8 @@ pub(super) struct Found {
     pub(super) path: Path<MAX_PIECES>,
     /// What the rounding of the path leaves to the target; it is spread over the whole plan (O9).
     pub(super) residual: f64,
+    /// The residual moves no set-point by more than a unit in its last place from scan to scan.
+    pub(super) is_rounding: bool,
     pub(super) tail: Option<Tail>,
     pub(super) excess: Option<Excess>,
 }
@@ -71,6 +73,7 @@ impl Found {
             steps: 0,
             path: Path::new(order),
             residual: 0.0,
+            is_rounding: true,
             tail: None,
             excess: None,
         }
