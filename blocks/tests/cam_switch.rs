@@ -180,7 +180,8 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
     let (mut judged, mut ons, mut open) = (0_u32, 0_u32, 0_u32);
     for case in 0..600 {
         // From a creep to 150 degrees a scan.
-        let speed = 1.5e5 * random.part().powi(4) + 1.0;
+        let part = random.part();
+        let speed = 1.5e5 * (part * part) * (part * part) + 1.0;
         let velocity = if random.coin() { speed } else { -speed };
         let modulo = random.coin();
         let config = AxisConfig {
@@ -218,8 +219,7 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
             off_compensation: off,
             hysteresis: 0.0,
         };
-        let mut block = Instance::<McDigitalCamSwitch>::default();
-        block.inputs = Inputs {
+        let inputs = Inputs {
             axis: id,
             outputs: OutputRef(id),
             switches: TableOf::new(TableRef { first: 0, records: 2 }),
@@ -230,6 +230,10 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
             enable: true,
             enable_mask: 3,
             ..Inputs::default()
+        };
+        let mut block = Instance::<McDigitalCamSwitch> {
+            inputs,
+            ..Instance::default()
         };
         let mut tables = cells(&[cam, timed]);
         tables.extend(cells(&[option, option]));
