@@ -140,13 +140,15 @@ fn a_table_that_is_not_there_or_too_long_is_an_error_until_it_is_mended() {
             ..CamSwitch::default()
         }; 33],
     );
-    let mut block = Instance::<McDigitalCamSwitch>::default();
-    block.inputs = Inputs {
-        axis: id,
-        outputs: OutputRef(id),
-        enable: true,
-        enable_mask: 1,
-        ..Inputs::default()
+    let mut block = Instance::<McDigitalCamSwitch> {
+        inputs: Inputs {
+            axis: id,
+            outputs: OutputRef(id),
+            enable: true,
+            enable_mask: 1,
+            ..Inputs::default()
+        },
+        ..Instance::default()
     };
     let too_many = u32::try_from(tables.len()).expect("some numbers");
     let rows = [
