@@ -121,6 +121,7 @@ fn the_top_level_holds_what_a_newcomer_expects() {
         "crates",
         "docs",
         "scan-tests",
+        "soak-failures",
         "target",
     ];
     for entry in fs::read_dir(root()).unwrap() {
@@ -175,7 +176,17 @@ fn layers_depend_only_downwards() {
                 "standstill-trace",
             ],
         ),
-        ("crates/soak", "standstill-soak", &["standstill-planner"]),
+        (
+            "crates/soak",
+            "standstill-soak",
+            &[
+                "standstill-axis",
+                "standstill-blocks",
+                "standstill-fb",
+                "standstill-planner",
+                "standstill-scan",
+            ],
+        ),
         (
             "crates/cli",
             "standstill-cli",
