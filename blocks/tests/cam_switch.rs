@@ -10,7 +10,7 @@ use standstill_axis::{
 use standstill_blocks::administrative::mc_digital_cam_switch::{
     CamSwitch, Inputs, McDigitalCamSwitch, TrackOption,
 };
-use standstill_fb::{Context, Instance, OutputRef, Table, Time};
+use standstill_fb::{Context, Instance, OutputRef, Pins, TableOf, TableRef, Time};
 
 const CYCLE_NS: i64 = 1_000_000;
 const CYCLE: f64 = 1e-3;
@@ -49,6 +49,19 @@ impl Random {
     fn compensation(&mut self) -> Time {
         Time((self.bits() % 40_000) as i64 * 1000 - 20 * CYCLE_NS)
     }
+}
+
+/// Records as numbers of a table.
+fn cells<R: Pins>(records: &[R]) -> Vec<f64> {
+    let of = |record: &R| {
+        (0..R::PINS.len())
+            .map_while(|field| record.get(field)?.to_cell())
+            .collect()
+    };
+    records
+        .iter()
+        .flat_map(|record| -> Vec<f64> { of(record) })
+        .collect()
 }
 
 /// The cams in the scan of a position, in units without turns.
@@ -117,7 +130,8 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
     let (mut judged, mut ons, mut open) = (0_u32, 0_u32, 0_u32);
     for case in 0..600 {
         // From a creep to 150 degrees a scan.
-        let speed = 1.5e5 * random.part().powi(4) + 1.0;
+        let part = random.part();
+        let speed = 1.5e5 * (part * part) * (part * part) + 1.0;
         let velocity = if random.coin() { speed } else { -speed };
         let modulo = random.coin();
         let config = AxisConfig {
@@ -155,16 +169,24 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
             off_compensation: off,
             hysteresis: 0.0,
         };
-        let mut block = Instance::<McDigitalCamSwitch>::default();
-        block.inputs = Inputs {
+        let inputs = Inputs {
             axis: id,
             outputs: OutputRef(id),
-            switches: Table::of(&[cam, timed]),
-            track_options: Table::of(&[option, option]),
+            switches: TableOf::new(TableRef { first: 0, records: 2 }),
+            track_options: TableOf::new(TableRef {
+                first: u32::try_from(cells(&[cam, timed]).len()).expect("some numbers"),
+                records: 2,
+            }),
             enable: true,
             enable_mask: 3,
             ..Inputs::default()
         };
+        let mut block = Instance::<McDigitalCamSwitch> {
+            inputs,
+            ..Instance::default()
+        };
+        let mut tables = cells(&[cam, timed]);
+        tables.extend(cells(&[option, option]));
         let seconds = |time: Time| time.0 as f64 * 1e-9;
         let far = 4 + (speed * 0.3 / TURN) as i64;
         let judge = Judge {
@@ -210,6 +232,7 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
                 instance: InstanceId(0),
                 axes: &mut axes,
                 log: &mut log,
+                tables: &tables,
             });
             assert!(block.outputs.in_operation);
             let outputs = axes[0].order().outputs;

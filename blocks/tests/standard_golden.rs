@@ -61,6 +61,7 @@ impl Bench {
             instance: Default::default(),
             axes: &mut [],
             log: &mut Log::default(),
+            tables: &[],
         });
     }
 

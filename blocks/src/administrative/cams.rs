@@ -1,4 +1,4 @@
-//! Cams: which tracks are on at a position, and the memory that takes.
+//! Cams: which tracks are on at a position.
 //!
 //! Positions are those of one instant a scan. With a compensation time t an edge at E is met where
 //! `position - velocity * t` is E: a negative t looks ahead. Between two instants the way is known, so an edge that was
@@ -6,7 +6,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_DigitalCamSwitch; T39 h.
 
-use standstill_axis::{ErrorId, split};
+use standstill_axis::{CamTrack, ErrorId, split};
 use standstill_fb::{Int, Time, record};
 
 /// Tracks are numbered from 1 to this, one for each output.
@@ -148,88 +148,57 @@ impl Sample {
     }
 }
 
-/// What a track remembers.
+/// What an instance remembers of all its tracks together.
 #[derive(Clone, Copy, Debug, Default)]
-struct Track {
-    on: bool,
-    /// Where it switched last (u).
-    point: Option<f64>,
-    /// The switch that put it on.
-    by: usize,
-    /// Where that one would put it off, in the present direction (u).
-    leave: f64,
-}
-
-/// What a switch in time mode remembers.
-#[derive(Clone, Copy, Debug, Default)]
-struct Timed {
-    /// On until then (ns).
-    until: Option<i64>,
-    /// Not yet out of the hysteresis around the position that put it on.
-    held: bool,
-}
-
-/// All tracks of an instance.
-#[derive(Clone, Copy, Debug)]
 pub struct Cams {
     before: Option<Sample>,
     /// The last motion was in positive direction; none before the first.
     forward: Option<bool>,
-    tracks: [Track; TRACKS],
-    timed: [Timed; SWITCHES],
-}
-
-impl Default for Cams {
-    fn default() -> Self {
-        Self {
-            before: None,
-            forward: None,
-            tracks: [Track::default(); TRACKS],
-            timed: [Timed::default(); SWITCHES],
-        }
-    }
 }
 
 impl Cams {
-    /// The tracks that are on now, a bit each; those not in `mask` are off and forget what was.
+    /// The tracks that are on now, a bit each; those not in `mask` are left alone.
     ///
-    /// `switches` and `tracks` have passed [`check`]. Cost: some 60 operations for each of at most [`SWITCHES`].
-    pub fn scan(&mut self, switches: &[CamSwitch], options: &[TrackOption], mask: u32, now: &Sample) -> u32 {
-        let before = self.before.filter(|before| before.coordinates == now.coordinates);
-        if before.is_none() {
-            // Switching points lie in coordinates that are gone.
-            self.tracks.iter_mut().for_each(|track| track.point = None);
-            self.timed.iter_mut().for_each(|timed| timed.held = false);
-        }
-        let before = before.unwrap_or(*now);
-        self.before = Some(*now);
-        let way = now.way_since(&before);
+    /// `switches` and `options` have passed [`check`]; `tracks` is what the outputs remember. Cost: some 60 operations
+    /// for each switch.
+    pub fn scan(
+        &mut self,
+        switches: &[CamSwitch],
+        options: &[TrackOption],
+        mask: u32,
+        tracks: &mut [CamTrack],
+        now: &Sample,
+    ) -> u32 {
+        let before = self.before.replace(*now);
+        let comparable = before.filter(|before| before.coordinates == now.coordinates);
+        let way = comparable.map_or(0.0, |before| now.way_since(&before));
         let heading = if now.velocity != 0.0 { now.velocity } else { way };
         if heading != 0.0 {
             self.forward = Some(heading > 0.0);
         }
         let motion = Motion {
             now,
-            before: &before,
+            before: &comparable.unwrap_or(*now),
             way,
             forward: self.forward,
         };
         let mut bits = 0;
-        for (index, track) in self.tracks.iter_mut().enumerate().take(TRACKS) {
+        for (index, track) in tracks.iter_mut().enumerate().take(TRACKS) {
             let bit = 1_u32 << index;
-            let option = options.get(index).copied().unwrap_or_default();
             if mask & bit == 0 {
-                *track = Track::default();
+                continue;
             }
-            let mut wanted = None;
-            let mut timed_on = false;
+            if comparable.is_none() {
+                // Switching points lie in coordinates that are gone.
+                (track.point, track.held_at) = (None, None);
+            }
+            let option = options.get(index).copied().unwrap_or_default();
             let of_track = |switch: &CamSwitch| usize::try_from(switch.track_number).ok() == Some(index + 1);
-            let all = switches.iter().zip(&mut self.timed).enumerate();
-            for (place, (switch, timed)) in all.filter(|(_, (switch, _))| of_track(switch)) {
-                if mask & bit == 0 {
-                    *timed = Timed::default();
-                } else if switch.mode == 1 {
-                    timed_on |= motion.times(switch, &option, timed);
+            let mut wanted = None;
+            motion.lets_go(&option, track);
+            for (place, switch) in switches.iter().enumerate().filter(|(_, switch)| of_track(switch)) {
+                if switch.mode == 1 {
+                    motion.times(switch, &option, track);
                 } else {
                     let cam = motion.cam(switch, &option);
                     if cam.on && wanted.is_none() {
@@ -240,10 +209,9 @@ impl Cams {
                     }
                 }
             }
-            if mask & bit != 0 {
-                track.follow(wanted, option.hysteresis, &motion);
-            }
-            if track.on || timed_on {
+            follow(track, wanted, option.hysteresis, &motion);
+            track.until = track.until.filter(|until| now.now_ns < *until);
+            if track.on || track.until.is_some() {
                 bits |= bit;
             }
         }
@@ -332,43 +300,39 @@ impl Motion<'_> {
         }
     }
 
-    /// Whether a switch in time mode is on.
-    fn times(&self, switch: &CamSwitch, option: &TrackOption, timed: &mut Timed) -> bool {
+    /// The position that put the track on by time is behind: it may do so again.
+    fn lets_go(&self, option: &TrackOption, track: &mut CamTrack) {
+        let near = |at: &f64| self.now.distance(self.now.position, *at) < option.hysteresis;
+        track.held_at = track.held_at.filter(near);
+    }
+
+    /// A switch in time mode puts its track on.
+    fn times(&self, switch: &CamSwitch, option: &TrackOption, track: &mut CamTrack) {
         let (on, off) = (option.on_compensation, option.off_compensation);
         let edge = switch.first_on;
-        if timed.held && self.now.distance(self.now.position, edge) >= option.hysteresis {
-            timed.held = false;
-        }
-        if self.works(switch) && !timed.held && self.meets(edge, on) {
+        let held = |at: f64| self.now.distance(edge, at) < option.hysteresis;
+        if self.works(switch) && !track.held_at.is_some_and(held) && self.meets(edge, on) {
             let length = switch.duration.0.saturating_add(off.0).saturating_sub(on.0);
-            timed.until = Some(self.now.now_ns.saturating_add(length));
-            timed.held = option.hysteresis > 0.0;
+            let until = self.now.now_ns.saturating_add(length);
+            track.until = Some(track.until.map_or(until, |other| other.max(until)));
+            track.held_at = Some(edge);
         }
-        timed.until = timed.until.filter(|until| self.now.now_ns < *until);
-        timed.until.is_some()
     }
 }
 
-impl Track {
-    /// Switches as the cams want, unless that would be too near to where it switched last.
-    fn follow(&mut self, wanted: Option<(usize, Cam)>, hysteresis: f64, motion: &Motion<'_>) {
-        if wanted.is_some() == self.on {
-            return;
-        }
-        let now = motion.now;
-        if self
-            .point
-            .is_some_and(|point| now.distance(now.position, point) < hysteresis)
-        {
-            return;
-        }
-        let edge = wanted.map_or(self.leave, |(_, cam)| cam.enter);
-        // An edge that was not passed just now is not what switched: the axis turned round inside a cam.
-        let passed = now.distance(now.position, edge) <= motion.way.abs();
-        self.point = Some(if passed { edge } else { now.position });
-        self.on = wanted.is_some();
-        if let Some((by, cam)) = wanted {
-            (self.by, self.leave) = (by, cam.leave);
-        }
+/// Switches as the cams want, unless that would be too near to where the track switched last.
+fn follow(track: &mut CamTrack, wanted: Option<(usize, Cam)>, hysteresis: f64, motion: &Motion<'_>) {
+    let now = motion.now;
+    let near = |point: f64| now.distance(now.position, point) < hysteresis;
+    if wanted.is_some() == track.on || track.point.is_some_and(near) {
+        return;
+    }
+    let edge = wanted.map_or(track.leave, |(_, cam)| cam.enter);
+    // An edge that was not passed just now is not what switched: the axis turned round inside a cam.
+    let passed = now.distance(now.position, edge) <= motion.way.abs();
+    track.point = Some(if passed { edge } else { now.position });
+    track.on = wanted.is_some();
+    if let Some((by, cam)) = wanted {
+        (track.by, track.leave) = (by, cam.leave);
     }
 }

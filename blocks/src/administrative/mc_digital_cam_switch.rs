@@ -1,22 +1,24 @@
 //! `MC_DigitalCamSwitch`: digital outputs that follow the position of an axis.
 //!
+//! It owns the outputs of the tracks in its mask that have a switch. What they remember between scans stands with them.
+//!
 //! Source: PLCopen Motion Control Part 1, section of that name; T39 h.
 
 pub use super::cams::{CamSwitch, TrackOption};
 use super::cams::{Cams, Refusal, SWITCHES, Sample, TRACKS, check};
-use standstill_axis::{Axis, AxisId, ErrorId, Planner, Raw, ValueSource};
-use standstill_fb::{Block, Context, EnableCore, Group, OutputRef, Table, pins};
+use standstill_axis::{Axis, AxisId, CamTrack, ErrorId, Planner, Raw, ValueSource};
+use standstill_fb::{Block, Context, EnableCore, Group, Int, OutputRef, Reading, TableOf, pins};
 
 pins! {
     in_outs {
         /// The axis whose position switches.
         Axis => axis: AxisId;
         /// The cams; none if it is left out.
-        Switches => switches: Table<CamSwitch, SWITCHES>;
+        Switches => switches: TableOf<CamSwitch, SWITCHES>;
         /// The axis whose drive has the outputs: track 1 is output 0, track 32 output 31.
         Outputs => outputs: OutputRef;
         /// Compensation and hysteresis of track 1, of track 2 and so on; of those left out 0.
-        TrackOptions => track_options: Table<TrackOption, TRACKS>;
+        TrackOptions => track_options: TableOf<TrackOption, TRACKS>;
     }
     inputs {
         /// The tracks switch while TRUE; when it falls they are off.
@@ -53,11 +55,10 @@ pub struct McDigitalCamSwitch {
 }
 
 /// The bits of the tracks that have a switch.
-fn used(inputs: &Inputs) -> u32 {
-    let tracks = inputs.switches.rows().iter();
-    tracks
-        .filter_map(|switch| 1_u32.checked_shl(u32::try_from(switch.track_number).ok()?.checked_sub(1)?))
-        .fold(0, |bits, bit| bits | bit)
+fn used(switches: &[CamSwitch]) -> u32 {
+    let bit = |track: Int| 1_u32.checked_shl(u32::try_from(track).ok()?.checked_sub(1)?);
+    let bits = switches.iter().filter_map(|switch| bit(switch.track_number));
+    bits.fold(0, |all, bit| all | bit)
 }
 
 fn sample<P: Planner>(axis: &Axis<P>, inputs: &Inputs, now_ns: i64) -> Result<Sample, Refusal> {
@@ -92,60 +93,84 @@ impl Block for McDigitalCamSwitch {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let Self {
-            core, cams, refused, ..
-        } = self;
-        let now_ns = context.now_ns;
         let outputs = AxisId::from(inputs.outputs);
         // Without outputs there is nothing to do either.
         let axis = match context.axes.get(outputs.index()) {
             Some(_) => inputs.axis,
             None => AxisId::NONE,
         };
-        let working = core.write(inputs.enable, axis, context, |axis, source, log| {
-            let (switches, tracks) = (inputs.switches.rows(), inputs.track_options.rows());
-            let sample =
-                check(switches, tracks, axis.config().modulo).and_then(|()| sample(axis, inputs, now_ns));
-            match sample {
-                Ok(sample) => {
-                    *refused = None;
-                    Ok(cams.scan(switches, tracks, inputs.enable_mask, &sample))
+        let (now_ns, tables) = (context.now_ns, context.tables);
+        let refused = &mut self.refused;
+        let read = |axis: &Axis<P>| -> Result<_, Refusal> {
+            let lost = |pin| (pin, f64::NAN, f64::NAN, ErrorId::TableUnknown);
+            let switches = inputs.switches.read(tables).ok_or(lost("Switches"))?;
+            let options = inputs.track_options.read(tables).ok_or(lost("TrackOptions"))?;
+            check(switches.rows(), options.rows(), axis.config().modulo)?;
+            Ok((switches, options, sample(axis, inputs, now_ns)?))
+        };
+        let working = self
+            .core
+            .write(inputs.enable, axis, context, |axis, source, log| {
+                let read = read(axis);
+                let error = read.as_ref().err().map(|(.., error)| *error);
+                // Not recorded in every call.
+                if let Err((pin, value, limit, error)) = read
+                    && *refused != Some(error)
+                {
+                    axis.note_refusal(pin, value, limit, error, source, log);
                 }
-                Err((pin, value, limit, error)) => {
-                    if refused.replace(error) != Some(error) {
-                        axis.note_refusal(pin, value, limit, error, source, log);
-                    }
-                    Err(error)
-                }
-            }
-        });
-        if !working.is_valid() {
-            self.cams = Cams::default();
-        }
+                *refused = error;
+                read.map_err(|(.., error)| error)
+            });
         if !inputs.enable {
             self.refused = None;
         }
-        let (held_by, held) = self.owned;
-        let tracks = if working.is_valid() {
-            inputs.enable_mask & used(inputs)
-        } else {
-            0
+        let shown = Outputs {
+            in_operation: matches!(working, Reading::Valid(_)),
+            busy: matches!(working, Reading::Valid(_) | Reading::Recoverable(_)),
+            error: matches!(working, Reading::Recoverable(_) | Reading::Failed(_)),
+            error_id: match working {
+                Reading::Off | Reading::Valid(_) => ErrorId::None,
+                Reading::Recoverable(error) | Reading::Failed(error) => error,
+            },
         };
-        if held != 0
-            && let Some(axis) = context.axes.get_mut(held_by.index())
+        let tracks = match &working {
+            Reading::Valid((switches, ..)) => inputs.enable_mask & used(switches.rows()),
+            Reading::Off | Reading::Recoverable(_) | Reading::Failed(_) => 0,
+        };
+        self.take(outputs, tracks, context);
+        match working {
+            Reading::Valid((switches, options, sample)) => {
+                if let Some(axis) = context.axes.get_mut(outputs.index()) {
+                    let (switches, options) = (switches.rows(), options.rows());
+                    let memory = axis.cam_tracks_mut();
+                    let on = self.cams.scan(switches, options, tracks, memory, &sample);
+                    axis.write_outputs(tracks, on);
+                }
+            }
+            Reading::Off | Reading::Recoverable(_) | Reading::Failed(_) => self.cams = Cams::default(),
+        }
+        shown
+    }
+}
+
+impl McDigitalCamSwitch {
+    /// From now on it writes the outputs of `tracks`: those it wrote and no longer does are off, new ones start afresh.
+    fn take<P: Planner>(&mut self, outputs: AxisId, tracks: u32, context: &mut Context<'_, P>) {
+        let (by, held) = core::mem::replace(&mut self.owned, (outputs, tracks));
+        let kept = if by == outputs { held & tracks } else { 0 };
+        if let Some(axis) = context.axes.get_mut(by.index()) {
+            axis.write_outputs(held & !kept, 0);
+        }
+        let new = tracks & !kept;
+        if new != 0
+            && let Some(axis) = context.axes.get_mut(outputs.index())
         {
-            let left = if held_by == outputs { held & !tracks } else { held };
-            axis.write_outputs(left, 0);
-        }
-        if let Some(axis) = context.axes.get_mut(outputs.index()) {
-            axis.write_outputs(tracks, working.value());
-        }
-        self.owned = (outputs, tracks);
-        Outputs {
-            in_operation: working.is_valid(),
-            busy: working.is_busy(),
-            error: working.is_error(),
-            error_id: working.error_id(),
+            for (index, track) in axis.cam_tracks_mut().iter_mut().enumerate() {
+                if new & (1 << index) != 0 {
+                    *track = CamTrack::default();
+                }
+            }
         }
     }
 }

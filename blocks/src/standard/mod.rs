@@ -43,6 +43,7 @@ mod testing {
             instance: Default::default(),
             axes: &mut [],
             log: &mut Log::default(),
+            tables: &[],
         };
         block.call(inputs, &mut context)
     }

@@ -145,6 +145,7 @@ impl Bench {
             instance: InstanceId(0),
             axes: &mut self.axes,
             log: &mut self.log,
+            tables: &[],
         });
     }
 

@@ -137,4 +137,8 @@ impl Plan for Count {
     fn excess(&self) -> Option<Excess> {
         None
     }
+
+    fn excess_over(&self, _: &Limits) -> Option<Excess> {
+        None
+    }
 }

@@ -306,6 +306,7 @@ impl System {
                 instance: InstanceId(place),
                 axes: &mut self.axis,
                 log,
+                tables: &[],
             });
         }
     }

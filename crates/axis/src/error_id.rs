@@ -123,6 +123,8 @@ error_ids! {
         "Give positions of the axis, FirstOnPosition not above LastOnPosition but on modulo axes, AxisDirection 0 to 2, CamSwitchMode 0 or 1, in time mode a Duration above 0.";
     CamTrackInvalid = 134, "A TrackNumber is not from 1 to 32, or the Hysteresis of a track is NaN, infinite or negative.",
         "Number tracks from 1 to 32, and give a Hysteresis of 0 or above.";
+    TableUnknown = 135, "The table at a pin does not stand among the tables of this runtime, or has too many records.",
+        "Take the reference from Machine::add_table; the page of the block says how many records it takes.";
     ParameterNumberInvalid = 140, "ParameterNumber is not the number of a parameter.",
         "Give a number from 1 to 17.";
     ParameterKindInvalid = 141, "The parameter is a BOOL and the block one for REAL, or the other way round.",

@@ -22,8 +22,8 @@ mod scaling;
 mod state;
 
 pub use axis::{
-    Axis, Beside, Factors, MotionState, Outlook, Pace, Parameter, ParameterValue, Permission, Source,
-    TouchProbe, Way,
+    Axis, Beside, CamTrack, Factors, MotionState, Outlook, Pace, Parameter, ParameterValue, Permission,
+    Source, TouchProbe, Way,
 };
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,

@@ -184,6 +184,7 @@ impl ManyAxes {
             instance: InstanceId(0),
             axes,
             log,
+            tables: &[],
         };
         for (number, block) in (0..).zip(&mut self.blocks) {
             context.instance = InstanceId(number);

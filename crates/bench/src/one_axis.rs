@@ -90,6 +90,7 @@ impl OneAxis {
             instance: InstanceId(0),
             axes,
             log,
+            tables: &[],
         };
         self.power.call(&mut context);
         context.instance = InstanceId(1);

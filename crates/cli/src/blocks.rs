@@ -95,7 +95,7 @@ fn default(info: &BlockInfo, index: usize, ty: PinType) -> String {
         Some(Value::Word(value)) => value.to_string(),
         Some(Value::Dword(value)) => value.to_string(),
         // Without records.
-        Some(Value::Rows(_)) => "[]".to_owned(),
+        Some(Value::Table(_)) => "[]".to_owned(),
         Some(Value::Lreal(value)) => number(value),
         Some(Value::Time(ns)) => string(&time(ns)),
         Some(Value::Enum(value)) => match ty {

@@ -1,6 +1,6 @@
 //! A block as a type, an instance of it, and what a call may touch.
 
-use crate::{AnyTable, Direction, Pin, PinError, Pins, Value};
+use crate::{Direction, Pin, PinError, Pins, Value};
 use standstill_axis::{Axis, AxisId, ErrorId, InstanceId, Log, Planner, Source, Standard};
 
 /// The groups of the standard's catalogue, and ours for the IEC 61131-3 blocks.
@@ -44,6 +44,8 @@ pub struct Context<'a, P: Planner = Standard> {
     pub axes: &'a mut [Axis<P>],
     /// The ring of records.
     pub log: &'a mut Log,
+    /// The numbers of all tables.
+    pub tables: &'a [f64],
 }
 
 impl<P: Planner> Context<'_, P> {
@@ -56,6 +58,7 @@ impl<P: Planner> Context<'_, P> {
             instance: self.instance,
             axes: self.axes,
             log: self.log,
+            tables: self.tables,
         }
     }
 
@@ -123,9 +126,6 @@ pub trait AnyInstance {
     /// # Errors
     /// [`PinError`] if it is an output, does not exist, or has another type.
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError>;
-
-    /// The table at in_out or input `index`, if there is one.
-    fn table(&mut self, index: usize) -> Option<&mut dyn AnyTable>;
 }
 
 impl<B: Block + Described> AnyInstance for Instance<B> {
@@ -144,10 +144,6 @@ impl<B: Block + Described> AnyInstance for Instance<B> {
 
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError> {
         self.inputs.set(index, value)
-    }
-
-    fn table(&mut self, index: usize) -> Option<&mut dyn AnyTable> {
-        self.inputs.table(index)
     }
 }
 

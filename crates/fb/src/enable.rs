@@ -147,6 +147,7 @@ mod tests {
                 instance: InstanceId(0),
                 axes: &mut self.axes,
                 log: &mut self.log,
+                tables: &[],
             };
             self.core.scan(enable, axis, &context, |_| read)
         }

@@ -21,5 +21,5 @@ pub use execute::{ExecuteCore, Phase};
 pub use pins::{
     Direction, EnumInfo, InputRef, Int, OutputRef, Pin, PinError, PinType, PinValue, Pins, Time, Value,
 };
-pub use table::{AnyTable, Record, Table, TableInfo};
+pub use table::{Record, Table, TableInfo, TableOf, TableRef};
 pub use update::{Move, UpdateCore, Values};

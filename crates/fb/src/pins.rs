@@ -1,6 +1,6 @@
 //! Pins as data: one table per block, from which structs, docs, script names and traces come.
 
-use crate::{AnyTable, TableInfo};
+use crate::{TableInfo, TableRef};
 use core::fmt;
 use standstill_axis::{AxisId, ErrorId, IecEnum, Raw};
 
@@ -101,8 +101,8 @@ pub enum Value {
     Axis(AxisId),
     /// An enumeration's number, defined or not.
     Enum(i32),
-    /// Records of a table, which is no value itself.
-    Rows(u16),
+    /// Where a table stands.
+    Table(TableRef),
 }
 
 /// INT as a pin's Rust type.
@@ -117,13 +117,9 @@ pub trait PinValue: Copy {
     /// Its IEC type.
     const TYPE: PinType;
     /// To data.
-    fn to_value(&self) -> Value;
+    fn into_value(self) -> Value;
     /// From data, if the type fits.
     fn from_value(value: Value) -> Option<Self>;
-    /// The table, if it is one.
-    fn as_table(&mut self) -> Option<&mut dyn AnyTable> {
-        None
-    }
 }
 
 macro_rules! pin_value {
@@ -131,8 +127,8 @@ macro_rules! pin_value {
         impl PinValue for $rust {
             const TYPE: PinType = PinType::$ty;
 
-            fn to_value(&self) -> Value {
-                Value::$variant(*self)
+            fn into_value(self) -> Value {
+                Value::$variant(self)
             }
 
             fn from_value(value: Value) -> Option<Self> {
@@ -156,8 +152,8 @@ macro_rules! axis_value {
         impl PinValue for $rust {
             const TYPE: PinType = PinType::Axis($name);
 
-            fn to_value(&self) -> Value {
-                Value::Axis((*self).into())
+            fn into_value(self) -> Value {
+                Value::Axis(self.into())
             }
 
             fn from_value(value: Value) -> Option<Self> {
@@ -198,7 +194,7 @@ axis_value!(OutputRef, "MC_OUTPUT_REF", id => Self(id));
 impl PinValue for Time {
     const TYPE: PinType = PinType::Time;
 
-    fn to_value(&self) -> Value {
+    fn into_value(self) -> Value {
         Value::Time(self.0)
     }
 
@@ -214,7 +210,7 @@ impl PinValue for Time {
 impl PinValue for ErrorId {
     const TYPE: PinType = PinType::Word;
 
-    fn to_value(&self) -> Value {
+    fn into_value(self) -> Value {
         Value::Word(self.number())
     }
 
@@ -233,7 +229,7 @@ impl<E: IecEnum> PinValue for Raw<E> {
         elements: E::ELEMENTS,
     });
 
-    fn to_value(&self) -> Value {
+    fn into_value(self) -> Value {
         Value::Enum(self.number())
     }
 
@@ -296,9 +292,6 @@ pub trait Pins: Copy + Default {
     /// # Errors
     /// [`PinError`] if there is no such pin or the type differs.
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError>;
-
-    /// The table at pin `index`, if there is one.
-    fn table(&mut self, index: usize) -> Option<&mut dyn AnyTable>;
 }
 
 /// Declares the `Inputs` and `Outputs` structs of a block and their tables.
@@ -377,7 +370,7 @@ macro_rules! pins {
             }),*];
 
             fn get(&self, index: usize) -> Option<$crate::Value> {
-                let values = [$(<$ty as $crate::PinValue>::to_value(&self.$field)),*];
+                let values = [$(<$ty as $crate::PinValue>::into_value(self.$field)),*];
                 values.get(index).copied()
             }
 
@@ -393,18 +386,6 @@ macro_rules! pins {
                 )*
                 let _ = (place, value);
                 Err($crate::PinError::NotWritable)
-            }
-
-            fn table(&mut self, index: usize) -> Option<&mut dyn $crate::AnyTable> {
-                let mut place = 0_usize;
-                $(
-                    if place == index {
-                        return <$ty as $crate::PinValue>::as_table(&mut self.$field);
-                    }
-                    place += 1;
-                )*
-                let _ = place;
-                None
             }
         }
     };

@@ -1,19 +1,30 @@
-//! Tables at pins: arrays of records, of a fixed largest length, owned by the block.
+//! Tables at pins: arrays of records.
 //!
-//! A pin of such a type is a variable of the instance: a host writes its rows in Rust, a script through
-//! [`AnyTable`]. It carries no [`Value`] but the number of its records, which is what a trace shows (`4 records`).
+//! A pin of such a type is a reference, as VAR_IN_OUT is: it says where in the numbers of the runtime
+//! ([`Context::tables`](crate::Context::tables)) the records stand, so that instances stay small however large a table
+//! is. Each field of a record is one number there. Blocks read a table as a whole, into memory of a fixed size.
 
-use crate::{Pin, PinError, PinType, PinValue, Pins, Value};
+use crate::{Pin, PinType, PinValue, Pins, Value};
+use core::marker::PhantomData;
 
 /// The type of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableInfo {
     /// IEC name of the type.
     pub name: &'static str,
-    /// Fields of a record. What a script leaves out of a record is 0, FALSE, or the first of an enumeration.
+    /// Fields of a record. What is left out of a record is 0, FALSE, or the number 0 of an enumeration.
     pub fields: &'static [Pin],
     /// Most records.
     pub most: usize,
+}
+
+/// Where a table stands: its first number, and how many records follow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TableRef {
+    /// Place of its first number.
+    pub first: u32,
+    /// Records.
+    pub records: u16,
 }
 
 /// A record of a table, declared with [`record!`](crate::record).
@@ -22,86 +33,124 @@ pub trait Record: Pins {
     const TYPE: &'static str;
 }
 
-/// Up to `N` records.
+/// At most `N` records, read.
 #[derive(Clone, Copy, Debug)]
 pub struct Table<R, const N: usize> {
     rows: [R; N],
     len: usize,
 }
 
-impl<R: Record, const N: usize> Default for Table<R, N> {
-    fn default() -> Self {
-        Self {
-            rows: [R::default(); N],
-            len: 0,
-        }
-    }
-}
-
 impl<R: Record, const N: usize> Table<R, N> {
-    /// The first `N` of `rows`.
-    pub fn of(rows: &[R]) -> Self {
-        let mut table = Self::default();
-        for (slot, row) in table.rows.iter_mut().zip(rows) {
-            *slot = *row;
-            table.len += 1;
-        }
-        table
-    }
-
     /// Its records.
     pub fn rows(&self) -> &[R] {
         self.rows.get(..self.len).unwrap_or_default()
     }
 }
 
-/// A table whatever its type, for what reads scripts.
-pub trait AnyTable {
-    /// Appends a record of default values; `false` if the table is full.
-    fn push(&mut self) -> bool;
-
-    /// Writes a field of the last record.
-    ///
-    /// # Errors
-    /// [`PinError`] if there is no record or no such field, or its type differs.
-    fn set_last(&mut self, field: usize, value: Value) -> Result<(), PinError>;
+/// A pin with a table of at most `N` records; without any until it is set.
+#[derive(Debug)]
+pub struct TableOf<R, const N: usize> {
+    place: TableRef,
+    of: PhantomData<R>,
 }
 
-impl<R: Record, const N: usize> AnyTable for Table<R, N> {
-    fn push(&mut self) -> bool {
-        match self.rows.get_mut(self.len) {
-            Some(row) => {
-                *row = R::default();
-                self.len += 1;
-                true
-            }
-            None => false,
+impl<R, const N: usize> Clone for TableOf<R, N> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<R, const N: usize> Copy for TableOf<R, N> {}
+
+impl<R, const N: usize> Default for TableOf<R, N> {
+    fn default() -> Self {
+        Self::new(TableRef::default())
+    }
+}
+
+impl<R, const N: usize> TableOf<R, N> {
+    /// The table at `place`.
+    pub const fn new(place: TableRef) -> Self {
+        Self {
+            place,
+            of: PhantomData,
         }
     }
+}
 
-    fn set_last(&mut self, field: usize, value: Value) -> Result<(), PinError> {
-        let last = self.len.checked_sub(1).and_then(|last| self.rows.get_mut(last));
-        last.ok_or(PinError::NotWritable)?.set(field, value)
+impl<R: Record, const N: usize> TableOf<R, N> {
+    /// Reads the records from the numbers of the runtime; `None` if they do not stand there or are more than `N`.
+    ///
+    /// Numbers that do not fit a field become the nearest that does. Cost: a few operations for each field.
+    pub fn read(&self, tables: &[f64]) -> Option<Table<R, N>> {
+        let width = R::PINS.len();
+        let len = usize::from(self.place.records);
+        let first = usize::try_from(self.place.first).ok()?;
+        let end = first.checked_add(len.checked_mul(width)?)?;
+        let cells = tables.get(first..end)?;
+        let mut rows = [R::default(); N];
+        if len > N {
+            return None;
+        }
+        for (row, cells) in rows.iter_mut().zip(cells.chunks_exact(width.max(1))) {
+            for (index, (field, cell)) in R::PINS.iter().zip(cells).enumerate() {
+                row.set(index, field.ty.of_cell(*cell)?).ok()?;
+            }
+        }
+        Some(Table { rows, len })
     }
 }
 
-impl<R: Record, const N: usize> PinValue for Table<R, N> {
+impl<R: Record, const N: usize> PinValue for TableOf<R, N> {
     const TYPE: PinType = PinType::Table(TableInfo {
         name: R::TYPE,
         fields: R::PINS,
         most: N,
     });
 
-    fn to_value(&self) -> Value {
-        Value::Rows(u16::try_from(self.len).unwrap_or(u16::MAX))
+    fn into_value(self) -> Value {
+        Value::Table(self.place)
     }
 
-    fn from_value(_: Value) -> Option<Self> {
-        None
+    fn from_value(value: Value) -> Option<Self> {
+        if let Value::Table(place) = value {
+            Some(Self::new(place))
+        } else {
+            None
+        }
     }
+}
 
-    fn as_table(&mut self) -> Option<&mut dyn AnyTable> {
-        Some(self)
+impl PinType {
+    /// A number of a table as a field of this type; `None` if no record has such fields.
+    fn of_cell(self, cell: f64) -> Option<Value> {
+        Some(match self {
+            Self::Bool => Value::Bool(cell != 0.0),
+            // Casts saturate, and NaN becomes 0.
+            Self::Int => Value::Int(cell as i16),
+            Self::Word => Value::Word(cell as u16),
+            Self::Dword => Value::Dword(cell as u32),
+            Self::Time => Value::Time(cell as i64),
+            Self::Enum(_) => Value::Enum(cell as i32),
+            Self::Lreal => Value::Lreal(cell),
+            Self::Axis(_) | Self::Table(_) => return None,
+        })
+    }
+}
+
+impl Value {
+    /// The value as a number of a table; TIME is exact up to 104 days. `None` if no record has such fields.
+    pub fn to_cell(self) -> Option<f64> {
+        Some(match self {
+            Self::Bool(value) => f64::from(u8::from(value)),
+            Self::Int(value) => value.into(),
+            Self::Word(value) => value.into(),
+            Self::Dword(value) => value.into(),
+            Self::Time(ns) => ns as f64,
+            Self::Enum(number) => number.into(),
+            Self::Lreal(value) => value,
+            Self::Axis(_) | Self::Table(_) => return None,
+        })
     }
 }
 

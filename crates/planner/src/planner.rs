@@ -172,6 +172,9 @@ pub trait Plan: Copy + core::fmt::Debug {
     /// By how much the start state forced the plan out of its limits, if it did.
     fn excess(&self) -> Option<Excess>;
 
+    /// What of [`Plan::excess`] is beyond `limits`, too, which are no lower than those of the plan.
+    fn excess_over(&self, limits: &Limits) -> Option<Excess>;
+
     /// The rung of the online planner's ladder the plan is from, for hosts that count them; none for plans
     /// of another kind.
     fn rung(&self) -> Option<Rung> {
@@ -429,6 +432,14 @@ impl Plan for StandardPlan {
             Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) => None,
             Self::Ramp(ramp) => ramp.excess(),
             Self::Online(plan) => plan.excess(),
+        }
+    }
+
+    fn excess_over(&self, limits: &Limits) -> Option<Excess> {
+        match self {
+            Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) => None,
+            Self::Ramp(ramp) => ramp.excess_over(limits),
+            Self::Online(plan) => plan.excess_over(limits),
         }
     }
 

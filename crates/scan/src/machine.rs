@@ -7,7 +7,7 @@ use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, ConfigError, Drive, DriveFeedback, InstanceId, Log, Planner, Source,
     Standard,
 };
-use standstill_fb::Context;
+use standstill_fb::{Context, Record, TableRef, Value};
 
 /// The instance in records of what no block instance caused.
 pub const RUNTIME: InstanceId = InstanceId(u16::MAX);
@@ -22,6 +22,8 @@ pub struct Machine<P: Planner = Standard, D: Drive = standstill_axis::IdealDrive
     /// Places of all axes in the order of the motion step.
     order: Vec<AxisId>,
     log: Log,
+    /// The numbers of all tables.
+    tables: Vec<f64>,
 }
 
 impl<P: Planner, D: Drive> Default for Machine<P, D> {
@@ -32,6 +34,7 @@ impl<P: Planner, D: Drive> Default for Machine<P, D> {
             feedback: Vec::new(),
             order: Vec::new(),
             log: Log::default(),
+            tables: Vec::new(),
         }
     }
 }
@@ -59,6 +62,25 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         // Room for a whole scan, so that reading feedback never allocates.
         self.feedback.reserve(self.drives.len());
         Ok(id)
+    }
+
+    /// Adds a table for the pins of blocks, record after record; uses the heap. `None` if it has more than 65535 records.
+    pub fn add_table<R: Record>(&mut self, records: &[R]) -> Option<TableRef> {
+        let place = TableRef {
+            first: u32::try_from(self.tables.len()).ok()?,
+            records: u16::try_from(records.len()).ok()?,
+        };
+        let cell = |record: &R, field| record.get(field).and_then(Value::to_cell).unwrap_or_default();
+        for record in records {
+            let cells = (0..R::PINS.len()).map(|field| cell(record, field));
+            self.tables.extend(cells);
+        }
+        Some(place)
+    }
+
+    /// The numbers of all tables: places in here are those of [`TableRef`]. A change counts from the next call on.
+    pub fn tables_mut(&mut self) -> &mut Vec<f64> {
+        &mut self.tables
     }
 
     /// The order of the motion step, in which masters must stand before their slaves. Without this call it
@@ -123,6 +145,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
             instance,
             axes: &mut self.axes,
             log: &mut self.log,
+            tables: &self.tables,
         }
     }
 

@@ -94,6 +94,10 @@ impl Plan for Note {
     fn excess(&self) -> Option<Excess> {
         None
     }
+
+    fn excess_over(&self, _: &Limits) -> Option<Excess> {
+        None
+    }
 }
 
 /// Sets every axis in motion in scan 0.

@@ -21,6 +21,8 @@ pub struct Script {
     pub axes: Vec<Axis>,
     /// Script variables.
     pub inputs: Vec<Input>,
+    /// The numbers of all tables, one after the other.
+    pub tables: Vec<f64>,
     /// Block instances in call order.
     pub blocks: Vec<Instance>,
     /// Tasks; at least `main`.
@@ -122,9 +124,6 @@ pub struct Input {
     pub initial: Value,
 }
 
-/// Records of a table: of each the fields that were given, by their place.
-pub type Rows = Vec<Vec<(usize, Value)>>;
-
 /// A block instance.
 #[derive(Clone, Debug)]
 pub struct Instance {
@@ -136,8 +135,6 @@ pub struct Instance {
     pub task: usize,
     /// Constants, by pin index; in_outs included.
     pub constants: Vec<(usize, Value)>,
-    /// Tables, by pin index.
-    pub tables: Vec<(usize, Rows)>,
     /// Wires, by pin index.
     pub wires: Vec<(usize, Wire)>,
 }

@@ -316,10 +316,7 @@ fn pins(info: &BlockInfo) -> Value {
         } else {
             format!(" Unit: {}.", pin.unit)
         };
-        let mut schema = match pin.ty {
-            PinType::Table(_) => constant(pin.ty),
-            _ => any(&[constant(pin.ty), of("wire")]),
-        };
+        let mut schema = any(&[constant(pin.ty), of("wire")]);
         add(
             &mut schema,
             "description",
@@ -385,7 +382,10 @@ fn step() -> Value {
         "at" | "after" => of("scans"),
         "when" => of("conditions"),
         "every" => json!({"type": "boolean"}),
-        "set" => json!({"type": "object", "additionalProperties": of("value")}),
+        "set" => json!({
+            "type": "object",
+            "additionalProperties": any(&[of("value"), list(json!({"type": "object"}), 0)]),
+        }),
         "fault" => required(
             &["axis", "kind"],
             object(&shape::FAULT, |key| match key {

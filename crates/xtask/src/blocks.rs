@@ -166,6 +166,6 @@ fn default(info: &BlockInfo, index: usize, pin: &Pin) -> String {
         (Some(Value::Dword(value)), _) => value.to_string(),
         (Some(Value::Time(ns)), _) => format!("T#{}ms", ns / 1_000_000),
         (Some(Value::Enum(number)), PinType::Enum(info)) => info.name_of(number).unwrap_or("").into(),
-        (Some(Value::Axis(_) | Value::Enum(_) | Value::Rows(_)) | None, _) => String::new(),
+        (Some(Value::Axis(_) | Value::Enum(_) | Value::Table(_)) | None, _) => String::new(),
     }
 }

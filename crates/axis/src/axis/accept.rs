@@ -9,7 +9,7 @@ use crate::{
     AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Fate, Log, Raw,
     Request,
 };
-use standstill_planner::{Excess, Field, Limits, Passage, PlanError, Planner, Setpoint};
+use standstill_planner::{Field, Limits, Passage, PlanError, Planner, Setpoint};
 
 /// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
 pub(super) const ROUNDING: f64 = 1e-9;
@@ -487,36 +487,6 @@ impl<P: Planner> Axis<P> {
             _ => f64::NAN,
         };
         self.refuse(pin, value, limit, error, source, log)
-    }
-
-    /// What of an excess over a command's limits is beyond those of the axis as well, rounding apart. A faster
-    /// motion that a slower command takes over from is no excess.
-    pub(super) fn beyond_axis(&self, excess: Excess, limits: &Limits) -> Option<Excess> {
-        let axis = &self.config.limits;
-        let beyond = |excess: f64, axis: f64, limit: f64| {
-            // A limit that is infinite has no excess; without headroom the difference is 0.
-            let left = if axis > limit {
-                excess - (axis - limit)
-            } else {
-                excess
-            };
-            if left > axis * ROUNDING { left } else { 0.0 }
-        };
-        let beyond = Excess {
-            velocity: beyond(excess.velocity, axis.velocity, limits.velocity),
-            acceleration: {
-                let state = &self.setpoint;
-                // Speeding up or slowing down: the bound of the other side may leave more room than there is.
-                let (axis, limit) = if state.velocity * state.acceleration > 0.0 {
-                    (axis.acceleration, limits.acceleration)
-                } else {
-                    (axis.deceleration, limits.deceleration)
-                };
-                beyond(excess.acceleration, axis, limit)
-            },
-            jerk: beyond(excess.jerk, axis.jerk, limits.jerk),
-        };
-        (beyond != Excess::default()).then_some(beyond)
     }
 
     /// Makes `entry` the owner; it takes over from a motion within `before`.

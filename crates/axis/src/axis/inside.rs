@@ -13,12 +13,18 @@ use standstill_planner::{Excess, Limits, Plan, Planner, Setpoint};
 const WORTH: f64 = 0.99;
 
 impl<P: Planner> Axis<P> {
-    /// What `motion` within `limits` exceeds of the axis limits.
-    pub(super) fn excess_of(&self, motion: &Motion<P::Plan>, limits: &Limits) -> Option<Excess> {
-        let Motion::Run { plan, .. } = motion else {
-            return None;
-        };
-        plan.excess().and_then(|excess| self.beyond_axis(excess, limits))
+    /// What `plan` exceeds of the axis limits. A faster motion that a slower command takes over from is no excess.
+    pub(super) fn beyond_axis(&self, plan: &P::Plan) -> Option<Excess> {
+        plan.excess()?;
+        plan.excess_over(&self.config.limits)
+    }
+
+    /// The same for a motion.
+    pub(super) fn excess_of(&self, motion: &Motion<P::Plan>) -> Option<Excess> {
+        match motion {
+            Motion::Run { plan, .. } => self.beyond_axis(plan),
+            Motion::Hold | Motion::Follow => None,
+        }
     }
 
     /// `motion`, which is planned for `entry`, or one with higher limits that exceeds those of the axis by less; `entry`
@@ -30,7 +36,7 @@ impl<P: Planner> Axis<P> {
         start: &Setpoint,
         before: &Limits,
     ) -> Motion<P::Plan> {
-        match self.excess_of(&motion, &entry.limits) {
+        match self.excess_of(&motion) {
             None => motion,
             Some(excess) => self.planned_higher(entry, motion, excess, (start, before)),
         }
@@ -51,7 +57,7 @@ impl<P: Planner> Axis<P> {
             let Ok(motion) = self.plan_from(&raised, start, before) else {
                 continue;
             };
-            let left = self.excess_of(&motion, &limits);
+            let left = self.excess_of(&motion);
             if is_less(left, &excess) {
                 (kept, *entry) = (motion, raised);
                 match left {
@@ -65,7 +71,7 @@ impl<P: Planner> Axis<P> {
 
     /// The same for a ramp to rest nobody commanded.
     pub(super) fn stopped_inside(&self, plan: P::Plan, limits: &mut Limits) -> P::Plan {
-        let Some(mut excess) = plan.excess().and_then(|excess| self.beyond_axis(excess, limits)) else {
+        let Some(mut excess) = self.beyond_axis(&plan) else {
             return plan;
         };
         let mut kept = plan;
@@ -73,7 +79,7 @@ impl<P: Planner> Axis<P> {
             let Ok(plan) = self.planner.ramp_to(&self.setpoint, 0.0, &higher, &self.in_force) else {
                 continue;
             };
-            let left = plan.excess().and_then(|excess| self.beyond_axis(excess, &higher));
+            let left = self.beyond_axis(&plan);
             if is_less(left, &excess) {
                 (kept, *limits) = (plan, higher);
                 match left {

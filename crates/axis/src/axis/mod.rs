@@ -35,12 +35,13 @@ mod update;
 
 use crate::fate::Fates;
 use crate::{
-    AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, Comms, ConfigError, DriveCommand,
-    DriveOrder, DrivePosition, DriveReport, DriveSignals, ErrorId, Event, Fate, Fault, InstanceId, Log,
-    QUEUE_MAX, Record, StartState, state,
+    AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, Comms, ConfigError, DIGITAL,
+    DriveCommand, DriveOrder, DrivePosition, DriveReport, DriveSignals, ErrorId, Event, Fate, Fault,
+    InstanceId, Log, QUEUE_MAX, Record, StartState, state,
 };
 pub use factors::Factors;
 use modulo::Modulo;
+pub use outputs::CamTrack;
 pub use parameters::{Parameter, ParameterValue};
 pub use permission::Permission;
 pub use probe::TouchProbe;
@@ -227,6 +228,8 @@ pub struct Axis<P: Planner = Standard> {
     beside: BesideMotion,
     /// Touch probes.
     probes: probe::Probes,
+    /// Of outputs that follow positions.
+    cam_tracks: [CamTrack; DIGITAL as usize],
     /// How often coordinates have moved.
     coordinates: u32,
     motion: Motion<P::Plan>,
@@ -298,6 +301,7 @@ impl<P: Planner> Axis<P> {
             signals: DriveSignals::default(),
             beside: BesideMotion::default(),
             probes: probe::Probes::default(),
+            cam_tracks: [CamTrack::default(); DIGITAL as usize],
             coordinates: 0,
             motion: if powered { Motion::Hold } else { Motion::Follow },
             layer: None,

@@ -7,6 +7,24 @@ use super::{Axis, Source};
 use crate::{CommandId, Comms, DIGITAL, ErrorId, ExecutionMode, Fate, Log, Raw};
 use standstill_planner::Planner;
 
+/// What an output that follows positions remembers (MC_DigitalCamSwitch). It is kept with the output, which has but one
+/// master: instances stay small.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CamTrack {
+    /// On by position.
+    pub on: bool,
+    /// Place of the cam that put it on.
+    pub by: usize,
+    /// Where that cam would put it off, in the present direction (u).
+    pub leave: f64,
+    /// Where it switched last by position (u).
+    pub point: Option<f64>,
+    /// On by time until then (ns).
+    pub until: Option<i64>,
+    /// The position that put it on by time, as long as that is within the hysteresis (u).
+    pub held_at: Option<f64>,
+}
+
 /// The bit of input or output `number`.
 fn bit_of(number: i16) -> Result<u32, ErrorId> {
     // As many as bits: from DIGITAL on there is none.
@@ -70,6 +88,11 @@ impl<P: Planner> Axis<P> {
     pub fn write_outputs(&mut self, mask: u32, on: u32) {
         let outputs = &mut self.beside.order.outputs;
         *outputs = (*outputs & !mask) | (on & mask);
+    }
+
+    /// What the digital outputs remember that follow positions, in order of their numbers.
+    pub fn cam_tracks_mut(&mut self) -> &mut [CamTrack; DIGITAL as usize] {
+        &mut self.cam_tracks
     }
 
     pub(super) fn set_output(&mut self, bit: u32, value: bool) {

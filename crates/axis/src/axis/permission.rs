@@ -158,7 +158,7 @@ impl<P: Planner> Axis<P> {
         let (start, limits) = (self.base(), self.stop_limits());
         self.motion = match self.planner.ramp_to(&start, 0.0, &limits, &self.in_force) {
             Ok(plan) if !start.is_at_rest() => {
-                if let Some(excess) = plan.excess().and_then(|excess| self.beyond_axis(excess, &limits)) {
+                if let Some(excess) = self.beyond_axis(&plan) {
                     self.record(Event::Unavoidable(excess), source, log);
                 }
                 Motion::along(plan)

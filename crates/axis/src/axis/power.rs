@@ -8,7 +8,7 @@ use crate::{
     AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
     Log, PowerOff,
 };
-use standstill_planner::{Plan, Planner};
+use standstill_planner::Planner;
 
 /// Scans a drive may take to answer a fault reset before MC_Reset gives up.
 const RESET_PATIENCE: u32 = 1000;
@@ -242,7 +242,7 @@ impl<P: Planner> Axis<P> {
         self.motion = match self.planner.ramp_to(&self.setpoint, 0.0, &limits, &self.in_force) {
             Ok(plan) => {
                 let plan = self.stopped_inside(plan, &mut limits);
-                if let Some(excess) = plan.excess().and_then(|excess| self.beyond_axis(excess, &limits)) {
+                if let Some(excess) = self.beyond_axis(&plan) {
                     self.record(Event::Unavoidable(excess), source, log);
                 }
                 Motion::along(plan)

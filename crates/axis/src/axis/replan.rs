@@ -94,7 +94,7 @@ impl<P: Planner> Axis<P> {
             };
             let both = self.limits_before(&owner.limits).or_larger(before);
             motion = self.plan_from(owner, &sum, &both)?;
-            if self.exceeds(&motion, &owner.limits) {
+            if self.exceeds(&motion) {
                 return Ok(None);
             }
             layer.pass_velocity(sum);
@@ -201,10 +201,7 @@ impl<P: Planner> Axis<P> {
             scans: plan.scans(),
         };
         self.record(planned, source, log);
-        if let Some(excess) = plan
-            .excess()
-            .and_then(|excess| self.beyond_axis(excess, &entry.limits))
-        {
+        if let Some(excess) = self.beyond_axis(plan) {
             self.record(Event::Unavoidable(excess), source, log);
         }
     }

@@ -12,7 +12,7 @@ use standstill_axis::{
     Setpoint, Source, Standard, StartState,
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
-use standstill_fb::{AnyInstance, Context, PinType, Time, Value};
+use standstill_fb::{AnyInstance, Context, PinType, TableRef, Time, Value};
 use standstill_planner::grid::Family;
 use standstill_planner::{GridPlan, Method, MoveProfile, Plan, RampPlan, UnequalPlan};
 
@@ -90,6 +90,7 @@ impl Image {
             instance: InstanceId(any(0)),
             axes,
             log,
+            tables: &any([0.0; 64]),
         };
         any(&mut *block).call(&mut context);
         any(block.get(any(0)));
@@ -115,7 +116,10 @@ fn input(ty: PinType) -> Value {
         PinType::Word => Value::Word(any(1)),
         PinType::Time => Value::Time(any(Time(1)).0),
         PinType::Dword => Value::Dword(any(1)),
-        PinType::Table(_) => Value::Rows(any(1)),
+        PinType::Table(_) => Value::Table(TableRef {
+            first: any(0),
+            records: any(1),
+        }),
         PinType::Axis(_) => Value::Axis(AxisId::new(any(0))),
         PinType::Enum(_) => Value::Enum(any(1)),
     })

@@ -6,8 +6,8 @@ use crate::grid::GridPlan;
 use crate::kernel::{NOISE, ON_LIMIT, Spans};
 use crate::ramp::excess::{self, Excess};
 use crate::ramp::path::Path;
-use crate::ramp::scans;
 use crate::ramp::solve::{RAMP_SPANS, Ramps};
+use crate::ramp::{is_there, scans};
 use crate::{Field, Limits, Order, PlanError, Setpoint};
 
 /// The way a plan was found, best first. A plan of a later rung is longer, not less exact.
@@ -58,6 +58,8 @@ pub(super) struct Found {
     pub(super) path: Path<MAX_PIECES>,
     /// What the rounding of the path leaves to the target; it is spread over the whole plan (O9).
     pub(super) residual: f64,
+    /// The residual moves no set-point by more than a unit in its last place from scan to scan.
+    pub(super) is_rounding: bool,
     pub(super) tail: Option<Tail>,
     pub(super) excess: Option<Excess>,
 }
@@ -71,6 +73,7 @@ impl Found {
             steps: 0,
             path: Path::new(order),
             residual: 0.0,
+            is_rounding: true,
             tail: None,
             excess: None,
         }
@@ -227,7 +230,7 @@ impl Climb<'_> {
     ) -> Result<(), PlanError> {
         let stop = self.search.ramp(&self.inward, 0.0);
         let path = &mut found.path;
-        path.fill(&self.start, self.ramps.scale().outward(&stop));
+        let end = path.fill(&self.start, self.ramps.scale().outward(&stop));
         path.pin(0.0);
         let rest = origin + path.end_position().unwrap_or(0.0);
         // Inputs are checked, so a grid plan is refused only for lengths and times beyond numbers.
@@ -235,6 +238,9 @@ impl Climb<'_> {
             field: Field::Target,
             value: target,
         };
+        if !is_there(&end, 0.0, (&self.start, self.limits, path.duration())) {
+            return Err(too_long);
+        }
         let begin = scans(path.duration(), cycle).ok_or(too_long)?;
         found.excess = excess::excess(path, 0.0, None, self.limits);
         found.residual = 0.0;

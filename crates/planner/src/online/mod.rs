@@ -137,7 +137,19 @@ impl OnlinePlan {
         let moving = ramp::scans(plan.found.path.duration(), cycle).ok_or(too_long)?;
         // Both counts are below 2^31, so the sum fits.
         plan.scans = moving + plan.found.tail.map_or(0, |tail| tail.grid.scans());
+        let resolved = f64::EPSILON * (start.position.abs() + target.abs());
+        plan.found.is_rounding = plan.found.residual.abs() <= resolved * f64::from(moving);
         Ok(plan)
+    }
+
+    /// The share of the residual that is made up for after a `part` of the path (O9).
+    #[inline]
+    fn share(&self, part: f64) -> f64 {
+        if self.found.is_rounding {
+            part
+        } else {
+            part * part * part * (10.0 + part * (6.0 * part - 15.0))
+        }
     }
 
     /// Number of scans until the target; 0 if the start is there.
@@ -167,7 +179,7 @@ impl OnlinePlan {
         match self.found.path.at(time) {
             Some(state) => Setpoint {
                 position: self.start.position
-                    + (state.position + self.found.residual * (time / self.found.path.duration())),
+                    + (state.position + self.found.residual * self.share(time / self.found.path.duration())),
                 ..state
             },
             None => self.beyond(scan),
@@ -219,6 +231,13 @@ impl OnlinePlan {
     /// By how much the start state forced the plan out of its limits, if it did by more than 1e-9 of them.
     pub const fn excess(&self) -> Option<Excess> {
         self.found.excess
+    }
+
+    /// What of [`OnlinePlan::excess`] is beyond `limits`, too, which are no lower than those of the plan; found as
+    /// by [`RampPlan::excess_over`], in at most 30 pieces.
+    pub fn excess_over(&self, limits: &Limits) -> Option<Excess> {
+        self.found.excess?;
+        excess::excess(&self.found.path, self.end_velocity, None, limits)
     }
 
     /// Time until the target (s), not rounded to scans but where a grid plan ends it.

@@ -4,6 +4,9 @@ use super::path::Path;
 use crate::kernel::ON_LIMIT;
 use crate::{Limits, Order};
 
+/// What a 64-bit instant of a path resolves, relative to its duration.
+const TICK: f64 = 2.0 * f64::EPSILON;
+
 /// By how much a start state forced a plan out of its limits, as magnitudes above the limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Excess {
@@ -50,7 +53,7 @@ pub(crate) fn peaks<const N: usize>(path: &Path<N>, goal: f64) -> Peaks {
 }
 
 /// By how much `path`, which ends with the velocity `goal`, exceeds `limits`; `None` if by no more than
-/// rounding and [`ON_LIMIT`].
+/// rounding, [`ON_LIMIT`] and what is changed within the resolution of the path's times.
 ///
 /// With a `heading` (1 or -1) the path is a ramp that starts in that direction, and a stop that turns back
 /// exceeds too; without one the path may turn as it likes.
@@ -79,6 +82,8 @@ pub(crate) fn excess<const N: usize>(
         peaks(path, goal).velocity
     };
     let small = ON_LIMIT * scale;
+    // A piece that ends late by what the time since the start resolves goes on changing for as long.
+    let tick = TICK * path.duration();
     // With one bound for both directions nothing changes where the velocity passes zero.
     let sides_differ = limits.acceleration != limits.deceleration;
     let noticed = if sides_differ { small } else { f64::INFINITY };
@@ -89,7 +94,10 @@ pub(crate) fn excess<const N: usize>(
             Some(heading) if goal == 0.0 => -heading * velocity,
             _ => 0.0,
         };
-        excess.velocity = excess.velocity.max(outside).max(reversed);
+        let over = outside.max(reversed);
+        excess.velocity = excess
+            .velocity
+            .max(beyond(over, scale, tick * state.acceleration));
 
         // With the motion it raises the speed, against it it lowers it.
         let bound = match direction {
@@ -99,18 +107,20 @@ pub(crate) fn excess<const N: usize>(
             Some(_) => limits.deceleration,
         };
         let over = state.acceleration.abs() - bound;
-        excess.acceleration = excess.acceleration.max(beyond(over, bound));
-        excess.jerk = excess
-            .jerk
-            .max(beyond(state.jerk.abs() - limits.jerk, limits.jerk));
+        excess.acceleration = excess.acceleration.max(beyond(over, bound, tick * state.jerk));
+        let over = state.jerk.abs() - limits.jerk;
+        excess.jerk = excess.jerk.max(beyond(over, limits.jerk, tick * state.snap));
     });
-    excess.velocity = beyond(excess.velocity, scale);
     (excess != Excess::default()).then_some(excess)
 }
 
-/// `over` if it is more than the tolerance for `bound`, else 0.
-fn beyond(over: f64, bound: f64) -> f64 {
-    if over > ON_LIMIT * bound { over } else { 0.0 }
+/// `over` if it is more than the tolerance for `bound` and what the value changes `within` a tick, else 0.
+fn beyond(over: f64, bound: f64, within: f64) -> f64 {
+    if over > ON_LIMIT * bound + within.abs() {
+        over
+    } else {
+        0.0
+    }
 }
 
 #[cfg(test)]

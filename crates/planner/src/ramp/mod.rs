@@ -13,6 +13,7 @@ mod turn;
 
 pub use excess::{Excess, Peaks};
 
+use crate::kernel::ON_LIMIT;
 use crate::turns::{split, two_product, two_sum};
 use crate::{Field, Limits, Order, PlanError, Setpoint};
 use path::Path;
@@ -87,7 +88,8 @@ impl RampPlan {
     /// # Errors
     /// [`PlanError::InvalidInput`] for a `cycle` that is not positive and finite, a start or velocity that
     /// is not finite, a bound that is not positive, an infinite acceleration or deceleration, and a
-    /// `velocity` beyond `limits.velocity`; [`PlanError::TooLong`] for more than 2^31 - 1 scans.
+    /// `velocity` beyond `limits.velocity`; [`PlanError::TooLong`] for more than 2^31 - 1 scans and for a time
+    /// beyond numbers.
     pub fn new(
         start: &Setpoint,
         velocity: f64,
@@ -109,30 +111,39 @@ impl RampPlan {
                 course,
             );
             let fits = spans.len() <= MAX_PIECES;
-            let path = Path::lay(order, start, ramps.scale().outward(&spans), velocity);
+            let mut path = Path::new(order);
+            let end = path.fill(start, ramps.scale().outward(&spans));
+            path.pin(velocity);
+            let arrives = is_there(&end, velocity, (start, limits, path.duration()));
             // A ramp from a viable state exceeds nothing, which the tests see and this need not look for.
             let excess = if viable {
                 None
             } else {
                 excess::excess(&path, velocity, Some(heading), limits)
             };
-            (path, steps, excess, fits)
+            (path, steps, excess, fits, arrives)
         };
         // A goal on the other side of zero asks for the turn that a stop must not make (O5). Should a turn have
         // more pieces than a plan holds, or exceed the velocity, the lower bound throughout does (R11).
         let turned = (velocity * heading < 0.0).then(|| proposed(Course::Free));
-        let (path, steps, excess, _) = turned
-            .filter(|(_, _, excess, fits)| *fits && excess.is_none_or(|excess| excess.velocity == 0.0))
+        let (path, steps, excess, _, arrives) = turned
+            .filter(|(_, _, excess, fits, arrives)| {
+                *fits && *arrives && excess.is_none_or(|excess| excess.velocity == 0.0)
+            })
             .unwrap_or_else(|| proposed(Course::Kept));
+        let too_long = PlanError::TooLong {
+            field: Field::EndVelocity,
+            value: velocity,
+        };
+        if !arrives {
+            return Err(too_long);
+        }
         Ok(Self {
             start: *start,
             carry: 0.0,
             goal: velocity,
             cycle,
-            scans: scans(path.duration(), cycle).ok_or(PlanError::TooLong {
-                field: Field::EndVelocity,
-                value: velocity,
-            })?,
+            scans: scans(path.duration(), cycle).ok_or(too_long)?,
             steps,
             excess,
             path,
@@ -219,6 +230,16 @@ impl RampPlan {
         self.excess
     }
 
+    /// What of [`RampPlan::excess`] is beyond `limits`, too, which are no lower than those of the plan.
+    ///
+    /// The path is looked at again: how much the limits are higher tells nothing where the velocity changes its
+    /// sign and another bound holds on each side. Bounded by 20 pieces with at most two roots each.
+    pub fn excess_over(&self, limits: &Limits) -> Option<Excess> {
+        self.excess?;
+        let heading = heading(&self.start, self.goal, limits.velocity, self.path.order());
+        excess::excess(&self.path, self.goal, Some(heading), limits)
+    }
+
     /// Time until the goal velocity (s), not rounded to scans.
     pub fn duration(&self) -> f64 {
         self.path.duration()
@@ -285,6 +306,21 @@ pub(crate) fn check(
         return invalid(Field::EndVelocity, velocity);
     }
     Ok(())
+}
+
+/// Whether a ramp that ends in `end` comes to `velocity` but for rounding. Bounds so low that its times are beyond
+/// numbers leave spans out.
+pub(crate) fn is_there(
+    end: &Setpoint,
+    velocity: f64,
+    (start, limits, duration): (&Setpoint, &Limits, f64),
+) -> bool {
+    let steepest = limits
+        .acceleration
+        .max(limits.deceleration)
+        .max(start.acceleration.abs());
+    let changed = start.velocity.abs() + velocity.abs() + steepest * duration;
+    (end.velocity - velocity).abs() <= ON_LIMIT * changed
 }
 
 /// The least whole number of cycles that covers `duration`, but for [`GRID_SLACK`]; none if it is too large.

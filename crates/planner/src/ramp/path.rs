@@ -42,19 +42,8 @@ impl<const N: usize> Path<N> {
         }
     }
 
-    /// Lays `spans` of (seconds, highest derivative) from `start` on and pins the end to `velocity`.
-    pub(crate) fn lay(
-        order: Order,
-        start: &Setpoint,
-        spans: impl Iterator<Item = (f64, f64)>,
-        velocity: f64,
-    ) -> Self {
-        let mut path = Self::follow(order, start, spans);
-        path.pin(velocity);
-        path
-    }
-
-    /// Lays `spans` from `start` on to wherever they end; what does not fit in is left out.
+    /// Lays `spans` of (seconds, highest derivative) from `start` on to wherever they end; what does not fit in is
+    /// left out.
     pub(crate) fn follow(order: Order, start: &Setpoint, spans: impl Iterator<Item = (f64, f64)>) -> Self {
         let mut path = Self::new(order);
         path.fill(start, spans);

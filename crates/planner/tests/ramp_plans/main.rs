@@ -2,6 +2,7 @@
 
 mod chains;
 mod changes;
+mod excess;
 mod shape;
 mod support;
 mod turns;

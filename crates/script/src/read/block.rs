@@ -46,7 +46,6 @@ impl Reader {
             block,
             task: task?,
             constants: Vec::new(),
-            tables: Vec::new(),
             wires: Vec::new(),
         };
         self.pins(index, &fields, &mut instance)?;
@@ -79,11 +78,7 @@ impl Reader {
                 good = false;
             }
             let what = format!("{} ({})", quoted(pin.name), pin.ty.iec_name());
-            if let PinType::Table(info) = pin.ty {
-                let rows = self.table(node, info, &what);
-                good &= rows.is_some();
-                instance.tables.extend(rows.map(|rows| (pin_index, rows)));
-            } else if !is_wire(node) {
+            if !is_wire(node) {
                 let value = self.value(node, pin.ty, &what);
                 good &= value.is_some();
                 instance.constants.extend(value.map(|value| (pin_index, value)));

@@ -52,6 +52,8 @@ struct Reader {
     drives: Vec<Option<DriveSetup>>,
     /// The wires read so far.
     wires: circle::Wires,
+    /// The numbers of the tables read so far.
+    tables: Vec<f64>,
     errors: Vec<Diagnostic>,
 }
 
@@ -126,6 +128,7 @@ impl Reader {
             steps: steps?,
             claims: claims?,
             stop_when: stop_when?,
+            tables: std::mem::take(&mut self.tables),
             parameters: std::mem::take(&mut self.parameters),
             hash: 0,
         };

@@ -4,12 +4,11 @@ use super::Reader;
 use super::json::{Json, Node};
 use super::names::suggestion;
 use crate::error::{Code, Diagnostic, quoted};
-use crate::model::Rows;
-use standstill_fb::TableInfo;
+use standstill_fb::{TableInfo, TableRef, Value};
 
 impl Reader {
-    /// The records at a pin of a table's type.
-    pub(super) fn table(&mut self, node: &Node, info: TableInfo, what: &str) -> Option<Rows> {
+    /// The records at a pin of a table's type; they join the numbers of all tables.
+    pub(super) fn table(&mut self, node: &Node, info: TableInfo, what: &str) -> Option<TableRef> {
         let Json::List(items) = &node.json else {
             let diagnostic = self.wrong_type(node, what, "a list of objects");
             self.report(diagnostic.help("for example [{}]; what is left out of a record is 0 or FALSE"));
@@ -20,20 +19,26 @@ impl Reader {
             self.report(Diagnostic::new(Code::BadValue, node.span, message));
             return None;
         }
-        self.each(items, |reader, item| reader.record(item, info))
+        let records = self.each(items, |reader, item| reader.record(item, info))?;
+        let place = TableRef {
+            first: u32::try_from(self.tables.len()).ok()?,
+            records: u16::try_from(records.len()).ok()?,
+        };
+        self.tables.extend(records.into_iter().flatten());
+        Some(place)
     }
 
-    fn record(&mut self, node: &Node, info: TableInfo) -> Option<Vec<(usize, standstill_fb::Value)>> {
+    fn record(&mut self, node: &Node, info: TableInfo) -> Option<Vec<f64>> {
         let members = self.map(node, &format!("a record of {}", info.name))?;
-        let mut cells = Vec::new();
+        let mut cells = vec![0.0; info.fields.len()];
         let mut good = true;
         for (key, node) in members.iter() {
             if key.text == "note" {
                 good &= self.text(node, "`note`").is_some();
                 continue;
             }
-            let found = info.fields.iter().position(|field| field.name == key.text);
-            let Some((place, field)) = found.and_then(|place| Some((place, info.fields.get(place)?))) else {
+            let mut fields = info.fields.iter().zip(&mut cells);
+            let Some((field, cell)) = fields.find(|(field, _)| field.name == key.text) else {
                 let message = format!("{} has no field {}", info.name, quoted(&key.text));
                 let names = info.fields.iter().map(|field| field.name);
                 self.report(
@@ -44,9 +49,10 @@ impl Reader {
                 continue;
             };
             let what = format!("{} ({})", quoted(field.name), field.ty.iec_name());
-            let value = self.value(node, field.ty, &what);
-            good &= value.is_some();
-            cells.extend(value.map(|value| (place, value)));
+            match self.value(node, field.ty, &what).and_then(Value::to_cell) {
+                Some(number) => *cell = number,
+                None => good = false,
+            }
         }
         good.then_some(cells)
     }

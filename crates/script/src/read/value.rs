@@ -341,15 +341,7 @@ impl Reader {
                 u32::try_from(value).ok().map(Value::Dword)
             }
             PinType::Time => self.duration(node, what).map(Value::Time),
-            // Where a table may stand it was read before.
-            PinType::Table(_) => {
-                let message = format!("{what} is a table: steps, wires and records do not set one");
-                self.report(
-                    Diagnostic::new(Code::Unsupported, node.span, message)
-                        .help("write its records at the pin of the instance"),
-                );
-                None
-            }
+            PinType::Table(info) => self.table(node, info, what).map(Value::Table),
             PinType::Axis(_) => {
                 let index = self.axis_index(node, what)?;
                 u16::try_from(index)

@@ -25,6 +25,7 @@ pub(crate) fn instance_id(index: usize) -> InstanceId {
 /// The axes and drives of a script as they stand before the first scan.
 pub(crate) fn machine(script: &Script) -> Result<ScriptMachine, RunError> {
     let mut machine = Machine::new();
+    machine.tables_mut().clone_from(&script.tables);
     let planner = Standard::new(script.cycle_ns as f64 / 1e9);
     for axis in &script.axes {
         let drive = ScriptDrive::new(axis, script.cycle_ns).map_err(|error| RunError::Axis {

@@ -2,7 +2,7 @@
 
 use crate::model::{Point, Script};
 use standstill_axis::AxisId;
-use standstill_fb::{EnumInfo, PinType, Value};
+use standstill_fb::{EnumInfo, PinType, TableRef, Value};
 use standstill_trace::{Cell, cell_text};
 use std::collections::BTreeMap;
 
@@ -20,9 +20,9 @@ impl Undefined {
             (PinType::Enum(info), Value::Enum(number)) if info.name_of(number).is_none() => {
                 self.number(number);
             }
-            (_, Value::Rows(count)) => {
-                let text = || format!("{count} record{}", if count == 1 { "" } else { "s" });
-                self.tables.entry(count).or_insert_with(text);
+            (_, Value::Table(TableRef { records, .. })) => {
+                let text = || format!("{records} record{}", if records == 1 { "" } else { "s" });
+                self.tables.entry(records).or_insert_with(text);
             }
             _ => {}
         }
@@ -40,7 +40,7 @@ impl Undefined {
             Value::Lreal(value) => Cell::Real(value),
             Value::Word(value) => Cell::Integer(value.into()),
             Value::Dword(value) => Cell::Integer(value.into()),
-            Value::Rows(count) => Cell::Name(self.tables.get(&count).map_or("", String::as_str)),
+            Value::Table(table) => Cell::Name(self.tables.get(&table.records).map_or("", String::as_str)),
             Value::Time(ns) => Cell::Integer(ns),
             Value::Axis(id) => Cell::Name(axis_name(script, id)),
             Value::Enum(number) => Cell::Name(
@@ -96,6 +96,7 @@ pub(crate) fn convert(value: Value, ty: PinType) -> Option<Value> {
         | (Value::Lreal(_), PinType::Lreal)
         | (Value::Word(_), PinType::Word)
         | (Value::Dword(_), PinType::Dword)
+        | (Value::Table(_), PinType::Table(_))
         | (Value::Time(_), PinType::Time)
         | (Value::Axis(_), PinType::Axis(_))
         | (Value::Enum(_), PinType::Enum(_)) => Some(value),
@@ -125,6 +126,6 @@ fn whole(value: Value) -> Option<i64> {
             let cast = value as i64;
             (cast as f64 == value && cast != i64::MAX).then_some(cast)
         }
-        Value::Bool(_) | Value::Axis(_) | Value::Rows(_) => None,
+        Value::Bool(_) | Value::Axis(_) | Value::Table(_) => None,
     }
 }

@@ -22,15 +22,6 @@ impl Values {
             for (pin, value) in &declared.constants {
                 instance.set(*pin, *value).ok()?;
             }
-            for (pin, rows) in &declared.tables {
-                let table = instance.table(*pin)?;
-                for row in rows {
-                    table.push().then_some(())?;
-                    for (field, value) in row {
-                        table.set_last(*field, *value).ok()?;
-                    }
-                }
-            }
             instances.push(instance);
         }
         Some(Self {

@@ -66,6 +66,7 @@ const fn case(code: &'static str, by: By, title: &'static str, old: &'static str
 }
 
 const PINS: &str = r#""Execute": false"#;
+const CAMS: &str = r#""type": "MC_MoveAbsolute", "pins": {"Axis": "X", "Execute": false}"#;
 const LIMITS: &str = r#""velocity": 50, "acceleration": 200}"#;
 const STEP: &str = r#"{"at": 1, "set": {"GO": true}}"#;
 const CLAIM: &str = r#"{"at": 2, "that": {"m.Busy": true}}"#;
@@ -834,6 +835,48 @@ pub fn cases() -> Vec<Case> {
             "after without stop_when",
             "\"inputs\"",
             "\"after\": 3, \"inputs\"",
+        ),
+        case(
+            "wrong_type",
+            Schema,
+            "a table that is no list",
+            CAMS,
+            r#""type": "MC_DigitalCamSwitch", "pins": {"Axis": "X", "Outputs": "X", "Switches": 3}"#,
+        ),
+        case(
+            "unknown_key",
+            Schema,
+            "a record with an unknown field",
+            CAMS,
+            r#""type": "MC_DigitalCamSwitch", "pins": {"Axis": "X", "Outputs": "X", "Switches": [{"TrackNumbr": 1}]}"#,
+        ),
+        case(
+            "wrong_type",
+            Schema,
+            "a record with a text for a number",
+            CAMS,
+            r#""type": "MC_DigitalCamSwitch", "pins": {"Axis": "X", "Outputs": "X", "Switches": [{"TrackNumber": 1, "FirstOnPosition": "far"}]}"#,
+        ),
+        case(
+            "bad_value",
+            Schema,
+            "a table with too many records",
+            CAMS,
+            r#""type": "MC_DigitalCamSwitch", "pins": {"Axis": "X", "Outputs": "X", "Switches": [{}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}]}"#,
+        ),
+        case(
+            "wrong_type",
+            Reader,
+            "a table wired from another type",
+            CAMS,
+            r#""type": "MC_DigitalCamSwitch", "pins": {"Axis": "X", "Outputs": "X", "Switches": {"from": "m.Done"}}"#,
+        ),
+        case(
+            "missing_pin",
+            Schema,
+            "outputs of no axis",
+            CAMS,
+            r#""type": "MC_DigitalCamSwitch", "pins": {"Axis": "X"}"#,
         ),
     ]
 }

@@ -263,7 +263,7 @@ fn shown(value: Value) -> String {
         Value::Word(value) => value.to_string(),
         Value::Dword(value) => value.to_string(),
         // Only tables without records are drawn.
-        Value::Rows(_) => "[]".to_owned(),
+        Value::Table(_) => "[]".to_owned(),
         Value::Time(value) => value.to_string(),
         Value::Axis(axis) => format!("\"{}\"", axis_name(axis.index())),
     }

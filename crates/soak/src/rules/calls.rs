@@ -35,7 +35,8 @@ impl Kind {
             "MC_HaltSuperimposed" => Self::HaltSuperimposed,
             "MC_Power" => Self::Power,
             _ if !has("Axis") => Self::Other,
-            _ if has("Execute") && has("CommandAborted") => Self::Motion,
+            // MC_TouchProbe can be aborted, but moves nothing.
+            _ if has("Execute") && has("Active") => Self::Motion,
             _ if has("Execute") => Self::Administrative,
             _ if has("Enable") => Self::Reading,
             _ => Self::Other,

@@ -166,7 +166,7 @@ impl<P: Planner> Axis<P> {
                     // Alone it exceeds the axis limits only where it takes over from a motion in a way that
                     // its own limits are too low for. That motion may go on instead.
                     let motion = Motion::along(plan);
-                    let fits = !self.exceeds(&motion, &limits)
+                    let fits = !self.exceeds(&motion)
                         && base.is_none_or(|rest| self.planner.fits(rest, (&plan, 0), axis, range));
                     if fits {
                         return Ok(Some(Proposal {
@@ -358,7 +358,7 @@ impl<P: Planner> Axis<P> {
         layer.taken = layer.added.position;
         if !self.fits_under(&motion, &layer) {
             motion = self.plan_from(entry, &self.setpoint, &self.limits_before(&entry.limits))?;
-            if self.exceeds(&motion, &entry.limits) {
+            if self.exceeds(&motion) {
                 // It cannot take this velocity over either; soon there is less of it.
                 return Ok(None);
             }
@@ -385,8 +385,8 @@ impl<P: Planner> Axis<P> {
         self.planner.fits((plan, 0), (added, *elapsed), axis, range)
     }
 
-    /// Whether a plan within `limits` must exceed those of the axis.
-    pub(in crate::axis) fn exceeds(&self, motion: &Motion<P::Plan>, limits: &Limits) -> bool {
-        self.excess_of(motion, limits).is_some()
+    /// Whether a motion must exceed the limits of the axis.
+    pub(in crate::axis) fn exceeds(&self, motion: &Motion<P::Plan>) -> bool {
+        self.excess_of(motion).is_some()
     }
 }
