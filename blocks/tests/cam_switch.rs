@@ -123,6 +123,58 @@ impl Judge {
     }
 }
 
+/// Covers: R38, R56
+#[test]
+fn a_table_that_is_not_there_or_too_long_is_an_error_until_it_is_mended() {
+    let id = AxisId::new(0);
+    let config = AxisConfig {
+        start: StartState::Standstill,
+        ..AxisConfig::new(LIMITS)
+    };
+    let mut axes = [Axis::new(id, config, Standard::new(CYCLE)).expect("a good configuration")];
+    let mut log = Log::default();
+    // At 0 each of them is on.
+    let tables = cells(
+        &[CamSwitch {
+            track_number: 1,
+            ..CamSwitch::default()
+        }; 33],
+    );
+    let mut block = Instance::<McDigitalCamSwitch> {
+        inputs: Inputs {
+            axis: id,
+            outputs: OutputRef(id),
+            enable: true,
+            enable_mask: 1,
+            ..Inputs::default()
+        },
+        ..Instance::default()
+    };
+    let too_many = u32::try_from(tables.len()).expect("some numbers");
+    let rows = [
+        (0, 32, 0),
+        (0, 33, 135),
+        (6, 32, 0),
+        (7, 32, 135),
+        (u32::MAX, 1, 135),
+        (too_many, 0, 0),
+    ];
+    for (first, records, error) in rows {
+        block.inputs.switches = TableOf::new(TableRef { first, records });
+        block.call(&mut Context {
+            now_ns: 0,
+            scan: 0,
+            instance: InstanceId(0),
+            axes: &mut axes,
+            log: &mut log,
+            tables: &tables,
+        });
+        assert_eq!(block.outputs.error_id.number(), error, "{records} from {first}");
+        let on = error == 0 && records > 0;
+        assert_eq!(axes[0].order().outputs, u32::from(on), "{records} from {first}");
+    }
+}
+
 /// Covers: T39h
 #[test]
 fn cams_switch_in_the_right_scan_at_every_speed() {

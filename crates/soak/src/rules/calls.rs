@@ -21,7 +21,7 @@ pub enum Kind {
     Power,
     /// Everything with Enable but MC_Power.
     Reading,
-    /// No block of an axis.
+    /// No block of an axis, or not of its motion.
     Other,
 }
 
@@ -34,6 +34,8 @@ impl Kind {
             "MC_MoveSuperimposed" => Self::Superimposed,
             "MC_HaltSuperimposed" => Self::HaltSuperimposed,
             "MC_Power" => Self::Power,
+            // They wait for, or switch, what a drive has beside its motion; here nothing comes from there.
+            "MC_TouchProbe" | "MC_DigitalCamSwitch" => Self::Other,
             _ if !has("Axis") => Self::Other,
             // MC_TouchProbe can be aborted, but moves nothing.
             _ if has("Execute") && has("Active") => Self::Motion,
