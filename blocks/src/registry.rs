@@ -4,10 +4,12 @@ use crate::administrative::{
     mc_abort_trigger::McAbortTrigger, mc_digital_cam_switch::McDigitalCamSwitch, mc_power::McPower,
     mc_read_actual_position::McReadActualPosition, mc_read_actual_velocity::McReadActualVelocity,
     mc_read_axis_error::McReadAxisError, mc_read_axis_info::McReadAxisInfo,
-    mc_read_digital_input::McReadDigitalInput, mc_read_digital_output::McReadDigitalOutput,
-    mc_read_motion_state::McReadMotionState, mc_read_status::McReadStatus, mc_reset::McReset,
+    mc_read_bool_parameter::McReadBoolParameter, mc_read_digital_input::McReadDigitalInput,
+    mc_read_digital_output::McReadDigitalOutput, mc_read_motion_state::McReadMotionState,
+    mc_read_parameter::McReadParameter, mc_read_status::McReadStatus, mc_reset::McReset,
     mc_set_override::McSetOverride, mc_set_position::McSetPosition, mc_touch_probe::McTouchProbe,
-    mc_write_digital_output::McWriteDigitalOutput,
+    mc_write_bool_parameter::McWriteBoolParameter, mc_write_digital_output::McWriteDigitalOutput,
+    mc_write_parameter::McWriteParameter,
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
@@ -66,6 +68,7 @@ macro_rules! registry {
 registry! {
     McPower McReset McReadStatus McReadMotionState McReadAxisInfo McReadAxisError
     McReadActualPosition McReadActualVelocity McSetPosition McSetOverride
+    McReadParameter McReadBoolParameter McWriteParameter McWriteBoolParameter
     McReadDigitalInput McReadDigitalOutput McWriteDigitalOutput
     McTouchProbe McAbortTrigger McDigitalCamSwitch
     McHome

@@ -70,6 +70,11 @@ impl Bench {
             ("Velocity", Value::Lreal(5.0)),
             ("VelocityDiff", Value::Lreal(1.0)),
         ];
+        let parameter = if name.contains("Bool") { 6 } else { 9 };
+        let number = ("ParameterNumber", Value::Int(parameter));
+        let value = name == "MC_WriteParameter";
+        let value = value.then_some(("Value", Value::Lreal(10.0)));
+        let good = good.into_iter().chain([number]).chain(value);
         for (pin, value) in good {
             if let Some((index, _)) = block.info().pin(pin)
                 && index < block.info().input_count()

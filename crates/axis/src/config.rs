@@ -49,6 +49,15 @@ pub struct Defaults {
     pub snap: Option<f64>,
 }
 
+/// The window a move ends in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InPosition {
+    /// Largest distance between actual position and set position (u).
+    pub window: f64,
+    /// Scans the actual position stays inside before the move is done; 0 for the first scan inside.
+    pub scans: u32,
+}
+
 /// Everything about an axis that does not change while it runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisConfig {
@@ -82,6 +91,11 @@ pub struct AxisConfig {
     pub needs_homed: bool,
     /// Largest factor MC_SetOverride takes, at least 1; above 1 the limits hold all the same (V16).
     pub override_max: f64,
+    /// Largest following error (u); a larger one is an axis error. `None` if it is not supervised.
+    pub max_following_error: Option<f64>,
+    /// A move to rest is done when the actual position has been in this window (V12d); `None` if the set position
+    /// decides alone.
+    pub in_position: Option<InPosition>,
 }
 
 impl AxisConfig {
@@ -108,6 +122,8 @@ impl AxisConfig {
             on_power_off: PowerOff::Ramp,
             needs_homed: false,
             override_max: 1.0,
+            max_following_error: None,
+            in_position: None,
         }
     }
 
@@ -128,6 +144,8 @@ impl AxisConfig {
             ("defaults.snap", self.defaults.snap, true),
             ("stop_deceleration", self.stop_deceleration, true),
             ("stop_jerk", self.stop_jerk, true),
+            ("max_following_error", self.max_following_error, true),
+            ("in_position.window", self.in_position.map(|it| it.window), true),
         ];
         for (key, value, finite) in positive {
             if let Some(value) = value

@@ -125,6 +125,22 @@ error_ids! {
         "Number tracks from 1 to 32, and give a Hysteresis of 0 or above.";
     TableUnknown = 135, "The table at a pin does not stand among the tables of this runtime, or has too many records.",
         "Take the reference from Machine::add_table; the page of the block says how many records it takes.";
+    ParameterNumberInvalid = 140, "ParameterNumber is not the number of a parameter.",
+        "Give a number from 1 to 17.";
+    ParameterKindInvalid = 141, "The parameter is a BOOL and the block one for REAL, or the other way round.",
+        "Use MC_ReadBoolParameter and MC_WriteBoolParameter for the numbers 4 to 6, MC_ReadParameter and MC_WriteParameter for all others.";
+    ParameterReadOnly = 142, "The parameter can only be read.",
+        "Write the limit of the application (9, 13, 15, 17) instead of that of the system; the others say what the axis does.";
+    ParameterValueInvalid = 143, "Value is NaN, or infinite, zero or negative where the parameter cannot be.",
+        "Give a finite position, or a limit above 0.";
+    ParameterAboveSystem = 144, "Value is above the limit of the axis.",
+        "Give at most what MC_ReadParameter shows for MaxVelocitySystem (8), MaxAccelerationSystem (12), MaxDecelerationSystem (14) or MaxJerkSystem (16).";
+    ParameterMissing = 145, "A software limit or the supervision of the following error is switched on before it has a value.",
+        "Write SWLimitPos (2), SWLimitNeg (3) or MaxPositionLag (7) first.";
+    SoftwareLimitsCrossed = 146, "The lower software limit would not be below the upper one.",
+        "Move the other limit first, or switch one of them off.";
+    ParameterOnModulo = 147, "Software limits do not exist on a modulo axis: its positions come round.",
+        "Leave the parameters 2 to 5 alone on this axis.";
 
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";
@@ -159,6 +175,8 @@ error_ids! {
         "Call MC_Reset, then move away from the limit.";
     CauseStillPresent = 403, "MC_Reset found the cause of the axis error still present.",
         "Remove the cause, then give MC_Reset a new rising edge.";
+    FollowingErrorTooLarge = 404, "The actual position was further from the set position than the largest following error.",
+        "Free the axis or raise MaxPositionLag (7); while it lags, switch it off with MC_Power, then call MC_Reset.";
 
     DriveFault = 501, "The drive reported a fault.",
         "Read the drive's error code, remove the cause, then call MC_Reset.";

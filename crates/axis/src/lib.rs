@@ -22,13 +22,16 @@ mod scaling;
 mod state;
 
 pub use axis::{
-    Axis, Beside, CamTrack, Factors, MotionState, Outlook, Pace, Permission, Source, TouchProbe, Way,
+    Axis, Beside, CamTrack, Factors, MotionState, Outlook, Pace, Parameter, ParameterValue, Permission,
+    Source, TouchProbe, Way,
 };
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,
     QUEUE_MAX, Raw, Request, Superimpose, Trigger, ValueSource,
 };
-pub use config::{AboveLimit, AxisConfig, ConfigError, Defaults, MODULO_MAX, PowerOff, StartState};
+pub use config::{
+    AboveLimit, AxisConfig, ConfigError, Defaults, InPosition, MODULO_MAX, PowerOff, StartState,
+};
 pub use drive::{
     Comms, DIGITAL, Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, DriveRequest,
     DriveSignals, Edge, Fault, PROBES, ProbeReport,

@@ -221,6 +221,13 @@ fn axis_key(key: &str) -> Value {
         "on_power_off" => words(&ON_POWER_OFF),
         "needs_homed" => json!({"type": "boolean"}),
         "override_max" => any(&[json!({"type": "number", "minimum": 1}), of("parameter")]),
+        "in_position" => required(
+            &["window"],
+            object(&shape::IN_POSITION, |key| match key {
+                "time" => of("scans"),
+                _ => of("finite"),
+            }),
+        ),
         "drive" => drive(),
         _ => of("finite"),
     }

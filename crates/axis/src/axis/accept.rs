@@ -348,7 +348,7 @@ impl<P: Planner> Axis<P> {
             | Work::Stop
             | Work::Home(_)
             | Work::SetPosition { .. }
-            | Work::Output { .. } => None,
+            | Work::Write(_) => None,
         }
     }
 
@@ -444,7 +444,7 @@ impl<P: Planner> Axis<P> {
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
             Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
-            Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => return Ok(Motion::Hold),
+            Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return Ok(Motion::Hold),
         };
         match planned {
             Ok(plan) => {
@@ -477,7 +477,7 @@ impl<P: Planner> Axis<P> {
             Work::Velocity { velocity, .. } => ("Velocity", velocity),
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),
             Work::Home(position) | Work::SetPosition { position, .. } => ("Position", position),
-            Work::Output { .. } => ("OutputNumber", f64::NAN),
+            Work::Write(_) => ("", f64::NAN),
         };
         let limit = match error {
             ErrorId::TargetOutsideSoftwareLimits | ErrorId::OutwardFromSoftwareLimit => {
@@ -502,7 +502,7 @@ impl<P: Planner> Axis<P> {
             Work::Position(_) | Work::Distance(_) | Work::Halt => AxisEvent::StartDiscrete,
             Work::Velocity { .. } | Work::Through { .. } => AxisEvent::StartContinuous,
             Work::Stop => AxisEvent::Stop,
-            Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => AxisEvent::StartHoming,
+            Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => AxisEvent::StartHoming,
         });
         self.before = before;
         self.adopt(entry, motion, scan, log);

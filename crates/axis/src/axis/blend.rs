@@ -218,7 +218,7 @@ impl<P: Planner> Axis<P> {
                 (towards, velocity.abs(), None)
             }
             Work::Halt => (direction, 0.0, None),
-            Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => return REST,
+            Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return REST,
         };
         // What MC_Power bars would be refused at the end, too late to stop there. A continuous move may need a run-up.
         let runs_up = matches!(next.entry.work, Work::Through { end_velocity, .. } if end_velocity != 0.0);
@@ -253,7 +253,7 @@ impl<P: Planner> Axis<P> {
     /// `passage` at `end`, but no faster than the stop dynamics can keep inside a software limit behind it, whatever
     /// comes next.
     fn stoppable(&self, passage: Passage, end: Option<f64>, direction: f64) -> Passage {
-        let (Some((min, max)), Some(end)) = (self.config.software_limits, end) else {
+        let (Some((min, max)), Some(end)) = (self.parameters.software_limits, end) else {
             return passage;
         };
         let room = if direction > 0.0 { max - end } else { end - min };

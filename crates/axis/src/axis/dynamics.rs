@@ -38,8 +38,8 @@ impl<P: Planner> Axis<P> {
         source: Source,
         log: &mut Log,
     ) -> Result<Limits, ErrorId> {
-        let (limits, defaults) = (&self.config.limits, &self.config.defaults);
-        let longest = LONGEST * self.planner.cycle();
+        let (limits, defaults) = (&self.parameters.limits, &self.config.defaults);
+        let longest = self.longest();
         let rate = limits.acceleration.max(limits.deceleration);
         let jolt = if limits.jerk.is_finite() {
             limits.jerk
@@ -95,6 +95,11 @@ impl<P: Planner> Axis<P> {
         }))
     }
 
+    /// Longest time (s) a rate may take to change what it changes from nothing to its limit.
+    pub(super) fn longest(&self) -> f64 {
+        LONGEST * self.planner.cycle()
+    }
+
     /// `limits` without a jerk or snap so high that it limits nothing: the acceleration may as well jump from
     /// bound to bound, or the jerk.
     fn noticeable(&self, limits: &Limits) -> Limits {
@@ -126,7 +131,7 @@ impl<P: Planner> Axis<P> {
         self.within(
             pin,
             value,
-            self.config.limits.velocity,
+            self.parameters.limits.velocity,
             ErrorId::VelocityAboveLimit,
             source,
             log,
@@ -138,7 +143,7 @@ impl<P: Planner> Axis<P> {
         if !value.is_finite() {
             return Err(self.refuse("Velocity", value, f64::NAN, ErrorId::VelocityInvalid, source, log));
         }
-        let limit = self.config.limits.velocity;
+        let limit = self.parameters.limits.velocity;
         self.within("Velocity", value, limit, ErrorId::VelocityAboveLimit, source, log)
     }
 
@@ -154,7 +159,7 @@ impl<P: Planner> Axis<P> {
         if !value.is_finite() {
             return Err(self.refuse("EndVelocity", value, f64::NAN, invalid, source, log));
         }
-        let limit = self.config.limits.velocity;
+        let limit = self.parameters.limits.velocity;
         // Above the axis limit Velocity has been clamped to it, or the command refused.
         if value.abs().min(limit) > velocity {
             return Err(self.refuse("EndVelocity", value, velocity, invalid, source, log));
@@ -187,7 +192,7 @@ impl<P: Planner> Axis<P> {
             return self.within(pin.pin, pin.value, pin.limit, pin.above, source, log);
         }
         match (pin.default, pin.missing) {
-            (Some(default), _) => Ok(default),
+            (Some(default), _) => Ok(default.min(pin.limit)),
             (None, Some(error)) if !pin.limit.is_finite() => {
                 Err(self.refuse(pin.pin, pin.value, f64::NAN, error, source, log))
             }

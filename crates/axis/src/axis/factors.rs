@@ -123,7 +123,7 @@ impl<P: Planner> Axis<P> {
         if !entry.work.obeys_override() {
             return;
         }
-        let (factors, axis) = (&self.factors, &self.config.limits);
+        let (factors, axis) = (&self.factors, &self.parameters.limits);
         entry.limits = factors.of(&entry.asked.limits, axis);
         // Halted, it is the goal that waits, not one of 0.
         let factor = if factors.halt() { 1.0 } else { factors.velocity };

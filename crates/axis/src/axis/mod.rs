@@ -4,7 +4,8 @@
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`inside`] keeps take-overs within the axis
 //! limits, [`superimposed`] adds a second motion, [`factors`] is the override, [`replan`] changes the owner's motion
 //! while it runs, [`update`] gives it new values, [`jog`] checks what MC_Jog asks for, [`queued`] lets administrative
-//! commands wait, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges,
+//! commands wait, [`parameters`] has what can be written by number, [`supervision`] watches the distance to the
+//! actual position, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`permission`] out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
@@ -18,6 +19,7 @@ mod inside;
 mod jog;
 mod modulo;
 mod outputs;
+mod parameters;
 mod permission;
 mod power;
 mod probe;
@@ -28,6 +30,7 @@ mod replan;
 mod software_limits;
 mod step;
 mod superimposed;
+mod supervision;
 mod update;
 
 use crate::fate::Fates;
@@ -39,6 +42,7 @@ use crate::{
 pub use factors::Factors;
 use modulo::Modulo;
 pub use outputs::CamTrack;
+pub use parameters::{Parameter, ParameterValue};
 pub use permission::Permission;
 pub use probe::TouchProbe;
 use queue::{Entry, Queue, Work};
@@ -160,6 +164,10 @@ pub struct Outlook {
     pub superimposed: Option<Beside>,
     /// The override, as bits.
     pub factors: [u64; 3],
+    /// What the application can write by number, as bits.
+    pub parameters: [u64; 10],
+    /// Scans in a row the axis has been inside the in-position window, at the end of a move.
+    pub inside_for: u32,
     /// The owner's motion is not the one to its goal: the override halts it, MC_Power bars it, or it has yet to be planned anew.
     pub held_up: bool,
 }
@@ -259,6 +267,10 @@ pub struct Axis<P: Planner = Standard> {
     shift_due: bool,
     /// The override.
     factors: Factors,
+    /// What the application can write by number.
+    parameters: parameters::Parameters,
+    /// Scans in a row the axis has been inside the in-position window, at the end of a move.
+    inside_for: u32,
     /// The owner has values that its motion does not have yet, for lack of room beside something superimposed.
     replan_due: bool,
     /// In operation with nothing pending, see [`Axis::is_calm`]; FALSE may be stale, TRUE never.
@@ -324,6 +336,8 @@ impl<P: Planner> Axis<P> {
             watched: false,
             shift_due: false,
             factors: Factors::ONE,
+            parameters: parameters::Parameters::new(&config),
+            inside_for: 0,
             replan_due: false,
             calm: false,
         })
@@ -423,7 +437,7 @@ impl<P: Planner> Axis<P> {
                 | Work::Stop
                 | Work::Home(_)
                 | Work::SetPosition { .. }
-                | Work::Output { .. } => Fate::Active { reached: false },
+                | Work::Write(_) => Fate::Active { reached: false },
             };
         }
         self.fate_of_other(id)
@@ -473,6 +487,8 @@ impl<P: Planner> Axis<P> {
             forward: self.last_velocity > 0.0,
             superimposed: self.superimposed_outlook(),
             factors: self.factors.bits(),
+            parameters: self.parameters.bits(),
+            inside_for: self.inside_for,
             held_up: self.is_held_up(),
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_ReadDigitalInput, MC_ReadDigitalOutput, MC_WriteDigitalOutput; V26.
 
-use super::queue::Work;
+use super::queue::{Work, Write};
 use super::{Axis, Source};
 use crate::{CommandId, Comms, DIGITAL, ErrorId, ExecutionMode, Fate, Log, Raw};
 use standstill_planner::Planner;
@@ -76,7 +76,7 @@ impl<P: Planner> Axis<P> {
         self.told()
             .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, source, log))?;
         if queued {
-            return self.enqueue(Work::Output { bit, value }, source, log);
+            return self.enqueue(Work::Write(Write::Output { bit, value }), source, log);
         }
         self.set_output(bit, value);
         let id = self.new_id();
@@ -95,21 +95,7 @@ impl<P: Planner> Axis<P> {
         &mut self.cam_tracks
     }
 
-    /// Writes what waits at the head of the buffer; `false` if that is no output.
-    pub(super) fn write_queued_output(&mut self) -> bool {
-        let Some(entry) = self.queue.first() else {
-            return false;
-        };
-        let (id, Work::Output { bit, value }) = (entry.id, entry.work) else {
-            return false;
-        };
-        self.queue.pop();
-        self.set_output(bit, value);
-        self.fates.record(id, Fate::Done);
-        true
-    }
-
-    fn set_output(&mut self, bit: u32, value: bool) {
+    pub(super) fn set_output(&mut self, bit: u32, value: bool) {
         self.write_outputs(bit, if value { bit } else { 0 });
     }
 

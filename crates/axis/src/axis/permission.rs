@@ -234,7 +234,7 @@ impl Entry {
     fn leads_on(&self) -> bool {
         match self.work {
             Work::Position(_) | Work::Distance(_) | Work::Through { .. } | Work::Velocity { .. } => true,
-            Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => false,
+            Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
         }
     }
 }

@@ -49,7 +49,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the axis is in operation with nothing pending and nothing superimposed: it reacts to nothing but
+    /// Whether the axis is in operation with nothing pending and nothing superimposed or supervised: it reacts to nothing but
     /// its feedback, is asked for what it was asked for, and its positions need no care.
     ///
     /// Looked at once, when that may have begun; whatever ends it says so ([`Axis::stir`]). A scan saves ten
@@ -71,7 +71,8 @@ impl<P: Planner> Axis<P> {
             && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         let is_pending = self.reset.is_some() || self.shift_due || self.rename.is_some();
         let is_plain = self.modulo.is_none() && self.layer.is_none() && self.past.is_whole();
-        is_powered && is_well && !is_pending && is_plain
+        let is_watched = self.parameters.lag.on;
+        is_powered && is_well && !is_pending && is_plain && !is_watched
     }
 
     /// Something is pending, or may be.
@@ -110,6 +111,7 @@ impl<P: Planner> Axis<P> {
             let position = self.position_of(feedback);
             self.latch_and_mend(position);
             self.follow_power(feedback, scan, log);
+            self.supervise(scan, log);
             if self.shift_due {
                 self.take_queued_shifts(scan, log);
             }
@@ -303,6 +305,7 @@ impl<P: Planner> Axis<P> {
         self.cause_present
             || self.power.comms == Comms::Lost
             || !self.power.voltage
+            || self.lags()
             || self.power.fault.is_some_and(|fault| fault.cause_present)
     }
 

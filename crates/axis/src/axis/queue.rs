@@ -1,6 +1,7 @@
 //! Commands that were accepted: the owner and those that wait.
 
 use super::accept::REST;
+use super::parameters::{Parameter, ParameterValue};
 use crate::{BufferMode, CommandId, Direction, InstanceId, QUEUE_MAX};
 use standstill_planner::{Limits, Passage};
 
@@ -11,6 +12,18 @@ pub(super) enum Place {
     At(f64),
     /// A distance (u) from where the command becomes active (B10).
     By(f64),
+}
+
+/// What a command writes when its turn comes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Write {
+    /// A digital output of the drive.
+    Output { bit: u32, value: bool },
+    /// A parameter.
+    Parameter {
+        parameter: Parameter,
+        value: ParameterValue,
+    },
 }
 
 /// A checked command.
@@ -32,8 +45,8 @@ pub(super) enum Work {
     Home(f64),
     /// The coordinates move: the actual position becomes this, or grows by it (u).
     SetPosition { position: f64, relative: bool },
-    /// A digital output of the drive gets a value.
-    Output { bit: u32, value: bool },
+    /// Something beside the motion is written.
+    Write(Write),
 }
 
 impl Work {
@@ -55,7 +68,7 @@ impl Work {
             | Self::Stop
             | Self::Home(_)
             | Self::SetPosition { .. }
-            | Self::Output { .. } => None,
+            | Self::Write(_) => None,
         }
     }
 
@@ -70,7 +83,7 @@ impl Work {
             | Self::Stop
             | Self::Home(_)
             | Self::SetPosition { .. }
-            | Self::Output { .. } => None,
+            | Self::Write(_) => None,
         }
     }
 
@@ -85,7 +98,7 @@ impl Work {
             | Self::Stop
             | Self::Home(_)
             | Self::SetPosition { .. }
-            | Self::Output { .. } => 0.0,
+            | Self::Write(_) => 0.0,
         }
     }
 
@@ -103,7 +116,7 @@ impl Work {
             | Self::Stop
             | Self::Home(_)
             | Self::SetPosition { .. }
-            | Self::Output { .. } => self,
+            | Self::Write(_) => self,
         }
     }
 
@@ -119,7 +132,7 @@ impl Work {
     pub fn obeys_override(&self) -> bool {
         match self {
             Self::Position(_) | Self::Distance(_) | Self::Through { .. } | Self::Velocity { .. } => true,
-            Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } | Self::Output { .. } => false,
+            Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } | Self::Write(_) => false,
         }
     }
 
@@ -133,7 +146,8 @@ impl Work {
             Self::Stop => "stop",
             Self::Home(_) => "home",
             Self::SetPosition { .. } => "set position",
-            Self::Output { .. } => "output",
+            Self::Write(Write::Output { .. }) => "output",
+            Self::Write(Write::Parameter { .. }) => "parameter",
         }
     }
 }
@@ -214,7 +228,7 @@ impl Entry {
 
     /// Whether it moves the axis when its turn comes, rather than writing something.
     pub fn is_motion(&self) -> bool {
-        !matches!(self.work, Work::SetPosition { .. } | Work::Output { .. })
+        !matches!(self.work, Work::SetPosition { .. } | Work::Write(_))
     }
 
     /// Whether it goes on until another command takes over.

@@ -3,9 +3,9 @@
 //! Source: PLCopen Motion Control Part 1, MC_EXECUTION_MODE and the sections of the blocks that have it. They wait
 //! like buffered motions, never own the axis, and do not change its state.
 
-use super::queue::{Entry, Work};
+use super::queue::{Entry, Work, Write};
 use super::{Axis, Source};
-use crate::{AxisState, BufferMode, CommandId, ErrorId, ExecutionMode, Log, Raw};
+use crate::{AxisState, BufferMode, CommandId, ErrorId, ExecutionMode, Fate, Log, Raw};
 use standstill_planner::Planner;
 
 impl<P: Planner> Axis<P> {
@@ -51,6 +51,28 @@ impl<P: Planner> Axis<P> {
         );
         self.queue.push(entry);
         Ok(id)
+    }
+
+    /// Writes what waits at the head of the buffer; `false` if that writes nothing.
+    pub(super) fn write_queued(&mut self, scan: u64, log: &mut Log) -> bool {
+        let Some(entry) = self.queue.first() else {
+            return false;
+        };
+        let (id, instance, Work::Write(write)) = (entry.id, entry.instance, entry.work) else {
+            return false;
+        };
+        self.queue.pop();
+        let fate = match write {
+            Write::Output { bit, value } => {
+                self.set_output(bit, value);
+                Fate::Done
+            }
+            Write::Parameter { parameter, value } => {
+                self.write_queued_parameter(parameter, value, Source { scan, instance }, log)
+            }
+        };
+        self.fates.record(id, fate);
+        true
     }
 
     /// Whether something is there that a queued command waits for.

@@ -167,6 +167,7 @@ impl<P: Planner> Axis<P> {
         }
         self.in_force = Self::limits_of(&entry.limits, &motion);
         self.motion = motion;
+        self.inside_for = 0;
         if self.modulo.is_some() {
             self.start_of_plan();
         }

@@ -14,7 +14,7 @@ use standstill_planner::{Limits, Plan, Planner, Setpoint};
 impl<P: Planner> Axis<P> {
     /// `target` (u), if a move may end there.
     pub(super) fn allowed(&self, target: f64) -> Result<f64, ErrorId> {
-        match self.config.software_limits {
+        match self.parameters.software_limits {
             Some((min, max)) if target < min || target > max => Err(ErrorId::TargetOutsideSoftwareLimits),
             _ => Ok(target),
         }
@@ -22,7 +22,7 @@ impl<P: Planner> Axis<P> {
 
     /// Refuses an endless motion from `here` (u) with `velocity` (u/s) that leads further out.
     pub(super) fn not_outward(&self, here: f64, velocity: f64) -> Result<(), ErrorId> {
-        match self.config.software_limits {
+        match self.parameters.software_limits {
             Some((min, max)) if (velocity > 0.0 && here >= max) || (velocity < 0.0 && here <= min) => {
                 Err(ErrorId::OutwardFromSoftwareLimit)
             }
@@ -32,7 +32,7 @@ impl<P: Planner> Axis<P> {
 
     /// The software limit that `position` (u) is at or beyond: the upper one, else the lower one.
     pub(super) fn broken_software_limit(&self, position: f64) -> f64 {
-        match self.config.software_limits {
+        match self.parameters.software_limits {
             Some((_, max)) if position >= max => max,
             Some((min, _)) => min,
             None => f64::NAN,
@@ -41,7 +41,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the motion of `entry` in progress may leave the software limits. Cost: at most one ramp.
     pub(super) fn needs_watching(&self, entry: &Entry) -> bool {
-        match self.config.software_limits {
+        match self.parameters.software_limits {
             Some(limits) => self.may_leave(entry, limits),
             None => false,
         }
@@ -61,7 +61,7 @@ impl<P: Planner> Axis<P> {
                 outside(self.end_of_plan())
                     || (!self.setpoint.is_at_rest() && outside(self.rest(&self.setpoint, &entry.limits)))
             }
-            Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => false,
+            Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
         }
     }
 
@@ -80,7 +80,7 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     pub(super) fn would_leave(&self, next: &Setpoint) -> bool {
         let (Some((min, max)), Some(owner), Motion::Run { .. }) =
-            (self.config.software_limits, &self.owner, &self.motion)
+            (self.parameters.software_limits, &self.owner, &self.motion)
         else {
             return false;
         };
@@ -96,7 +96,7 @@ impl<P: Planner> Axis<P> {
             Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
                 leaves(self.end_of_plan()) || leaves(self.rest(next, &owner.limits))
             }
-            Work::Home(_) | Work::SetPosition { .. } | Work::Output { .. } => false,
+            Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
         };
         leaving && leaves(self.rest(next, &self.stop_limits()))
     }

@@ -135,7 +135,8 @@ impl<P: Planner> Axis<P> {
             return self.settle_paused(scan, log);
         }
         match owner.work {
-            Work::Position(_) | Work::Distance(_) | Work::Halt => self.complete(scan, log),
+            Work::Position(_) | Work::Distance(_) => self.complete_move(scan, log),
+            Work::Halt => self.complete(scan, log),
             Work::Home(position) => {
                 self.call_set_position(position, scan, log);
                 self.homed = true;
@@ -154,7 +155,14 @@ impl<P: Planner> Axis<P> {
             // An endless motion gives way when it has reached its velocity.
             Work::Velocity { .. } | Work::Through { .. } => self.hand_over(self.passed_end(), scan, log),
             // They never own the axis.
-            Work::SetPosition { .. } | Work::Output { .. } => {}
+            Work::SetPosition { .. } | Work::Write(_) => {}
+        }
+    }
+
+    /// A move has completed once the axis is in position; one that passes its end does not wait for that.
+    fn complete_move(&mut self, scan: u64, log: &mut Log) {
+        if self.base().velocity != 0.0 || self.has_arrived() {
+            self.complete(scan, log);
         }
     }
 
@@ -184,7 +192,7 @@ impl<P: Planner> Axis<P> {
             if self.queue_waits_for_shift() {
                 return;
             }
-            if self.write_queued_output() {
+            if self.write_queued(scan, log) {
                 continue;
             }
             let passage_from = self.aim(&mut next, from);

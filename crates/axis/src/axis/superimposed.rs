@@ -367,7 +367,7 @@ impl<P: Planner> Axis<P> {
         let next = layer.sum();
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
-        } else if self.config.software_limits.is_some() && self.would_leave(&next) {
+        } else if self.parameters.software_limits.is_some() && self.would_leave(&next) {
             self.fail(ErrorId::SoftwareLimitReached, scan, log);
         } else {
             self.publish(next);

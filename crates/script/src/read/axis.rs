@@ -6,8 +6,8 @@ use super::{Reader, shape};
 use crate::error::{Code, Diagnostic};
 use crate::model::{Axis, Span};
 use standstill_axis::{
-    AboveLimit, AxisConfig, AxisState, Defaults, Limits, MoveProfile, PowerOff, QUEUE_MAX, Scaling,
-    StartState,
+    AboveLimit, AxisConfig, AxisState, Defaults, InPosition, Limits, MoveProfile, PowerOff, QUEUE_MAX,
+    Scaling, StartState,
 };
 
 pub(crate) const ABOVE_LIMIT: [(&str, AboveLimit); 2] =
@@ -147,6 +147,8 @@ impl Reader {
             .get("needs_homed")
             .map_or(Some(false), |node| self.boolean(node, "`needs_homed`"));
         let override_max = self.optional(fields, "override_max", "`override_max`");
+        let max_following_error = self.optional(fields, "max_following_error", "`max_following_error`");
+        let in_position = self.in_position(fields);
         let scaling = self.scaling(fields);
         let modulo = self.optional(fields, "modulo", "`modulo`");
         let software_limits = self.software_limits(fields);
@@ -162,6 +164,8 @@ impl Reader {
         config.queue = usize::try_from(queue?).ok()?;
         config.needs_homed = needs_homed?;
         config.override_max = override_max?.unwrap_or(config.override_max);
+        config.max_following_error = max_following_error?;
+        config.in_position = in_position?;
         config.scaling = scaling?;
         config.modulo = modulo?;
         config.software_limits = software_limits?;
@@ -245,6 +249,23 @@ impl Reader {
             min.unwrap_or(f64::NEG_INFINITY),
             max.unwrap_or(f64::INFINITY),
         )))
+    }
+
+    fn in_position(&mut self, axis: &Fields<'_>) -> Option<Option<InPosition>> {
+        let Some(node) = axis.get("in_position") else {
+            return Some(None);
+        };
+        let fields = self.fields(node, &shape::IN_POSITION)?;
+        let window = self
+            .require(&fields, "window", "`in_position`")
+            .and_then(|node| self.finite(node, "`in_position.window`"));
+        let scans = fields
+            .get("time")
+            .map_or(Some(0), |node| self.scans(node, "`in_position.time`"));
+        Some(Some(InPosition {
+            window: window?,
+            scans: u32::try_from(scans?).unwrap_or(u32::MAX),
+        }))
     }
 
     /// An axis that goes half a turn in a scan could have gone either way.

@@ -60,10 +60,12 @@ pub(crate) const AXIS: Shape = Shape {
         "on_power_off",
         "needs_homed",
         "override_max",
+        "in_position",
+        "max_following_error",
         "drive",
         "note",
     ],
-    later: &["in_position", "max_following_error"],
+    later: &[],
 };
 pub(crate) const LIMITS: Shape = shape(
     "`limits`",
@@ -75,6 +77,7 @@ pub(crate) const DEFAULTS: Shape = shape(
 );
 pub(crate) const SCALING: Shape = shape("`scaling`", &["increments", "units", "invert", "offset", "note"]);
 pub(crate) const SOFTWARE_LIMITS: Shape = shape("`software_limits`", &["min", "max", "note"]);
+pub(crate) const IN_POSITION: Shape = shape("`in_position`", &["window", "time", "note"]);
 pub(crate) const DRIVE: Shape = Shape {
     what: "`drive`",
     keys: &["ideal", "cia402", "plant", "note"],

@@ -76,7 +76,7 @@ fn called(info: &BlockInfo, values: &[(&str, &str)]) -> Option<Trace> {
             (None, _, PinType::Axis(_)) => {
                 axes.push(format!(
                     "\"{0}\": {{\"limits\": {{\"velocity\": 100, \"acceleration\": 1000, \"jerk\": 10000, \"snap\": \
-                     100000}}, \"software_limits\": {{\"min\": -1000, \"max\": 1000}}, \"state\": \"Standstill\"}}",
+                     100000}}, \"software_limits\": {{\"min\": -1000, \"max\": 1000}}, \"max_following_error\": 1000, \"state\": \"Standstill\"}}",
                     pin.name
                 ));
                 format!("\"{}\"", pin.name)

@@ -101,7 +101,7 @@ impl<P: Planner> Axis<P> {
 
     /// The software limits in the sum of the plans' own positions.
     fn range(&self, taken: f64) -> Option<(f64, f64)> {
-        self.config
+        self.parameters
             .software_limits
             .map(|(min, max)| (min + taken, max + taken))
     }
@@ -262,7 +262,7 @@ impl<P: Planner> Axis<P> {
         else {
             return;
         };
-        command.limits = self.factors.of(&command.asked, &self.config.limits);
+        command.limits = self.factors.of(&command.asked, &self.parameters.limits);
         command.halting = self.factors.halt();
         command.planned = false;
         layer.try_soon();

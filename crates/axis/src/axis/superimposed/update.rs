@@ -73,7 +73,7 @@ impl<P: Planner> Axis<P> {
                 origin,
                 target,
             },
-            limits: self.factors.of(&asked, &self.config.limits),
+            limits: self.factors.of(&asked, &self.parameters.limits),
             asked,
             halting: self.factors.halt(),
             planned: false,

@@ -1,0 +1,439 @@
+//! Parameters by number: MC_ReadParameter, MC_WriteParameter and their BOOL kin.
+//!
+//! The system has what the configuration says, for good; the application may allow less, and move the software
+//! limits. What is written holds for commands accepted later. Software limits hold for the motion in progress as
+//! well: if it would leave them it is watched, and ends in ErrorStop while the stop dynamics can keep it inside,
+//! else at once.
+//!
+//! Source: PLCopen Motion Control Part 1, sections of the four blocks and the list of parameters.
+
+use super::queue::{Work, Write};
+use super::supervision::Lag;
+use super::{Axis, Source};
+use crate::{AxisConfig, CommandId, ErrorId, ExecutionMode, Fate, Log, Raw};
+use standstill_planner::{Limits, Planner};
+
+/// A parameter of an axis, by its number in the standard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// 1: the set position last published (u).
+    CommandedPosition = 1,
+    /// 2: upper software limit (u).
+    SwLimitPos,
+    /// 3: lower software limit (u).
+    SwLimitNeg,
+    /// 4: the upper software limit is on.
+    EnableLimitPos,
+    /// 5: the lower software limit is on.
+    EnableLimitNeg,
+    /// 6: the following error is supervised.
+    EnablePosLagMonitoring,
+    /// 7: largest following error (u).
+    MaxPositionLag,
+    /// 8: velocity limit of the axis (u/s).
+    MaxVelocitySystem,
+    /// 9: velocity limit of the application (u/s).
+    MaxVelocityAppl,
+    /// 10: actual velocity (u/s).
+    ActualVelocity,
+    /// 11: set velocity last published (u/s).
+    CommandedVelocity,
+    /// 12: acceleration limit of the axis (u/s^2).
+    MaxAccelerationSystem,
+    /// 13: acceleration limit of the application (u/s^2).
+    MaxAccelerationAppl,
+    /// 14: deceleration limit of the axis (u/s^2).
+    MaxDecelerationSystem,
+    /// 15: deceleration limit of the application (u/s^2).
+    MaxDecelerationAppl,
+    /// 16: jerk limit of the axis (u/s^3).
+    MaxJerkSystem,
+    /// 17: jerk limit of the application (u/s^3).
+    MaxJerkAppl,
+}
+
+impl Parameter {
+    /// Every parameter, in the order of the numbers from 1 on.
+    pub const ALL: [Self; 17] = [
+        Self::CommandedPosition,
+        Self::SwLimitPos,
+        Self::SwLimitNeg,
+        Self::EnableLimitPos,
+        Self::EnableLimitNeg,
+        Self::EnablePosLagMonitoring,
+        Self::MaxPositionLag,
+        Self::MaxVelocitySystem,
+        Self::MaxVelocityAppl,
+        Self::ActualVelocity,
+        Self::CommandedVelocity,
+        Self::MaxAccelerationSystem,
+        Self::MaxAccelerationAppl,
+        Self::MaxDecelerationSystem,
+        Self::MaxDecelerationAppl,
+        Self::MaxJerkSystem,
+        Self::MaxJerkAppl,
+    ];
+
+    fn of(number: i16) -> Result<Self, ErrorId> {
+        let index = usize::try_from(number)
+            .ok()
+            .and_then(|number| number.checked_sub(1));
+        let parameter = index.and_then(|index| Self::ALL.get(index).copied());
+        parameter.ok_or(ErrorId::ParameterNumberInvalid)
+    }
+}
+
+/// What is read from or written to a parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ParameterValue {
+    /// REAL.
+    Real(f64),
+    /// BOOL.
+    Bool(bool),
+}
+
+impl ParameterValue {
+    /// The number to show in a record.
+    pub(super) fn shown(self) -> f64 {
+        match self {
+            Self::Real(value) => value,
+            Self::Bool(on) => f64::from(u8::from(on)),
+        }
+    }
+
+    fn real(self) -> Result<f64, Unwritten> {
+        match self {
+            Self::Real(value) => Ok(value),
+            Self::Bool(_) => Err(Unwritten::number(ErrorId::ParameterKindInvalid)),
+        }
+    }
+
+    fn flag(self) -> Result<bool, Unwritten> {
+        match self {
+            Self::Bool(on) => Ok(on),
+            Self::Real(_) => Err(Unwritten::number(ErrorId::ParameterKindInvalid)),
+        }
+    }
+}
+
+/// Why a parameter was not written: the pin, and the limit the value breaks.
+#[derive(Clone, Copy, Debug)]
+struct Unwritten {
+    pin: &'static str,
+    limit: f64,
+    error: ErrorId,
+}
+
+impl Unwritten {
+    /// The number is no good.
+    const fn number(error: ErrorId) -> Self {
+        Self {
+            pin: "ParameterNumber",
+            limit: f64::NAN,
+            error,
+        }
+    }
+
+    /// The value is no good.
+    const fn value(limit: f64, error: ErrorId) -> Self {
+        Self {
+            pin: "Value",
+            limit,
+            error,
+        }
+    }
+}
+
+/// What an application can write.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parameters {
+    /// What a command of the application may ask for: at most what the axis has.
+    pub limits: Limits,
+    /// Lowest and highest position (u) a move may end at, infinite where that side is off; `None` without both.
+    pub software_limits: Option<(f64, f64)>,
+    /// Supervision of the following error.
+    pub lag: Lag,
+    /// Lower and upper software limit (u), infinite if never given, and whether it is on.
+    lower: (f64, bool),
+    upper: (f64, bool),
+}
+
+impl Parameters {
+    pub fn new(config: &AxisConfig) -> Self {
+        let (min, max) = config
+            .software_limits
+            .unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        Self {
+            limits: config.limits,
+            software_limits: config.software_limits,
+            lag: Lag::new(config.max_following_error),
+            lower: (min, min.is_finite()),
+            upper: (max, max.is_finite()),
+        }
+    }
+
+    /// As bits, for comparing.
+    pub fn bits(&self) -> [u64; 10] {
+        let Limits {
+            velocity,
+            acceleration,
+            deceleration,
+            jerk,
+            ..
+        } = self.limits;
+        let flag = |on: bool| f64::from(u8::from(on));
+        let lag = self.lag.most;
+        let (lower, upper) = (self.lower, self.upper);
+        let flags = (flag(lower.1), flag(upper.1), flag(self.lag.on));
+        [
+            velocity,
+            acceleration,
+            deceleration,
+            jerk,
+            lower.0,
+            upper.0,
+            lag,
+            flags.0,
+            flags.1,
+            flags.2,
+        ]
+        .map(f64::to_bits)
+    }
+
+    /// The same with a software limit, or a switch of one, changed.
+    fn with_software_limit(mut self, change: impl FnOnce(&mut Self)) -> Result<Self, Unwritten> {
+        change(&mut self);
+        let side = |(at, on): (f64, bool), off: f64| if on { at } else { off };
+        let min = side(self.lower, f64::NEG_INFINITY);
+        let max = side(self.upper, f64::INFINITY);
+        for (at, on) in [self.lower, self.upper] {
+            if on && !at.is_finite() {
+                return Err(Unwritten::value(at, ErrorId::ParameterMissing));
+            }
+        }
+        if !(min < max) {
+            return Err(Unwritten::value(f64::NAN, ErrorId::SoftwareLimitsCrossed));
+        }
+        self.software_limits = (self.lower.1 || self.upper.1).then_some((min, max));
+        Ok(self)
+    }
+}
+
+/// A position that is finite.
+fn position(value: f64) -> Result<f64, Unwritten> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Unwritten::value(f64::NAN, ErrorId::ParameterValueInvalid))
+    }
+}
+
+/// A limit above 0, not below `least`, and at most `system`.
+fn limit(value: f64, least: f64, system: f64) -> Result<f64, Unwritten> {
+    // NaN is not above 0.
+    if !(value > 0.0) {
+        return Err(Unwritten::value(0.0, ErrorId::ParameterValueInvalid));
+    }
+    if value > system {
+        return Err(Unwritten::value(system, ErrorId::ParameterAboveSystem));
+    }
+    if value < least && value < system {
+        return Err(Unwritten::value(least, ErrorId::MoveTooLong));
+    }
+    Ok(value)
+}
+
+impl<P: Planner> Axis<P> {
+    /// MC_ReadParameter: the REAL parameter `number`. A limit there is none of reads as infinity.
+    ///
+    /// # Errors
+    /// [`ErrorId::ParameterNumberInvalid`] if there is no such parameter, [`ErrorId::ParameterKindInvalid`] if it is a
+    /// BOOL, [`ErrorId::CommunicationLost`] if what it asks for is not fresh.
+    pub fn real_parameter(&self, number: i16) -> Result<f64, ErrorId> {
+        match self.parameter(Parameter::of(number)?)? {
+            ParameterValue::Real(value) => Ok(value),
+            ParameterValue::Bool(_) => Err(ErrorId::ParameterKindInvalid),
+        }
+    }
+
+    /// MC_ReadBoolParameter: the BOOL parameter `number`.
+    ///
+    /// # Errors
+    /// As [`Axis::real_parameter`], with REAL for BOOL.
+    pub fn bool_parameter(&self, number: i16) -> Result<bool, ErrorId> {
+        match self.parameter(Parameter::of(number)?)? {
+            ParameterValue::Bool(on) => Ok(on),
+            ParameterValue::Real(_) => Err(ErrorId::ParameterKindInvalid),
+        }
+    }
+
+    fn parameter(&self, parameter: Parameter) -> Result<ParameterValue, ErrorId> {
+        let (own, system) = (&self.parameters, &self.config.limits);
+        Ok(match parameter {
+            Parameter::EnableLimitPos => ParameterValue::Bool(own.upper.1),
+            Parameter::EnableLimitNeg => ParameterValue::Bool(own.lower.1),
+            Parameter::EnablePosLagMonitoring => ParameterValue::Bool(own.lag.on),
+            Parameter::CommandedPosition => ParameterValue::Real(self.setpoint().position),
+            Parameter::SwLimitPos => ParameterValue::Real(own.upper.0),
+            Parameter::SwLimitNeg => ParameterValue::Real(own.lower.0),
+            Parameter::MaxPositionLag => ParameterValue::Real(own.lag.most),
+            Parameter::MaxVelocitySystem => ParameterValue::Real(system.velocity),
+            Parameter::MaxVelocityAppl => ParameterValue::Real(own.limits.velocity),
+            Parameter::ActualVelocity => ParameterValue::Real(self.actual_velocity()?),
+            Parameter::CommandedVelocity => ParameterValue::Real(self.setpoint.velocity),
+            Parameter::MaxAccelerationSystem => ParameterValue::Real(system.acceleration),
+            Parameter::MaxAccelerationAppl => ParameterValue::Real(own.limits.acceleration),
+            Parameter::MaxDecelerationSystem => ParameterValue::Real(system.deceleration),
+            Parameter::MaxDecelerationAppl => ParameterValue::Real(own.limits.deceleration),
+            Parameter::MaxJerkSystem => ParameterValue::Real(system.jerk),
+            Parameter::MaxJerkAppl => ParameterValue::Real(own.limits.jerk),
+        })
+    }
+
+    /// MC_WriteParameter and MC_WriteBoolParameter: parameter `number` gets `value`, in every state, and never
+    /// changing the state. With `mcQueued` it waits like a buffered command while the axis has an owner; its value
+    /// is looked at in the call, and again when its turn comes.
+    ///
+    /// # Errors
+    /// The [`ErrorId`] the block shows: an unknown number, one of the other kind or that can only be read, a value
+    /// out of range, an undefined mode, a full buffer. Nothing changes then.
+    pub fn write_parameter(
+        &mut self,
+        number: i16,
+        value: ParameterValue,
+        mode: Raw<ExecutionMode>,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<CommandId, ErrorId> {
+        let queued = self.is_queued(mode, source, log)?;
+        let parameter = Parameter::of(number)
+            .map_err(|error| self.refuse("ParameterNumber", number.into(), f64::NAN, error, source, log))?;
+        let parameters = self
+            .written(parameter, value)
+            .map_err(|why| self.refuse_write(parameter, value, why, source, log))?;
+        if queued {
+            let write = Write::Parameter { parameter, value };
+            return self.enqueue(Work::Write(write), source, log);
+        }
+        self.set_parameters(parameters);
+        let id = self.new_id();
+        self.fates.record(id, Fate::Done);
+        Ok(id)
+    }
+
+    /// The turn of a parameter that waited.
+    pub(super) fn write_queued_parameter(
+        &mut self,
+        parameter: Parameter,
+        value: ParameterValue,
+        source: Source,
+        log: &mut Log,
+    ) -> Fate {
+        match self.written(parameter, value) {
+            Ok(parameters) => {
+                self.set_parameters(parameters);
+                Fate::Done
+            }
+            Err(why) => Fate::Failed(self.refuse_write(parameter, value, why, source, log)),
+        }
+    }
+
+    fn refuse_write(
+        &self,
+        parameter: Parameter,
+        value: ParameterValue,
+        why: Unwritten,
+        source: Source,
+        log: &mut Log,
+    ) -> ErrorId {
+        let shown = if why.pin == "Value" {
+            value.shown()
+        } else {
+            f64::from(parameter as u8)
+        };
+        self.refuse(why.pin, shown, why.limit, why.error, source, log)
+    }
+
+    /// The parameters with this one written.
+    fn written(&self, parameter: Parameter, value: ParameterValue) -> Result<Parameters, Unwritten> {
+        let mut new = self.parameters;
+        let system = &self.config.limits;
+        let on_modulo = self.modulo.is_some();
+        match parameter {
+            Parameter::SwLimitPos
+            | Parameter::SwLimitNeg
+            | Parameter::EnableLimitPos
+            | Parameter::EnableLimitNeg
+                if on_modulo =>
+            {
+                Err(Unwritten::number(ErrorId::ParameterOnModulo))
+            }
+            Parameter::SwLimitPos => {
+                let at = position(value.real()?)?;
+                new.with_software_limit(|new| new.upper.0 = at)
+            }
+            Parameter::SwLimitNeg => {
+                let at = position(value.real()?)?;
+                new.with_software_limit(|new| new.lower.0 = at)
+            }
+            Parameter::EnableLimitPos => {
+                let on = value.flag()?;
+                new.with_software_limit(|new| new.upper.1 = on)
+            }
+            Parameter::EnableLimitNeg => {
+                let on = value.flag()?;
+                new.with_software_limit(|new| new.lower.1 = on)
+            }
+            Parameter::EnablePosLagMonitoring => {
+                new.lag.on = value.flag()?;
+                if new.lag.on && !new.lag.most.is_finite() {
+                    return Err(Unwritten::value(new.lag.most, ErrorId::ParameterMissing));
+                }
+                Ok(new)
+            }
+            Parameter::MaxPositionLag => {
+                new.lag.most = limit(position(value.real()?)?, 0.0, f64::INFINITY)?;
+                Ok(new)
+            }
+            Parameter::MaxVelocityAppl => {
+                new.limits.velocity = limit(value.real()?, 0.0, system.velocity)?;
+                Ok(new)
+            }
+            Parameter::MaxAccelerationAppl => {
+                let least = system.velocity / self.longest();
+                new.limits.acceleration = limit(value.real()?, least, system.acceleration)?;
+                Ok(new)
+            }
+            Parameter::MaxDecelerationAppl => {
+                let least = system.velocity / self.longest();
+                new.limits.deceleration = limit(value.real()?, least, system.deceleration)?;
+                Ok(new)
+            }
+            Parameter::MaxJerkAppl => {
+                let least = system.acceleration.max(system.deceleration) / self.longest();
+                new.limits.jerk = limit(value.real()?, least, system.jerk)?;
+                Ok(new)
+            }
+            Parameter::CommandedPosition
+            | Parameter::MaxVelocitySystem
+            | Parameter::ActualVelocity
+            | Parameter::CommandedVelocity
+            | Parameter::MaxAccelerationSystem
+            | Parameter::MaxDecelerationSystem
+            | Parameter::MaxJerkSystem => {
+                value.real()?;
+                Err(Unwritten::number(ErrorId::ParameterReadOnly))
+            }
+        }
+    }
+
+    fn set_parameters(&mut self, parameters: Parameters) {
+        let limits_moved = self.parameters.software_limits != parameters.software_limits;
+        self.parameters = parameters;
+        self.stir();
+        if limits_moved {
+            // Whatever was checked was checked against the limits before.
+            self.watched = self.owner.is_some() && self.parameters.software_limits.is_some();
+        }
+    }
+}

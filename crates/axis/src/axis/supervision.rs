@@ -1,0 +1,76 @@
+//! How far the axis is from where it should be: the following error, and the window at the end of a move.
+//!
+//! The following error is the set position published in the scan before less the actual position latched in this
+//! one: 0 for a drive that follows exactly, with a delay of some scans the way of those scans.
+//!
+//! Source: PLCopen Motion Control Part 1, parameters 6 and 7; V12d.
+
+use super::power::Reaction;
+use super::{Axis, Motion};
+use crate::{ErrorId, Log};
+use standstill_planner::Planner;
+use standstill_planner::turns::split;
+
+/// Supervision of the following error.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lag {
+    /// Largest following error (u); infinite if never given.
+    pub most: f64,
+    /// It is supervised.
+    pub on: bool,
+}
+
+impl Lag {
+    pub fn new(most: Option<f64>) -> Self {
+        Self {
+            most: most.unwrap_or(f64::INFINITY),
+            on: most.is_some(),
+        }
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// The set position last published less the actual position (u), on a modulo axis the shorter way round.
+    fn following_error(&self) -> f64 {
+        let error = self.setpoint.position - self.actual;
+        match &self.modulo {
+            None => error,
+            Some(modulo) => {
+                let (_, ahead) = split(error, modulo.length);
+                if ahead > modulo.length / 2.0 {
+                    ahead - modulo.length
+                } else {
+                    ahead
+                }
+            }
+        }
+    }
+
+    /// The following error is larger than it may be.
+    pub(super) fn lags(&self) -> bool {
+        let lag = &self.parameters.lag;
+        let is_led = self.power.on && !matches!(self.motion, Motion::Follow);
+        lag.on && is_led && self.following_error().abs() > lag.most
+    }
+
+    /// After the latch: ErrorStop if the axis lags.
+    pub(super) fn supervise(&mut self, scan: u64, log: &mut Log) {
+        if self.lags() {
+            self.trip(ErrorId::FollowingErrorTooLarge, 0, Reaction::Ramp, scan, log);
+        }
+    }
+
+    /// Whether a move at its goal is done: the actual position has been inside the window for the time.
+    pub(super) fn has_arrived(&mut self) -> bool {
+        let Some(window) = self.config.in_position else {
+            return true;
+        };
+        if self.following_error().abs() > window.window {
+            self.inside_for = 0;
+            return false;
+        }
+        let inside_for = self.inside_for;
+        self.inside_for = inside_for.saturating_add(1);
+        inside_for >= window.scans
+    }
+}
