@@ -402,7 +402,7 @@ impl<P: Planner> Axis<P> {
             self.limits_before(&entry.limits)
         };
         let motion = self.plan_from(entry, &self.setpoint, &before)?;
-        Ok(self.kept_inside(entry, motion, &self.setpoint, &before))
+        self.kept_inside(entry, motion, &self.setpoint, &before)
     }
 
     /// Plans a command from `start`, whose motion was within `before`.

@@ -6,7 +6,7 @@
 
 use super::queue::Entry;
 use super::{Axis, Motion, Source};
-use crate::{Event, Log};
+use crate::{ErrorId, Event, Log};
 use standstill_planner::{Excess, Limits, Plan, Planner, Setpoint};
 
 /// A higher limit must take at least this much off what is exceeded.
@@ -29,15 +29,18 @@ impl<P: Planner> Axis<P> {
 
     /// `motion`, which is planned for `entry`, or one with higher limits that exceeds those of the axis by less; `entry`
     /// then has them. Cost: at most two plans, for a motion that exceeds.
+    ///
+    /// # Errors
+    /// With the higher limits it would move in a direction that is barred: what exceeds is no way round that.
     pub(super) fn kept_inside(
         &self,
         entry: &mut Entry,
         motion: Motion<P::Plan>,
         start: &Setpoint,
         before: &Limits,
-    ) -> Motion<P::Plan> {
+    ) -> Result<Motion<P::Plan>, ErrorId> {
         match self.excess_of(&motion) {
-            None => motion,
+            None => Ok(motion),
             Some(excess) => self.planned_higher(entry, motion, excess, (start, before)),
         }
     }
@@ -50,12 +53,14 @@ impl<P: Planner> Axis<P> {
         motion: Motion<P::Plan>,
         mut excess: Excess,
         (start, before): (&Setpoint, &Limits),
-    ) -> Motion<P::Plan> {
+    ) -> Result<Motion<P::Plan>, ErrorId> {
         let mut kept = motion;
         for limits in self.higher(&entry.limits, before) {
             let raised = Entry { limits, ..*entry };
-            let Ok(motion) = self.plan_from(&raised, start, before) else {
-                continue;
+            let motion = match self.plan_from(&raised, start, before) {
+                Ok(motion) => motion,
+                Err(error @ (ErrorId::PositiveBarred | ErrorId::NegativeBarred)) => return Err(error),
+                Err(_) => continue,
             };
             let left = self.excess_of(&motion);
             if is_less(left, &excess) {
@@ -66,7 +71,7 @@ impl<P: Planner> Axis<P> {
                 }
             }
         }
-        kept
+        Ok(kept)
     }
 
     /// The same for a ramp to rest nobody commanded.

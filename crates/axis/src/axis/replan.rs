@@ -57,7 +57,7 @@ impl<P: Planner> Axis<P> {
         let motion = match self.layer {
             None => {
                 let motion = self.plan_from(&owner, &here, &before)?;
-                Some(self.kept_inside(&mut owner, motion, &here, &before))
+                Some(self.kept_inside(&mut owner, motion, &here, &before)?)
             }
             Some(layer) => self.plan_beside(layer, &owner, &before)?,
         };

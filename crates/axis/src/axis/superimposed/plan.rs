@@ -348,7 +348,7 @@ impl<P: Planner> Axis<P> {
             entry.limits
         };
         let motion = self.plan_from(entry, &start, &in_force)?;
-        let mut motion = self.kept_inside(entry, motion, &start, &in_force);
+        let mut motion = self.kept_inside(entry, motion, &start, &in_force)?;
         // A stop is never refused: on its way out it is watched.
         let leads_somewhere = !entry.is_endless() && entry.end.is_some();
         if let (Motion::Run { plan, .. }, true) = (&motion, leads_somewhere) {
