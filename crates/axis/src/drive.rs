@@ -109,8 +109,6 @@ pub struct ProbeReport {
 /// What a drive tells beside its motion. What it does not know stays as in the default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DriveReport {
-    /// Actual torque or force, in the unit the drive is set up with; none if it does not measure it.
-    pub torque: Option<f64>,
     /// Its digital inputs, 0 to 31, one bit each.
     pub inputs: u32,
     /// What its digital outputs show, 0 to 31.
@@ -135,8 +133,6 @@ pub struct DriveOrder {
     pub outputs: u32,
     /// Which edge each probe is to latch; none disarms it. A probe is armed anew by one scan without an edge.
     pub probes: [Option<Edge>; PROBES],
-    /// The torque to hold instead of the position (in the drive's unit), and the largest speed at it (u/s).
-    pub torque: Option<(f64, f64)>,
 }
 
 /// A drive. `read` then `write`, each exactly once a scan; then `report` right after the one and `order` right
@@ -153,9 +149,4 @@ pub trait Drive {
 
     /// What the drive is asked in this scan; a drive that knows none of it leaves it alone.
     fn order(&mut self, _order: &DriveOrder) {}
-
-    /// Whether it can hold a torque instead of a position.
-    fn holds_torque(&self) -> bool {
-        false
-    }
 }

@@ -14,3 +14,8 @@ extern crate std;
 pub mod cia402;
 pub mod mechanism;
 pub mod peripherals;
+
+/// The whole number nearest to `value`, half away from zero.
+fn nearest(value: f64) -> i64 {
+    (if value < 0.0 { value - 0.5 } else { value + 0.5 }) as i64
+}

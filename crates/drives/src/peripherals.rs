@@ -1,5 +1,6 @@
 //! Digital inputs, outputs and probes of a simulated drive.
 
+use crate::nearest;
 use standstill_axis::{DriveOrder, DrivePosition, DriveReport, Edge, PROBES, ProbeReport};
 
 /// A probe's input and what it has seen.
@@ -111,8 +112,7 @@ fn between(from: DrivePosition, to: DrivePosition, part: f64, turn: Option<f64>)
         }
         (DrivePosition::Increments(from), DrivePosition::Increments(to)) => {
             let exact = part * to.saturating_sub(from) as f64;
-            let nearest = (if exact < 0.0 { exact - 0.5 } else { exact + 0.5 }) as i64;
-            DrivePosition::Increments(from.saturating_add(nearest))
+            DrivePosition::Increments(from.saturating_add(nearest(exact)))
         }
         // A drive does not change what it speaks.
         (_, to) => to,

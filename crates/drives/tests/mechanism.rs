@@ -234,13 +234,9 @@ impl Rig {
         };
         let mechanism = Mechanism::new(plant, 0.0, CYCLE).unwrap();
         let servo = Servo::new(mechanism, Gains::of(&plant, CYCLE), CYCLE).unwrap();
-        let counts = scaling.map(|scaling| {
-            let ratio = f64::from(scaling.increments()) / f64::from(scaling.units());
-            (if scaling.invert() { -ratio } else { ratio }, scaling.offset())
-        });
         Self {
             axis: Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).unwrap(),
-            drive: PlantDrive::new(servo, counts, Some(0), false),
+            drive: PlantDrive::new(servo, scaling, Some(0), false),
             log: Log::default(),
             scan: 0,
         }

@@ -11,6 +11,6 @@ mod words;
 pub use adapter::Adapter;
 pub use node::{Inputs, MODE_CSP, Node, Outputs};
 pub use sequencer::{Memory, controlword};
-pub use simulated::{Cia402Drive, Displaced, Reaction, Settings, SimulatedNode};
+pub use simulated::{Cia402Drive, Reaction, Settings, SimulatedNode};
 pub use state::{TRANSITIONS, Transition, command_transition};
 pub use words::{Command, State, Statusword};

@@ -1,8 +1,9 @@
 //! What a simulated node turns: an ideal motor, some scans late.
 
+use crate::nearest;
 use standstill_axis::DELAY_MAX;
 
-/// Increments a ramp may be off the range in which a 64-bit float knows them apart.
+/// Positions of a ramp stay within the increments a 64-bit float knows apart.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 /// Follows every target `delay` scans late, and comes to rest by itself when it has to.
@@ -83,9 +84,4 @@ impl Motor {
             *slot = position;
         }
     }
-}
-
-/// Half away from zero.
-fn nearest(value: f64) -> i64 {
-    (if value < 0.0 { value - 0.5 } else { value + 0.5 }) as i64
 }

@@ -5,6 +5,7 @@ use super::motor::Motor;
 use super::node::{Inputs, MODE_CSP, Node, Outputs};
 use super::state::{Transition, command_transition};
 use super::words::{Command, State};
+use standstill_axis::Powered;
 
 /// A simulated node behind the adapter: a drive for tests without hardware.
 pub type Cia402Drive = Adapter<SimulatedNode>;
@@ -66,10 +67,6 @@ impl Default for Settings {
         }
     }
 }
-
-/// The motor has torque, so nobody can push it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Displaced;
 
 /// A CiA 402 node in cyclic synchronous position mode.
 #[derive(Clone, Copy, Debug)]
@@ -185,10 +182,10 @@ impl SimulatedNode {
     /// Someone pushes the motor by `distance` increments.
     ///
     /// # Errors
-    /// [`Displaced`] while it has torque.
-    pub fn displace(&mut self, distance: i64) -> Result<(), Displaced> {
+    /// [`Powered`] while it has torque.
+    pub fn displace(&mut self, distance: i64) -> Result<(), Powered> {
         if self.state.has_torque() {
-            return Err(Displaced);
+            return Err(Powered);
         }
         self.motor.stand_at(self.motor.actual().saturating_add(distance));
         Ok(())

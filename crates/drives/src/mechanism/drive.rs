@@ -1,7 +1,9 @@
 //! A drive with a mechanism behind it.
 
 use super::servo::{Servo, SetPoint};
-use standstill_axis::{Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, IdealDrive, Powered};
+use standstill_axis::{
+    Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, IdealDrive, Powered, Scaling,
+};
 
 /// A simulated drive that turns a mechanism. Its power stage is that of an [`IdealDrive`]; without torque the
 /// mechanism coasts.
@@ -9,23 +11,20 @@ use standstill_axis::{Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, 
 pub struct PlantDrive {
     stage: IdealDrive,
     servo: Servo,
-    /// Increments a unit, negative if they count the other way; `None`: the drive speaks units.
-    per_unit: Option<f64>,
-    /// The position (u) at increment 0.
-    offset: f64,
+    /// How units become increments; `None`: the drive speaks units.
+    scaling: Option<Scaling>,
     /// What was told last before the communication was lost.
     stale: DrivePosition,
 }
 
 impl PlantDrive {
-    /// Over `servo`; with `counts`, (increments a unit, position at increment 0), it counts increments. Power is
-    /// confirmed after `power_on` further scans, or never; `enabled` from the start or not.
-    pub fn new(servo: Servo, counts: Option<(f64, f64)>, power_on: Option<u32>, enabled: bool) -> Self {
+    /// Over `servo`; with the `scaling` of its axis it counts increments. Power is confirmed after `power_on` further
+    /// scans, or never; `enabled` from the start or not.
+    pub fn new(servo: Servo, scaling: Option<Scaling>, power_on: Option<u32>, enabled: bool) -> Self {
         let mut drive = Self {
             stage: IdealDrive::new(DrivePosition::Units(0.0), 0, power_on, enabled),
             servo,
-            per_unit: counts.map(|(per_unit, _)| per_unit),
-            offset: counts.map_or(0.0, |(_, offset)| offset),
+            scaling,
             stale: DrivePosition::Units(0.0),
         };
         drive.stale = drive.told(servo.mechanism().position());
@@ -71,22 +70,17 @@ impl PlantDrive {
 
     /// A position (u) as the drive tells it.
     fn told(&self, position: f64) -> DrivePosition {
-        match self.per_unit {
+        match &self.scaling {
             None => DrivePosition::Units(position),
-            Some(per_unit) => {
-                let exact = (position - self.offset) * per_unit;
-                DrivePosition::Increments((if exact < 0.0 { exact - 0.5 } else { exact + 0.5 }) as i64)
-            }
+            Some(scaling) => DrivePosition::Increments(scaling.to_increments(position)),
         }
     }
 
     /// A position as the drive is told it (u).
     fn meant(&self, position: DrivePosition) -> f64 {
-        match (position, self.per_unit) {
+        match (position, &self.scaling) {
             (DrivePosition::Units(units), _) => units,
-            (DrivePosition::Increments(increments), Some(per_unit)) => {
-                self.offset + increments as f64 / per_unit
-            }
+            (DrivePosition::Increments(increments), Some(scaling)) => scaling.to_units(increments),
             // An axis with a scaling gives its drive one, too.
             (DrivePosition::Increments(increments), None) => increments as f64,
         }

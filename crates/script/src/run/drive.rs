@@ -71,11 +71,12 @@ impl ScriptDrive {
                 let cycle = cycle_ns as f64 / 1e9;
                 let mechanism = Mechanism::new(plant, axis.config.position, cycle)?;
                 let servo = Servo::new(mechanism, gains, cycle)?;
-                let counts = axis.config.scaling.map(|scaling| {
-                    let ratio = f64::from(scaling.increments()) / f64::from(scaling.units());
-                    (if scaling.invert() { -ratio } else { ratio }, scaling.offset())
-                });
-                Kind::Plant(Box::new(PlantDrive::new(servo, counts, power_on, enabled)))
+                Kind::Plant(Box::new(PlantDrive::new(
+                    servo,
+                    axis.config.scaling,
+                    power_on,
+                    enabled,
+                )))
             }
         };
         Ok(Self {
@@ -208,13 +209,5 @@ impl Drive for ScriptDrive {
             Kind::Plant(drive) => drive.order(order),
         }
         self.peripherals.order(order);
-    }
-
-    fn holds_torque(&self) -> bool {
-        match &self.kind {
-            Kind::Ideal(drive) => drive.holds_torque(),
-            Kind::Cia402(drive) => drive.holds_torque(),
-            Kind::Plant(drive) => drive.holds_torque(),
-        }
     }
 }
