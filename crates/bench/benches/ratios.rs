@@ -7,6 +7,7 @@ use standstill_bench::{
     AXES, CYCLE, Executed, IN_MOTION, LIMITS, ManyAxes, Move, OneAxis, Random, TARGET, Trapezoid, WAYS,
     trapezoid,
 };
+use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, Servo, SetPoint};
 use standstill_planner::{GridPlan, Method, RampPlan, Setpoint};
 use std::hint::black_box;
 use std::time::Instant;
@@ -56,6 +57,11 @@ fn main() {
             name: "scan of 64 axes in mixed motion, per axis",
             bar: Some(8.0),
             batch: Box::new(scan_of_many(None)),
+        },
+        Measure {
+            name: "scan of a mechanism and its loops, a load on a spring",
+            bar: Some(20.0),
+            batch: Box::new(mechanism_scan()),
         },
         Measure {
             name: "sample of a rest-to-rest plan",
@@ -208,6 +214,38 @@ fn scan_of_many(only: Option<usize>) -> impl FnMut() -> f64 {
         });
         assert_eq!(axes.moving(), usize::from(AXES));
         took
+    }
+}
+
+/// A motor with both frictions and a load, following the move scan by scan.
+fn mechanism_scan() -> impl FnMut() -> f64 {
+    let plan = GridPlan::new(Method::Overlapped, 0.0, TARGET, &LIMITS, CYCLE).expect("valid");
+    let set: Vec<SetPoint> = (1..=u64::from(plan.scans()))
+        .map(|scan| plan.at(scan))
+        .map(|set| SetPoint {
+            position: set.position,
+            velocity: set.velocity,
+        })
+        .collect();
+    let plant = Plant {
+        inertia: 0.02,
+        viscous: 0.01,
+        coulomb: 0.05,
+        load: Some(Load {
+            inertia: 0.05,
+            stiffness: 200.0,
+            damping: 0.02,
+        }),
+    };
+    let mechanism = Mechanism::new(plant, 0.0, CYCLE).expect("valid");
+    let started = Servo::new(mechanism, Gains::of(&plant, CYCLE), CYCLE).expect("valid");
+    move || {
+        let mut servo = started;
+        time(set.len() as u64, || {
+            for set in black_box(&set) {
+                black_box(&mut servo).follow(*set);
+            }
+        })
     }
 }
 

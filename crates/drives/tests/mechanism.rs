@@ -96,9 +96,9 @@ fn coulomb_friction_stops_a_motion_and_holds_it_to_the_bit() {
         ..RIGID
     };
     let mut mechanism = Mechanism::new(plant, 0.0, CYCLE).unwrap();
-    // Less than friction moves nothing.
-    for _ in 0..100 {
-        mechanism.step(0.29);
+    // Less than friction moves nothing, not by rounding either.
+    for count in 0..1000 {
+        mechanism.step(0.000_29 * f64::from(count));
     }
     assert_eq!((mechanism.position(), mechanism.velocity()), (0.0, 0.0));
     for _ in 0..400 {

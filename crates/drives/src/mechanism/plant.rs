@@ -93,6 +93,8 @@ pub struct Mechanism {
     plant: Plant,
     /// From (twist, motor velocity, load velocity) and torque to the same and the way, a step later.
     step: [[f64; 4]; 4],
+    /// Torque that changes the motor's velocity by 1 u/s in a step.
+    stopping: f64,
     /// Motor position (u).
     position: f64,
     /// Motor velocity (u/s).
@@ -122,6 +124,7 @@ impl Mechanism {
         Ok(Self {
             plant,
             step: [twist, motor, load, way].map(relevant),
+            stopping: 1.0 / motor[4],
             position,
             velocity: 0.0,
             twist: 0.0,
@@ -138,18 +141,22 @@ impl Mechanism {
         };
         let (next_twist, next_motor, next_load, moved) = (free(twist), free(motor), free(load), free(way));
         // The torque that would stop the motor in this step, as far as friction goes.
-        let friction = (next_motor / motor[3])
-            .max(-self.plant.coulomb)
-            .min(self.plant.coulomb);
-        self.twist = next_twist - friction * twist[3];
         let stopped = next_motor.abs() <= self.plant.coulomb * motor[3];
+        let friction = if stopped {
+            next_motor * self.stopping
+        } else {
+            self.plant.coulomb.copysign(next_motor)
+        };
+        // Held by friction all the step, it moves by no rounding either.
+        let held = stopped && self.velocity == 0.0;
+        self.position += if held { 0.0 } else { moved - friction * way[3] };
+        self.twist = next_twist - friction * twist[3];
         self.velocity = if stopped {
             0.0
         } else {
             next_motor - friction * motor[3]
         };
         self.load_velocity = next_load - friction * load[3];
-        self.position += moved - friction * way[3];
     }
 
     /// Motor position (u).

@@ -82,6 +82,8 @@ pub struct Servo {
     mechanism: Mechanism,
     gains: Gains,
     cycle: f64,
+    /// Scans a second.
+    rate: f64,
     /// The set-point at the end of the scan before.
     from: SetPoint,
     /// Torque of the integral part.
@@ -100,6 +102,7 @@ impl Servo {
             mechanism,
             gains,
             cycle,
+            rate: 1.0 / cycle,
             from: SetPoint {
                 position: mechanism.position(),
                 velocity: 0.0,
@@ -120,23 +123,26 @@ impl Servo {
         // p = from + early s + curve s^2 + twist s^3, s from 0 to 1
         let curve = 3.0 * way - 2.0 * early - late;
         let twist = early + late - 2.0 * way;
+        // By time, as far as it is fed forward.
+        let per_second = self.gains.feed_velocity * self.rate;
         let inertia = self.gains.feed_acceleration * self.mechanism.plant().total_inertia();
+        let per_square = inertia * (self.rate * self.rate);
         let mut part = 0.0;
         for _ in 0..SUBSTEPS {
             let position = from.position + part * (early + part * (curve + part * twist));
-            let velocity = (early + part * (2.0 * curve + part * (3.0 * twist))) / self.cycle;
+            let velocity = per_second * (early + part * (2.0 * curve + part * (3.0 * twist)));
             // The mean over the step, for which the torque holds.
-            let middle = part + 0.5 * step;
-            let acceleration = (2.0 * curve + 6.0 * twist * middle) / (self.cycle * self.cycle);
-            let wanted = self.gains.feed_velocity * velocity
-                + self.gains.position * (position - self.mechanism.position());
+            let fed = per_square * (2.0 * curve + 6.0 * twist * (part + 0.5 * step));
+            let wanted = velocity + self.gains.position * (position - self.mechanism.position());
             let error = wanted - self.mechanism.velocity();
-            let unlimited = self.gains.velocity * error + self.integral + inertia * acceleration;
-            self.torque = unlimited.max(-self.gains.torque).min(self.gains.torque);
-            // At its limit the integral part would only wind up.
-            if self.torque == unlimited {
+            let unlimited = self.gains.velocity * error + (self.integral + fed);
+            self.torque = if unlimited.abs() <= self.gains.torque {
                 self.integral += self.gains.integral * error * time;
-            }
+                unlimited
+            } else {
+                // At its limit the integral part would only wind up.
+                self.gains.torque.copysign(unlimited)
+            };
             self.mechanism.step(self.torque);
             part += step;
         }
