@@ -5,8 +5,8 @@
 
 use super::{Axis, Motion, Permission, Power, Source};
 use crate::{
-    AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
-    Log, PowerOff,
+    AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DriveHoming, DrivePosition, DriveRequest, ErrorId,
+    Event, Fate, Log, PowerOff,
 };
 use standstill_planner::Planner;
 
@@ -35,7 +35,13 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
         // In most scans nothing but the position changes.
-        if self.calm && feedback.enabled && feedback.fault.is_none() && feedback.comms == Comms::Ok {
+        let on_switch = feedback.signals.limit_switch_positive | feedback.signals.limit_switch_negative;
+        if self.calm
+            && feedback.enabled
+            && !on_switch
+            && feedback.fault.is_none()
+            && feedback.comms == Comms::Ok
+        {
             debug_assert!(self.is_calm());
             let position = match feedback.position {
                 DrivePosition::Units(units) => units,
@@ -71,7 +77,7 @@ impl<P: Planner> Axis<P> {
             && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         let is_pending = self.reset.is_some() || self.shift_due || self.rename.is_some();
         let is_plain = self.modulo.is_none() && self.layer.is_none() && self.past.is_whole();
-        let is_watched = self.parameters.lag.on;
+        let is_watched = self.parameters.lag.on || self.is_homing();
         is_powered && is_well && !is_pending && is_plain && !is_watched
     }
 
@@ -112,6 +118,10 @@ impl<P: Planner> Axis<P> {
             self.latch_and_mend(position);
             self.follow_power(feedback, scan, log);
             self.supervise(scan, log);
+            if self.is_homing() {
+                self.follow_homing(scan, log);
+            }
+            self.mind_limit_switches(scan, log);
             if self.shift_due {
                 self.take_queued_shifts(scan, log);
             }
@@ -138,7 +148,9 @@ impl<P: Planner> Axis<P> {
                 self.enter(AxisEvent::PowerOn);
             }
             AxisState::ErrorStop if !feedback.enabled => self.motion = Motion::Follow,
-            AxisState::ErrorStop if matches!(self.motion, Motion::Follow) => self.hold_at_actual(),
+            AxisState::ErrorStop if matches!(self.motion, Motion::Follow) && !self.moves_itself() => {
+                self.hold_at_actual();
+            }
             AxisState::Disabled | AxisState::ErrorStop => {}
             _ if self.power.going_off && !feedback.enabled => {
                 self.power.going_off = false;
@@ -150,7 +162,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The set-point takes over where the feedback is: enabling never makes it step.
-    fn hold_at_actual(&mut self) {
+    pub(super) fn hold_at_actual(&mut self) {
         self.setpoint = standstill_planner::Setpoint::at_rest(self.actual);
         self.count_actual_turns();
         self.motion = Motion::Hold;
@@ -277,7 +289,7 @@ impl<P: Planner> Axis<P> {
         self.error_code = code;
         self.power.going_off = false;
         match reaction {
-            Reaction::Ramp if self.power.on => self.ramp_down(source, log),
+            Reaction::Ramp if self.power.on && !self.moves_itself() => self.ramp_down(source, log),
             Reaction::Ramp | Reaction::Follow => self.motion = Motion::Follow,
         }
         self.enter(AxisEvent::Fault);
@@ -329,7 +341,8 @@ impl<P: Planner> Axis<P> {
                 self.fates.record(id, Fate::Failed(ErrorId::CauseStillPresent));
                 return;
             }
-            let moving = matches!(self.motion, Motion::Run { .. }) && !reached;
+            let moves_itself = self.beside.report.homing != DriveHoming::Off;
+            let moving = moves_itself || (matches!(self.motion, Motion::Run { .. }) && !reached);
             let unwanted = self.power.on && !self.power.wanted;
             if moving || unwanted || self.power.fault.is_some() {
                 return;
