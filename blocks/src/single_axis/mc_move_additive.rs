@@ -99,4 +99,9 @@ impl Block for McMoveAdditive {
             error_id: phase.error_id(),
         }
     }
+
+    #[inline(always)]
+    fn rests<P: Planner>(&self, inputs: &Inputs, _outputs: &Outputs, context: &Context<'_, P>) -> bool {
+        self.core.rests(inputs.execute, context)
+    }
 }

@@ -101,4 +101,9 @@ impl Block for McMoveContinuousRelative {
             error_id: phase.error_id(),
         }
     }
+
+    #[inline(always)]
+    fn rests<P: Planner>(&self, inputs: &Inputs, _outputs: &Outputs, context: &Context<'_, P>) -> bool {
+        self.core.rests(inputs.execute, context)
+    }
 }

@@ -93,6 +93,8 @@ pub struct ExecuteCore {
     /// The last result; of no meaning while there is a command.
     phase: Phase,
     command: Option<(AxisId, CommandId)>,
+    /// [`standstill_axis::Axis::changes`] when the command's fate was asked for.
+    asked_at: u64,
 }
 
 impl ExecuteCore {
@@ -115,7 +117,10 @@ impl ExecuteCore {
         let phase = match self.command {
             Some((axis, id)) => {
                 let phase = match context.axes.get(axis.index()) {
-                    Some(axis) => axis.fate(id).into(),
+                    Some(axis) => {
+                        self.asked_at = axis.changes();
+                        axis.fate(id).into()
+                    }
                     None => Phase::Failed(ErrorId::AxisUnknown),
                 };
                 if phase.is_busy() {
@@ -131,6 +136,22 @@ impl ExecuteCore {
         };
         self.phase = phase;
         phase
+    }
+
+    /// Whether a call with `execute` would show again what the last one showed: no edge, and either no fate has changed
+    /// since, or there is none to ask for.
+    #[inline(always)]
+    pub fn rests<P: Planner>(&self, execute: bool, context: &Context<'_, P>) -> bool {
+        if execute != self.executed {
+            return false;
+        }
+        match self.command {
+            Some((axis, _)) => context
+                .axes
+                .get(axis.index())
+                .is_some_and(|axis| axis.changes() == self.asked_at),
+            None => execute || self.phase == Phase::Idle,
+        }
     }
 
     /// The command that goes on in a call with `execute`: none if it ended, or a rising edge is about to replace it.

@@ -275,6 +275,8 @@ pub struct Axis<P: Planner = Standard> {
     replan_due: bool,
     /// In operation with nothing pending, see [`Axis::is_calm`]; FALSE may be stale, TRUE never.
     calm: bool,
+    /// Grows whenever the fate of a command has changed, or may have.
+    changes: u64,
 }
 
 impl<P: Planner> Axis<P> {
@@ -340,6 +342,7 @@ impl<P: Planner> Axis<P> {
             inside_for: 0,
             replan_due: false,
             calm: false,
+            changes: 0,
         })
     }
 
@@ -418,6 +421,12 @@ impl<P: Planner> Axis<P> {
     /// Commands that wait.
     pub fn waiting(&self) -> usize {
         self.queue.len()
+    }
+
+    /// While this number stays, so does the fate of every command: a block need not ask again.
+    #[inline]
+    pub fn changes(&self) -> u64 {
+        self.changes
     }
 
     /// What became of command `id`. Bounded by the queue and the fates kept.
@@ -561,6 +570,17 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// The fate of a command has changed, or may have.
+    fn touch(&mut self) {
+        self.changes = self.changes.wrapping_add(1);
+    }
+
+    /// Command `id` has ended with `fate`.
+    fn decide(&mut self, id: CommandId, fate: Fate) {
+        self.fates.record(id, fate);
+        self.touch();
+    }
+
     fn new_id(&mut self) -> CommandId {
         self.last_id = self.last_id.wrapping_add(1);
         CommandId(self.last_id)
@@ -572,15 +592,21 @@ impl<P: Planner> Axis<P> {
         self.end_owner(owner);
         // Bounded by QUEUE_MAX: each round takes one out.
         while let Some(entry) = self.queue.pop() {
-            self.fates.record(entry.id, waiting);
+            self.decide(entry.id, waiting);
         }
+    }
+
+    /// `entry` is the owner, or its values are.
+    fn own(&mut self, entry: Entry) {
+        self.owner = Some(entry);
+        self.touch();
     }
 
     fn end_owner(&mut self, fate: Fate) {
         if let Some(owner) = self.owner.take() {
             // A stop that stands has completed, whatever ends its hold.
             let fate = if self.stop_held { Fate::Done } else { fate };
-            self.fates.record(owner.id, fate);
+            self.decide(owner.id, fate);
         }
         self.stop_held = false;
         self.replan_due = false;

@@ -6,7 +6,7 @@
 use super::{Axis, Motion, Permission, Power, Source};
 use crate::{
     AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
-    Log, PowerOff,
+    InstanceId, Log, PowerOff,
 };
 use standstill_planner::Planner;
 
@@ -78,6 +78,7 @@ impl<P: Planner> Axis<P> {
     /// Something is pending, or may be.
     pub(super) fn stir(&mut self) {
         self.calm = false;
+        self.touch();
     }
 
     /// The actual position (u).
@@ -175,6 +176,13 @@ impl<P: Planner> Axis<P> {
         }
         self.power.overruled = None;
         self.switch(wanted, permitted, source, log);
+    }
+
+    /// Whether the axis is in operation and [`Axis::set_power`] by `instance`, wanting that and permitting so much,
+    /// would change nothing. FALSE where that takes more than a glance to tell.
+    #[inline]
+    pub fn is_on_for(&self, instance: InstanceId, permitted: Permission) -> bool {
+        self.calm && self.power.decider == Some(instance) && self.power.permitted == permitted
     }
 
     /// Switches the axis off whatever MC_Power says: the runtime stops.
@@ -326,7 +334,7 @@ impl<P: Planner> Axis<P> {
             let given_up = reset.waited > RESET_PATIENCE && self.power.fault.is_some();
             if given_up || self.cause_known() {
                 self.reset = None;
-                self.fates.record(id, Fate::Failed(ErrorId::CauseStillPresent));
+                self.decide(id, Fate::Failed(ErrorId::CauseStillPresent));
                 return;
             }
             let moving = matches!(self.motion, Motion::Run { .. }) && !reached;
@@ -344,7 +352,7 @@ impl<P: Planner> Axis<P> {
             });
         }
         self.reset = None;
-        self.fates.record(id, Fate::Done);
+        self.decide(id, Fate::Done);
     }
 
     #[cold]

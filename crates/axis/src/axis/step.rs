@@ -52,11 +52,14 @@ impl<P: Planner> Axis<P> {
     // Inlined for the same reason as `publish`.
     #[inline(always)]
     fn step_along_plan(&mut self, scan: u64, log: &mut Log) {
-        let Motion::Run { plan, elapsed, .. } = &mut self.motion else {
+        let Motion::Run { plan, elapsed, scans } = &mut self.motion else {
             return;
         };
         // Scans of 1 ms wrap after 10^8 years.
         *elapsed = elapsed.wrapping_add(1);
+        if elapsed == scans {
+            self.changes = self.changes.wrapping_add(1);
+        }
         let next = plan.at(*elapsed);
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
@@ -145,6 +148,7 @@ impl<P: Planner> Axis<P> {
             Work::Stop if owner.held => {
                 self.motion = Motion::Hold;
                 self.stop_held = true;
+                self.touch();
             }
             Work::Stop => {
                 self.motion = Motion::Hold;
@@ -220,7 +224,7 @@ impl<P: Planner> Axis<P> {
                         instance: next.instance,
                     };
                     self.refuse_plan(&next, error, source, log);
-                    self.fates.record(next.id, Fate::Failed(error));
+                    self.decide(next.id, Fate::Failed(error));
                 }
             }
         }

@@ -331,7 +331,7 @@ impl<P: Planner> Axis<P> {
             Adds::Halt if !moves => Fate::Done,
             Adds::Halt => fate,
         };
-        self.fates.record(command.id, fate);
+        self.decide(command.id, fate);
     }
 
     /// Everything ends (R65): from now on there is one motion, that of the sum.
@@ -355,8 +355,11 @@ impl<P: Planner> Axis<P> {
         layer.base = match &mut self.motion {
             Motion::Follow => Setpoint::at_rest(self.actual),
             Motion::Hold => Setpoint::at_rest(layer.base.position),
-            Motion::Run { plan, elapsed, .. } => {
+            Motion::Run { plan, elapsed, scans } => {
                 *elapsed = elapsed.saturating_add(1);
+                if elapsed == scans {
+                    self.changes = self.changes.wrapping_add(1);
+                }
                 plan.at(*elapsed)
             }
         };
@@ -431,6 +434,7 @@ impl<P: Planner> Axis<P> {
     /// What is superimposed comes to rest with the stop dynamics; what is left of its distance waits.
     #[cold]
     pub(super) fn brake_superimposed(&mut self) {
+        self.touch();
         let limits = self.stop_limits();
         let Some(layer) = &mut self.layer else { return };
         let planned = self.planner.ramp_to(&layer.added, 0.0, &limits, &layer.in_force);
