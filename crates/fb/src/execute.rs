@@ -90,7 +90,7 @@ impl From<Fate> for Phase {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ExecuteCore {
     executed: bool,
-    /// The last result; of no meaning while there is a command.
+    /// What was shown last.
     phase: Phase,
     command: Option<(AxisId, CommandId)>,
     /// [`standstill_axis::Axis::changes`] when the command's fate was asked for.
@@ -115,25 +115,22 @@ impl ExecuteCore {
             return self.phase;
         }
         let phase = match self.command {
-            Some((axis, id)) => {
-                let phase = match context.axes.get(axis.index()) {
-                    Some(axis) => {
-                        self.asked_at = axis.changes();
-                        axis.fate(id).into()
-                    }
-                    None => Phase::Failed(ErrorId::AxisUnknown),
-                };
-                if phase.is_busy() {
-                    // Asked again in the next call, so nothing to remember.
-                    return phase;
+            Some((axis, id)) => match context.axes.get(axis.index()) {
+                // It was busy and nothing has changed.
+                Some(axis) if axis.changes() == self.asked_at && !rising => self.phase,
+                Some(axis) => {
+                    self.asked_at = axis.changes();
+                    axis.fate(id).into()
                 }
-                self.command = None;
-                phase
-            }
+                None => Phase::Failed(ErrorId::AxisUnknown),
+            },
             // A result was already shown in an earlier call; with Execute FALSE it goes (R28, R30).
             None if !execute => Phase::Idle,
             None => self.phase,
         };
+        if !phase.is_busy() {
+            self.command = None;
+        }
         self.phase = phase;
         phase
     }

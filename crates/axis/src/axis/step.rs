@@ -60,7 +60,7 @@ impl<P: Planner> Axis<P> {
         if elapsed == scans {
             self.changes = self.changes.wrapping_add(1);
         }
-        let next = plan.at(*elapsed);
+        let next = plan.next(*elapsed);
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
         } else if self.watched && self.plan_would_leave() {

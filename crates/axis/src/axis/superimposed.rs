@@ -360,12 +360,12 @@ impl<P: Planner> Axis<P> {
                 if elapsed == scans {
                     self.changes = self.changes.wrapping_add(1);
                 }
-                plan.at(*elapsed)
+                plan.next(*elapsed)
             }
         };
         if let Motion::Run { plan, elapsed, .. } = &mut layer.motion {
             *elapsed = elapsed.saturating_add(1);
-            layer.added = plan.at(*elapsed);
+            layer.added = plan.next(*elapsed);
         }
         let next = layer.sum();
         if !next.is_finite() {
