@@ -67,7 +67,12 @@ impl Block for McPower {
     }
 
     #[inline(always)]
-    fn rests<P: Planner>(&self, inputs: &Inputs, outputs: &Outputs, context: &Context<'_, P>) -> bool {
+    fn rests<P: Planner>(
+        &mut self,
+        inputs: &Inputs,
+        outputs: &mut Outputs,
+        context: &Context<'_, P>,
+    ) -> bool {
         let permitted = Permission {
             positive: inputs.enable_positive,
             negative: inputs.enable_negative,

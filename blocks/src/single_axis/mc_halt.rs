@@ -84,7 +84,12 @@ impl Block for McHalt {
     }
 
     #[inline(always)]
-    fn rests<P: Planner>(&self, inputs: &Inputs, _outputs: &Outputs, context: &Context<'_, P>) -> bool {
+    fn rests<P: Planner>(
+        &mut self,
+        inputs: &Inputs,
+        _outputs: &mut Outputs,
+        context: &Context<'_, P>,
+    ) -> bool {
         self.core.rests(inputs.execute, context)
     }
 }

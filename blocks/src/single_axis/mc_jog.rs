@@ -209,7 +209,12 @@ impl Block for McJog {
     }
 
     #[inline(always)]
-    fn rests<P: Planner>(&self, inputs: &Inputs, _outputs: &Outputs, context: &Context<'_, P>) -> bool {
+    fn rests<P: Planner>(
+        &mut self,
+        inputs: &Inputs,
+        _outputs: &mut Outputs,
+        context: &Context<'_, P>,
+    ) -> bool {
         let held = button(inputs);
         held == self.held
             && match &self.given {

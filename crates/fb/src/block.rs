@@ -93,13 +93,14 @@ pub trait Block: Copy + Default {
     /// One call. Bounded work, no allocation; errors are outputs.
     fn call<P: Planner>(&mut self, inputs: &Self::Inputs, context: &mut Context<'_, P>) -> Self::Outputs;
 
-    /// Whether a call now would change nothing and show `outputs` again, as far as can be told at a glance. A block in
-    /// the middle of its command is called in every scan and has something to tell in two or three of them.
+    /// Whether a call now would change nothing and show `outputs` again, as far as can be told at a glance; what
+    /// changes from scan to scan is renewed in them. A block in the middle of its command is called in every scan and
+    /// has something to tell in two or three of them.
     #[inline(always)]
     fn rests<P: Planner>(
-        &self,
+        &mut self,
         _inputs: &Self::Inputs,
-        _outputs: &Self::Outputs,
+        _outputs: &mut Self::Outputs,
         _context: &Context<'_, P>,
     ) -> bool {
         false
@@ -121,7 +122,7 @@ impl<B: Block> Instance<B> {
     /// Calls the block with the inputs as they stand.
     #[inline(always)]
     pub fn call<P: Planner>(&mut self, context: &mut Context<'_, P>) {
-        if self.block.rests(&self.inputs, &self.outputs, context) {
+        if self.block.rests(&self.inputs, &mut self.outputs, context) {
             debug_assert!(self.would_show_the_same(context), "{}", B::NAME);
         } else {
             self.call_awake(context);

@@ -100,6 +100,24 @@ struct BesideMotion {
     order: DriveOrder,
 }
 
+/// How little there is to look after in a scan, see [`Axis::calmness`]. `No` may be stale, the others never are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Calm {
+    /// Something is pending, or may be.
+    No,
+    /// In operation with nothing pending, but something superimposed.
+    Beside,
+    /// In operation with nothing pending.
+    Alone,
+}
+
+impl Calm {
+    #[inline]
+    fn is_any(self) -> bool {
+        self != Self::No
+    }
+}
+
 /// What is known of the power stage.
 #[derive(Clone, Copy, Debug)]
 struct Power {
@@ -273,8 +291,8 @@ pub struct Axis<P: Planner = Standard> {
     inside_for: u32,
     /// The owner has values that its motion does not have yet, for lack of room beside something superimposed.
     replan_due: bool,
-    /// In operation with nothing pending, see [`Axis::is_calm`]; FALSE may be stale, TRUE never.
-    calm: bool,
+    /// How little there is to look after in a scan.
+    calm: Calm,
     /// Grows whenever the fate of a command has changed, or may have.
     changes: u64,
 }
@@ -341,7 +359,7 @@ impl<P: Planner> Axis<P> {
             parameters: parameters::Parameters::new(&config),
             inside_for: 0,
             replan_due: false,
-            calm: false,
+            calm: Calm::No,
             changes: 0,
         })
     }
@@ -520,7 +538,11 @@ impl<P: Planner> Axis<P> {
     /// The drive's command for this scan.
     #[inline]
     pub fn drive_command(&mut self) -> DriveCommand {
-        let rename = if self.calm { None } else { self.rename.take() };
+        let rename = if self.calm.is_any() {
+            None
+        } else {
+            self.rename.take()
+        };
         DriveCommand {
             request: self.drive_request(),
             position: self.position_at_drive(),

@@ -3,7 +3,7 @@
 //! It comes after all block calls of a scan, so what it decides shows in the next one (R70).
 
 use super::queue::{Entry, Work};
-use super::{Axis, Motion, Source, power::Reaction};
+use super::{Axis, Calm, Motion, Source, power::Reaction};
 use crate::{AxisEvent, AxisState, ErrorId, Fate, InstanceId, Log, QUEUE_MAX};
 use standstill_planner::{Plan, Planner, Setpoint};
 
@@ -16,8 +16,11 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
         // Short of the goal a plan needs a step and nothing else, and so does an endless motion nobody waits for.
-        if self.calm && (self.is_short_of_goal() || self.is_cruising()) {
+        if self.calm == Calm::Alone && (self.is_short_of_goal() || self.is_cruising()) {
             self.step_along_plan(scan, log);
+            if self.is_far_round() {
+                self.bring_back();
+            }
         } else {
             self.advance_with_care(scan, log);
         }

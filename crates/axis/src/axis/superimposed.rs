@@ -346,6 +346,7 @@ impl<P: Planner> Axis<P> {
         self.in_force = self.limits_before(&self.in_force);
         self.end_superimposed_command(fate);
         self.layer = None;
+        self.stir();
     }
 
     /// [`Axis::advance`] with something superimposed: both motions advance, their sum is published.
@@ -416,6 +417,7 @@ impl<P: Planner> Axis<P> {
         let still = !matches!(self.motion, Motion::Run { .. });
         if still && self.layer.as_ref().is_some_and(|layer| layer.command.is_none()) {
             self.layer = None;
+            self.stir();
             if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
                 self.enter(AxisEvent::MotionDone);
                 self.hand_over(self.setpoint.position, scan, log);
