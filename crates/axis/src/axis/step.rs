@@ -161,11 +161,7 @@ impl<P: Planner> Axis<P> {
         match owner.work {
             Work::Position(_) | Work::Distance(_) => self.complete_move(scan, log),
             Work::Halt => self.complete(scan, log),
-            Work::Home(position) => {
-                self.call_set_position(position, scan, log);
-                self.homed = true;
-                self.complete(scan, log);
-            }
+            Work::Home(position) => self.settle_homing(position, scan, log),
             Work::Stop if owner.held => {
                 self.motion = Motion::Hold;
                 self.stop_held = true;
@@ -193,7 +189,7 @@ impl<P: Planner> Axis<P> {
 
     /// The owner has completed, at rest or passing its end on to a blended successor.
     #[cold]
-    fn complete(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn complete(&mut self, scan: u64, log: &mut Log) {
         if self.base().velocity != 0.0 {
             return self.pass_on(scan, log);
         }
