@@ -11,6 +11,9 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// either there or at a bound, so nothing else is as small.
 const CRUISING: f64 = 1e-10;
 
+/// By how much, relative to itself, the time of a boundary added up from spans may be off.
+const SAME_TIME: f64 = 16.0 * f64::EPSILON;
+
 /// A stretch of constant snap (order 4), jerk (3) or acceleration (2).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Piece {
@@ -121,12 +124,14 @@ impl<const N: usize> Path<N> {
         self.len.checked_sub(1).and_then(|i| self.pieces.get(i))
     }
 
-    /// The state at `time` (s) after the start; at the boundary of two pieces that of the earlier one.
+    /// The state at `time` (s) after the start; at the boundary of two pieces that of the earlier one, also where
+    /// rounding puts the boundary before `time`: of two motions that switch together none switches a scan early.
     #[inline]
     pub(crate) fn at(&self, time: f64) -> Option<Setpoint> {
         let mut begin = 0.0;
+        let earliest = time * (1.0 - SAME_TIME);
         for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
-            if time <= piece.end {
+            if earliest <= piece.end {
                 return Some(moved(&piece.state, time - self.anchor(index, begin, piece)));
             }
             begin = piece.end;
