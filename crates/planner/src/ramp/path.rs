@@ -11,6 +11,14 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// either there or at a bound, so nothing else is as small.
 const CRUISING: f64 = 1e-10;
 
+/// By how much, relative to itself, the time of a boundary added up from spans may be off.
+const SAME_TIME: f64 = 16.0 * f64::EPSILON;
+
+/// The latest instant that may be `boundary`.
+fn latest(boundary: f64) -> f64 {
+    boundary * (1.0 + SAME_TIME)
+}
+
 /// A stretch of constant snap (order 4), jerk (3) or acceleration (2).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Piece {
@@ -194,12 +202,13 @@ impl<const N: usize> Path<N> {
         self.len.checked_sub(1).and_then(|i| self.pieces.get(i))
     }
 
-    /// The state at `time` (s) after the start; at the boundary of two pieces that of the earlier one.
+    /// The state at `time` (s) after the start; at the boundary of two pieces that of the earlier one, also where
+    /// rounding puts the boundary before `time`: of two motions that switch together none switches a scan early.
     #[inline]
     pub(crate) fn at(&self, time: f64) -> Option<Setpoint> {
         let mut begin = 0.0;
         for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
-            if time <= piece.end {
+            if time <= latest(piece.end) {
                 return Some(moved(&piece.state, time - self.anchor(index, begin, piece)));
             }
             begin = piece.end;
@@ -237,10 +246,11 @@ impl<const N: usize> Path<N> {
     fn piece_at(&self, time: f64) -> Option<Current> {
         let mut begin = 0.0;
         for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
-            if time <= piece.end {
+            let end = latest(piece.end);
+            if time <= end {
                 return Some(Current {
-                    begin,
-                    end: piece.end,
+                    begin: latest(begin),
+                    end,
                     anchor: self.anchor(index, begin, piece),
                     course: Course::of(piece.state),
                     duration: self.duration(),
