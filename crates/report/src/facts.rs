@@ -125,21 +125,22 @@ pub fn sources(sources: &[Source<'_>]) -> String {
 
 /// The claims that failed, with what was there instead.
 pub fn failures(sources: &[Source<'_>]) -> String {
-    let claims = sources.iter().flat_map(|source| &source.trace.header().claims);
-    let failed = claims.filter(|claim| claim.verdict == ClaimVerdict::Failed);
-    let told: Vec<String> = failed
-        .flat_map(|claim| {
-            let reasons: Vec<_> = claim
-                .failures
-                .iter()
-                .map(|failure| failure.text.clone())
-                .collect();
-            match reasons.is_empty() {
-                true => vec![format!("{}: {}", claim.path, claim.text)],
-                false => reasons,
+    let mut told = Vec::new();
+    for (source, letter) in sources.iter().zip(LETTERS) {
+        let whose = if sources.len() > 1 {
+            format!("{letter}: ")
+        } else {
+            String::new()
+        };
+        let claims = source.trace.header().claims.iter();
+        for claim in claims.filter(|claim| claim.verdict == ClaimVerdict::Failed) {
+            if claim.failures.is_empty() {
+                told.push(format!("{whose}{}: {}", claim.path, claim.text));
             }
-        })
-        .collect();
+            let reasons = claim.failures.iter();
+            told.extend(reasons.map(|failure| format!("{whose}{}", failure.text)));
+        }
+    }
     if told.is_empty() {
         return String::new();
     }

@@ -43,7 +43,7 @@ fn a_run_writes_a_page_a_picture_and_a_waveform() {
     let page = read(&folder, "out.html");
     assert!(page.starts_with("<!doctype html>") && page.contains("<h1>One short move</h1>"));
     assert!(page.contains("2 of 2 claims hold"));
-    assert!(read(&folder, "out.svg").contains("X.Jerk (mm/s^3)"));
+    assert!(read(&folder, "out.svg").contains("X.Acceleration (mm/s^2)"));
     assert!(read(&folder, "out.vcd").contains("$scope module move $end"));
 }
 

@@ -26,14 +26,14 @@ const BUSY: usize = 8;
 const MARK: f64 = 3.5;
 
 const STYLE: &str = "<style>\n\
-    .title { font-size: 15px; font-weight: 600 } .actual { stroke: #d9730d; stroke-width: 1; stroke-dasharray: 3 3 }\n\
+    .title { font-size: 15px; font-weight: 600 } .actual { stroke: #555; stroke-width: 1; stroke-dasharray: 3 3 }\n\
     .held { stroke: #14803f } .failed { stroke: #c22 } circle { fill: #14803f } .span { stroke-width: 4; opacity: .35 }\n\
-    @media (prefers-color-scheme: dark) { .actual { stroke: #ffab5c } .held { stroke: #4fc882 } .failed { stroke: #ff6b6b }\n\
+    @media (prefers-color-scheme: dark) { .actual { stroke: #bbb } .held { stroke: #4fc882 } .failed { stroke: #ff6b6b }\n\
     circle { fill: #4fc882 } }\n\
     </style>\n";
 
-/// The picture of a whole trace, as the HTML report lays it out: title, for every axis its states and all curves with
-/// limits and actual values, the claims over the scans they speak of, and every input, output and input variable that
+/// The picture of a whole trace, as the HTML report lays it out: title, for every axis its states and the curves that
+/// move, with limits and actual values, the claims over the scans they speak of, and every input, output and input variable that
 /// changes.
 ///
 /// Work is proportional to rows times columns.
@@ -47,7 +47,9 @@ pub fn report(trace: &Trace) -> String {
     let curves = curves(trace, &SIGNALS);
     for axis in &header.axes {
         picture.states(trace, axis);
-        for curve in curves.iter().filter(|curve| std::ptr::eq(curve.axis, axis)) {
+        // What stands still, as the snap of an axis of order 2, tells nothing.
+        let moves = |curve: &&Curve<'_>| std::ptr::eq(curve.axis, axis) && curve.least < curve.greatest;
+        for curve in curves.iter().filter(moves) {
             draw(&mut picture, trace, curve, &ticks);
         }
     }
