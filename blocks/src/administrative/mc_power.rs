@@ -65,6 +65,22 @@ impl Block for McPower {
             ..Outputs::default()
         }
     }
+
+    #[inline(always)]
+    fn rests<P: Planner>(
+        &mut self,
+        inputs: &Inputs,
+        outputs: &mut Outputs,
+        context: &Context<'_, P>,
+    ) -> bool {
+        let permitted = Permission {
+            positive: inputs.enable_positive,
+            negative: inputs.enable_negative,
+        };
+        let is_on = outputs.status && outputs.valid && inputs.enable;
+        let axis = context.axes.get(inputs.axis.index());
+        is_on && axis.is_some_and(|axis| axis.is_on_for(context.instance, permitted))
+    }
 }
 
 fn refused(error_id: ErrorId) -> Outputs {

@@ -52,6 +52,14 @@ pub struct McSetOverride {
     refused: Option<Refusal>,
 }
 
+fn factors_of(inputs: &Inputs) -> Factors {
+    Factors {
+        velocity: inputs.vel_factor,
+        acceleration: inputs.acc_factor,
+        jerk: inputs.jerk_factor,
+    }
+}
+
 impl Block for McSetOverride {
     const NAME: &'static str = "MC_SetOverride";
     const GROUP: Group = Group::Administrative;
@@ -67,11 +75,7 @@ impl Block for McSetOverride {
         let written = self
             .core
             .write(inputs.enable, inputs.axis, context, |axis, source, log| {
-                let factors = Factors {
-                    velocity: inputs.vel_factor,
-                    acceleration: inputs.acc_factor,
-                    jerk: inputs.jerk_factor,
-                };
+                let factors = factors_of(inputs);
                 if factors == axis.factors() {
                     *refused = None;
                     return Ok(());
@@ -98,5 +102,17 @@ impl Block for McSetOverride {
             error: written.is_error(),
             error_id: written.error_id(),
         }
+    }
+
+    #[inline(always)]
+    fn rests<P: Planner>(
+        &mut self,
+        inputs: &Inputs,
+        outputs: &mut Outputs,
+        context: &Context<'_, P>,
+    ) -> bool {
+        let factors = factors_of(inputs);
+        let axis = context.axes.get(inputs.axis.index());
+        inputs.enable && outputs.enabled && axis.is_some_and(|axis| axis.factors() == factors)
     }
 }

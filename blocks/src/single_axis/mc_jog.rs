@@ -65,6 +65,17 @@ pub struct McJog {
     given: Option<Given>,
     /// The last result; of no meaning while there is a command.
     phase: Phase,
+    /// [`Axis::changes`] when the command's fate was asked for.
+    asked_at: u64,
+}
+
+/// The button that counts, forward or backward; both are none.
+fn button(inputs: &Inputs) -> Option<bool> {
+    match (inputs.jog_forward, inputs.jog_backward) {
+        (true, false) => Some(true),
+        (false, true) => Some(false),
+        (true, true) | (false, false) => None,
+    }
 }
 
 impl McJog {
@@ -139,11 +150,7 @@ impl McJog {
     }
 
     fn phase<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Phase {
-        let held = match (inputs.jog_forward, inputs.jog_backward) {
-            (true, false) => Some(true),
-            (false, true) => Some(false),
-            (true, true) | (false, false) => None,
-        };
+        let held = button(inputs);
         if held != self.held {
             self.held = held;
             if let Err(error) = self.change(inputs, context) {
@@ -153,7 +160,10 @@ impl McJog {
         }
         let phase = match &self.given {
             Some(given) => match context.axes.get(given.axis.index()) {
-                Some(axis) => axis.fate(given.id).into(),
+                Some(axis) => {
+                    self.asked_at = axis.changes();
+                    axis.fate(given.id).into()
+                }
                 None => Phase::Failed(ErrorId::AxisUnknown),
             },
             // A result was already shown in an earlier call; without a button it goes.
@@ -196,5 +206,23 @@ impl Block for McJog {
             error: phase.is_error(),
             error_id: phase.error_id(),
         }
+    }
+
+    #[inline(always)]
+    fn rests<P: Planner>(
+        &mut self,
+        inputs: &Inputs,
+        _outputs: &mut Outputs,
+        context: &Context<'_, P>,
+    ) -> bool {
+        let held = button(inputs);
+        held == self.held
+            && match &self.given {
+                Some(given) => context
+                    .axes
+                    .get(given.axis.index())
+                    .is_some_and(|axis| axis.changes() == self.asked_at),
+                None => held.is_some() || self.phase == Phase::Idle,
+            }
     }
 }

@@ -64,12 +64,19 @@ impl Scaling {
     /// of their whole part.
     #[inline(never)]
     pub fn to_increments(&self, position: f64) -> i64 {
-        let (whole, small) = self.parts(position);
-        nearest(whole, small)
+        let (units, fraction) = self.split(position);
+        match divided(units, self.increments, self.units) {
+            Some((whole, rest)) => whole.saturating_add(rounded(self.rest_of(rest, fraction))),
+            None => {
+                let (whole, rest) = divided_wide(units, self.increments, self.units);
+                nearest(whole, self.rest_of(rest, fraction))
+            }
+        }
     }
 
-    /// `position` (u) in increments: whole ones, and a rest of a few.
-    fn parts(&self, position: f64) -> (i128, f64) {
+    /// The distance of `position` (u) from the offset, as the drive has its sign: whole units and the rest.
+    #[inline]
+    fn split(&self, position: f64) -> (i64, f64) {
         let position = if self.invert {
             self.offset - position
         } else {
@@ -77,18 +84,26 @@ impl Scaling {
         };
         // A saturating conversion: NaN gives 0, which the axis never lets come here.
         let whole = position as i64;
-        let fraction = position - whole as f64;
-        let (quotient, rest) = divided(whole, self.increments, self.units);
-        let small = (rest + fraction * f64::from(self.increments.get())) / f64::from(self.units.get());
-        (quotient, small)
+        (whole, position - whole as f64)
+    }
+
+    /// What the whole increments of whole units leave, and those of a fraction of a unit: a few increments.
+    #[inline]
+    fn rest_of(&self, rest: f64, fraction: f64) -> f64 {
+        (rest + fraction * f64::from(self.increments.get())) / f64::from(self.units.get())
     }
 
     /// The position (u) of `increments`.
     #[inline(never)]
     pub fn to_units(&self, increments: i64) -> f64 {
-        let (whole, rest) = divided(increments, self.units, self.increments);
-        let rest = rest / f64::from(self.increments.get());
-        let distance = whole as f64 + rest;
+        let (whole, rest) = match divided(increments, self.units, self.increments) {
+            Some((whole, rest)) => (whole as f64, rest),
+            None => {
+                let (whole, rest) = divided_wide(increments, self.units, self.increments);
+                (whole as f64, rest)
+            }
+        };
+        let distance = whole + rest / f64::from(self.increments.get());
         if self.invert {
             self.offset - distance
         } else {
@@ -97,31 +112,36 @@ impl Scaling {
     }
 }
 
-/// `value * factor / divisor` as a whole number, towards minus infinity, and what is left over the divisor.
-fn divided(value: i64, factor: NonZero<u32>, divisor: NonZero<u32>) -> (i128, f64) {
-    // Half of the digits take a third of the time, and are enough for a machine's way.
-    if let Some(scaled) = value.checked_mul(i64::from(factor.get())) {
-        let divisor = i64::from(divisor.get());
-        if divisor == 1 {
-            return (scaled.into(), 0.0);
-        }
-        return (
-            scaled.div_euclid(divisor).into(),
-            scaled.rem_euclid(divisor) as f64,
-        );
+/// `value * factor / divisor` as a whole number, towards minus infinity, and what is left over the divisor; none
+/// where the product takes more than 64 bits, which is far beyond a machine's way.
+#[inline]
+fn divided(value: i64, factor: NonZero<u32>, divisor: NonZero<u32>) -> Option<(i64, f64)> {
+    let scaled = value.checked_mul(i64::from(factor.get()))?;
+    let divisor = i64::from(divisor.get());
+    if divisor == 1 {
+        return Some((scaled, 0.0));
     }
+    Some((scaled.div_euclid(divisor), scaled.rem_euclid(divisor) as f64))
+}
+
+/// The same for every value; it takes three times as long.
+#[cold]
+fn divided_wide(value: i64, factor: NonZero<u32>, divisor: NonZero<u32>) -> (i128, f64) {
     let scaled = i128::from(value) * i128::from(factor.get());
     let divisor = i128::from(divisor.get());
     (scaled.div_euclid(divisor), scaled.rem_euclid(divisor) as f64)
 }
 
+/// The whole number nearest to `small`, half away from 0; saturates at the range of `i64`.
+#[inline]
+fn rounded(small: f64) -> i64 {
+    (if small < 0.0 { small - 0.5 } else { small + 0.5 }) as i64
+}
+
 /// The whole number nearest to `whole + small`, half away from `whole`; saturates at the range of `i64`.
 fn nearest(whole: i128, small: f64) -> i64 {
-    let nearest = (if small < 0.0 { small - 0.5 } else { small + 0.5 }) as i64;
-    if let Ok(whole) = i64::try_from(whole) {
-        return whole.saturating_add(nearest);
-    }
-    (whole + i128::from(nearest)).clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
+    let nearest = whole + i128::from(rounded(small));
+    nearest.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
 }
 
 /// One turn of a modulo axis in increments: a fraction, so that turns can be counted without rounding.
@@ -203,8 +223,15 @@ impl Scaling {
         let scaled = turns * i128::from(turn.increments.get());
         let per_turn = i128::from(turn.turns.get());
         let rest = scaled.rem_euclid(per_turn) as f64 / turn.turns.get() as f64;
-        let (whole, small) = self.parts(position);
-        nearest(whole + scaled.div_euclid(per_turn), small + rest)
+        let (units, fraction) = self.split(position);
+        let (whole, left) = match divided(units, self.increments, self.units) {
+            Some((whole, left)) => (i128::from(whole), left),
+            None => divided_wide(units, self.increments, self.units),
+        };
+        nearest(
+            whole + scaled.div_euclid(per_turn),
+            self.rest_of(left, fraction) + rest,
+        )
     }
 
     /// The whole turns of `length` (u) in `increments`, and the position (u) in [0, `length`) left.

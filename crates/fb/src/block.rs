@@ -92,6 +92,19 @@ pub trait Block: Copy + Default {
 
     /// One call. Bounded work, no allocation; errors are outputs.
     fn call<P: Planner>(&mut self, inputs: &Self::Inputs, context: &mut Context<'_, P>) -> Self::Outputs;
+
+    /// Whether a call now would change nothing and show `outputs` again, as far as can be told at a glance; what
+    /// changes from scan to scan is renewed in them. A block in the middle of its command is called in every scan and
+    /// has something to tell in two or three of them.
+    #[inline(always)]
+    fn rests<P: Planner>(
+        &mut self,
+        _inputs: &Self::Inputs,
+        _outputs: &mut Self::Outputs,
+        _context: &Context<'_, P>,
+    ) -> bool {
+        false
+    }
 }
 
 /// A block with the memory IEC 61131-3 gives an instance: inputs and outputs keep their values between calls.
@@ -107,9 +120,25 @@ pub struct Instance<B: Block> {
 
 impl<B: Block> Instance<B> {
     /// Calls the block with the inputs as they stand.
-    #[inline]
+    #[inline(always)]
     pub fn call<P: Planner>(&mut self, context: &mut Context<'_, P>) {
+        if self.block.rests(&self.inputs, &mut self.outputs, context) {
+            debug_assert!(self.would_show_the_same(context), "{}", B::NAME);
+        } else {
+            self.call_awake(context);
+        }
+    }
+
+    // Apart, so that what it keeps in registers does not burden the many calls that rest.
+    #[inline(never)]
+    fn call_awake<P: Planner>(&mut self, context: &mut Context<'_, P>) {
         self.outputs = self.block.call(&self.inputs, context);
+    }
+
+    /// Holds [`Block::rests`] against a call, in every test.
+    fn would_show_the_same<P: Planner>(&self, context: &mut Context<'_, P>) -> bool {
+        let outputs = { self.block }.call(&self.inputs, context);
+        (0..B::Outputs::PINS.len()).all(|index| self.outputs.get(index) == outputs.get(index))
     }
 }
 

@@ -90,9 +90,11 @@ impl From<Fate> for Phase {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ExecuteCore {
     executed: bool,
-    /// The last result; of no meaning while there is a command.
+    /// What was shown last.
     phase: Phase,
     command: Option<(AxisId, CommandId)>,
+    /// [`standstill_axis::Axis::changes`] when the command's fate was asked for.
+    asked_at: u64,
 }
 
 impl ExecuteCore {
@@ -113,24 +115,40 @@ impl ExecuteCore {
             return self.phase;
         }
         let phase = match self.command {
-            Some((axis, id)) => {
-                let phase = match context.axes.get(axis.index()) {
-                    Some(axis) => axis.fate(id).into(),
-                    None => Phase::Failed(ErrorId::AxisUnknown),
-                };
-                if phase.is_busy() {
-                    // Asked again in the next call, so nothing to remember.
-                    return phase;
+            Some((axis, id)) => match context.axes.get(axis.index()) {
+                // It was busy and nothing has changed.
+                Some(axis) if axis.changes() == self.asked_at && !rising => self.phase,
+                Some(axis) => {
+                    self.asked_at = axis.changes();
+                    axis.fate(id).into()
                 }
-                self.command = None;
-                phase
-            }
+                None => Phase::Failed(ErrorId::AxisUnknown),
+            },
             // A result was already shown in an earlier call; with Execute FALSE it goes (R28, R30).
             None if !execute => Phase::Idle,
             None => self.phase,
         };
+        if !phase.is_busy() {
+            self.command = None;
+        }
         self.phase = phase;
         phase
+    }
+
+    /// Whether a call with `execute` would show again what the last one showed: no edge, and either no fate has changed
+    /// since, or there is none to ask for.
+    #[inline(always)]
+    pub fn rests<P: Planner>(&self, execute: bool, context: &Context<'_, P>) -> bool {
+        if execute != self.executed {
+            return false;
+        }
+        match self.command {
+            Some((axis, _)) => context
+                .axes
+                .get(axis.index())
+                .is_some_and(|axis| axis.changes() == self.asked_at),
+            None => execute || self.phase == Phase::Idle,
+        }
     }
 
     /// The command that goes on in a call with `execute`: none if it ended, or a rising edge is about to replace it.

@@ -88,6 +88,12 @@ impl<V: Values> UpdateCore<V> {
         })
     }
 
+    /// As [`ExecuteCore::rests`]; while changes of the values count they have to be looked at.
+    #[inline(always)]
+    pub fn rests<P: Planner>(&self, execute: bool, context: &Context<'_, P>) -> bool {
+        self.seen.is_none() && self.execute.rests(execute, context)
+    }
+
     /// Before the fate is asked for, so that what the new values change shows in the same call.
     #[cold]
     #[inline(never)]

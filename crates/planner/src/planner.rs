@@ -169,6 +169,12 @@ pub trait Plan: Copy + core::fmt::Debug {
     /// velocity kept for ever.
     fn at(&self, scan: u64) -> Setpoint;
 
+    /// As [`Plan::at`], for the motion in progress: asked for scan after scan, a plan may remember where it was.
+    #[inline]
+    fn next(&mut self, scan: u64) -> Setpoint {
+        self.at(scan)
+    }
+
     /// By how much the start state forced the plan out of its limits, if it did.
     fn excess(&self) -> Option<Excess>;
 
@@ -221,7 +227,7 @@ pub enum StandardPlan {
 }
 
 /// A plan is copied about by value, once a command.
-const _: () = assert!(size_of::<StandardPlan>() <= 1728);
+const _: () = assert!(size_of::<StandardPlan>() <= 1824);
 
 impl Standard {
     /// A planner for the sample time `cycle` (s).
@@ -293,6 +299,20 @@ impl StandardPlan {
             Self::Unequal(grid) => grid.at(scan),
             Self::Ramp(ramp) => ramp.at(scan),
             Self::Online(plan) => plan.at(scan),
+            Self::Sampled(plan) => plan.at(scan),
+        };
+        setpoint.numbers()
+    }
+}
+
+impl StandardPlan {
+    #[inline(never)]
+    fn next_numbers(&mut self, scan: u64) -> [f64; 5] {
+        let setpoint = match self {
+            Self::Grid(grid) => grid.at(scan),
+            Self::Unequal(grid) => grid.at(scan),
+            Self::Ramp(ramp) => ramp.next(scan),
+            Self::Online(plan) => plan.next(scan),
             Self::Sampled(plan) => plan.at(scan),
         };
         setpoint.numbers()
@@ -423,6 +443,17 @@ impl Plan for StandardPlan {
             Self::Grid(grid) => grid.at(scan),
             Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) => {
                 Setpoint::of(self.numbers_at(scan))
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn next(&mut self, scan: u64) -> Setpoint {
+        match self {
+            Self::Grid(grid) => grid.at(scan),
+            Self::Ramp(ramp) if ramp.is_at_goal(scan) => ramp.at_goal(scan),
+            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) => {
+                Setpoint::of(self.next_numbers(scan))
             }
         }
     }

@@ -45,7 +45,7 @@ impl<P: Planner> Axis<P> {
         self.move_coordinates(position, relative, source, log)
             .map_err(|error| self.refuse("Position", position, f64::NAN, error, source, log))?;
         let id = self.new_id();
-        self.fates.record(id, Fate::Done);
+        self.decide(id, Fate::Done);
         Ok(id)
     }
 
@@ -79,7 +79,7 @@ impl<P: Planner> Axis<P> {
                 Ok(()) => Fate::Done,
                 Err(error) => Fate::Failed(self.refuse("Position", position, f64::NAN, error, source, log)),
             };
-            self.fates.record(entry.id, fate);
+            self.decide(entry.id, fate);
         }
         self.hand_over(self.setpoint.position, scan, log);
     }

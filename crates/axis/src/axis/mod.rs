@@ -100,6 +100,24 @@ struct BesideMotion {
     order: DriveOrder,
 }
 
+/// How little there is to look after in a scan, see [`Axis::calmness`]. `No` may be stale, the others never are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Calm {
+    /// Something is pending, or may be.
+    No,
+    /// In operation with nothing pending, but something superimposed.
+    Beside,
+    /// In operation with nothing pending.
+    Alone,
+}
+
+impl Calm {
+    #[inline]
+    fn is_any(self) -> bool {
+        self != Self::No
+    }
+}
+
 /// What is known of the power stage.
 #[derive(Clone, Copy, Debug)]
 struct Power {
@@ -273,8 +291,10 @@ pub struct Axis<P: Planner = Standard> {
     inside_for: u32,
     /// The owner has values that its motion does not have yet, for lack of room beside something superimposed.
     replan_due: bool,
-    /// In operation with nothing pending, see [`Axis::is_calm`]; FALSE may be stale, TRUE never.
-    calm: bool,
+    /// How little there is to look after in a scan.
+    calm: Calm,
+    /// Grows whenever the fate of a command has changed, or may have.
+    changes: u64,
 }
 
 impl<P: Planner> Axis<P> {
@@ -339,7 +359,8 @@ impl<P: Planner> Axis<P> {
             parameters: parameters::Parameters::new(&config),
             inside_for: 0,
             replan_due: false,
-            calm: false,
+            calm: Calm::No,
+            changes: 0,
         })
     }
 
@@ -418,6 +439,12 @@ impl<P: Planner> Axis<P> {
     /// Commands that wait.
     pub fn waiting(&self) -> usize {
         self.queue.len()
+    }
+
+    /// While this number stays, so does the fate of every command: a block need not ask again.
+    #[inline]
+    pub fn changes(&self) -> u64 {
+        self.changes
     }
 
     /// What became of command `id`. Bounded by the queue and the fates kept.
@@ -511,7 +538,11 @@ impl<P: Planner> Axis<P> {
     /// The drive's command for this scan.
     #[inline]
     pub fn drive_command(&mut self) -> DriveCommand {
-        let rename = if self.calm { None } else { self.rename.take() };
+        let rename = if self.calm.is_any() {
+            None
+        } else {
+            self.rename.take()
+        };
         DriveCommand {
             request: self.drive_request(),
             position: self.position_at_drive(),
@@ -561,6 +592,17 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// The fate of a command has changed, or may have.
+    fn touch(&mut self) {
+        self.changes = self.changes.wrapping_add(1);
+    }
+
+    /// Command `id` has ended with `fate`.
+    fn decide(&mut self, id: CommandId, fate: Fate) {
+        self.fates.record(id, fate);
+        self.touch();
+    }
+
     fn new_id(&mut self) -> CommandId {
         self.last_id = self.last_id.wrapping_add(1);
         CommandId(self.last_id)
@@ -572,15 +614,21 @@ impl<P: Planner> Axis<P> {
         self.end_owner(owner);
         // Bounded by QUEUE_MAX: each round takes one out.
         while let Some(entry) = self.queue.pop() {
-            self.fates.record(entry.id, waiting);
+            self.decide(entry.id, waiting);
         }
+    }
+
+    /// `entry` is the owner, or its values are.
+    fn own(&mut self, entry: Entry) {
+        self.owner = Some(entry);
+        self.touch();
     }
 
     fn end_owner(&mut self, fate: Fate) {
         if let Some(owner) = self.owner.take() {
             // A stop that stands has completed, whatever ends its hold.
             let fate = if self.stop_held { Fate::Done } else { fate };
-            self.fates.record(owner.id, fate);
+            self.decide(owner.id, fate);
         }
         self.stop_held = false;
         self.replan_due = false;

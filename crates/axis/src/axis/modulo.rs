@@ -113,6 +113,13 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// Whether the set-point of a modulo axis is so many turns away from 0 that an endless motion is brought back.
+    #[inline]
+    pub(super) fn is_far_round(&self) -> bool {
+        let far = |modulo: &Modulo| self.setpoint.position.abs() >= FAR * modulo.length;
+        self.modulo.as_ref().is_some_and(far)
+    }
+
     /// Keeps an endless motion within some turns of 0. Cost: a comparison, and once in two turns about 60
     /// operations.
     #[inline(never)]

@@ -80,7 +80,7 @@ impl<P: Planner> Axis<P> {
         }
         self.set_output(bit, value);
         let id = self.new_id();
-        self.fates.record(id, Fate::Done);
+        self.decide(id, Fate::Done);
         Ok(id)
     }
 

@@ -317,7 +317,7 @@ impl<P: Planner> Axis<P> {
         }
         self.set_parameters(parameters);
         let id = self.new_id();
-        self.fates.record(id, Fate::Done);
+        self.decide(id, Fate::Done);
         Ok(id)
     }
 

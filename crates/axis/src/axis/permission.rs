@@ -145,9 +145,10 @@ impl<P: Planner> Axis<P> {
             self.note_passing(&mut owner);
             owner.paused = true;
             owner.turns = 0;
-            self.owner = Some(owner);
+            self.own(owner);
         }
         self.replan_due = false;
+        self.touch();
         self.in_force = self.limits_before(&self.in_force);
         if let Some(layer) = &mut self.layer {
             layer.pass_velocity(Setpoint {
@@ -215,7 +216,7 @@ impl<P: Planner> Axis<P> {
             owner.end = owner.end.map(|end| end + by);
             owner.from += by;
         }
-        self.owner = Some(owner);
+        self.own(owner);
     }
 
     /// Whether a direction is barred.

@@ -3,10 +3,10 @@
 //! Source: PLCopen Motion Control Part 1, notes 1 to 5 of the state diagram, MC_Power, MC_Reset; V9a, V10a,
 //! S10 to S14; iec61131-executor CI-5, CI-8.
 
-use super::{Axis, Motion, Permission, Power, Source};
+use super::{Axis, Calm, Motion, Permission, Power, Source};
 use crate::{
     AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
-    Log, PowerOff,
+    InstanceId, Log, PowerOff,
 };
 use standstill_planner::Planner;
 
@@ -35,13 +35,15 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
         // In most scans nothing but the position changes.
-        if self.calm && feedback.enabled && feedback.fault.is_none() && feedback.comms == Comms::Ok {
-            debug_assert!(self.is_calm());
-            let position = match feedback.position {
-                DrivePosition::Units(units) => units,
-                DrivePosition::Increments(increments) => self.position_at_increment(increments),
-            };
-            self.latch(position);
+        if self.calm.is_any() && feedback.enabled && feedback.fault.is_none() && feedback.comms == Comms::Ok {
+            debug_assert_eq!(self.calm, self.calmness());
+            match (feedback.position, &self.modulo) {
+                (DrivePosition::Units(units), None) => self.latch(units),
+                (DrivePosition::Increments(increments), None) => {
+                    self.latch(self.position_at_increment(increments));
+                }
+                (_, Some(_)) => self.latch_round(feedback),
+            }
             self.signals = feedback.signals;
             self.power.voltage = feedback.voltage;
         } else {
@@ -49,12 +51,12 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the axis is in operation with nothing pending and nothing superimposed or supervised: it reacts to nothing but
+    /// Whether the axis is in operation with nothing pending and nothing supervised: it reacts to nothing but
     /// its feedback, is asked for what it was asked for, and its positions need no care.
     ///
     /// Looked at once, when that may have begun; whatever ends it says so ([`Axis::stir`]). A scan saves ten
     /// comparisons by it.
-    fn is_calm(&self) -> bool {
+    fn calmness(&self) -> Calm {
         let Power {
             wanted,
             on,
@@ -70,14 +72,20 @@ impl<P: Planner> Axis<P> {
             && comms == Comms::Ok
             && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         let is_pending = self.reset.is_some() || self.shift_due || self.rename.is_some();
-        let is_plain = self.modulo.is_none() && self.layer.is_none() && self.past.is_whole();
         let is_watched = self.parameters.lag.on;
-        is_powered && is_well && !is_pending && is_plain && !is_watched
+        if !(is_powered && is_well && !is_pending && self.past.is_whole() && !is_watched) {
+            Calm::No
+        } else if self.layer.is_some() {
+            Calm::Beside
+        } else {
+            Calm::Alone
+        }
     }
 
     /// Something is pending, or may be.
     pub(super) fn stir(&mut self) {
-        self.calm = false;
+        self.calm = Calm::No;
+        self.touch();
     }
 
     /// The actual position (u).
@@ -86,6 +94,16 @@ impl<P: Planner> Axis<P> {
             (DrivePosition::Units(units), None) => units,
             (DrivePosition::Increments(increments), None) => self.position_at_increment(increments),
             (position, Some(modulo)) => modulo.latch(&self.config, position, self.shift),
+        }
+    }
+
+    /// A modulo axis takes over this scan's actual position.
+    #[inline(never)]
+    fn latch_round(&mut self, feedback: &DriveFeedback) {
+        let position = self.position_of(feedback);
+        self.latch(position);
+        if let Some(modulo) = &self.modulo {
+            self.past.come_round(position, modulo.length);
         }
     }
 
@@ -117,7 +135,7 @@ impl<P: Planner> Axis<P> {
             }
         }
         self.finish_reset();
-        self.calm = self.is_calm();
+        self.calm = self.calmness();
     }
 
     fn follow_power(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
@@ -175,6 +193,13 @@ impl<P: Planner> Axis<P> {
         }
         self.power.overruled = None;
         self.switch(wanted, permitted, source, log);
+    }
+
+    /// Whether the axis is in operation and [`Axis::set_power`] by `instance`, wanting that and permitting so much,
+    /// would change nothing. FALSE where that takes more than a glance to tell.
+    #[inline]
+    pub fn is_on_for(&self, instance: InstanceId, permitted: Permission) -> bool {
+        self.calm.is_any() && self.power.decider == Some(instance) && self.power.permitted == permitted
     }
 
     /// Switches the axis off whatever MC_Power says: the runtime stops.
@@ -326,7 +351,7 @@ impl<P: Planner> Axis<P> {
             let given_up = reset.waited > RESET_PATIENCE && self.power.fault.is_some();
             if given_up || self.cause_known() {
                 self.reset = None;
-                self.fates.record(id, Fate::Failed(ErrorId::CauseStillPresent));
+                self.decide(id, Fate::Failed(ErrorId::CauseStillPresent));
                 return;
             }
             let moving = matches!(self.motion, Motion::Run { .. }) && !reached;
@@ -344,7 +369,7 @@ impl<P: Planner> Axis<P> {
             });
         }
         self.reset = None;
-        self.fates.record(id, Fate::Done);
+        self.decide(id, Fate::Done);
     }
 
     #[cold]
@@ -355,7 +380,7 @@ impl<P: Planner> Axis<P> {
     /// What is asked of the power stage in this scan.
     #[inline]
     pub(super) fn drive_request(&self) -> DriveRequest {
-        if self.calm {
+        if self.calm.is_any() {
             return DriveRequest::Enable;
         }
         let ramping = matches!(self.motion, Motion::Run { .. });

@@ -110,10 +110,10 @@ impl<P: Planner> Axis<P> {
     ) -> Result<CommandId, ErrorId> {
         let (probe, _) = self.trigger(trigger, source, log)?;
         if let Some(waiting) = self.end_probing(probe) {
-            self.fates.record(waiting.id, Fate::Aborted);
+            self.decide(waiting.id, Fate::Aborted);
         }
         let id = self.new_id();
-        self.fates.record(id, Fate::Done);
+        self.decide(id, Fate::Done);
         Ok(id)
     }
 
@@ -160,7 +160,7 @@ impl<P: Planner> Axis<P> {
                     if let Some(slot) = self.probes.recorded.get_mut(probe) {
                         *slot = Some((waiting.id, position));
                     }
-                    self.fates.record(waiting.id, Fate::Done);
+                    self.decide(waiting.id, Fate::Done);
                 } else if let Some(slot) = self.probes.waiting.get_mut(probe) {
                     *slot = Some(Waiting {
                         armed: false,

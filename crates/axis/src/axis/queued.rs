@@ -71,7 +71,7 @@ impl<P: Planner> Axis<P> {
                 self.write_queued_parameter(parameter, value, Source { scan, instance }, log)
             }
         };
-        self.fates.record(id, fate);
+        self.decide(id, fate);
         true
     }
 

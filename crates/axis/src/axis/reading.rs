@@ -104,21 +104,14 @@ impl Past {
     }
 
     /// Names what came before as it lies nearest to what came after it, on an axis with turns of `length` (u).
-    #[inline(never)]
-    fn come_round(&mut self, actual: f64, length: f64) {
-        let nearest = |place: f64, to: f64| {
-            if (place - to).abs() < length / 2.0 {
-                return place;
-            }
-            let (_, ahead) = split(place - to, length);
-            to + if ahead > length / 2.0 {
-                ahead - length
-            } else {
-                ahead
-            }
-        };
-        self.before = nearest(self.before, actual);
-        self.earlier = nearest(self.earlier, self.before);
+    #[inline]
+    pub fn come_round(&mut self, actual: f64, length: f64) {
+        let half = length / 2.0;
+        let is_near = (self.before - actual).abs() < half && (self.earlier - self.before).abs() < half;
+        if !is_near {
+            self.before = nearest(self.before, actual, length);
+            self.earlier = nearest(self.earlier, self.before, length);
+        }
     }
 
     /// Makes what came before the seam comparable with `actual` (u).
@@ -142,6 +135,20 @@ impl Past {
             let step = (actual - self.before) / (f64::from(seam.lost) + 1.0);
             (self.before, self.earlier) = (actual - step, actual - 2.0 * step);
         }
+    }
+}
+
+/// `place` (u) as many turns of `length` (u) away as bring it nearest to `to`.
+#[cold]
+fn nearest(place: f64, to: f64, length: f64) -> f64 {
+    if (place - to).abs() < length / 2.0 {
+        return place;
+    }
+    let (_, ahead) = split(place - to, length);
+    to + if ahead > length / 2.0 {
+        ahead - length
+    } else {
+        ahead
     }
 }
 

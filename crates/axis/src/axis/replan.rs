@@ -33,12 +33,12 @@ impl<P: Planner> Axis<P> {
     pub(super) fn replan_aimed(&mut self, owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
         if owner.paused {
             // It goes on with these values when it may.
-            self.owner = Some(owner);
+            self.own(owner);
             return Ok(());
         }
         match self.plan_anew(owner, scan, log) {
             Err(error @ (ErrorId::PositiveBarred | ErrorId::NegativeBarred)) => {
-                self.owner = Some(owner);
+                self.own(owner);
                 self.pause(error, scan, log);
                 Ok(())
             }
@@ -68,7 +68,7 @@ impl<P: Planner> Axis<P> {
             }
             None => {
                 owner.paused = false;
-                self.owner = Some(owner);
+                self.own(owner);
                 self.replan_due = true;
             }
         }
@@ -109,6 +109,7 @@ impl<P: Planner> Axis<P> {
     #[cold]
     pub(super) fn replan_late(&mut self, scan: u64, log: &mut Log) {
         self.replan_due = false;
+        self.touch();
         let Some(owner) = self.owner else { return };
         if let Err(error) = self.replan(owner, scan, log) {
             self.refuse_plan(&owner, error, self.owner_source(scan), log);
@@ -176,7 +177,7 @@ impl<P: Planner> Axis<P> {
             ..entry
         };
         self.watched = self.needs_watching(&entry);
-        self.owner = Some(entry);
+        self.own(entry);
         self.replan_due = false;
     }
 

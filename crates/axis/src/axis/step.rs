@@ -3,7 +3,7 @@
 //! It comes after all block calls of a scan, so what it decides shows in the next one (R70).
 
 use super::queue::{Entry, Work};
-use super::{Axis, Motion, Source, power::Reaction};
+use super::{Axis, Calm, Motion, Source, power::Reaction};
 use crate::{AxisEvent, AxisState, ErrorId, Fate, InstanceId, Log, QUEUE_MAX};
 use standstill_planner::{Plan, Planner, Setpoint};
 
@@ -16,8 +16,11 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     pub fn advance(&mut self, scan: u64, log: &mut Log) {
         // Short of the goal a plan needs a step and nothing else, and so does an endless motion nobody waits for.
-        if self.calm && (self.is_short_of_goal() || self.is_cruising()) {
+        if self.calm == Calm::Alone && (self.is_short_of_goal() || self.is_cruising()) {
             self.step_along_plan(scan, log);
+            if self.is_far_round() {
+                self.bring_back();
+            }
         } else {
             self.advance_with_care(scan, log);
         }
@@ -52,12 +55,15 @@ impl<P: Planner> Axis<P> {
     // Inlined for the same reason as `publish`.
     #[inline(always)]
     fn step_along_plan(&mut self, scan: u64, log: &mut Log) {
-        let Motion::Run { plan, elapsed, .. } = &mut self.motion else {
+        let Motion::Run { plan, elapsed, scans } = &mut self.motion else {
             return;
         };
         // Scans of 1 ms wrap after 10^8 years.
         *elapsed = elapsed.wrapping_add(1);
-        let next = plan.at(*elapsed);
+        if elapsed == scans {
+            self.changes = self.changes.wrapping_add(1);
+        }
+        let next = plan.next(*elapsed);
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
         } else if self.watched && self.plan_would_leave() {
@@ -145,6 +151,7 @@ impl<P: Planner> Axis<P> {
             Work::Stop if owner.held => {
                 self.motion = Motion::Hold;
                 self.stop_held = true;
+                self.touch();
             }
             Work::Stop => {
                 self.motion = Motion::Hold;
@@ -220,7 +227,7 @@ impl<P: Planner> Axis<P> {
                         instance: next.instance,
                     };
                     self.refuse_plan(&next, error, source, log);
-                    self.fates.record(next.id, Fate::Failed(error));
+                    self.decide(next.id, Fate::Failed(error));
                 }
             }
         }

@@ -331,7 +331,7 @@ impl<P: Planner> Axis<P> {
             Adds::Halt if !moves => Fate::Done,
             Adds::Halt => fate,
         };
-        self.fates.record(command.id, fate);
+        self.decide(command.id, fate);
     }
 
     /// Everything ends (R65): from now on there is one motion, that of the sum.
@@ -346,6 +346,7 @@ impl<P: Planner> Axis<P> {
         self.in_force = self.limits_before(&self.in_force);
         self.end_superimposed_command(fate);
         self.layer = None;
+        self.stir();
     }
 
     /// [`Axis::advance`] with something superimposed: both motions advance, their sum is published.
@@ -355,14 +356,17 @@ impl<P: Planner> Axis<P> {
         layer.base = match &mut self.motion {
             Motion::Follow => Setpoint::at_rest(self.actual),
             Motion::Hold => Setpoint::at_rest(layer.base.position),
-            Motion::Run { plan, elapsed, .. } => {
+            Motion::Run { plan, elapsed, scans } => {
                 *elapsed = elapsed.saturating_add(1);
-                plan.at(*elapsed)
+                if elapsed == scans {
+                    self.changes = self.changes.wrapping_add(1);
+                }
+                plan.next(*elapsed)
             }
         };
         if let Motion::Run { plan, elapsed, .. } = &mut layer.motion {
             *elapsed = elapsed.saturating_add(1);
-            layer.added = plan.at(*elapsed);
+            layer.added = plan.next(*elapsed);
         }
         let next = layer.sum();
         if !next.is_finite() {
@@ -413,6 +417,7 @@ impl<P: Planner> Axis<P> {
         let still = !matches!(self.motion, Motion::Run { .. });
         if still && self.layer.as_ref().is_some_and(|layer| layer.command.is_none()) {
             self.layer = None;
+            self.stir();
             if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
                 self.enter(AxisEvent::MotionDone);
                 self.hand_over(self.setpoint.position, scan, log);
@@ -431,6 +436,7 @@ impl<P: Planner> Axis<P> {
     /// What is superimposed comes to rest with the stop dynamics; what is left of its distance waits.
     #[cold]
     pub(super) fn brake_superimposed(&mut self) {
+        self.touch();
         let limits = self.stop_limits();
         let Some(layer) = &mut self.layer else { return };
         let planned = self.planner.ramp_to(&layer.added, 0.0, &limits, &layer.in_force);

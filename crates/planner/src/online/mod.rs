@@ -177,12 +177,33 @@ impl OnlinePlan {
         }
         let time = scan as f64 * self.cycle;
         match self.found.path.at(time) {
-            Some(state) => Setpoint {
-                position: self.start.position
-                    + (state.position + self.found.residual * self.share(time / self.found.path.duration())),
-                ..state
-            },
+            Some(state) => self.on_target(state, time),
             None => self.beyond(scan),
+        }
+    }
+
+    /// As [`OnlinePlan::at`], for a motion in progress, asked scan after scan: the piece is looked for where it
+    /// changes.
+    // In line with its caller: a set-point that came from a call was written and read again.
+    #[inline(always)]
+    pub fn next(&mut self, scan: u64) -> Setpoint {
+        if scan >= u64::from(self.scans) || self.found.tail.is_some() || scan == 0 {
+            return self.at(scan);
+        }
+        let time = scan as f64 * self.cycle;
+        match self.found.path.next(time) {
+            Some(state) => self.on_target(state, time),
+            None => self.beyond(scan),
+        }
+    }
+
+    /// A state of the path in the coordinates of the axis, with its part of the residual.
+    #[inline]
+    fn on_target(&self, state: Setpoint, time: f64) -> Setpoint {
+        let residual = self.found.residual * self.share(time / self.found.path.duration());
+        Setpoint {
+            position: self.start.position + (state.position + residual),
+            ..state
         }
     }
 

@@ -162,18 +162,40 @@ impl RampPlan {
     /// derivative is the one in force just before the instant. At most 20 comparisons.
     pub fn at(&self, scan: u64) -> Setpoint {
         let time = scan as f64 * self.cycle;
-        let running = if scan >= u64::from(self.scans) {
+        let running = if self.is_at_goal(scan) {
             None
         } else if scan == 0 {
             Some(self.start)
         } else {
             self.path.at(time)
         };
-        running.unwrap_or_else(|| Setpoint {
-            position: self.end_position() + self.goal * (time - self.duration()),
+        running.unwrap_or_else(|| self.at_goal(scan))
+    }
+
+    /// As [`RampPlan::at`], for a motion in progress, asked scan after scan: the piece is looked for where it changes.
+    #[inline(always)]
+    pub fn next(&mut self, scan: u64) -> Setpoint {
+        if self.is_at_goal(scan) || scan == 0 {
+            return self.at(scan);
+        }
+        let running = self.path.next(scan as f64 * self.cycle);
+        running.unwrap_or_else(|| self.at_goal(scan))
+    }
+
+    /// Whether the goal velocity is reached at `scan`.
+    #[inline]
+    pub(crate) fn is_at_goal(&self, scan: u64) -> bool {
+        scan >= u64::from(self.scans)
+    }
+
+    /// The set-point at a `scan` at which the goal velocity is reached.
+    #[inline]
+    pub(crate) fn at_goal(&self, scan: u64) -> Setpoint {
+        Setpoint {
+            position: self.end_position() + self.goal * (scan as f64 * self.cycle - self.duration()),
             velocity: self.goal,
             ..Setpoint::default()
-        })
+        }
     }
 
     /// The same motion in coordinates moved by `by` (u).

@@ -20,9 +20,77 @@ pub(crate) struct Piece {
     state: Setpoint,
 }
 
+/// The piece a motion is in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Current {
+    /// Start and end, of which the end belongs to it (s).
+    begin: f64,
+    end: f64,
+    /// The instant its state belongs to (s).
+    anchor: f64,
+    course: Course,
+}
+
+impl Current {
+    /// No piece: it ends before it begins.
+    const NONE: Self = Self {
+        begin: 0.0,
+        end: 0.0,
+        anchor: 0.0,
+        course: Course {
+            state: Setpoint::at_rest(0.0),
+            sixth_of_jerk: 0.0,
+            sixth_of_snap: 0.0,
+            part_of_snap: 0.0,
+        },
+    };
+}
+
+/// A state with what its course at constant snap takes divisions for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Course {
+    state: Setpoint,
+    sixth_of_jerk: f64,
+    sixth_of_snap: f64,
+    part_of_snap: f64,
+}
+
+impl Course {
+    #[inline]
+    fn of(state: Setpoint) -> Self {
+        Self {
+            state,
+            sixth_of_jerk: state.jerk / 6.0,
+            sixth_of_snap: state.snap / 6.0,
+            part_of_snap: state.snap / 24.0,
+        }
+    }
+
+    /// The state `t` seconds later (R21).
+    #[inline(always)]
+    fn after(&self, t: f64) -> Setpoint {
+        let Setpoint {
+            position: p,
+            velocity: v,
+            acceleration: a,
+            jerk: j,
+            snap: s,
+        } = self.state;
+        Setpoint {
+            position: p + t * (v + t * (a / 2.0 + t * (self.sixth_of_jerk + t * self.part_of_snap))),
+            velocity: v + t * (a + t * (j / 2.0 + t * self.sixth_of_snap)),
+            acceleration: a + t * (j + t * (s / 2.0)),
+            jerk: j + t * s,
+            snap: s,
+        }
+    }
+}
+
 /// At most `N` pieces that follow each other from a start state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Path<const N: usize> {
+    /// Where [`Path::next`] looked last.
+    current: Current,
     pieces: [Piece; N],
     len: usize,
     order: Order,
@@ -36,6 +104,7 @@ impl<const N: usize> Path<N> {
             state: Setpoint::at_rest(0.0),
         };
         Self {
+            current: Current::NONE,
             pieces: [EMPTY; N],
             len: 0,
             order,
@@ -105,6 +174,7 @@ impl<const N: usize> Path<N> {
         for piece in &mut self.pieces {
             piece.state.position += by;
         }
+        self.current = Current::NONE;
     }
 
     /// When the last piece ends (s).
@@ -128,6 +198,34 @@ impl<const N: usize> Path<N> {
         for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
             if time <= piece.end {
                 return Some(moved(&piece.state, time - self.anchor(index, begin, piece)));
+            }
+            begin = piece.end;
+        }
+        None
+    }
+
+    /// As [`Path::at`], for one who asks again and again for times not far apart, above 0: the piece is looked for
+    /// where it changes only.
+    #[inline(always)]
+    pub(crate) fn next(&mut self, time: f64) -> Option<Setpoint> {
+        let current = &self.current;
+        if !(time > current.begin && time <= current.end) {
+            self.current = self.piece_at(time)?;
+        }
+        Some(self.current.course.after(time - self.current.anchor))
+    }
+
+    #[inline(never)]
+    fn piece_at(&self, time: f64) -> Option<Current> {
+        let mut begin = 0.0;
+        for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
+            if time <= piece.end {
+                return Some(Current {
+                    begin,
+                    end: piece.end,
+                    anchor: self.anchor(index, begin, piece),
+                    course: Course::of(piece.state),
+                });
             }
             begin = piece.end;
         }
@@ -340,20 +438,7 @@ fn with_input(state: &Setpoint, order: Order, input: f64) -> Setpoint {
 
 /// The state `t` seconds later at constant snap (R21).
 pub(crate) fn moved(state: &Setpoint, t: f64) -> Setpoint {
-    let Setpoint {
-        position: p,
-        velocity: v,
-        acceleration: a,
-        jerk: j,
-        snap: s,
-    } = *state;
-    Setpoint {
-        position: p + t * (v + t * (a / 2.0 + t * (j / 6.0 + t * (s / 24.0)))),
-        velocity: v + t * (a + t * (j / 2.0 + t * (s / 6.0))),
-        acceleration: a + t * (j + t * (s / 2.0)),
-        jerk: j + t * s,
-        snap: s,
-    }
+    Course::of(*state).after(t)
 }
 
 /// The zeros of `a + j t + s t^2/2`, in the form that loses no digits; NaN or infinite where there is none.

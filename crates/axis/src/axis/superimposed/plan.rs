@@ -225,6 +225,7 @@ impl<P: Planner> Axis<P> {
                     Adds::Distance { .. } | Adds::Halt => None,
                 };
                 self.record_as(&command, Event::Superimposed { distance, scans }, scan, log);
+                self.touch();
             }
             None if first && !command.planned && (!command.halting || moves) => {
                 let command = *command;
