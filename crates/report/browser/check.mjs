@@ -210,6 +210,28 @@ async function texts() {
   await page.close();
 }
 
+// Numbers at the edges of how they are written.
+async function hardNumbers() {
+  const reals = ['NaN', 'Infinity', '-Infinity', '0.0', '5e-324', '-2.2250738585072014e-308', '1.7976931348623157e308', '0.30000000000000004',
+    '1e21', '1e16', '1000000000000000.0', '-123456.789', '0.0001', '9.999e-5', '1e-5', '-1.5e-9', '1.0', '100.0', '0.3333333333333333'];
+  const integers = ['-9223372036854775808', '9223372036854775807', '0', '-1', '4294967296', '255'];
+  const rows = reals.map((real, scan) => `${scan},${scan * 1e6},${real},${integers[scan % integers.length]},${scan === 3 ? 'TRUE' : 'FALSE'}`);
+  writeFileSync(file('hard.csv'), `scan,time_ns,r,i,b\n${rows.join('\n')}\n`);
+  standstill('report', file('hard.csv'), '-o', file('hard.html'));
+  const { page, complaints } = await open('hard.html');
+  await page.keyboard.press('Home');
+  let differs = '';
+  for (const row of csv('hard.csv')) {
+    await settle(page);
+    differs = differs || wrong(await gutters(page), row);
+    await page.keyboard.press('ArrowRight');
+  }
+  check('every number is written as traces write it', differs === '', differs);
+  check('what the file lacks is said', (await page.textContent('.lacks')).includes('hard.csv lacks the header'));
+  check('no error, no request with such numbers', complaints.length === 0, complaints.join('; '));
+  await page.close();
+}
+
 async function longRun() {
   writeFileSync(file('long.scan.json'), longScript(200_000));
   standstill('run', '-q', file('long.scan.json'), '--report', file('long.html'), '--trace', file('long.csv'));
@@ -252,7 +274,7 @@ async function longRun() {
   await page.close();
 }
 
-for (const part of [cursorAndZoom, overlaid, texts, longRun]) await part();
+for (const part of [cursorAndZoom, overlaid, texts, hardNumbers, longRun]) await part();
 await browser.close();
 console.log(`${passed} passed, ${failed} failed`);
 process.exit(failed === 0 ? 0 : 1);
