@@ -219,7 +219,7 @@ function axisGroup(axis, shared) {
     .filter((column) => column.subject === axis.name && (column.role === 'state' || column.role === 'value'))
     .map((column) => column.signal)));
   const isReal = (name) => linesOf(`${axis.name}.${name}`, shared).every((line) => line.column.kind === 'real');
-  const [blocks, still, done] = [[], [], new Set()];
+  const [blocks, still] = [[], []];
   const rest = names.filter((name) => isReal(name) && !PANELS.some((panel) => panel.signals.includes(name)))
     .map((name) => ({ title: name, per: '', signals: [name], bounds: [] }));
   for (const name of names.filter((name) => !isReal(name))) addRow(`${axis.name}.${name}`, blocks, still, shared);
@@ -229,7 +229,6 @@ function axisGroup(axis, shared) {
     const text = stillText(lines);
     if (text !== null) still.push([panel.title, text]);
     else blocks.push(curveBlock(axis, panel, lines, shared));
-    panel.signals.forEach((signal) => done.add(signal));
   }
   const order = axis.order ? `axis of order ${axis.order}` : 'axis';
   const modulo = axis.modulo ? `, modulo ${realText(axis.modulo)}` : '';

@@ -53,14 +53,13 @@ function plotted(column, rows, scans) {
 
 // A plot in `place` of the `lines` ({column, rows, colour, actual}) over all `scans`.
 function makePlot(place, width, scans, lines, limits, shared) {
-  const steps = ['Snap'];
   const series = lines.map((line) => ({
     stroke: () => line.colour(),
     width: line.actual ? 1 : 1.6,
     dash: line.actual ? [3, 3] : undefined,
     points: { show: false },
     pxAlign: 0,
-    paths: steps.includes(line.column.signal) ? held : undefined,
+    paths: line.column.signal === 'Snap' ? held : undefined,
   }));
   const drawLimits = (u) => {
     const context = u.ctx, ratio = devicePixelRatio || 1;

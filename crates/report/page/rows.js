@@ -123,8 +123,9 @@ function drawSpark(context, column, rows, view, box, colour) {
   const first = Math.max(0, Math.floor(view.min)), last = Math.min(rows - 1, Math.ceil(view.max));
   let least = Infinity, greatest = -Infinity;
   for (let scan = first; scan <= last; scan++) {
-    if (values[scan] < least) least = values[scan];
-    if (values[scan] > greatest && values[scan] < Infinity) greatest = values[scan];
+    if (!Number.isFinite(values[scan])) continue;
+    least = Math.min(least, values[scan]);
+    greatest = Math.max(greatest, values[scan]);
   }
   const height = (value) => box.top + box.height - 4 - ((value - least) / (greatest - least || 1)) * (box.height - 8);
   context.strokeStyle = colour;

@@ -5,7 +5,6 @@ use std::fmt::Write;
 
 use super::picture::{CURVE, GAP, GUTTER, Picture, ROW};
 use super::range::{Range, limits, ticks};
-use super::subject;
 use crate::column::{Cell, Column, Kind, Role};
 use crate::events::same;
 use crate::header::{Claim, ClaimVerdict};
@@ -144,10 +143,10 @@ fn pins(picture: &mut Picture, trace: &Trace) {
         if changes == 0 {
             continue;
         }
-        if before.is_some_and(|before| before != subject(&column.name)) {
+        if before.is_some_and(|before| before != column.subject()) {
             picture.y += GAP / 2.0;
         }
-        before = Some(subject(&column.name));
+        before = Some(column.subject());
         row(picture, column, &cells, changes);
     }
 }
