@@ -37,6 +37,8 @@ struct Current {
     /// The instant its state belongs to (s).
     anchor: f64,
     course: Course,
+    /// When the last piece ends (s): what stands with the others is seldom at hand.
+    duration: f64,
 }
 
 impl Current {
@@ -51,6 +53,7 @@ impl Current {
             sixth_of_snap: 0.0,
             part_of_snap: 0.0,
         },
+        duration: 0.0,
     };
 }
 
@@ -213,15 +216,30 @@ impl<const N: usize> Path<N> {
         None
     }
 
-    /// As [`Path::at`], for one who asks again and again for times not far apart, above 0: the piece is looked for
+    /// As [`Path::at`] with the part of the whole duration that is over, for one who asks again and again for times not far apart, above 0: the piece is looked for
     /// where it changes only.
     #[inline(always)]
-    pub(crate) fn next(&mut self, time: f64) -> Option<Setpoint> {
-        let current = &self.current;
-        if !(time > current.begin && time <= current.end) {
+    pub(crate) fn next(&mut self, time: f64) -> Option<(Setpoint, f64)> {
+        if !self.is_current(time) {
             self.current = self.piece_at(time)?;
         }
-        Some(self.current.course.after(time - self.current.anchor))
+        Some(self.on_current(time))
+    }
+
+    /// Whether `time` (s) is in the piece in which [`Path::next`] looked last.
+    #[inline(always)]
+    pub(crate) fn is_current(&self, time: f64) -> bool {
+        time > self.current.begin && time <= self.current.end
+    }
+
+    /// The state at a `time` (s) of that piece, and the part of the whole duration that is over.
+    #[inline(always)]
+    pub(crate) fn on_current(&self, time: f64) -> (Setpoint, f64) {
+        let current = &self.current;
+        (
+            current.course.after(time - current.anchor),
+            time / current.duration,
+        )
     }
 
     #[inline(never)]
@@ -235,6 +253,7 @@ impl<const N: usize> Path<N> {
                     end,
                     anchor: self.anchor(index, begin, piece),
                     course: Course::of(piece.state),
+                    duration: self.duration(),
                 });
             }
             begin = piece.end;

@@ -8,6 +8,7 @@ use crate::model::{Cia402Setup, DriveSetup, IdealDriveSetup, PlantSetup};
 use standstill_axis::DELAY_MAX;
 use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, Servo};
+use standstill_drives::switches::{Marker, Switches};
 
 /// How a CiA 402 drive comes to rest by itself; `stay` is for the quick stop only.
 pub(crate) const REACTIONS: [(&str, Reaction); 3] = [
@@ -61,6 +62,7 @@ impl Reader {
         let load = fields
             .get("load")
             .map_or(Some(None), |node| self.load(node).map(Some));
+        let switches = self.switches(&fields);
         let plant = Plant {
             inertia: inertia?,
             viscous: viscous?.unwrap_or(0.0),
@@ -85,6 +87,7 @@ impl Reader {
             power_on: power_on?,
             plant,
             gains,
+            switches: switches?,
         })
     }
 
@@ -126,9 +129,11 @@ impl Reader {
         let fields = self.fields(node, &shape::IDEAL)?;
         let delay = self.delay(&fields, "the ideal drive");
         let power_on = self.power_on(&fields);
+        let switches = self.switches(&fields);
         Some(IdealDriveSetup {
             delay: delay?,
             power_on: power_on?,
+            switches: switches?,
         })
     }
 
@@ -149,8 +154,7 @@ impl Reader {
         let [coast, ramp, _] = REACTIONS;
         let on_disable = reaction("on_disable", &[coast, ramp], Reaction::Coast);
         let on_fault = reaction("on_fault", &[coast, ramp], Reaction::Ramp);
-        let limit_switches = self.pair(&fields, "limit_switches", ["negative", "positive"]);
-        let home_switch = self.pair(&fields, "home_switch", ["from", "to"]);
+        let switches = self.switches(&fields);
         Some(Cia402Setup {
             delay: delay?,
             power_on: power_on?,
@@ -159,9 +163,38 @@ impl Reader {
             quick_stop: quick_stop?,
             on_disable: on_disable?,
             on_fault: on_fault?,
-            limit_switches: limit_switches?,
-            home_switch: home_switch?,
+            switches: switches?,
         })
+    }
+
+    /// What stands along the travel of any drive.
+    fn switches(&mut self, fields: &Fields<'_>) -> Option<Switches> {
+        let limits = self.pair(fields, "limit_switches", ["negative", "positive"]);
+        let home = self.pair(fields, "home_switch", ["from", "to"]);
+        let marker = fields
+            .get("marker")
+            .map_or(Some(None), |node| self.marker(node).map(Some));
+        Some(Switches {
+            limits: limits?,
+            home: home?,
+            marker: marker?,
+            turn: None,
+        })
+    }
+
+    fn marker(&mut self, node: &Node) -> Option<Marker> {
+        let fields = self.fields(node, &shape::MARKER)?;
+        let at = self
+            .require(&fields, "at", "`marker`")
+            .and_then(|node| self.finite(node, "`marker.at`"));
+        let every = self.optional(&fields, "every", "`marker.every`");
+        let (at, every) = (at?, every?);
+        if let Some(every) = every.filter(|every| *every <= 0.0) {
+            let message = format!("`marker.every` is {every:?}: the distance of two pulses is above 0");
+            self.report(Diagnostic::new(Code::BadValue, fields.brace(), message));
+            return None;
+        }
+        Some(Marker { at, every })
     }
 
     fn delay(&mut self, fields: &Fields<'_>, what: &str) -> Option<usize> {
