@@ -29,7 +29,7 @@ pub struct Instance {
     pub axis: usize,
     /// What its last call left.
     pub shown: Shown,
-    /// Execute or Enable, if it has one of them.
+    /// Execute, Enable or JogForward, if it has one of them.
     pub trigger: Option<usize>,
     /// Execute or Enable as it stands, and as it stood at the last call.
     pub on: bool,
@@ -109,7 +109,7 @@ impl Instance {
     fn new(block: BlockInstance, axis: usize) -> Self {
         let info = block.info();
         let place = |pin: &str| info.pin(pin).map(|(place, _)| place);
-        let trigger = place("Execute").or_else(|| place("Enable"));
+        let trigger = ["Execute", "Enable", "JogForward"].into_iter().find_map(place);
         let on = trigger.and_then(|pin| block.get(pin)) == Some(Value::Bool(true));
         Self {
             kind: Kind::of(info),
@@ -244,6 +244,7 @@ impl<H: Hands> Run<'_, H> {
         let axis = &context.axes[instance.axis];
         let state = axis.state();
         let refusing = matches!(state, AxisState::Disabled | AxisState::ErrorStop);
+        let newest = axis.newest_command();
         instance.block.call(context);
         let axis = &context.axes[instance.axis];
         let (was, now) = (instance.shown, instance.outputs.read(&instance.block));
@@ -272,6 +273,14 @@ impl<H: Hands> Run<'_, H> {
             powered: axis.is_powered(),
         };
         check_call(&call)?;
+        if instance.kind == Kind::Jog {
+            // Its commands follow each other; what became of one of them is not what it shows.
+            if axis.newest_command() != newest {
+                self.seen.accepted += 1;
+                (instance.command, instance.fate) = (Some(axis.newest_command()), None);
+            }
+            instance.command = instance.command.filter(|_| now.busy);
+        }
         if instance.follows_commands() {
             let rising = execute && !executed;
             if rising {
