@@ -2,6 +2,7 @@
 
 use super::scenario::{Action, Bench, FAULT_CODE, FaultKind, Scenario, axis_id};
 use crate::rules::arrows::{Part, Reach};
+use crate::rules::fence::Fence;
 use crate::rules::limits::{Track, check_excess};
 use crate::rules::{Broken, Call, Held, Kind, Outputs, Shown, Truth, check_call, check_truth};
 use standstill_axis::{
@@ -97,6 +98,7 @@ struct Run<'a, H> {
     instances: Vec<Instance>,
     reach: Reach,
     tracks: Vec<Track>,
+    fences: Vec<Fence>,
     /// The state of each axis as last seen.
     states: Vec<AxisState>,
     following: Vec<bool>,
@@ -162,6 +164,7 @@ pub fn run(scenario: &Scenario, hands: &mut impl Hands) -> (Seen, Option<Failure
             .iter()
             .map(|axis| Track::new(axis, scenario.cycle()))
             .collect(),
+        fences: machine.axes().iter().map(Fence::new).collect(),
         states: machine.axes().iter().map(Axis::state).collect(),
         following: vec![true; machine.axes().len()],
         records: 0,
@@ -330,6 +333,7 @@ impl<H: Hands> Run<'_, H> {
         if !following {
             self.tracks[index].check(&setpoint)?;
         }
+        self.fences[index].check(axis)?;
         if state == AxisState::ErrorStop && axis.error_id().number() >= 900 {
             return Err(Broken {
                 id: "R79",
@@ -411,7 +415,10 @@ impl<H: Hands> Run<'_, H> {
                         found = Some((index, broken));
                     }
                 }
-                Event::Shifted { .. } => track.forget(),
+                Event::Shifted { .. } => {
+                    track.forget();
+                    self.fences[record.axis.index()].forget();
+                }
                 Event::Planned { .. } => {
                     if let Some((plan, _)) = machine.axes()[record.axis.index()].plan() {
                         track.leads(plan.at(0).position, plan.at(u64::from(plan.scans())).position);
