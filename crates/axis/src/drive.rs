@@ -37,9 +37,9 @@ pub struct DriveSignals {
     pub simulated: bool,
     /// The home switch is active.
     pub home_switch: bool,
-    /// The hardware end switch in positive direction is active.
+    /// The hardware end switch in positive direction, as the drive counts, is active.
     pub limit_switch_positive: bool,
-    /// The hardware end switch in negative direction is active.
+    /// The one in negative direction is active.
     pub limit_switch_negative: bool,
     /// A warning is present.
     pub warning: bool,

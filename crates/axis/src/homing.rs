@@ -180,11 +180,15 @@ impl Homing {
         if let Some((key, _)) = idle.iter().find(|(_, given)| *given) {
             return Err(ConfigError::HomingKey { key, procedure });
         }
-        if procedure == Procedure::Block && self.block.is_none() {
-            return Err(ConfigError::HomingMissing {
-                key: "homing.block",
-                procedure,
-            });
+        let missing = [
+            ("homing.velocity", searches && self.velocity == 0.0),
+            (
+                "homing.block",
+                procedure == Procedure::Block && self.block.is_none(),
+            ),
+        ];
+        if let Some((key, _)) = missing.iter().find(|(_, missing)| *missing) {
+            return Err(ConfigError::HomingMissing { key, procedure });
         }
         let positive = [
             ("homing.velocity", searches.then_some(self.velocity)),
@@ -217,6 +221,126 @@ impl Homing {
                 search: self.velocity,
             }),
             None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: Limits = Limits {
+        velocity: 10.0,
+        ..Limits::NONE
+    };
+
+    #[test]
+    fn the_end_that_is_meant_does_not_depend_on_the_start() {
+        use HomeDirection as D;
+        use SwitchEdge as E;
+        for (direction, edge, is_lower) in [
+            (D::Positive, E::Rising, true),
+            (D::Positive, E::Falling, false),
+            (D::Negative, E::Rising, false),
+            (D::Negative, E::Falling, true),
+            (D::SwitchPositive, E::Rising, true),
+            (D::SwitchNegative, E::Rising, false),
+            (D::Negative, E::SwitchPositive, true),
+            (D::Positive, E::SwitchNegative, false),
+        ] {
+            let homing = Homing {
+                direction,
+                edge,
+                ..Homing::DIRECT
+            };
+            assert_eq!(homing.is_lower_end(), is_lower, "{direction:?} {edge:?}");
+        }
+    }
+
+    #[test]
+    fn keys_that_mean_nothing_are_refused() {
+        let search = |procedure| Homing {
+            procedure,
+            velocity: 5.0,
+            block: (procedure == Procedure::Block).then_some(BlockDetection {
+                velocity: 1.0,
+                scans: 5,
+            }),
+            ..Homing::DIRECT
+        };
+        for procedure in Procedure::ALL {
+            let base = if search(procedure).searches() {
+                search(procedure)
+            } else {
+                Homing {
+                    procedure,
+                    ..Homing::DIRECT
+                }
+            };
+            assert_eq!(base.check(&LIMITS), Ok(()), "{procedure:?}");
+            let switch = matches!(procedure, Procedure::AbsoluteSwitch | Procedure::LimitSwitch);
+            let changed = [
+                (
+                    switch,
+                    Homing {
+                        creep: Some(2.0),
+                        ..base
+                    },
+                ),
+                (switch, Homing { pulse: true, ..base }),
+                (
+                    procedure == Procedure::AbsoluteSwitch,
+                    Homing {
+                        edge: SwitchEdge::Falling,
+                        ..base
+                    },
+                ),
+                (
+                    procedure == Procedure::AbsoluteSwitch,
+                    Homing {
+                        direction: HomeDirection::SwitchPositive,
+                        ..base
+                    },
+                ),
+                (
+                    base.searches(),
+                    Homing {
+                        distance_limit: Some(1.0),
+                        ..base
+                    },
+                ),
+                (
+                    procedure != Procedure::Direct,
+                    Homing {
+                        time_limit: Some(1),
+                        ..base
+                    },
+                ),
+                (
+                    false,
+                    Homing {
+                        velocity: 11.0,
+                        ..base
+                    },
+                ),
+                (
+                    false,
+                    Homing {
+                        creep: Some(6.0),
+                        ..base
+                    },
+                ),
+                (
+                    false,
+                    Homing {
+                        distance_limit: Some(f64::NAN),
+                        ..base
+                    },
+                ),
+            ];
+            for (good, homing) in changed {
+                assert_eq!(homing.check(&LIMITS).is_ok(), good, "{homing:?}");
+            }
         }
     }
 }

@@ -123,7 +123,14 @@ impl Travel {
         };
         let before = self.places.map_or(place, |[_, before]| before);
         self.places = Some([before, place]);
-        self.switches.show(place, &mut feedback.signals);
+        let signals = &mut feedback.signals;
+        self.switches.show(place, signals);
+        let counts_down = self.scaling.is_some_and(|scaling| scaling.invert());
+        if counts_down && self.switches.limits.is_some() {
+            // A drive tells them as it counts.
+            (signals.limit_switch_negative, signals.limit_switch_positive) =
+                (signals.limit_switch_positive, signals.limit_switch_negative);
+        }
     }
 
     /// Tells what there is, and what the latch has seen between the last two feedbacks.

@@ -2,7 +2,7 @@
 
 use standstill_axis::{AxisConfig, AxisState};
 use standstill_drives::cia402::Reaction;
-use standstill_drives::mechanism::{Gains, Plant};
+use standstill_drives::mechanism::{Gains, Plant, Stops};
 use standstill_drives::switches::Switches;
 use standstill_fb::{BlockInfo, Value};
 use std::collections::BTreeMap;
@@ -71,6 +71,8 @@ pub struct PlantSetup {
     pub power_on: Option<u32>,
     /// What is moved.
     pub plant: Plant,
+    /// Between them.
+    pub stops: Option<Stops>,
     /// The loops.
     pub gains: Gains,
     /// Along its travel.
@@ -115,6 +117,8 @@ pub struct Cia402Setup {
     pub on_disable: Reaction,
     /// Object 605Eh.
     pub on_fault: Reaction,
+    /// What it does in homing mode: whether it goes upwards, and the velocity (u/s).
+    pub homing: Option<(bool, f64)>,
     /// Along its travel.
     pub switches: Switches,
 }

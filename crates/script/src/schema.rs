@@ -5,7 +5,7 @@
 
 use crate::read::axis::{ABOVE_LIMIT, ON_POWER_OFF, PROFILES, START_STATES};
 use crate::read::block::is_needed;
-use crate::read::drive::REACTIONS;
+use crate::read::drive::{NODE_DIRECTIONS, REACTIONS};
 use crate::read::homing::{HOME_DIRECTIONS, PROCEDURES, SWITCH_EDGES};
 use crate::read::names::KEYWORDS;
 use crate::read::shape::{self, Shape};
@@ -292,6 +292,10 @@ fn drive() -> Value {
             object(&shape::PLANT, |key| match key {
                 "power_on" => never(),
                 "load" => required(&["inertia", "stiffness"], object(&shape::LOAD, |_| of("finite"))),
+                "stops" => required(
+                    &["negative", "positive", "stiffness"],
+                    object(&shape::STOPS, |_| of("finite")),
+                ),
                 "gains" => object(&shape::GAINS, |_| of("finite")),
                 _ => switches(key).unwrap_or_else(|| of("finite")),
             }),
@@ -302,6 +306,13 @@ fn drive() -> Value {
             "start_up" => of("scans"),
             "quick_stop" => words(&REACTIONS),
             "on_disable" | "on_fault" => words(&[REACTIONS[0], REACTIONS[1]]),
+            "homing" => required(
+                &["velocity"],
+                object(&shape::NODE_HOMING, |key| match key {
+                    "direction" => words(&NODE_DIRECTIONS),
+                    _ => of("positive"),
+                }),
+            ),
             _ => switches(key).unwrap_or_else(|| of("finite")),
         }),
     })

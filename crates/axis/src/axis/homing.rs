@@ -238,7 +238,7 @@ impl<P: Planner> Axis<P> {
     #[cold]
     #[inline(never)]
     pub(super) fn follow_homing(&mut self, scan: u64, log: &mut Log) {
-        if self.moves_itself() || self.is_homed_by_drive() {
+        if self.moves_itself() || self.is_to_return() || self.is_homed_by_drive() {
             return self.follow_drive_homing(scan, log);
         }
         let homing = self.config.homing;

@@ -7,10 +7,19 @@
 
 use super::power::Reaction;
 use super::{Axis, Permission};
-use crate::{ErrorId, Log};
+use crate::{DriveSignals, ErrorId, Log};
 use standstill_planner::Planner;
 
 impl<P: Planner> Axis<P> {
+    /// Takes over this scan's signals. A drive that counts the other way has its positive end at the lower one.
+    pub(super) fn latch_signals(&mut self, told: DriveSignals) {
+        self.signals = told;
+        if self.config.scaling.is_some_and(|scaling| scaling.invert()) {
+            self.signals.limit_switch_positive = told.limit_switch_negative;
+            self.signals.limit_switch_negative = told.limit_switch_positive;
+        }
+    }
+
     /// Whether the limit switch at the upper or the lower end is active.
     #[inline]
     pub(super) fn is_on_limit_switch(&self, up: bool) -> bool {

@@ -124,7 +124,7 @@ impl<P: Planner> Axis<P> {
 
     #[inline(never)]
     fn follow_change(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
-        self.signals = feedback.signals;
+        self.latch_signals(feedback.signals);
         self.power.voltage = feedback.voltage;
         self.power.fault = feedback.fault;
         self.power.comms = feedback.comms;

@@ -7,7 +7,7 @@ use crate::error::{Code, Diagnostic};
 use crate::model::{Cia402Setup, DriveSetup, IdealDriveSetup, PlantSetup};
 use standstill_axis::DELAY_MAX;
 use standstill_drives::cia402::Reaction;
-use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, Servo};
+use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, Servo, Stops};
 use standstill_drives::switches::{Marker, Switches};
 
 /// How a CiA 402 drive comes to rest by itself; `stay` is for the quick stop only.
@@ -16,6 +16,8 @@ pub(crate) const REACTIONS: [(&str, Reaction); 3] = [
     ("ramp", Reaction::Ramp),
     ("stay", Reaction::RampAndStay),
 ];
+
+pub(crate) const NODE_DIRECTIONS: [(&str, bool); 2] = [("positive", true), ("negative", false)];
 
 impl Reader {
     /// The drive of an axis with a scaling, or without.
@@ -62,6 +64,9 @@ impl Reader {
         let load = fields
             .get("load")
             .map_or(Some(None), |node| self.load(node).map(Some));
+        let stops = fields
+            .get("stops")
+            .map_or(Some(None), |node| self.stops(node).map(Some));
         let switches = self.switches(&fields);
         let plant = Plant {
             inertia: inertia?,
@@ -78,7 +83,10 @@ impl Reader {
             self.gains(node, &mut gains)?;
         }
         // What is wrong with it shows when it is made.
-        let made = Mechanism::new(plant, 0.0, cycle).and_then(|made| Servo::new(made, gains, cycle));
+        let stops = stops?;
+        let made = Mechanism::new(plant, 0.0, cycle)
+            .and_then(|made| stops.map_or(Ok(made), |stops| made.between(stops, cycle)))
+            .and_then(|made| Servo::new(made, gains, cycle));
         if let Err(error) = made {
             self.report(Diagnostic::new(Code::BadValue, fields.brace(), error.to_string()));
             return None;
@@ -86,6 +94,7 @@ impl Reader {
         Some(PlantSetup {
             power_on: power_on?,
             plant,
+            stops,
             gains,
             switches: switches?,
         })
@@ -101,6 +110,21 @@ impl Reader {
         let damping = self.optional(&fields, "damping", "`damping`");
         Some(Load {
             inertia: inertia?,
+            stiffness: stiffness?,
+            damping: damping?.unwrap_or(0.0),
+        })
+    }
+
+    fn stops(&mut self, node: &Node) -> Option<Stops> {
+        let fields = self.fields(node, &shape::STOPS)?;
+        let mut needed = |key: &str| {
+            let node = self.require(&fields, key, "`stops`")?;
+            self.finite(node, &format!("`stops.{key}`"))
+        };
+        let (low, high, stiffness) = (needed("negative"), needed("positive"), needed("stiffness"));
+        let damping = self.optional(&fields, "damping", "`stops.damping`");
+        Some(Stops {
+            ends: (low?, high?),
             stiffness: stiffness?,
             damping: damping?.unwrap_or(0.0),
         })
@@ -154,6 +178,9 @@ impl Reader {
         let [coast, ramp, _] = REACTIONS;
         let on_disable = reaction("on_disable", &[coast, ramp], Reaction::Coast);
         let on_fault = reaction("on_fault", &[coast, ramp], Reaction::Ramp);
+        let homing = fields
+            .get("homing")
+            .map_or(Some(None), |node| self.node_homing(node).map(Some));
         let switches = self.switches(&fields);
         Some(Cia402Setup {
             delay: delay?,
@@ -163,8 +190,26 @@ impl Reader {
             quick_stop: quick_stop?,
             on_disable: on_disable?,
             on_fault: on_fault?,
+            homing: homing?,
             switches: switches?,
         })
+    }
+
+    fn node_homing(&mut self, node: &Node) -> Option<(bool, f64)> {
+        let fields = self.fields(node, &shape::NODE_HOMING)?;
+        let up = fields.get("direction").map_or(Some(true), |node| {
+            self.choice(node, "`homing.direction`", &NODE_DIRECTIONS)
+        });
+        let velocity = self
+            .require(&fields, "velocity", "`homing` of a drive")
+            .and_then(|node| self.finite(node, "`homing.velocity`"));
+        let (up, velocity) = (up?, velocity?);
+        if velocity <= 0.0 {
+            let message = format!("`homing.velocity` is {velocity:?}: it must be above 0");
+            self.report(Diagnostic::new(Code::BadValue, fields.brace(), message));
+            return None;
+        }
+        Some((up, velocity))
     }
 
     /// What stands along the travel of any drive.

@@ -122,6 +122,7 @@ pub(crate) const CIA402: Shape = shape(
         "quick_stop",
         "on_disable",
         "on_fault",
+        "homing",
         "limit_switches",
         "home_switch",
         "marker",
@@ -138,6 +139,7 @@ pub(crate) const PLANT: Shape = shape(
         "load",
         "gains",
         "torque",
+        "stops",
         "limit_switches",
         "home_switch",
         "marker",
@@ -147,6 +149,10 @@ pub(crate) const PLANT: Shape = shape(
 pub(crate) const LOAD: Shape = shape(
     "the load of a plant",
     &["inertia", "stiffness", "damping", "note"],
+);
+pub(crate) const STOPS: Shape = shape(
+    "the stops of a plant",
+    &["negative", "positive", "stiffness", "damping", "note"],
 );
 pub(crate) const GAINS: Shape = shape(
     "the gains of a plant",
@@ -161,6 +167,7 @@ pub(crate) const GAINS: Shape = shape(
 );
 pub(crate) const LIMIT_SWITCHES: Shape = shape("`limit_switches`", &["negative", "positive", "note"]);
 pub(crate) const HOME_SWITCH: Shape = shape("`home_switch`", &["from", "to", "note"]);
+pub(crate) const NODE_HOMING: Shape = shape("`homing` of a drive", &["direction", "velocity", "note"]);
 pub(crate) const MARKER: Shape = shape("`marker`", &["at", "every", "note"]);
 
 pub(crate) const BLOCK: Shape = shape("a block", &["name", "type", "task", "pins", "note"]);

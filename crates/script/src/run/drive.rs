@@ -5,7 +5,7 @@ use standstill_axis::{
     Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, IdealDrive, Powered,
     StartState,
 };
-use standstill_drives::cia402::{Cia402Drive, Settings};
+use standstill_drives::cia402::{Cia402Drive, NodeHoming, Settings};
 use standstill_drives::mechanism::{Mechanism, MechanismError, PlantDrive, Servo};
 use standstill_drives::peripherals::Peripherals;
 use standstill_drives::switches::{Switches, Travel};
@@ -63,16 +63,24 @@ impl ScriptDrive {
                     fault: setup.on_fault,
                     ends: setup.switches.limits.and_then(ordered),
                     home: setup.switches.home.and_then(ordered),
+                    homing: setup.homing.map(|(up, velocity)| NodeHoming {
+                        up: up != axis.config.scaling.is_some_and(|scaling| scaling.invert()),
+                        velocity: velocity * increments_per_unit(axis) * (cycle_ns as f64 / 1e9),
+                    }),
                 })))
             }
             DriveSetup::Plant(PlantSetup {
                 power_on,
                 plant,
+                stops,
                 gains,
                 ..
             }) => {
                 let cycle = cycle_ns as f64 / 1e9;
-                let mechanism = Mechanism::new(plant, axis.config.position, cycle)?;
+                let mut mechanism = Mechanism::new(plant, axis.config.position, cycle)?;
+                if let Some(stops) = stops {
+                    mechanism = mechanism.between(stops, cycle)?;
+                }
                 let servo = Servo::new(mechanism, gains, cycle)?;
                 Kind::Plant(Box::new(PlantDrive::new(
                     servo,
@@ -166,14 +174,17 @@ impl ScriptDrive {
     }
 }
 
+fn increments_per_unit(axis: &Axis) -> f64 {
+    axis.config.scaling.map_or(1.0, |scaling| {
+        f64::from(scaling.increments()) / f64::from(scaling.units())
+    })
+}
+
 /// In increments/scan^2.
 fn deceleration(axis: &Axis, setup: &Cia402Setup, cycle_ns: i64) -> f64 {
     let rate = setup.deceleration.unwrap_or(axis.config.limits.deceleration);
     let cycle = cycle_ns as f64 / 1e9;
-    let increments = axis.config.scaling.map_or(1.0, |scaling| {
-        f64::from(scaling.increments()) / f64::from(scaling.units())
-    });
-    rate * increments * cycle * cycle
+    rate * increments_per_unit(axis) * cycle * cycle
 }
 
 impl Drive for ScriptDrive {
@@ -184,6 +195,9 @@ impl Drive for ScriptDrive {
             Kind::Plant(drive) => drive.read(now_ns),
         };
         self.position = feedback.position;
+        if let Kind::Cia402(drive) = &self.kind {
+            self.travel.drop_increments(drive.node().origin());
+        }
         self.travel.read(&mut feedback);
         feedback
     }

@@ -5,7 +5,7 @@ use standstill_axis::{
     Scaling, SwitchEdge,
 };
 use standstill_drives::cia402::Reaction;
-use standstill_drives::mechanism::{Gains, Load, Plant};
+use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
 use standstill_drives::switches::{Marker, Switches};
 use standstill_fb::Value;
 use standstill_script::model::{
@@ -97,6 +97,7 @@ fn axes_take_their_configuration() {
             quick_stop: Reaction::RampAndStay,
             on_disable: Reaction::Ramp,
             on_fault: Reaction::Coast,
+            homing: Some((false, 0.5)),
             switches: Switches {
                 limits: Some((-10.0, 10.0)),
                 home: Some((-1.0, 0.5)),
@@ -118,6 +119,11 @@ fn axes_take_their_configuration() {
                     damping: 0.01
                 }),
             },
+            stops: Some(Stops {
+                ends: (-3.0, 3.0),
+                stiffness: 500.0,
+                damping: 0.5,
+            }),
             gains: Gains {
                 position: 50.0,
                 velocity: 2.0,
