@@ -175,6 +175,12 @@ pub trait Plan: Copy + core::fmt::Debug {
         None
     }
 
+    /// [`Plan::at`] where a motion mostly is, as far as it can be told without a call; `None` elsewhere.
+    #[inline(always)]
+    fn usual(&self, _scan: u64) -> Option<Setpoint> {
+        None
+    }
+
     /// As [`Plan::at`], for the motion in progress: asked for scan after scan, a plan may remember where it was.
     #[inline]
     fn next(&mut self, scan: u64) -> Setpoint {
@@ -461,15 +467,20 @@ impl Plan for StandardPlan {
         }
     }
 
-    // What a motion mostly does is in line, the rest a call.
+    #[inline(always)]
+    fn usual(&self, scan: u64) -> Option<Setpoint> {
+        match self {
+            Self::Online(plan) if plan.is_in_piece(scan) => Some(plan.in_piece(scan)),
+            Self::Ramp(ramp) if ramp.is_at_goal(scan) => Some(ramp.at_goal(scan)),
+            Self::Grid(_) | Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) => None,
+        }
+    }
+
     #[inline(always)]
     fn next(&mut self, scan: u64) -> Setpoint {
-        match self {
-            Self::Ramp(ramp) if ramp.is_at_goal(scan) => ramp.at_goal(scan),
-            Self::Online(plan) if plan.is_in_piece(scan) => plan.in_piece(scan),
-            Self::Grid(_) | Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) => {
-                Setpoint::of(self.next_numbers(scan))
-            }
+        match self.usual(scan) {
+            Some(setpoint) => setpoint,
+            None => Setpoint::of(self.next_numbers(scan)),
         }
     }
 

@@ -58,15 +58,18 @@ impl<P: Planner> Axis<P> {
         let Motion::Run { plan, elapsed, .. } = &self.motion else {
             return;
         };
-        match plan.brief(elapsed.wrapping_add(1)) {
-            Some(next) => self.step_to(next, scan, log),
-            None => self.step_along_other(scan, log),
+        let scan_of_plan = elapsed.wrapping_add(1);
+        if let Some(next) = plan.brief(scan_of_plan) {
+            self.step_to(next, scan, log);
+        } else if let Some(next) = plan.usual(scan_of_plan) {
+            self.step_to(next, scan, log);
+        } else {
+            self.step_by_call(scan, log);
         }
     }
 
-    /// The same for plans that take more to tell it.
     #[inline(never)]
-    fn step_along_other(&mut self, scan: u64, log: &mut Log) {
+    fn step_by_call(&mut self, scan: u64, log: &mut Log) {
         if let Motion::Run { plan, elapsed, .. } = &mut self.motion {
             let next = plan.next(elapsed.wrapping_add(1));
             self.step_to(next, scan, log);
