@@ -13,11 +13,12 @@ use crate::administrative::{
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
-    mc_halt::McHalt, mc_halt_superimposed::McHaltSuperimposed, mc_jog::McJog,
-    mc_move_absolute::McMoveAbsolute, mc_move_additive::McMoveAdditive,
-    mc_move_continuous_absolute::McMoveContinuousAbsolute,
+    mc_acceleration_profile::McAccelerationProfile, mc_halt::McHalt,
+    mc_halt_superimposed::McHaltSuperimposed, mc_jog::McJog, mc_move_absolute::McMoveAbsolute,
+    mc_move_additive::McMoveAdditive, mc_move_continuous_absolute::McMoveContinuousAbsolute,
     mc_move_continuous_relative::McMoveContinuousRelative, mc_move_relative::McMoveRelative,
-    mc_move_superimposed::McMoveSuperimposed, mc_move_velocity::McMoveVelocity, mc_stop::McStop,
+    mc_move_superimposed::McMoveSuperimposed, mc_move_velocity::McMoveVelocity,
+    mc_position_profile::McPositionProfile, mc_stop::McStop, mc_velocity_profile::McVelocityProfile,
 };
 use crate::standard::{
     ctd::Ctd, ctu::Ctu, ctud::Ctud, f_trig::FTrig, r_trig::RTrig, rs::Rs, sr::Sr, tof::Tof, ton::Ton, tp::Tp,
@@ -73,7 +74,9 @@ registry! {
     McTouchProbe McAbortTrigger McDigitalCamSwitch
     McHome
     McStop McHalt McMoveAbsolute McMoveRelative McMoveAdditive McMoveVelocity
-    McMoveContinuousAbsolute McMoveContinuousRelative McMoveSuperimposed McHaltSuperimposed McJog
+    McMoveContinuousAbsolute McMoveContinuousRelative
+    McPositionProfile McVelocityProfile McAccelerationProfile
+    McMoveSuperimposed McHaltSuperimposed McJog
     RTrig FTrig Sr Rs Ctu Ctd Ctud Ton Tof Tp
 }
 

@@ -7,10 +7,13 @@ use standstill_axis::{
     InstanceId, Limits, Log, Source, Standard, StartState,
 };
 use standstill_blocks::BlockInstance;
-use standstill_fb::{AnyInstance, Context, PinType, Value};
+use standstill_fb::{AnyInstance, Context, PinType, TableRef, Value};
 
 /// Sample time (s).
 const CYCLE: f64 = 0.001;
+
+/// A table with one point for the profile blocks: in 4 s (DeltaTime in ns) to 1, not level.
+const POINTS: [f64; 3] = [4e9, 1.0, 0.0];
 
 /// The axis the blocks are wired to.
 pub const AXIS: AxisId = AxisId::new(0);
@@ -75,7 +78,9 @@ impl Bench {
         let value = name == "MC_WriteParameter";
         let value = value.then_some(("Value", Value::Lreal(10.0)));
         let good = good.into_iter().chain([number]).chain(value);
-        for (pin, value) in good {
+        let points = Value::Table(TableRef { first: 0, records: 1 });
+        let tables = ["TimePosition", "TimeVelocity", "TimeAcceleration"].map(|pin| (pin, points));
+        for (pin, value) in good.chain(tables) {
             if let Some((index, _)) = block.info().pin(pin)
                 && index < block.info().input_count()
             {
@@ -145,7 +150,7 @@ impl Bench {
             instance: InstanceId(0),
             axes: &mut self.axes,
             log: &mut self.log,
-            tables: &[],
+            tables: &POINTS,
         });
     }
 

@@ -141,6 +141,14 @@ error_ids! {
         "Move the other limit first, or switch one of them off.";
     ParameterOnModulo = 147, "Software limits do not exist on a modulo axis: its positions come round.",
         "Leave the parameters 2 to 5 alone on this axis.";
+    ProfileTableInvalid = 160, "A profile's table has no point after the start, more than 40, a DeltaTime that is not above 0 (the first may be 0), or a value that is NaN or infinite.",
+        "Give 1 to 40 points, each later than the one before; the record in the log names the point.";
+    ProfileStartMismatch = 161, "The first point of a profile is for the start (DeltaTime 0), and the axis has another value there.",
+        "Leave the point out, give it a DeltaTime in which to get there, or bring the axis there first.";
+    ProfileBeyondLimits = 162, "The curve of a profile would exceed a limit of the axis.",
+        "Raise TimeScale, lower the amplitude, or move the point that the record in the log names; it also says how far the limit is exceeded.";
+    ProfileScaleInvalid = 163, "TimeScale is not above 0, or a scale or Offset of a profile is NaN or infinite.",
+        "Give TimeScale above 0 and finite numbers for the others.";
 
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";
@@ -160,6 +168,8 @@ error_ids! {
         "Set EnablePositive to TRUE at the MC_Power instance called last, or move the other way.";
     NegativeBarred = 209, "The motion needs the negative direction, and EnableNegative of MC_Power is FALSE.",
         "Set EnableNegative to TRUE at the MC_Power instance called last, or move the other way.";
+    ProfileInterrupted = 212, "A profile was stopped because MC_Power barred a direction it needs; its times have passed.",
+        "Start it again when the direction is permitted.";
     TriggerTaken = 215, "Another instance waits for this probe.",
         "Wait for it, or abort it with MC_AbortTrigger; each probe serves one instance at a time.";
 

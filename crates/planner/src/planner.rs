@@ -2,8 +2,8 @@
 
 use crate::grid::Family;
 use crate::{
-    Excess, GridPlan, Limits, Method, OnlinePlan, Passage, PlanError, RampPlan, Rung, SampledPlan, Segment,
-    Setpoint, UnequalPlan, online, sum,
+    Excess, GridPlan, Limits, Method, OnlinePlan, Passage, PlanError, ProfileFault, ProfileKind, ProfilePlan,
+    ProfilePoint, RampPlan, Rung, SampledPlan, Segment, Setpoint, UnequalPlan, online, sum,
 };
 
 /// Plans moves for an axis.
@@ -75,6 +75,19 @@ pub trait Planner {
         limits: &Limits,
         before: &Limits,
     ) -> Result<Option<Self::Plan>, PlanError>;
+
+    /// The curve through `points` from `start`, inside `limits` and, where given, a range of positions (u).
+    ///
+    /// # Errors
+    /// [`ProfileFault`] names the point and what is wrong with it.
+    fn profile(
+        &self,
+        kind: ProfileKind,
+        start: &Setpoint,
+        points: &[ProfilePoint],
+        limits: &Limits,
+        range: Option<(f64, f64)>,
+    ) -> Result<Self::Plan, ProfileFault>;
 
     /// The largest speed (u/s), at most `wanted`, at which a move over `distance` (u, not negative) can
     /// begin up to one scan late and still pass its end with no more than the speed `exit`.
@@ -209,10 +222,6 @@ pub struct Standard {
 
 /// A plan of [`Standard`].
 #[derive(Clone, Copy, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "without a heap a plan is as large as the largest"
-)]
 pub enum StandardPlan {
     /// From rest to rest, every switch on the grid.
     Grid(GridPlan),
@@ -224,6 +233,8 @@ pub enum StandardPlan {
     Online(OnlinePlan),
     /// To rest, by the method of a paper.
     Sampled(SampledPlan),
+    /// Through points.
+    Profile(ProfilePlan),
 }
 
 /// A plan is copied about by value, once a command.
@@ -292,6 +303,13 @@ impl Standard {
 }
 
 impl StandardPlan {
+    /// From now on `cruise`, its own motion at its end, brought back.
+    fn bring_back_cruise(&mut self, mut cruise: RampPlan, scan: u64, length: f64) -> Option<i64> {
+        let turns = cruise.bring_back(scan, length);
+        *self = Self::Ramp(cruise);
+        turns
+    }
+
     #[inline(never)]
     fn numbers_at(&self, scan: u64) -> [f64; 5] {
         let setpoint = match self {
@@ -300,6 +318,7 @@ impl StandardPlan {
             Self::Ramp(ramp) => ramp.at(scan),
             Self::Online(plan) => plan.at(scan),
             Self::Sampled(plan) => plan.at(scan),
+            Self::Profile(plan) => plan.at(scan),
         };
         setpoint.numbers()
     }
@@ -314,6 +333,7 @@ impl StandardPlan {
             Self::Ramp(ramp) => ramp.next(scan),
             Self::Online(plan) => plan.next(scan),
             Self::Sampled(plan) => plan.at(scan),
+            Self::Profile(plan) => plan.at(scan),
         };
         setpoint.numbers()
     }
@@ -378,6 +398,17 @@ impl Planner for Standard {
             .map(|plan| plan.map(StandardPlan::Online))
     }
 
+    fn profile(
+        &self,
+        kind: ProfileKind,
+        start: &Setpoint,
+        points: &[ProfilePoint],
+        limits: &Limits,
+        range: Option<(f64, f64)>,
+    ) -> Result<StandardPlan, ProfileFault> {
+        ProfilePlan::new(kind, start, points, limits, range, self.cycle).map(StandardPlan::Profile)
+    }
+
     fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits) -> f64 {
         online::entry_speed(wanted, distance, exit, limits, self.cycle)
     }
@@ -406,9 +437,11 @@ impl Planner for Standard {
 }
 
 impl StandardPlan {
-    /// The stretches of constant highest derivative, in order of time; at most 46 of them.
+    /// The stretches of constant highest derivative, in order of time; at most 46 of them, and none of a profile.
     pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
         let (grid, unequal, ramp, online, sampled) = match self {
+            // Its stretches have no constant derivative.
+            Self::Profile(_) => (None, None, None, None, None),
             Self::Grid(grid) => (Some(grid), None, None, None, None),
             Self::Unequal(grid) => (None, Some(grid), None, None, None),
             Self::Ramp(ramp) => (None, None, Some(ramp), None, None),
@@ -433,6 +466,7 @@ impl Plan for StandardPlan {
             Self::Ramp(ramp) => ramp.scans(),
             Self::Online(plan) => plan.scans(),
             Self::Sampled(plan) => plan.scans(),
+            Self::Profile(plan) => plan.scans(),
         }
     }
 
@@ -441,7 +475,7 @@ impl Plan for StandardPlan {
     fn at(&self, scan: u64) -> Setpoint {
         match self {
             Self::Grid(grid) => grid.at(scan),
-            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) => {
+            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) | Self::Profile(_) => {
                 Setpoint::of(self.numbers_at(scan))
             }
         }
@@ -452,7 +486,7 @@ impl Plan for StandardPlan {
         match self {
             Self::Grid(grid) => grid.at(scan),
             Self::Ramp(ramp) if ramp.is_at_goal(scan) => ramp.at_goal(scan),
-            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) => {
+            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) | Self::Profile(_) => {
                 Setpoint::of(self.next_numbers(scan))
             }
         }
@@ -460,7 +494,7 @@ impl Plan for StandardPlan {
 
     fn excess(&self) -> Option<Excess> {
         match self {
-            Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) => None,
+            Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) | Self::Profile(_) => None,
             Self::Ramp(ramp) => ramp.excess(),
             Self::Online(plan) => plan.excess(),
         }
@@ -468,7 +502,7 @@ impl Plan for StandardPlan {
 
     fn excess_over(&self, limits: &Limits) -> Option<Excess> {
         match self {
-            Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) => None,
+            Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) | Self::Profile(_) => None,
             Self::Ramp(ramp) => ramp.excess_over(limits),
             Self::Online(plan) => plan.excess_over(limits),
         }
@@ -476,7 +510,7 @@ impl Plan for StandardPlan {
 
     fn rung(&self) -> Option<Rung> {
         match self {
-            Self::Grid(_) | Self::Unequal(_) | Self::Ramp(_) | Self::Sampled(_) => None,
+            Self::Grid(_) | Self::Unequal(_) | Self::Ramp(_) | Self::Sampled(_) | Self::Profile(_) => None,
             Self::Online(plan) => Some(plan.rung()),
         }
     }
@@ -488,6 +522,7 @@ impl Plan for StandardPlan {
             Self::Ramp(ramp) => ramp.shift(by),
             Self::Online(plan) => plan.shift(by),
             Self::Sampled(plan) => plan.shift(by),
+            Self::Profile(plan) => plan.shift(by),
         }
     }
 
@@ -496,10 +531,12 @@ impl Plan for StandardPlan {
             Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) => None,
             Self::Ramp(ramp) => ramp.bring_back(scan, length),
             Self::Online(plan) => {
-                let mut cruise = plan.cruise(scan)?;
-                let turns = cruise.bring_back(scan, length);
-                *self = Self::Ramp(cruise);
-                turns
+                let cruise = plan.cruise(scan)?;
+                self.bring_back_cruise(cruise, scan, length)
+            }
+            Self::Profile(plan) => {
+                let cruise = plan.cruise(scan)?;
+                self.bring_back_cruise(cruise, scan, length)
             }
         }
     }

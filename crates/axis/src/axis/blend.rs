@@ -218,7 +218,9 @@ impl<P: Planner> Axis<P> {
                 (towards, velocity.abs(), None)
             }
             Work::Halt => (direction, 0.0, None),
-            Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return REST,
+            Work::Profile { .. } | Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => {
+                return REST;
+            }
         };
         // What MC_Power bars would be refused at the end, too late to stop there. A continuous move may need a run-up.
         let runs_up = matches!(next.entry.work, Work::Through { end_velocity, .. } if end_velocity != 0.0);

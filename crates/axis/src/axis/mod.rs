@@ -5,7 +5,7 @@
 //! limits, [`superimposed`] adds a second motion, [`factors`] is the override, [`replan`] changes the owner's motion
 //! while it runs, [`update`] gives it new values, [`jog`] checks what MC_Jog asks for, [`queued`] lets administrative
 //! commands wait, [`parameters`] has what can be written by number, [`supervision`] watches the distance to the
-//! actual position, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges,
+//! actual position, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges, [`profile`] moves along curves through points,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`permission`] out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
@@ -23,6 +23,7 @@ mod parameters;
 mod permission;
 mod power;
 mod probe;
+mod profile;
 mod queue;
 mod queued;
 mod reading;
@@ -45,6 +46,7 @@ pub use outputs::CamTrack;
 pub use parameters::{Parameter, ParameterValue};
 pub use permission::Permission;
 pub use probe::TouchProbe;
+pub use profile::{Profile, ProfileRow};
 use queue::{Entry, Queue, Work};
 pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
@@ -458,8 +460,10 @@ impl<P: Planner> Axis<P> {
                 Work::Velocity { .. } | Work::Through { .. } => Fate::Active {
                     reached: self.goal_reached() && !self.is_held_up(),
                 },
+                Work::Profile { .. } if self.profile_is_over() => Fate::Done,
                 Work::Position(_)
                 | Work::Distance(_)
+                | Work::Profile { .. }
                 | Work::Halt
                 | Work::Stop
                 | Work::Home(_)
@@ -625,10 +629,11 @@ impl<P: Planner> Axis<P> {
     }
 
     fn end_owner(&mut self, fate: Fate) {
+        let is_over = self.profile_is_over();
         if let Some(owner) = self.owner.take() {
-            // A stop that stands has completed, whatever ends its hold.
-            let fate = if self.stop_held { Fate::Done } else { fate };
-            self.decide(owner.id, fate);
+            // A stop that stands has completed, whatever ends its hold, and a profile at its end.
+            let over = self.stop_held || is_over;
+            self.decide(owner.id, if over { Fate::Done } else { fate });
         }
         self.stop_held = false;
         self.replan_due = false;

@@ -234,7 +234,11 @@ impl Entry {
     /// Whether it leads anywhere, so that it could be barred.
     fn leads_on(&self) -> bool {
         match self.work {
-            Work::Position(_) | Work::Distance(_) | Work::Through { .. } | Work::Velocity { .. } => true,
+            Work::Position(_)
+            | Work::Distance(_)
+            | Work::Through { .. }
+            | Work::Velocity { .. }
+            | Work::Profile { .. } => true,
             Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
         }
     }

@@ -186,7 +186,10 @@ impl<P: Planner> Axis<P> {
             scan,
             instance: entry.instance,
         };
-        let positioning = matches!(entry.work, Work::Position(_) | Work::Distance(_));
+        let positioning = matches!(
+            entry.work,
+            Work::Position(_) | Work::Distance(_) | Work::Profile { .. }
+        );
         let end = plan.at(u64::from(plan.scans()));
         let goal = match entry.end {
             _ if entry.halted || entry.passed => Goal::Velocity(end.velocity),

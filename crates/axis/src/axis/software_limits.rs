@@ -54,6 +54,9 @@ impl<P: Planner> Axis<P> {
             // It brakes as hard as it would there.
             _ if entry.paused => outside(self.end_of_plan()),
             Work::Velocity { .. } => true,
+            // A curve was checked to its end, which may have got another name since.
+            Work::Profile { .. } if !entry.is_endless() => outside(self.end_of_plan()),
+            Work::Profile { .. } => true,
             Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
             Work::Halt | Work::Stop => outside(self.end_of_plan()),
             // From rest the way leads straight to the target, from motion perhaps past it.
@@ -88,6 +91,8 @@ impl<P: Planner> Axis<P> {
         let leaves = |rest: f64| (rest > max && rest > next.position) || (rest < min && rest < next.position);
         let leaving = match owner.work {
             Work::Velocity { .. } => true,
+            Work::Profile { .. } if !owner.is_endless() => self.watched && leaves(self.end_of_plan()),
+            Work::Profile { .. } => true,
             Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
             Work::Halt | Work::Stop => leaves(self.end_of_plan() + self.superimposed_left()),
             // With something superimposed, ends and turns were checked when it was planned.

@@ -161,6 +161,10 @@ impl<P: Planner> Axis<P> {
             }
             // An endless motion gives way when it has reached its velocity.
             Work::Velocity { .. } | Work::Through { .. } => self.hand_over(self.passed_end(), scan, log),
+            // Its block has yet to give the points.
+            Work::Profile { due: true, .. } => {}
+            Work::Profile { .. } if owner.is_endless() => self.hand_over(self.setpoint.position, scan, log),
+            Work::Profile { .. } => self.complete_move(scan, log),
             // They never own the axis.
             Work::SetPosition { .. } | Work::Write(_) => {}
         }
@@ -201,6 +205,9 @@ impl<P: Planner> Axis<P> {
             }
             if self.write_queued(scan, log) {
                 continue;
+            }
+            if let Work::Profile { .. } = next.work {
+                return self.begin_due(next);
             }
             let passage_from = self.aim(&mut next, from);
             next.passage = self.passage(&next, passage_from, 1);

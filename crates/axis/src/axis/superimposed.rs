@@ -83,7 +83,7 @@ impl<P: Plan> Layer<P> {
         }
     }
 
-    fn moves(&self) -> bool {
+    pub fn moves(&self) -> bool {
         matches!(self.motion, Motion::Run { .. })
     }
 
