@@ -13,5 +13,6 @@ pub mod mc_move_superimposed;
 pub mod mc_move_velocity;
 pub mod mc_position_profile;
 pub mod mc_stop;
+pub mod mc_torque_control;
 pub mod mc_velocity_profile;
 mod profile;

@@ -4,7 +4,7 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Comms, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals,
-    InstanceId, Limits, Log, Source, Standard, StartState,
+    InstanceId, Limits, Log, Source, Standard, StartState, TorqueReport,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, PinType, TableRef, Value};
@@ -72,6 +72,7 @@ impl Bench {
             ("Distance", Value::Lreal(1.0)),
             ("Velocity", Value::Lreal(5.0)),
             ("VelocityDiff", Value::Lreal(1.0)),
+            ("Torque", Value::Lreal(1.0)),
         ];
         let parameter = if name.contains("Bool") { 6 } else { 9 };
         let number = ("ParameterNumber", Value::Int(parameter));
@@ -131,6 +132,12 @@ impl Bench {
     /// Feedback is latched.
     pub fn latch(&mut self) {
         for (axis, drive) in self.axes.iter_mut().zip(&self.drives) {
+            // It can hold a torque, under which it does not move.
+            axis.report_mut().torque = Some(TorqueReport {
+                actual: 0.0,
+                most: 10.0,
+                limited: false,
+            });
             let feedback = DriveFeedback {
                 enabled: drive.request == DriveRequest::Enable,
                 voltage: true,

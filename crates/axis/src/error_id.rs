@@ -149,6 +149,10 @@ error_ids! {
         "Raise TimeScale, lower the amplitude, or move the point that the record in the log names; it also says how far the limit is exceeded.";
     ProfileScaleInvalid = 163, "TimeScale is not above 0, or a scale or Offset of a profile is NaN or infinite.",
         "Give TimeScale above 0 and finite numbers for the others.";
+    TorqueInvalid = 170, "Torque or TorqueRamp is NaN or infinite, or TorqueRamp is negative.",
+        "Give a finite Torque, and a TorqueRamp above 0, or 0 for none.";
+    TorqueAboveLimit = 171, "Torque is above the largest one the drive can hold.",
+        "Lower Torque, or raise the limit of the drive.";
 
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";
@@ -170,6 +174,8 @@ error_ids! {
         "Set EnableNegative to TRUE at the MC_Power instance called last, or move the other way.";
     ProfileInterrupted = 212, "A profile was stopped because MC_Power barred a direction it needs; its times have passed.",
         "Start it again when the direction is permitted.";
+    TorqueControls = 213, "MC_TorqueControl owns the axis, so there is no set position to add a motion to.",
+        "Let another motion take over first.";
     TriggerTaken = 215, "Another instance waits for this probe.",
         "Wait for it, or abort it with MC_AbortTrigger; each probe serves one instance at a time.";
 
@@ -192,6 +198,10 @@ error_ids! {
         "Read the drive's error code, remove the cause, then call MC_Reset.";
     PowerLost = 502, "The power stage went off without being asked to.",
         "Restore the power, then call MC_Reset.";
+    TorqueUnknown = 510, "The drive of the axis does not tell its torque.",
+        "Use a drive that measures it.";
+    TorqueNotHeld = 511, "The drive of the axis cannot hold a torque.",
+        "Use a drive that can; its motion is as before.";
 
     CommunicationLost = 601, "The communication with the drive was lost.",
         "Restore it, then call MC_Reset.";

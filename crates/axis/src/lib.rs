@@ -34,7 +34,7 @@ pub use config::{
 };
 pub use drive::{
     Comms, DIGITAL, Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, DriveRequest,
-    DriveSignals, Edge, Fault, PROBES, ProbeReport,
+    DriveSignals, Edge, Fault, PROBES, ProbeReport, TorqueOrder, TorqueReport,
 };
 pub use error_id::{ErrorClass, ErrorId, RETIRED};
 pub use fate::{FATES_KEPT, Fate};

@@ -32,6 +32,7 @@ pub(super) fn direction_of(command: &Command) -> Option<Direction> {
         | Command::MoveRelative { .. }
         | Command::MoveContinuousRelative { .. }
         | Command::MoveVelocity { .. }
+        | Command::Torque { .. }
         | Command::Jog { .. }
         | Command::Halt { .. }
         | Command::Stop { .. }
@@ -277,6 +278,12 @@ impl<P: Planner> Axis<P> {
                 })?;
                 Ok((work, self.resolve(dynamics, source, log)?))
             }
+            Command::Torque {
+                torque,
+                ramp,
+                ref dynamics,
+                direction,
+            } => self.check_torque((torque, ramp), dynamics, direction, source, log),
             Command::Jog {
                 forward,
                 distance,
@@ -356,6 +363,7 @@ impl<P: Planner> Axis<P> {
             Work::Halt => Some(self.end_of_plan()),
             Work::Through { .. }
             | Work::Velocity { .. }
+            | Work::Torque { .. }
             | Work::Stop
             | Work::Home(_)
             | Work::SetPosition { .. }
@@ -455,6 +463,10 @@ impl<P: Planner> Axis<P> {
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
             Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
+            Work::Torque { .. } => {
+                let velocity = self.torque_goal(entry) * entry.limits.velocity;
+                self.planner.ramp_to(start, velocity, &entry.limits, before)
+            }
             // Its times have passed.
             Work::Profile { .. } => return Err(ErrorId::ProfileInterrupted),
             Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return Ok(Motion::Hold),
@@ -462,7 +474,10 @@ impl<P: Planner> Axis<P> {
         match planned {
             Ok(plan) => {
                 self.permitted(entry, &plan, before)?;
-                Ok(Motion::along(plan))
+                match entry.work {
+                    Work::Torque { .. } if !entry.halted => Ok(self.under_torque(plan)),
+                    _ => Ok(Motion::along(plan)),
+                }
             }
             Err(error) => Err(refusal(error)),
         }
@@ -488,6 +503,7 @@ impl<P: Planner> Axis<P> {
                 ..
             } => ("Distance", distance),
             Work::Velocity { velocity, .. } => ("Velocity", velocity),
+            Work::Torque { torque, .. } => ("Torque", torque),
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),
             Work::Home(position) | Work::SetPosition { position, .. } => ("Position", position),
             Work::Profile { .. } | Work::Write(_) => ("", f64::NAN),

@@ -89,7 +89,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn limits_of(limits: &Limits, motion: &Motion<P::Plan>) -> Limits {
         match motion {
             Motion::Run { plan, .. } => raised(limits, plan),
-            Motion::Follow | Motion::Hold => *limits,
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => *limits,
         }
     }
 
@@ -218,7 +218,12 @@ impl<P: Planner> Axis<P> {
                 (towards, velocity.abs(), None)
             }
             Work::Halt => (direction, 0.0, None),
-            Work::Profile { .. } | Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => {
+            Work::Profile { .. }
+            | Work::Torque { .. }
+            | Work::Stop
+            | Work::Home(_)
+            | Work::SetPosition { .. }
+            | Work::Write(_) => {
                 return REST;
             }
         };

@@ -4,7 +4,7 @@
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`inside`] keeps take-overs within the axis
 //! limits, [`superimposed`] adds a second motion, [`factors`] is the override, [`replan`] changes the owner's motion
 //! while it runs, [`update`] gives it new values, [`jog`] checks what MC_Jog asks for, [`queued`] lets administrative
-//! commands wait, [`parameters`] has what can be written by number, [`supervision`] watches the distance to the
+//! commands wait, [`parameters`] has what can be written by number, [`torque`] holds torques, [`supervision`] watches the distance to the
 //! actual position, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges, [`profile`] moves along curves through points,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`permission`] out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
@@ -32,6 +32,7 @@ mod software_limits;
 mod step;
 mod superimposed;
 mod supervision;
+mod torque;
 mod update;
 
 use crate::fate::Fates;
@@ -69,6 +70,9 @@ enum Motion<Plan> {
     Hold,
     /// A plan, so many scans after its start, and the scans it has: asked for several times in every scan.
     Run { plan: Plan, elapsed: u64, scans: u64 },
+    /// The actual position under a torque: the last one ordered, and the ramp of its velocity limit, so many scans after its
+    /// start.
+    Torque { plan: Plan, elapsed: u64, torque: f64 },
 }
 
 impl<P: Plan> Motion<P> {
@@ -85,7 +89,7 @@ impl<P: Plan> Motion<P> {
     fn scans_left(&self) -> Option<u32> {
         match self {
             Self::Follow => None,
-            Self::Hold => Some(0),
+            Self::Hold | Self::Torque { .. } => Some(0),
             Self::Run { elapsed, scans, .. } => {
                 // At least 1, to tell a plan at its goal from holding.
                 let left = scans.saturating_sub(*elapsed);
@@ -424,7 +428,7 @@ impl<P: Planner> Axis<P> {
     pub fn plan(&self) -> Option<(&P::Plan, u64)> {
         match &self.motion {
             Motion::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
-            Motion::Follow | Motion::Hold => None,
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => None,
         }
     }
 
@@ -457,7 +461,7 @@ impl<P: Planner> Axis<P> {
         {
             return match owner.work {
                 Work::Stop if self.stop_held => Fate::Done,
-                Work::Velocity { .. } | Work::Through { .. } => Fate::Active {
+                Work::Velocity { .. } | Work::Through { .. } | Work::Torque { .. } => Fate::Active {
                     reached: self.goal_reached() && !self.is_held_up(),
                 },
                 Work::Profile { .. } if self.profile_is_over() => Fate::Done,
@@ -575,6 +579,7 @@ impl<P: Planner> Axis<P> {
             Motion::Run { elapsed, scans, .. } => elapsed >= scans,
             Motion::Hold => true,
             Motion::Follow => false,
+            Motion::Torque { torque, .. } => self.torque_is_held(*torque),
         }
     }
 

@@ -72,7 +72,7 @@ impl<P: Planner> Axis<P> {
             && comms == Comms::Ok
             && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         let is_pending = self.reset.is_some() || self.shift_due || self.rename.is_some();
-        let is_watched = self.parameters.lag.on;
+        let is_watched = self.parameters.lag.on || matches!(self.motion, Motion::Torque { .. });
         if !(is_powered && is_well && !is_pending && self.past.is_whole() && !is_watched) {
             Calm::No
         } else if self.layer.is_some() {
@@ -129,6 +129,7 @@ impl<P: Planner> Axis<P> {
             let position = self.position_of(feedback);
             self.latch_and_mend(position);
             self.follow_power(feedback, scan, log);
+            self.follow_actual();
             self.supervise(scan, log);
             if self.shift_due {
                 self.take_queued_shifts(scan, log);

@@ -430,7 +430,9 @@ pub(super) fn start_event(work: &Work) -> AxisEvent {
             kind: ProfileKind::Position,
             ..
         } => AxisEvent::StartDiscrete,
-        Work::Velocity { .. } | Work::Through { .. } | Work::Profile { .. } => AxisEvent::StartContinuous,
+        Work::Velocity { .. } | Work::Through { .. } | Work::Profile { .. } | Work::Torque { .. } => {
+            AxisEvent::StartContinuous
+        }
         Work::Stop => AxisEvent::Stop,
         Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => AxisEvent::StartHoming,
     }

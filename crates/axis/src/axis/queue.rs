@@ -45,6 +45,9 @@ pub(super) enum Work {
         since: f64,
         time_scale: f64,
     },
+    /// A torque, changed by so much a second (0: at once); with `along` its sign is relative to the motion when it becomes
+    /// active.
+    Torque { torque: f64, ramp: f64, along: bool },
     /// To velocity zero.
     Halt,
     /// To velocity zero, locked.
@@ -73,6 +76,7 @@ impl Work {
             } => Some(from + distance),
             Self::Velocity { .. }
             | Self::Profile { .. }
+            | Self::Torque { .. }
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
@@ -89,6 +93,7 @@ impl Work {
             Self::Through { to, .. } => Some(to),
             Self::Velocity { .. }
             | Self::Profile { .. }
+            | Self::Torque { .. }
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
@@ -105,6 +110,7 @@ impl Work {
             Self::Position(_)
             | Self::Distance(_)
             | Self::Profile { .. }
+            | Self::Torque { .. }
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
@@ -124,6 +130,7 @@ impl Work {
             Self::Position(_)
             | Self::Distance(_)
             | Self::Profile { .. }
+            | Self::Torque { .. }
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
@@ -144,8 +151,9 @@ impl Work {
     pub fn obeys_override(&self) -> bool {
         match self {
             Self::Position(_) | Self::Distance(_) | Self::Through { .. } | Self::Velocity { .. } => true,
-            // A profile keeps its times.
+            // A profile keeps its times, and a torque is no motion.
             Self::Profile { .. }
+            | Self::Torque { .. }
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
@@ -162,6 +170,7 @@ impl Work {
             Self::Velocity { .. } => "velocity",
             Self::Profile { due: true, .. } => "profile due",
             Self::Profile { .. } => "profile",
+            Self::Torque { .. } => "torque",
             Self::Halt => "halt",
             Self::Stop => "stop",
             Self::Home(_) => "home",
@@ -254,7 +263,7 @@ impl Entry {
     /// Whether it goes on until another command takes over.
     pub fn is_endless(&self) -> bool {
         match self.work {
-            Work::Velocity { .. } | Work::Through { .. } => true,
+            Work::Velocity { .. } | Work::Through { .. } | Work::Torque { .. } => true,
             Work::Profile { kind, .. } => kind != ProfileKind::Position,
             _ => false,
         }

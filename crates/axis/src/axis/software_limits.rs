@@ -64,7 +64,8 @@ impl<P: Planner> Axis<P> {
                 outside(self.end_of_plan())
                     || (!self.setpoint.is_at_rest() && outside(self.rest(&self.setpoint, &entry.limits)))
             }
-            Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
+            // Supervision of the travel is up to the application.
+            Work::Torque { .. } | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
         }
     }
 
@@ -74,7 +75,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn plan_would_leave(&self) -> bool {
         match &self.motion {
             Motion::Run { plan, elapsed, .. } => self.would_leave(&plan.at(*elapsed)),
-            Motion::Follow | Motion::Hold => false,
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => false,
         }
     }
 
@@ -101,7 +102,8 @@ impl<P: Planner> Axis<P> {
             Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
                 leaves(self.end_of_plan()) || leaves(self.rest(next, &owner.limits))
             }
-            Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
+            // Supervision of the travel is up to the application.
+            Work::Torque { .. } | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
         };
         leaving && leaves(self.rest(next, &self.stop_limits()))
     }
@@ -118,7 +120,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn end_of_plan(&self) -> f64 {
         match &self.motion {
             Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
-            Motion::Follow | Motion::Hold => self.setpoint.position,
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => self.setpoint.position,
         }
     }
 }
