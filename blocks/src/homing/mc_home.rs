@@ -1,8 +1,8 @@
-//! `MC_Home`: the present position gets a name.
+//! `MC_Home`: the axis finds its reference, whose place gets a name.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 //!
-//! This version homes at standstill without a search: the axis takes `Position` where it stands.
+//! What it looks for, and how, is a matter of the axis: see `docs/homing.md`.
 
 use standstill_axis::{AxisId, BufferMode, Command, ErrorId, Planner, Raw, Request};
 use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
@@ -15,14 +15,14 @@ pins! {
     inputs {
         /// A rising edge starts the homing with the values of that call.
         Execute => execute: bool = false, "";
-        /// New name of the present position; finite.
+        /// Position of the reference; finite.
         Position => position: f64 = 0.0, "u";
         /// How the command follows the one before it.
         BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
     }
     vendor_inputs {}
     outputs {
-        /// The position is set.
+        /// The reference is known and named, and the axis stands.
         Done => done: bool, "";
         /// Not finished.
         Busy => busy: bool, "";
@@ -48,7 +48,8 @@ pub struct McHome {
 impl Block for McHome {
     const NAME: &'static str = "MC_Home";
     const GROUP: Group = Group::Homing;
-    const DOC: &'static str = "Sets the position of an axis at standstill.";
+    const DOC: &'static str =
+        "Finds the reference of an axis as its configuration says, and sets its position.";
     type Inputs = Inputs;
     type Outputs = Outputs;
 

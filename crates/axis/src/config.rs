@@ -1,6 +1,6 @@
 //! How an axis is set up, checked once before the first scan.
 
-use crate::{QUEUE_MAX, Scaling};
+use crate::{Homing, Procedure, QUEUE_MAX, Scaling};
 use core::fmt;
 use standstill_planner::{Limits, MoveProfile};
 
@@ -87,6 +87,10 @@ pub struct AxisConfig {
     pub stop_jerk: Option<f64>,
     /// How the axis stops when switched off while moving.
     pub on_power_off: PowerOff,
+    /// What MC_Home does.
+    pub homing: Homing,
+    /// The axis stops at the hardware limit switches of its drive.
+    pub hardware_limits: bool,
     /// Absolute moves need MC_Home first (V11a).
     pub needs_homed: bool,
     /// Largest factor MC_SetOverride takes, at least 1; above 1 the limits hold all the same (V16).
@@ -120,6 +124,8 @@ impl AxisConfig {
             stop_deceleration: None,
             stop_jerk: None,
             on_power_off: PowerOff::Ramp,
+            homing: Homing::DIRECT,
+            hardware_limits: true,
             needs_homed: false,
             override_max: 1.0,
             max_following_error: None,
@@ -207,6 +213,13 @@ impl AxisConfig {
         }
         if self.queue > QUEUE_MAX {
             return Err(ConfigError::Queue { value: self.queue });
+        }
+        self.homing.check(&self.limits)?;
+        if self.homing.procedure == Procedure::Drive && self.scaling.is_none() {
+            return Err(ConfigError::HomingMissing {
+                key: "scaling",
+                procedure: Procedure::Drive,
+            });
         }
         self.check_profile()
     }
@@ -329,6 +342,29 @@ pub enum ConfigError {
         /// The limit.
         limit: f64,
     },
+    /// A key of `homing` that means nothing for its procedure.
+    HomingKey {
+        /// The configuration key.
+        key: &'static str,
+        /// The procedure.
+        procedure: Procedure,
+    },
+    /// A velocity of `homing` that may not be above that of the search.
+    HomingFaster {
+        /// The configuration key.
+        key: &'static str,
+        /// Its value.
+        value: f64,
+        /// Velocity of the search (u/s).
+        search: f64,
+    },
+    /// A key of `homing` that its procedure needs is missing.
+    HomingMissing {
+        /// The configuration key.
+        key: &'static str,
+        /// The procedure.
+        procedure: Procedure,
+    },
     /// A ratio of zero, or an offset that is not finite.
     Scaling {
         /// Drive increments.
@@ -344,7 +380,12 @@ impl ConfigError {
     /// The configuration key it speaks of.
     pub const fn key(&self) -> &'static str {
         match self {
-            Self::NotPositive { key, .. } | Self::NotFinite { key, .. } | Self::AboveLimit { key, .. } => key,
+            Self::NotPositive { key, .. }
+            | Self::NotFinite { key, .. }
+            | Self::AboveLimit { key, .. }
+            | Self::HomingFaster { key, .. }
+            | Self::HomingKey { key, .. } => key,
+            Self::HomingMissing { .. } => "homing",
             Self::SoftwareLimits { .. } => "software_limits",
             Self::Modulo { .. } | Self::ModuloNotRational { .. } => "modulo",
             Self::PositionOutsideModulo { .. } => "position",
@@ -405,6 +446,20 @@ impl fmt::Display for ConfigError {
                 "profile is {}, which cannot keep {key} {limit:?}: leave that limit out or choose another profile, such as fastest",
                 profile.name()
             ),
+            Self::HomingKey { key, procedure } => write!(
+                f,
+                "{key} has no meaning with this value for the procedure {}: leave it out",
+                procedure.name()
+            ),
+            Self::HomingFaster { key, value, search } => {
+                write!(
+                    f,
+                    "{key} is {value:?}, above homing.velocity {search:?}: lower it"
+                )
+            }
+            Self::HomingMissing { key, procedure } => {
+                write!(f, "the procedure {} needs {key}: give it", procedure.name())
+            }
             Self::Scaling {
                 increments,
                 units,

@@ -37,9 +37,9 @@ pub struct DriveSignals {
     pub simulated: bool,
     /// The home switch is active.
     pub home_switch: bool,
-    /// The hardware end switch in positive direction is active.
+    /// The hardware end switch in positive direction, as the drive counts, is active.
     pub limit_switch_positive: bool,
-    /// The hardware end switch in negative direction is active.
+    /// The one in negative direction is active.
     pub limit_switch_negative: bool,
     /// A warning is present.
     pub warning: bool,
@@ -126,6 +126,35 @@ pub struct TorqueOrder {
     pub velocity: (f64, f64),
 }
 
+/// What a drive has that a homing may need.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Equipment {
+    /// A home switch.
+    pub home_switch: bool,
+    /// Limit switches at both ends.
+    pub limit_switches: bool,
+    /// It latches the position of the reference pulse of its encoder.
+    pub marker: bool,
+    /// It homes by itself when asked to.
+    pub homing: bool,
+}
+
+/// What a drive that homes by itself is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum DriveHoming {
+    /// It follows the command.
+    #[default]
+    Off,
+    /// It moves as it likes, or is about to, or has yet to return to the command.
+    Busy,
+    /// The same, and its positions have been named anew: from this scan on the reference is here.
+    Attained(DrivePosition),
+    /// It stands, and the reference is here. It stays so until it is asked no longer.
+    Done(DrivePosition),
+    /// It gave up. It stays so until it is asked no longer.
+    Failed,
+}
+
 /// What a drive tells beside its motion. What it does not know stays as in the default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DriveReport {
@@ -137,6 +166,12 @@ pub struct DriveReport {
     pub outputs: u32,
     /// Its probes.
     pub probes: [ProbeReport; PROBES],
+    /// The latch of the reference pulse.
+    pub marker: ProbeReport,
+    /// Homing by itself.
+    pub homing: DriveHoming,
+    /// What it has.
+    pub equipment: Equipment,
 }
 
 /// The edge of a probe's input.
@@ -157,6 +192,10 @@ pub struct DriveOrder {
     pub outputs: u32,
     /// Which edge each probe is to latch; none disarms it. A probe is armed anew by one scan without an edge.
     pub probes: [Option<Edge>; PROBES],
+    /// It is to latch the next reference pulse.
+    pub marker: bool,
+    /// It is to home by itself, or to go on doing so. Falling before it is done it stops.
+    pub homing: bool,
 }
 
 /// A drive. `read` then `write`, each exactly once a scan; then `report` right after the one and `order` right

@@ -172,6 +172,8 @@ error_ids! {
         "Set EnablePositive to TRUE at the MC_Power instance called last, or move the other way.";
     NegativeBarred = 209, "The motion needs the negative direction, and EnableNegative of MC_Power is FALSE.",
         "Set EnableNegative to TRUE at the MC_Power instance called last, or move the other way.";
+    OutwardFromLimitSwitch = 210, "The axis stands on a hardware limit switch and the motion would lead further out.",
+        "Move back from the switch: the other way, or to a target on that side.";
     ProfileInterrupted = 212, "A profile was stopped because MC_Power barred a direction it needs; its times have passed.",
         "Start it again when the direction is permitted.";
     TorqueControls = 213, "MC_TorqueControl owns the axis, so there is no set position to add a motion to.",
@@ -193,14 +195,26 @@ error_ids! {
         "Remove the cause, then give MC_Reset a new rising edge.";
     FollowingErrorTooLarge = 404, "The actual position was further from the set position than the largest following error.",
         "Free the axis or raise MaxPositionLag (7); while it lags, switch it off with MC_Power, then call MC_Reset.";
+    LimitSwitchReached = 410, "The axis moved onto a hardware limit switch; it was stopped.",
+        "Call MC_Reset, then move back from the switch.";
+    HomingTimedOut = 411, "The homing took longer than its time limit.",
+        "Look why the reference was not found; raise the time_limit of the homing if it only needs longer.";
+    HomingTooFar = 412, "The homing went further than its distance limit.",
+        "Look why the reference was not found; raise the distance_limit of the homing if it only lies further away.";
+    HomingSwitchNotFound = 413, "Between both limit switches the home switch did not show the edge that is the reference.",
+        "Check the home switch, its wiring and the edge in the homing of the axis.";
 
     DriveFault = 501, "The drive reported a fault.",
         "Read the drive's error code, remove the cause, then call MC_Reset.";
     PowerLost = 502, "The power stage went off without being asked to.",
         "Restore the power, then call MC_Reset.";
-    TorqueUnknown = 510, "The drive of the axis does not tell its torque.",
+    HomingSignalMissing = 510, "The homing of the axis needs a switch, a reference pulse or a mode that its drive does not have.",
+        "Choose a homing the drive has the signals for, or give the drive what is missing.";
+    DriveHomingFailed = 511, "The drive gave up its homing.",
+        "Read the drive's own error and check its homing method and switches, then call MC_Reset.";
+    TorqueUnknown = 520, "The drive of the axis does not tell its torque.",
         "Use a drive that measures it.";
-    TorqueNotHeld = 511, "The drive of the axis cannot hold a torque.",
+    TorqueNotHeld = 521, "The drive of the axis cannot hold a torque.",
         "Use a drive that can; its motion is as before.";
 
     CommunicationLost = 601, "The communication with the drive was lost.",

@@ -16,6 +16,7 @@ mod config;
 mod drive;
 mod error_id;
 mod fate;
+mod homing;
 mod ideal_drive;
 mod log;
 mod scaling;
@@ -33,11 +34,12 @@ pub use config::{
     AboveLimit, AxisConfig, ConfigError, Defaults, InPosition, MODULO_MAX, PowerOff, StartState,
 };
 pub use drive::{
-    Comms, DIGITAL, Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, DriveRequest,
-    DriveSignals, Edge, Fault, PROBES, ProbeReport, TorqueOrder, TorqueReport,
+    Comms, DIGITAL, Drive, DriveCommand, DriveFeedback, DriveHoming, DriveOrder, DrivePosition, DriveReport,
+    DriveRequest, DriveSignals, Edge, Equipment, Fault, PROBES, ProbeReport, TorqueOrder, TorqueReport,
 };
 pub use error_id::{ErrorClass, ErrorId, RETIRED};
 pub use fate::{FATES_KEPT, Fate};
+pub use homing::{BlockDetection, HomeDirection, Homing, Procedure, SwitchEdge};
 pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
 pub use log::{Event, Goal, LOG_KEPT, Log, Record};
 pub use scaling::{Scaling, Turn};

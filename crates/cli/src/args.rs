@@ -1,6 +1,7 @@
 //! The arguments of the program.
 
 use clap::{Args, Parser, Subcommand};
+use standstill_trace::csv;
 use std::path::PathBuf;
 
 /// A PLCopen motion runtime: run scan scripts, check their claims, plan moves.
@@ -29,6 +30,21 @@ pub enum Command {
         /// Take the runs as they are for goldens, where all claims hold
         #[arg(long)]
         accept: bool,
+    },
+    /// Draw traces: a page to look into, a picture, a waveform
+    Report {
+        /// The traces (.csv, .jsonl, .exact); several are laid over each other
+        #[arg(value_name = "TRACE", required = true)]
+        traces: Vec<PathBuf>,
+        /// Write a self-contained HTML page to this file
+        #[arg(long, short, value_name = "FILE.html")]
+        output: Option<PathBuf>,
+        /// Write a picture to this file
+        #[arg(long, value_name = "FILE")]
+        svg: Option<PathBuf>,
+        /// Write a waveform for GTKWave or Surfer to this file
+        #[arg(long, value_name = "FILE")]
+        vcd: Option<PathBuf>,
     },
     /// Show where two traces part
     Explain {
@@ -128,12 +144,37 @@ pub struct RunArguments {
     /// Write the trace to this file; its ending says how
     #[arg(long, value_name = "FILE(.csv|.jsonl)")]
     pub trace: Option<PathBuf>,
+    /// What stands between the cells of a CSV trace: `,` `;` `|` or `tab`
+    #[arg(long, value_name = "CHARACTER", value_parser = delimiter, requires = "trace")]
+    pub delimiter: Option<char>,
+    /// Write numbers of a CSV trace with a decimal comma; cells then stand between `;` unless told otherwise
+    #[arg(long, requires = "trace")]
+    pub decimal_comma: bool,
+    /// Write a self-contained HTML page to this file
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
+    /// Write a picture to this file
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Write a waveform for GTKWave or Surfer to this file
+    #[arg(long, value_name = "FILE")]
+    pub vcd: Option<PathBuf>,
     /// Replace the value of a parameter of the script
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
     pub set: Vec<(String, f64)>,
     /// Print failing claims and one line a script
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+/// Reads a delimiter.
+fn delimiter(text: &str) -> Result<char, String> {
+    let text = if matches!(text, "tab" | "\\t") { "\t" } else { text };
+    let mut characters = text.chars();
+    match (characters.next(), characters.next()) {
+        (Some(one), None) if csv::DELIMITERS.contains(&one) => Ok(one),
+        _ => Err("write `,`, `;`, `|` or `tab`".to_owned()),
+    }
 }
 
 /// Reads `NAME=VALUE`; the value is a number as in scripts and traces.

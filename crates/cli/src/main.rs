@@ -11,6 +11,7 @@ mod fmt;
 mod json;
 mod plan;
 mod progress;
+mod report;
 mod run;
 mod soak;
 mod suggest;
@@ -58,6 +59,19 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
     match command {
         Command::Run(arguments) => run::run(arguments, out),
         Command::Test { paths, accept } => test::test(paths, *accept, out),
+        Command::Report {
+            traces,
+            output,
+            svg,
+            vcd,
+        } => {
+            let targets = report::Targets {
+                html: output.as_deref(),
+                svg: svg.as_deref(),
+                vcd: vcd.as_deref(),
+            };
+            report::report(traces, targets)
+        }
         Command::Explain { expected, found } => explain::explain(expected, found, out),
         Command::Plan { file, samples } => {
             let file = file.as_deref().unwrap_or(Path::new("-"));

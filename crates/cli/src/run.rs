@@ -3,8 +3,11 @@
 use crate::args::RunArguments;
 use crate::exit::{Exit, Failure, go_on};
 use crate::progress::Progress;
+use crate::report::{self, Targets};
+use standstill_report::Source;
 use standstill_script::suite::{self, SuiteError};
 use standstill_script::{Code, Outcome, ScriptError};
+use standstill_trace::csv::Dialect;
 use standstill_trace::{Header, digest, events_text, extremes_text, file, plot};
 use std::io::Write;
 use std::path::Path;
@@ -14,31 +17,75 @@ const WIDTH: usize = 100;
 
 /// Runs the scripts in the order given. A script that cannot be run does not keep the others from it.
 pub fn run(arguments: &RunArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
-    if let Some(path) = &arguments.trace {
-        if arguments.scripts.len() > 1 {
-            return Err(Failure::usage(
-                "--trace takes one script: one file cannot hold several runs",
-            ));
-        }
-        if !file::can_save(path) {
-            let name = suite::shown(path);
-            return Err(Failure::usage(&format!(
-                "--trace {name}: a trace is a .csv or a .jsonl file"
-            )));
-        }
-    }
+    let dialect = checked(arguments)?;
     let mut exit = Exit::Passed;
     for (index, script) in arguments.scripts.iter().enumerate() {
         if index > 0 && !arguments.quiet {
             writeln!(out)?;
         }
-        let this = run_one(script, arguments, out);
+        let this = run_one(script, arguments, dialect, out);
         exit = exit.max(go_on(this, out)?);
     }
     Ok(exit)
 }
 
-fn run_one(script: &Path, arguments: &RunArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
+/// What clap cannot know: that the arguments make sense together. The dialect of the trace.
+fn checked(arguments: &RunArguments) -> Result<Dialect, Failure> {
+    let RunArguments {
+        scripts,
+        trace,
+        report,
+        svg,
+        vcd,
+        ..
+    } = arguments;
+    let files = [
+        ("--trace", trace),
+        ("--report", report),
+        ("--svg", svg),
+        ("--vcd", vcd),
+    ];
+    let one = files.iter().find(|(_, file)| file.is_some() && scripts.len() > 1);
+    if let Some((option, _)) = one {
+        return Err(Failure::usage(&format!(
+            "{option} takes one script: one file cannot hold several runs"
+        )));
+    }
+    if let Some(path) = trace
+        && !file::can_save(path)
+    {
+        let name = suite::shown(path);
+        return Err(Failure::usage(&format!(
+            "--trace {name}: a trace is a .csv or a .jsonl file"
+        )));
+    }
+    let asks = arguments.delimiter.is_some() || arguments.decimal_comma;
+    if asks && trace.as_ref().is_some_and(|path| !file::is_csv(path)) {
+        return Err(Failure::usage(
+            "--delimiter and --decimal-comma are for a trace that is a .csv file",
+        ));
+    }
+    let decimal_comma = arguments.decimal_comma;
+    match arguments
+        .delimiter
+        .unwrap_or(if decimal_comma { ';' } else { ',' })
+    {
+        ',' if decimal_comma => Err(Failure::usage(
+            "--decimal-comma needs another delimiter than the comma",
+        )),
+        delimiter => Ok(Dialect {
+            delimiter,
+            decimal_comma,
+        }),
+    }
+}
+
+fn run_one(
+    script: &Path,
+    arguments: &RunArguments,
+    dialect: Dialect,
+    out: &mut dyn Write,
+) -> Result<Exit, Failure> {
     let name = suite::shown(script);
     let outcome = {
         let mut progress = Progress::new(!arguments.quiet);
@@ -54,8 +101,19 @@ fn run_one(script: &Path, arguments: &RunArguments, out: &mut dyn Write) -> Resu
     }
     writeln!(out, "{name}: {}", verdict(&outcome))?;
     if let Some(path) = &arguments.trace {
-        file::save(&outcome.trace, path)?;
+        file::save_as(&outcome.trace, path, dialect)?;
     }
+    let source = Source {
+        name: &name,
+        trace: &outcome.trace,
+        lacks: &[],
+    };
+    let targets = Targets {
+        html: arguments.report.as_deref(),
+        svg: arguments.svg.as_deref(),
+        vcd: arguments.vcd.as_deref(),
+    };
+    report::write_all(&[source], targets)?;
     Ok(Exit::of(outcome.passed()))
 }
 

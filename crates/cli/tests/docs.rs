@@ -2,7 +2,7 @@
 //!
 //! A `console` block is run, with the last `jsonl` block before it on standard input. A table whose first column is
 //! `id` shows answers of `standstill plan` to the lines of that `jsonl` block, its other columns named after fields,
-//! rounded to the digits shown.
+//! rounded to the digits shown. Files named `out.` something are written to, and read from, a folder of the test.
 
 use serde_json::Value;
 use std::io::Write;
@@ -13,9 +13,16 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
+fn placed(argument: &str) -> PathBuf {
+    match argument.strip_prefix("out.") {
+        Some(_) => Path::new(env!("CARGO_TARGET_TMPDIR")).join(argument),
+        None => argument.into(),
+    }
+}
+
 fn standstill(arguments: &str, input: &str) -> String {
     let mut child = Command::new(env!("CARGO_BIN_EXE_standstill"))
-        .args(arguments.split(' '))
+        .args(arguments.split(' ').map(placed))
         .current_dir(root())
         .env("INSTA_UPDATE", "no")
         .stdin(Stdio::piped())
@@ -103,6 +110,7 @@ fn is_shown_as(value: &Value, cell: &str) -> bool {
 fn every_console_block_and_every_table_of_plans_is_true() {
     for (page, least_shown, least_cells) in [
         ("command-line.md", 3, 0),
+        ("reports.md", 3, 0),
         ("from-your-vendor.md", 1, 10),
         ("choosing-limits.md", 1, 30),
     ] {

@@ -14,6 +14,7 @@ extern crate std;
 pub mod cia402;
 pub mod mechanism;
 pub mod peripherals;
+pub mod switches;
 
 /// The whole number nearest to `value`, half away from zero.
 fn nearest(value: f64) -> i64 {

@@ -8,6 +8,7 @@
     least_scans.py passing SEED COUNT          the same with an end velocity ("ve") other than 0
     least_scans.py lowered SEED COUNT          the same under limits lowered in flight
     least_scans.py ramps SEED COUNT            the same to a velocity ("ve"), wherever that is
+    least_scans.py stops SEED COUNT            the same to rest, wherever that is
 
 A case is {"chain", "Ts", "V", "A", "J", "S", "x0", "v0", "a0", "j0", "target"} in SI units. A move of N scans
 is N snaps, each held for one scan. It ends on `target`, if there is one, with the velocity `ve` (0 if absent) and
@@ -204,7 +205,7 @@ def draw(rng, kind):
     if kind == "lowered":
         case["before"] = {key: case[key] for key in "VAJS"}
         case |= {key: case[key] * rng.uniform(0.4, 1) for key in "VAJS"}
-    if kind == "ramps":
+    if kind in ("ramps", "stops"):
         del case["target"]
         # A ramp that keeps its direction must not turn back if it can help it, which a programme does not know.
         side = 1 if v > 0 else -1
@@ -260,7 +261,7 @@ def main():
             found = least(case, 10 * MOST)
             if case.setdefault("n_star", found) != found:
                 print(f"{case} needs {found}", file=sys.stderr)
-    elif sys.argv[1:2] in (["random"], ["passing"], ["lowered"], ["ramps"]) and len(sys.argv) == 4:
+    elif sys.argv[1:2] in (["random"], ["passing"], ["lowered"], ["ramps"], ["stops"]) and len(sys.argv) == 4:
         rng = random.Random(int(sys.argv[2]))
         cases = []
         while len(cases) < int(sys.argv[3]):

@@ -182,6 +182,12 @@ pub trait Plan: Copy + core::fmt::Debug {
     /// velocity kept for ever.
     fn at(&self, scan: u64) -> Setpoint;
 
+    /// [`Plan::at`] for plans that tell it in a few operations, to be had in line; `None` for all others.
+    #[inline(always)]
+    fn brief(&self, _scan: u64) -> Option<Setpoint> {
+        None
+    }
+
     /// As [`Plan::at`], for the motion in progress: asked for scan after scan, a plan may remember where it was.
     #[inline]
     fn next(&mut self, scan: u64) -> Setpoint {
@@ -238,7 +244,7 @@ pub enum StandardPlan {
 }
 
 /// A plan is copied about by value, once a command.
-const _: () = assert!(size_of::<StandardPlan>() <= 1824);
+const _: () = assert!(size_of::<StandardPlan>() <= 1832);
 
 impl Standard {
     /// A planner for the sample time `cycle` (s).
@@ -482,13 +488,25 @@ impl Plan for StandardPlan {
     }
 
     #[inline(always)]
+    fn brief(&self, scan: u64) -> Option<Setpoint> {
+        match self {
+            Self::Grid(grid) => Some(grid.at(scan)),
+            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) | Self::Profile(_) => None,
+        }
+    }
+
+    // What a motion mostly does is in line, the rest a call.
+    #[inline(always)]
     fn next(&mut self, scan: u64) -> Setpoint {
         match self {
-            Self::Grid(grid) => grid.at(scan),
             Self::Ramp(ramp) if ramp.is_at_goal(scan) => ramp.at_goal(scan),
-            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) | Self::Profile(_) => {
-                Setpoint::of(self.next_numbers(scan))
-            }
+            Self::Online(plan) if plan.is_in_piece(scan) => plan.in_piece(scan),
+            Self::Grid(_)
+            | Self::Unequal(_)
+            | Self::Ramp(_)
+            | Self::Online(_)
+            | Self::Sampled(_)
+            | Self::Profile(_) => Setpoint::of(self.next_numbers(scan)),
         }
     }
 

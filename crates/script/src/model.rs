@@ -2,7 +2,8 @@
 
 use standstill_axis::{AxisConfig, AxisState};
 use standstill_drives::cia402::Reaction;
-use standstill_drives::mechanism::{Gains, Plant};
+use standstill_drives::mechanism::{Gains, Plant, Stops};
+use standstill_drives::switches::Switches;
 use standstill_fb::{BlockInfo, Value};
 use std::collections::BTreeMap;
 
@@ -70,8 +71,23 @@ pub struct PlantSetup {
     pub power_on: Option<u32>,
     /// What is moved.
     pub plant: Plant,
+    /// Between them.
+    pub stops: Option<Stops>,
     /// The loops.
     pub gains: Gains,
+    /// Along its travel.
+    pub switches: Switches,
+}
+
+impl DriveSetup {
+    /// What stands along its travel.
+    pub fn switches(&self) -> &Switches {
+        match self {
+            Self::Ideal(setup) => &setup.switches,
+            Self::Cia402(setup) => &setup.switches,
+            Self::Plant(setup) => &setup.switches,
+        }
+    }
 }
 
 impl Default for DriveSetup {
@@ -79,6 +95,7 @@ impl Default for DriveSetup {
         Self::Ideal(IdealDriveSetup {
             delay: 0,
             power_on: Some(0),
+            switches: Switches::default(),
         })
     }
 }
@@ -100,19 +117,21 @@ pub struct Cia402Setup {
     pub on_disable: Reaction,
     /// Object 605Eh.
     pub on_fault: Reaction,
-    /// The end switches are active up to the first and from the second on (u).
-    pub limit_switches: Option<(f64, f64)>,
-    /// The home switch is active from the first to the second (u).
-    pub home_switch: Option<(f64, f64)>,
+    /// What it does in homing mode: whether it goes upwards, and the velocity (u/s).
+    pub homing: Option<(bool, f64)>,
+    /// Along its travel.
+    pub switches: Switches,
 }
 
 /// Parameters of the ideal drive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IdealDriveSetup {
     /// Scans from command to actual position.
     pub delay: usize,
     /// Scans until power is confirmed; `None` never.
     pub power_on: Option<u32>,
+    /// Along its travel.
+    pub switches: Switches,
 }
 
 /// A script variable.

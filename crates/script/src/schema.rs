@@ -5,7 +5,8 @@
 
 use crate::read::axis::{ABOVE_LIMIT, ON_POWER_OFF, PROFILES, START_STATES};
 use crate::read::block::is_needed;
-use crate::read::drive::REACTIONS;
+use crate::read::drive::{NODE_DIRECTIONS, REACTIONS};
+use crate::read::homing::{HOME_DIRECTIONS, PROCEDURES, SWITCH_EDGES};
 use crate::read::names::KEYWORDS;
 use crate::read::shape::{self, Shape};
 use crate::read::step::FAULT_KINDS;
@@ -219,7 +220,8 @@ fn axis_key(key: &str) -> Value {
         "profile" => words(&PROFILES),
         "queue" => integer(0, QUEUE_MAX as i64),
         "on_power_off" => words(&ON_POWER_OFF),
-        "needs_homed" => json!({"type": "boolean"}),
+        "needs_homed" | "hardware_limits" => json!({"type": "boolean"}),
+        "homing" => homing(),
         "override_max" => any(&[json!({"type": "number", "minimum": 1}), of("parameter")]),
         "in_position" => required(
             &["window"],
@@ -233,21 +235,69 @@ fn axis_key(key: &str) -> Value {
     }
 }
 
+fn homing() -> Value {
+    required(
+        &["procedure"],
+        object(&shape::HOMING, |key| match key {
+            "procedure" => words(&PROCEDURES),
+            "direction" => words(&HOME_DIRECTIONS),
+            "edge" => words(&SWITCH_EDGES),
+            "pulse" => json!({"type": "boolean"}),
+            "time_limit" => of("scans"),
+            "block" => required(
+                &["velocity", "time"],
+                object(&shape::BLOCK_DETECTION, |key| match key {
+                    "time" => of("scans"),
+                    _ => of("positive"),
+                }),
+            ),
+            _ => of("positive"),
+        }),
+    )
+}
+
+/// What stands along the travel of any drive; `None` for other keys.
+fn switches(key: &str) -> Option<Value> {
+    match key {
+        "limit_switches" => Some(required(
+            &["negative", "positive"],
+            object(&shape::LIMIT_SWITCHES, |_| of("finite")),
+        )),
+        "home_switch" => Some(required(
+            &["from", "to"],
+            object(&shape::HOME_SWITCH, |_| of("finite")),
+        )),
+        "marker" => Some(required(
+            &["at"],
+            object(&shape::MARKER, |key| match key {
+                "every" => of("positive"),
+                _ => of("finite"),
+            }),
+        )),
+        _ => None,
+    }
+}
+
 fn drive() -> Value {
     let never = || any(&[of("scans"), json!({"type": "null"})]);
     let delay = || any(&[integer(0, DELAY_MAX as i64), of("time_literal")]);
     object(&shape::DRIVE, |key| match key {
         "ideal" => object(&shape::IDEAL, |key| match key {
             "delay" => delay(),
-            _ => never(),
+            "power_on" => never(),
+            _ => switches(key).unwrap_or_else(text),
         }),
         "plant" => required(
             &["inertia"],
             object(&shape::PLANT, |key| match key {
                 "power_on" => never(),
                 "load" => required(&["inertia", "stiffness"], object(&shape::LOAD, |_| of("finite"))),
+                "stops" => required(
+                    &["negative", "positive", "stiffness"],
+                    object(&shape::STOPS, |_| of("finite")),
+                ),
                 "gains" => object(&shape::GAINS, |_| of("finite")),
-                _ => of("finite"),
+                _ => switches(key).unwrap_or_else(|| of("finite")),
             }),
         ),
         _ => object(&shape::CIA402, |key| match key {
@@ -256,12 +306,14 @@ fn drive() -> Value {
             "start_up" => of("scans"),
             "quick_stop" => words(&REACTIONS),
             "on_disable" | "on_fault" => words(&[REACTIONS[0], REACTIONS[1]]),
-            "limit_switches" => required(
-                &["negative", "positive"],
-                object(&shape::LIMIT_SWITCHES, |_| of("finite")),
+            "homing" => required(
+                &["velocity"],
+                object(&shape::NODE_HOMING, |key| match key {
+                    "direction" => words(&NODE_DIRECTIONS),
+                    _ => of("positive"),
+                }),
             ),
-            "home_switch" => required(&["from", "to"], object(&shape::HOME_SWITCH, |_| of("finite"))),
-            _ => of("finite"),
+            _ => switches(key).unwrap_or_else(|| of("finite")),
         }),
     })
 }

@@ -1,31 +1,67 @@
-//! Traces as comma-separated values: a line of column names, then one line a scan.
+//! Traces as comma-separated values (or in another [`Dialect`]): a line of column names, then one line a scan.
 //!
 //! Written by hand rather than with a library: names and numbers need no quotes, so what is left is a
-//! split at commas that can tell the character position of a bad cell.
+//! split at delimiters that can tell the character position of a bad cell.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use crate::column::Cell;
 use crate::header::Header;
-use crate::number::cell_text;
+use crate::number::{self, cell_text};
 use crate::read::{Field, Line, Loaded, ReadError, assemble};
 use crate::trace::Trace;
 
-/// Writes the rows. The header belongs into the file of [`meta_path`], as [`Header::to_json`] gives it.
+/// How cells are told apart and numbers are written. The format itself has commas and decimal points; other
+/// programs want others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dialect {
+    /// What stands between cells, one of [`DELIMITERS`].
+    pub delimiter: char,
+    /// Numbers have a decimal comma.
+    pub decimal_comma: bool,
+}
+
+/// What may stand between cells.
+pub const DELIMITERS: [char; 4] = [',', ';', '\t', '|'];
+
+impl Default for Dialect {
+    fn default() -> Self {
+        Self {
+            delimiter: ',',
+            decimal_comma: false,
+        }
+    }
+}
+
+/// Writes the rows. The header belongs into the file of [`meta_path`], as [`Trace::header_json`] gives it.
 ///
 /// # Errors
 /// Those of `out`.
 pub fn write(trace: &Trace, out: &mut impl Write) -> io::Result<()> {
-    out.write_all(b"scan,time_ns")?;
+    write_as(trace, Dialect::default(), out)
+}
+
+/// As [`write`], in another dialect. [`read`] takes every dialect of [`DELIMITERS`] but a decimal comma between commas.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_as(trace: &Trace, dialect: Dialect, out: &mut impl Write) -> io::Result<()> {
+    let delimiter = dialect.delimiter;
+    write!(out, "scan{delimiter}time_ns")?;
     for column in trace.columns() {
-        write!(out, ",{}", quoted(&column.name))?;
+        write!(out, "{delimiter}{}", quoted(&column.name, delimiter))?;
     }
     out.write_all(b"\n")?;
     for scan in 0..trace.scans() {
-        write!(out, "{scan},{}", trace.time_ns(scan))?;
+        write!(out, "{scan}{delimiter}{}", trace.time_ns(scan))?;
         for cell in trace.row(scan) {
-            write!(out, ",{}", quoted(&cell_text(cell)))?;
+            let mut text = cell_text(cell);
+            if dialect.decimal_comma && matches!(cell, Cell::Real(_)) {
+                text = text.replace('.', ",");
+            }
+            write!(out, "{delimiter}{}", quoted(&text, delimiter))?;
         }
         out.write_all(b"\n")?;
     }
@@ -40,7 +76,8 @@ pub fn meta_path(csv: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// Reads a trace, with the text of its meta file if there is one. A byte order mark and CRLF are taken.
+/// Reads a trace, with the text of its meta file if there is one. A byte order mark, CRLF and other delimiters are
+/// taken; where commas do not delimit, numbers may have decimal commas.
 /// Without a header the kinds of columns are told from their texts.
 ///
 /// # Errors
@@ -48,7 +85,7 @@ pub fn meta_path(csv: &Path) -> PathBuf {
 /// where one can be named. Errors in the meta file are told apart by their message.
 pub fn read(text: &str, meta: Option<&str>) -> Result<Loaded, ReadError> {
     let header = meta
-        .map(Header::from_json)
+        .map(Header::with_notes)
         .transpose()
         .map_err(|error| ReadError {
             message: format!("in the meta file: {}", error.message),
@@ -58,7 +95,11 @@ pub fn read(text: &str, meta: Option<&str>) -> Result<Loaded, ReadError> {
     let Some((first, rows)) = text.split_once('\n') else {
         return Err(ReadError::at(1, Some(1), "no line of column names"));
     };
-    let names: Vec<String> = split(first, 1)?
+    let delimiter = first.strip_prefix("scan").and_then(|rest| rest.chars().next());
+    let delimiter = delimiter
+        .filter(|found| DELIMITERS.contains(found))
+        .unwrap_or(',');
+    let names: Vec<String> = split(first, delimiter, 1)?
         .into_iter()
         .map(|field| field.text.into_owned())
         .collect();
@@ -75,7 +116,10 @@ pub fn read(text: &str, meta: Option<&str>) -> Result<Loaded, ReadError> {
     assemble(&names, header, || {
         rows.lines().enumerate().map(move |(at, line)| {
             let number = at + 2;
-            let fields = split(line, number)?;
+            let mut fields = split(line, delimiter, number)?;
+            if delimiter != ',' {
+                fields.iter_mut().for_each(take_decimal_comma);
+            }
             if fields.len() == width {
                 Ok(Line { number, fields })
             } else {
@@ -86,9 +130,20 @@ pub fn read(text: &str, meta: Option<&str>) -> Result<Loaded, ReadError> {
     })
 }
 
-/// A cell that holds a comma or a quote stands in quotes, its quotes doubled. No cell holds a line break.
-fn quoted(text: &str) -> Cow<'_, str> {
-    if text.contains([',', '"']) {
+/// A number with a decimal comma becomes one with a point; every other text stays.
+fn take_decimal_comma(field: &mut Field<'_>) {
+    let is_number = |text: &str| number::parse(text).is_some();
+    if field.text.contains(',') && !field.text.contains('.') {
+        let text = field.text.replacen(',', ".", 1);
+        if is_number(&text) {
+            field.text = Cow::Owned(text);
+        }
+    }
+}
+
+/// A cell that holds a delimiter or a quote stands in quotes, its quotes doubled. No cell holds a line break.
+fn quoted(text: &str, delimiter: char) -> Cow<'_, str> {
+    if text.contains([delimiter, '"']) {
         Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))
     } else {
         Cow::Borrowed(text)
@@ -96,7 +151,7 @@ fn quoted(text: &str) -> Cow<'_, str> {
 }
 
 /// The cells of one line.
-fn split(line: &str, number: usize) -> Result<Vec<Field<'_>>, ReadError> {
+fn split(line: &str, delimiter: char, number: usize) -> Result<Vec<Field<'_>>, ReadError> {
     let line = line.strip_suffix('\r').unwrap_or(line);
     let mut fields = Vec::new();
     let mut rest = line;
@@ -105,7 +160,7 @@ fn split(line: &str, number: usize) -> Result<Vec<Field<'_>>, ReadError> {
         let column = Some(position);
         let (text, after) = match rest.strip_prefix('"') {
             None => {
-                let end = rest.find(',').unwrap_or(rest.len());
+                let end = rest.find(delimiter).unwrap_or(rest.len());
                 let (text, after) = rest.split_at(end);
                 (Cow::Borrowed(text), after)
             }
@@ -120,7 +175,7 @@ fn split(line: &str, number: usize) -> Result<Vec<Field<'_>>, ReadError> {
         let cell = rest.get(..rest.len() - after.len()).unwrap_or_default();
         position += cell.chars().count() + 1;
         rest = after
-            .strip_prefix(',')
+            .strip_prefix(delimiter)
             .ok_or_else(|| ReadError::at(number, column, "text after the end of a quoted cell"))?;
     }
 }

@@ -5,6 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use crate::csv::Dialect;
 use crate::exact::{self, ExactError};
 use crate::read::{Loaded, ReadError};
 use crate::trace::Trace;
@@ -70,30 +71,72 @@ pub fn can_save(path: &Path) -> bool {
     matches!(form(path), Ok(Form::Csv | Form::JsonLines))
 }
 
-/// Writes a trace; for CSV its header goes into [`csv::meta_path`].
+/// Whether the name is that of a CSV file.
+#[must_use]
+pub fn is_csv(path: &Path) -> bool {
+    matches!(form(path), Ok(Form::Csv))
+}
+
+/// Writes a trace; for CSV its header goes into [`csv::meta_path`]. A file that was there is replaced as
+/// [`replace`] does it.
 ///
 /// # Errors
 /// A name that ends in neither `.csv` nor `.jsonl`, or what the system says.
 pub fn save(trace: &Trace, path: &Path) -> Result<(), FileError> {
-    let io_error = |path: &Path| {
-        let path = path.to_owned();
-        move |source| FileError::Io { path, source }
-    };
-    let form = form(path)?;
-    if form == Form::Exact {
-        return Err(FileError::Form {
+    save_as(trace, path, Dialect::default())
+}
+
+/// As [`save`], CSV in this dialect.
+///
+/// # Errors
+/// As [`save`].
+pub fn save_as(trace: &Trace, path: &Path, dialect: Dialect) -> Result<(), FileError> {
+    match form(path)? {
+        Form::JsonLines => replace(path, |mut out| jsonl::write(trace, &mut out)),
+        Form::Csv => {
+            replace(path, |mut out| csv::write_as(trace, dialect, &mut out))?;
+            replace(&csv::meta_path(path), |out| {
+                writeln!(out, "{}", trace.header_json())
+            })
+        }
+        Form::Exact => Err(FileError::Form {
             path: path.to_owned(),
-        });
+        }),
     }
-    let mut out = BufWriter::new(File::create(path).map_err(io_error(path))?);
-    if form == Form::JsonLines {
-        jsonl::write(trace, &mut out).map_err(io_error(path))?;
-    } else {
-        csv::write(trace, &mut out).map_err(io_error(path))?;
-        let meta = csv::meta_path(path);
-        fs::write(&meta, format!("{}\n", trace.header().to_json())).map_err(io_error(&meta))?;
-    }
-    out.flush().map_err(io_error(path))
+}
+
+/// Writes a file whole or not at all: `write` fills a file beside it, `NAME.partial`, which then takes its place. What
+/// is no regular file (a pipe, a device) is written to as it is.
+///
+/// # Errors
+/// What the system says; a file that was there is then as it was.
+pub fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+    let whole = || {
+        if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+            return fill(path, write);
+        }
+        // A link stays one: what it leads to is replaced.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let mut name = target.as_os_str().to_owned();
+        name.push(".partial");
+        let partial = PathBuf::from(name);
+        let done = fill(&partial, write).and_then(|()| fs::rename(&partial, &target));
+        if done.is_err() {
+            // The first error is the one to tell.
+            let _ = fs::remove_file(&partial);
+        }
+        done
+    };
+    whole().map_err(|source| FileError::Io {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn fill(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut out = BufWriter::new(File::create(path)?);
+    write(&mut out)?;
+    out.flush()
 }
 
 /// Reads a trace, for CSV together with [`csv::meta_path`] if that file is there.

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::column::{Column, Kind, Role};
 use crate::read::ReadError;
+use crate::trace::Note;
 
 /// The columns of every axis after its name, in the order of the file. `State` is a name, the others are
 /// numbers: the set-point at the end of the scan, and the position the drive reported at its start.
@@ -164,6 +165,25 @@ pub struct Claim {
     pub text: String,
     /// Whether it held.
     pub verdict: ClaimVerdict,
+    /// The first and the last scan it speaks of; absent if that is not known or none of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scans: Option<[usize; 2]>,
+    /// The scan in which a claim that needs only one came true.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held: Option<usize>,
+    /// What spoke against it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub failures: Vec<ClaimFailure>,
+}
+
+/// One thing that speaks against a claim.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ClaimFailure {
+    /// The first scan it shows in; absent if it is about the run as a whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scan: Option<usize>,
+    /// What was there and what was expected.
+    pub text: String,
 }
 
 /// Whether a claim held.
@@ -217,10 +237,30 @@ impl Header {
     /// # Errors
     /// Text that is no JSON, no trace header, or of another version of the format.
     pub fn from_json(text: &str) -> Result<Self, ReadError> {
+        Self::with_notes(text).map(|(header, _)| header)
+    }
+
+    /// As [`Header::to_json`], with the notes of the run.
+    pub(crate) fn json_with_notes(&self, notes: &[Note]) -> String {
+        let json = self.to_json();
+        match (notes, json.strip_suffix('}')) {
+            ([_, ..], Some(open)) => {
+                // Strings and integers: there is nothing that JSON cannot hold.
+                let notes = serde_json::to_string(notes).unwrap_or_default();
+                format!("{open},\"notes\":{notes}}}")
+            }
+            _ => json,
+        }
+    }
+
+    /// As [`Header::from_json`], with the notes of the run.
+    pub(crate) fn with_notes(text: &str) -> Result<(Self, Vec<Note>), ReadError> {
         let text = text.trim_start_matches('\u{feff}');
         let probe: Probe = serde_json::from_str(text).map_err(|error| ReadError::json(&error, 1))?;
         match probe.standstill_trace {
-            Some(VERSION) => serde_json::from_str(text).map_err(|error| ReadError::json(&error, 1)),
+            Some(VERSION) => serde_json::from_str(text)
+                .map(|header| (header, probe.notes))
+                .map_err(|error| ReadError::json(&error, 1)),
             Some(other) => Err(ReadError::at(
                 1,
                 None,
@@ -244,6 +284,8 @@ const VERSION: u64 = 1;
 #[derive(Deserialize)]
 struct Probe {
     standstill_trace: Option<u64>,
+    #[serde(default)]
+    notes: Vec<Note>,
 }
 
 /// The column of an axis signal.

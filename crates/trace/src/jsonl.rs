@@ -18,7 +18,7 @@ use crate::trace::Trace;
 /// # Errors
 /// Those of `out`.
 pub fn write(trace: &Trace, out: &mut impl Write) -> io::Result<()> {
-    writeln!(out, "{}", trace.header().to_json())?;
+    writeln!(out, "{}", trace.header_json())?;
     let keys: Vec<String> = trace
         .columns()
         .iter()
@@ -63,7 +63,7 @@ pub fn read(text: &str) -> Result<Loaded, ReadError> {
     };
     let first_row = Row::parse(first, number)?;
     let (header, first_row) = if is_header(&first_row) {
-        let header = Header::from_json(first).map_err(|error| ReadError {
+        let header = Header::with_notes(first).map_err(|error| ReadError {
             line: number,
             ..error
         })?;
@@ -77,7 +77,7 @@ pub fn read(text: &str) -> Result<Loaded, ReadError> {
     };
     let names: Vec<String> = match (&first_row, &header) {
         (Some(row), _) => row.0.iter().map(|(key, _)| key.clone()).collect(),
-        (None, Some(header)) => clock_names()
+        (None, Some((header, _))) => clock_names()
             .chain(header.columns().into_iter().map(|column| column.name))
             .collect(),
         (None, None) => Vec::new(),

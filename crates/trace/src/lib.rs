@@ -42,13 +42,15 @@ pub mod plot;
 mod read;
 pub mod svg;
 mod trace;
+pub mod vcd;
 
 pub use column::{Cell, Column, Kind, Role};
 pub use events::{Event, events, events_text};
 pub use extremes::{Extreme, extremes, extremes_text};
 pub use header::{
-    AXIS_SIGNALS, Axis, Claim, ClaimVerdict, Direction, Header, Input, Instance, Limits, Pin, Scaling,
+    AXIS_SIGNALS, Axis, Claim, ClaimFailure, ClaimVerdict, Direction, Header, Input, Instance, Limits, Pin,
+    Scaling,
 };
-pub use number::{cell_text, shortest};
+pub use number::{cell_text, shortest, time_literal};
 pub use read::{Loaded, ReadError};
 pub use trace::{Note, RowError, Trace};

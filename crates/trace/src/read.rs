@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::column::{Cell, Column, Kind, Role};
 use crate::header::{Axis, Header, axis_column};
 use crate::number;
-use crate::trace::Trace;
+use crate::trace::{Note, Trace};
 
 /// A trace that was read, and what the files did not tell.
 #[derive(Clone, Debug)]
@@ -71,7 +71,7 @@ pub struct Line<'t> {
 /// kinds of columns that no header explains, then to read.
 pub fn assemble<'t, I>(
     names: &[String],
-    header: Option<Header>,
+    header: Option<(Header, Vec<Note>)>,
     lines: impl Fn() -> I,
 ) -> Result<Loaded, ReadError>
 where
@@ -81,17 +81,18 @@ where
     let signals = names.get(2..).unwrap_or_default();
     let (kinds, cycle_ns) = survey(signals.len(), lines())?;
     let mut lacks = Vec::new();
-    let mut header = header.unwrap_or_else(|| {
+    let (mut header, notes) = header.unwrap_or_else(|| {
         lacks.push(
             "the header: runtime version, title, units, limits and scaling of axes, types and directions of \
              pins, claims"
                 .to_owned(),
         );
-        Header {
+        let header = Header {
             cycle_ns: cycle_ns.unwrap_or(0),
             axes: find_axes(signals),
             ..Header::default()
-        }
+        };
+        (header, Vec::new())
     });
     if header.cycle_ns == 0 {
         lacks.push("the cycle time".to_owned());
@@ -116,6 +117,9 @@ where
     lacks.extend(known.keys().map(|name| format!("the column `{name}`")));
 
     let mut trace = Trace::with_columns(header, columns);
+    for note in notes {
+        trace.push_note(note);
+    }
     for line in lines() {
         push_line(&mut trace, &line?)?;
     }

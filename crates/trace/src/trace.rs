@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::column::{Cell, Column, Kind, canonical_bits};
 use crate::header::{Claim, Header};
 
 /// Something worth telling that is no column: an accepted plan, a refused or clamped command.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Note {
     /// The scan it happened in.
     pub scan: usize,
@@ -206,13 +208,19 @@ impl Trace {
         })
     }
 
+    /// The header as [`Header::to_json`] gives it, and the notes in it: what goes before the rows of a file.
+    #[must_use]
+    pub fn header_json(&self) -> String {
+        self.header.json_with_notes(&self.notes)
+    }
+
     /// Notes in the order they were made.
     #[must_use]
     pub fn notes(&self) -> &[Note] {
         &self.notes
     }
 
-    /// Adds a note. Notes are shown among the events; files of rows do not carry them.
+    /// Adds a note. Notes are shown among the events; files carry them in their header.
     pub fn push_note(&mut self, note: Note) {
         self.notes.push(note);
     }

@@ -3,10 +3,11 @@
 mod common;
 
 use std::fs;
+use std::io;
 use std::path::Path;
 
 use standstill_trace::compare::compare;
-use standstill_trace::file::{FileError, can_save, load, save};
+use standstill_trace::file::{FileError, can_save, load, replace, save};
 use standstill_trace::golden;
 
 #[test]
@@ -43,4 +44,30 @@ fn every_form_comes_back() {
     assert!(
         error.ends_with("bad.csv: line 1, column 1: a trace begins with the columns `scan` and `time_ns`")
     );
+}
+
+#[test]
+fn a_file_is_replaced_whole_or_not_at_all() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("replaced");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder for the test");
+    let path = folder.join("out.html");
+    replace(&path, |out| out.write_all(b"first")).expect("writable");
+    let failed = replace(&path, |out| {
+        out.write_all(b"half of the sec")?;
+        Err(io::Error::from(io::ErrorKind::StorageFull))
+    });
+    let message = failed.expect_err("no room").to_string();
+    assert!(
+        message.contains("out.html: ") && !message.contains("partial"),
+        "{message}"
+    );
+    assert_eq!(fs::read_to_string(&path).expect("still there"), "first");
+    assert_eq!(
+        fs::read_dir(&folder).expect("readable").count(),
+        1,
+        "nothing is left beside it"
+    );
+    assert!(replace(&folder.join("absent/out.html"), |_| Ok(())).is_err());
+    assert!(replace(&folder, |_| Ok(())).is_err(), "a folder is no file");
 }

@@ -3,7 +3,7 @@
 
 mod common;
 
-use standstill_trace::{Cell, Header, Trace, csv, digest, jsonl};
+use standstill_trace::{Cell, Header, Trace, cell_text, csv, digest, jsonl};
 
 fn csv_text(trace: &Trace) -> String {
     let mut out = Vec::new();
@@ -27,9 +27,33 @@ fn assert_same(a: &Trace, b: &Trace) {
 #[test]
 fn csv_comes_back_to_the_bit() {
     for trace in [common::run(200, None), common::hard_values()] {
-        let loaded = csv::read(&csv_text(&trace), Some(&trace.header().to_json())).expect("our own file");
+        let loaded = csv::read(&csv_text(&trace), Some(&trace.header_json())).expect("our own file");
         assert_same(&loaded.trace, &trace);
+        assert_eq!(loaded.trace.notes(), trace.notes());
         assert!(loaded.lacks.is_empty(), "{:?}", loaded.lacks);
+    }
+}
+
+#[test]
+fn csv_of_other_dialects_comes_back_to_the_bit() {
+    for (delimiter, decimal_comma) in [(';', true), (';', false), ('\t', true), ('|', true)] {
+        for trace in [common::run(200, None), common::hard_values()] {
+            let dialect = csv::Dialect {
+                delimiter,
+                decimal_comma,
+            };
+            let mut out = Vec::new();
+            csv::write_as(&trace, dialect, &mut out).expect("a vector takes all");
+            let text = String::from_utf8(out).expect("UTF-8");
+            assert!(text.starts_with(&format!("scan{delimiter}time_ns{delimiter}")));
+            let reals = text.lines().skip(1).any(|line| line.contains("0.1"));
+            assert!(!(decimal_comma && reals), "{text}");
+            let loaded = csv::read(&text, Some(&trace.header().to_json())).expect("our own file");
+            assert_same(&loaded.trace, &trace);
+            let alone = csv::read(&text, None).expect("rows alone");
+            let (found, expected) = (alone.trace.cells(1), trace.cells(1));
+            assert!(found.map(cell_text).eq(expected.map(cell_text)), "{dialect:?}");
+        }
     }
 }
 
@@ -38,6 +62,7 @@ fn json_lines_come_back_to_the_bit() {
     for trace in [common::run(200, None), common::hard_values()] {
         let loaded = jsonl::read(&jsonl_text(&trace)).expect("our own file");
         assert_same(&loaded.trace, &trace);
+        assert_eq!(loaded.trace.notes(), trace.notes());
         assert!(loaded.lacks.is_empty(), "{:?}", loaded.lacks);
     }
 }

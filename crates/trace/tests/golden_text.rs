@@ -60,6 +60,9 @@ fn versions_hashes_and_verdicts_stay_out() {
         path: "p".into(),
         text: "t".into(),
         verdict: ClaimVerdict::Failed,
+        scans: Some([0, 3]),
+        held: None,
+        failures: Vec::new(),
     }]);
     assert_eq!(golden::text(&trace), golden::text(&other));
 }

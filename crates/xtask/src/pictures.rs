@@ -3,12 +3,16 @@
 use crate::{Generated, root};
 use standstill_blocks::REGISTRY;
 use standstill_script::{read, run};
-use standstill_trace::{Trace, svg::svg};
+use standstill_trace::Trace;
+use standstill_trace::svg::{report, svg};
 use std::collections::BTreeMap;
 use std::fs;
 
 /// What the pictures show of an axis, beside its states and the Booleans.
 const SIGNALS: [&str; 2] = ["Position", "Velocity"];
+
+/// The picture that shows what a report shows.
+const REPORT: &str = "report";
 
 /// A line of the list.
 #[derive(Debug)]
@@ -36,7 +40,10 @@ impl Picture {
     pub fn drawn(&self) -> Generated {
         Generated {
             path: self.path(),
-            text: svg(&self.trace, &SIGNALS),
+            text: match self.name.as_str() {
+                REPORT => report(&self.trace),
+                _ => svg(&self.trace, &SIGNALS),
+            },
         }
     }
 }

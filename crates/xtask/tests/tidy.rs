@@ -136,7 +136,7 @@ fn the_top_level_holds_what_a_newcomer_expects() {
 #[test]
 fn layers_depend_only_downwards() {
     // Package and what it may depend on, from bottom to top (docs/architecture.md).
-    let layers: [(&str, &str, &[&str]); 12] = [
+    let layers: [(&str, &str, &[&str]); 13] = [
         ("crates/planner", "standstill-planner", &[]),
         ("crates/axis", "standstill-axis", &["standstill-planner"]),
         ("crates/fb", "standstill-fb", &["standstill-axis"]),
@@ -163,6 +163,7 @@ fn layers_depend_only_downwards() {
             ],
         ),
         ("crates/trace", "standstill-trace", &[]),
+        ("crates/report", "standstill-report", &["standstill-trace"]),
         (
             "crates/script",
             "standstill-script",
@@ -194,6 +195,7 @@ fn layers_depend_only_downwards() {
                 "standstill-blocks",
                 "standstill-fb",
                 "standstill-planner",
+                "standstill-report",
                 "standstill-script",
                 "standstill-soak",
                 "standstill-trace",

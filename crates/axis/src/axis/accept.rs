@@ -166,7 +166,7 @@ impl<P: Planner> Axis<P> {
             // MC_Stop released the axis.
             AxisState::Standstill if buffered && !self.queue.is_empty() => wait(),
             AxisState::Standstill => Ok(Way::Now),
-            AxisState::Homing if stop || (home && !buffered) => Ok(Way::Now),
+            AxisState::Homing if stop || (home && !buffered && !self.is_homed_by_drive()) => Ok(Way::Now),
             AxisState::Homing if buffered && !stop => wait(),
             AxisState::Homing => refuse(ErrorId::InHoming),
             // The same instance may stop again with other values (V7a).
@@ -296,7 +296,14 @@ impl<P: Planner> Axis<P> {
                 self.in_first_turn(position).map_err(|(length, error)| {
                     self.refuse("Position", position, length, error, source, log)
                 })?;
-                Ok((Work::Home(position), self.config.limits))
+                self.has_signals_to_home()
+                    .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, source, log))?;
+                let limits = if self.config.homing.searches() {
+                    self.resolve(&Dynamics::default(), source, log)?
+                } else {
+                    self.config.limits
+                };
+                Ok((Work::Home(position), limits))
             }
         }
     }
@@ -469,7 +476,8 @@ impl<P: Planner> Axis<P> {
             }
             // Its times have passed.
             Work::Profile { .. } => return Err(ErrorId::ProfileInterrupted),
-            Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return Ok(Motion::Hold),
+            Work::Home(_) => return self.homing_motion(entry, start),
+            Work::SetPosition { .. } | Work::Write(_) => return Ok(Motion::Hold),
         };
         match planned {
             Ok(plan) => {
@@ -530,5 +538,12 @@ impl<P: Planner> Axis<P> {
         self.enter(start_event(&entry.work));
         self.before = before;
         self.adopt(entry, motion, scan, log);
+        if matches!(entry.work, Work::Home(_)) {
+            self.begin_homing();
+        }
+        if self.moves_itself() {
+            // A drive that homes by itself is stopped by it first.
+            self.motion = Motion::Follow;
+        }
     }
 }

@@ -57,9 +57,6 @@ impl<P: Planner> Axis<P> {
         if entry.passage.wanted <= 0.0 && !self.passes_its_end() {
             return None;
         }
-        if self.runs_away(start, &entry.limits) {
-            return None;
-        }
         let planned = self
             .planner
             .blend(start, end, &entry.passage, &entry.limits, before);
@@ -71,18 +68,6 @@ impl<P: Planner> Axis<P> {
             let most = self.config.limits.velocity * (1.0 + ROUNDING);
             end <= if entry.passage.wanted > 0.0 { most } else { 0.0 }
         })
-    }
-
-    /// Whether the velocity is bound to exceed that of the axis within the dynamics of `limits`. A blend would let it.
-    fn runs_away(&self, start: &Setpoint, limits: &Limits) -> bool {
-        if start.acceleration * start.velocity <= 0.0 {
-            return false;
-        }
-        let velocity = self.config.limits.velocity;
-        let wide = Limits { velocity, ..*limits };
-        let ramp = self.planner.ramp_to(start, 0.0, &wide, &wide);
-        let excess = ramp.ok().and_then(|ramp| ramp.excess());
-        excess.is_some_and(|excess| excess.velocity > velocity * ROUNDING)
     }
 
     /// `limits` of a motion, with the velocity its plan ends with, should that be larger (B3).

@@ -122,6 +122,7 @@ impl<P: Planner> Axis<P> {
         }
         self.coordinates = self.coordinates.wrapping_add(1);
         self.shift_actual(by);
+        self.homing.shift(by);
         if !relative {
             self.actual = position;
         }

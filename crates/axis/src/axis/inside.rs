@@ -59,7 +59,11 @@ impl<P: Planner> Axis<P> {
             let raised = Entry { limits, ..*entry };
             let motion = match self.plan_from(&raised, start, before) {
                 Ok(motion) => motion,
-                Err(error @ (ErrorId::PositiveBarred | ErrorId::NegativeBarred)) => return Err(error),
+                Err(
+                    error @ (ErrorId::PositiveBarred
+                    | ErrorId::NegativeBarred
+                    | ErrorId::OutwardFromLimitSwitch),
+                ) => return Err(error),
                 Err(_) => continue,
             };
             let left = self.excess_of(&motion);

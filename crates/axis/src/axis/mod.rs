@@ -7,7 +7,7 @@
 //! commands wait, [`parameters`] has what can be written by number, [`torque`] holds torques, [`supervision`] watches the distance to the
 //! actual position, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges, [`profile`] moves along curves through points,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
-//! motions inside, [`permission`] out of barred directions, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
+//! motions inside, [`limit_switches`] off the hardware ones, [`permission`] out of barred directions, [`homing`] searches the reference, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
 
 mod accept;
@@ -15,8 +15,10 @@ mod blend;
 mod coordinates;
 mod dynamics;
 mod factors;
+mod homing;
 mod inside;
 mod jog;
+mod limit_switches;
 mod modulo;
 mod outputs;
 mod parameters;
@@ -182,6 +184,8 @@ pub struct Outlook {
     pub reset: Option<CommandId>,
     /// MC_Home has been done.
     pub homed: bool,
+    /// The search of MC_Home, as bits.
+    pub homing: [u64; 5],
     /// The last motion was in positive direction.
     pub forward: bool,
     /// What is superimposed.
@@ -280,6 +284,8 @@ pub struct Axis<P: Planner = Standard> {
     cause_present: bool,
     reset: Option<power::Reset>,
     homed: bool,
+    /// The search of MC_Home.
+    homing: homing::Search,
     /// What the drive's present commanded position is called from now on (u); none for drives that count
     /// increments.
     rename: Option<f64>,
@@ -357,6 +363,7 @@ impl<P: Planner> Axis<P> {
             cause_present: false,
             reset: None,
             homed: false,
+            homing: homing::Search::default(),
             rename: None,
             shift: 0.0,
             watched: false,
@@ -519,6 +526,7 @@ impl<P: Planner> Axis<P> {
             cause_present: self.cause_present,
             reset: self.reset.as_ref().map(|reset| reset.id),
             homed: self.homed,
+            homing: self.homing.bits(),
             forward: self.last_velocity > 0.0,
             superimposed: self.superimposed_outlook(),
             factors: self.factors.bits(),
@@ -639,6 +647,9 @@ impl<P: Planner> Axis<P> {
             // A stop that stands has completed, whatever ends its hold, and a profile at its end.
             let over = self.stop_held || is_over;
             self.decide(owner.id, if over { Fate::Done } else { fate });
+            if matches!(owner.work, Work::Home(_)) {
+                self.end_homing();
+            }
         }
         self.stop_held = false;
         self.replan_due = false;

@@ -75,7 +75,7 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub(super) fn permitted(&self, entry: &Entry, plan: &P::Plan, before: &Limits) -> Result<(), ErrorId> {
         let brakes = entry.halted && !entry.paused;
-        if self.power.permitted == Permission::BOTH || brakes || !entry.leads_on() {
+        if self.permission() == Permission::BOTH || brakes || !entry.leads_on() {
             return Ok(());
         }
         let limits = if entry.paused {
@@ -89,7 +89,7 @@ impl<P: Planner> Axis<P> {
     /// Why the rest of a plan is barred. Cost: one ramp.
     #[inline(never)]
     pub(super) fn barred(&self, rest: (&P::Plan, u64), limits: &Limits, before: &Limits) -> Option<ErrorId> {
-        if self.power.permitted == Permission::BOTH {
+        if self.permission() == Permission::BOTH {
             return None;
         }
         let (plan, elapsed) = rest;
@@ -101,7 +101,7 @@ impl<P: Planner> Axis<P> {
             _ => (0.0, 0.0),
         };
         let small = ROUNDING * (up + down) + RESOLUTION * start.position.abs();
-        self.power.permitted.bars(
+        self.bars(
             goal > 0.0 || up > braking_up + small,
             goal < 0.0 || down > braking_down + small,
         )
@@ -131,8 +131,7 @@ impl<P: Planner> Axis<P> {
             .as_ref()
             .filter(|owner| !owner.paused && owner.passage.wanted > 0.0)?;
         let passage = self.passage(owner, self.setpoint.position, 0);
-        let permitted = self.power.permitted;
-        permitted.bars(true, true).filter(|_| passage.wanted <= 0.0)
+        self.bars(true, true).filter(|_| passage.wanted <= 0.0)
     }
 
     /// Everything brakes: from now on there is one motion, with the velocity of the sum. What is superimposed on an
@@ -223,12 +222,12 @@ impl<P: Planner> Axis<P> {
 
     /// Whether a direction is barred.
     pub(super) fn bars_any(&self) -> bool {
-        self.power.permitted != Permission::BOTH
+        self.permission() != Permission::BOTH
     }
 
     /// A direction in which nothing may be added to a layer at rest.
     pub(super) fn way_barred(&self, way: f64) -> Option<ErrorId> {
-        self.power.permitted.bars(way > 0.0, way < 0.0)
+        self.bars(way > 0.0, way < 0.0)
     }
 }
 

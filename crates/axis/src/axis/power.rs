@@ -5,8 +5,8 @@
 
 use super::{Axis, Calm, Motion, Permission, Power, Source};
 use crate::{
-    AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
-    InstanceId, Log, PowerOff,
+    AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DriveHoming, DrivePosition, DriveRequest, ErrorId,
+    Event, Fate, InstanceId, Log, PowerOff,
 };
 use standstill_planner::Planner;
 
@@ -35,7 +35,13 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
         // In most scans nothing but the position changes.
-        if self.calm.is_any() && feedback.enabled && feedback.fault.is_none() && feedback.comms == Comms::Ok {
+        let on_switch = feedback.signals.limit_switch_positive | feedback.signals.limit_switch_negative;
+        if self.calm.is_any()
+            && feedback.enabled
+            && !on_switch
+            && feedback.fault.is_none()
+            && feedback.comms == Comms::Ok
+        {
             debug_assert_eq!(self.calm, self.calmness());
             match (feedback.position, &self.modulo) {
                 (DrivePosition::Units(units), None) => self.latch(units),
@@ -72,7 +78,8 @@ impl<P: Planner> Axis<P> {
             && comms == Comms::Ok
             && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         let is_pending = self.reset.is_some() || self.shift_due || self.rename.is_some();
-        let is_watched = self.parameters.lag.on || matches!(self.motion, Motion::Torque { .. });
+        let is_torque = matches!(self.motion, Motion::Torque { .. });
+        let is_watched = self.parameters.lag.on || self.is_homing() || is_torque;
         if !(is_powered && is_well && !is_pending && self.past.is_whole() && !is_watched) {
             Calm::No
         } else if self.layer.is_some() {
@@ -118,7 +125,7 @@ impl<P: Planner> Axis<P> {
 
     #[inline(never)]
     fn follow_change(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
-        self.signals = feedback.signals;
+        self.latch_signals(feedback.signals);
         self.power.voltage = feedback.voltage;
         self.power.fault = feedback.fault;
         self.power.comms = feedback.comms;
@@ -131,6 +138,10 @@ impl<P: Planner> Axis<P> {
             self.follow_power(feedback, scan, log);
             self.follow_actual();
             self.supervise(scan, log);
+            if self.is_homing() {
+                self.follow_homing(scan, log);
+            }
+            self.mind_limit_switches(scan, log);
             if self.shift_due {
                 self.take_queued_shifts(scan, log);
             }
@@ -157,7 +168,9 @@ impl<P: Planner> Axis<P> {
                 self.enter(AxisEvent::PowerOn);
             }
             AxisState::ErrorStop if !feedback.enabled => self.motion = Motion::Follow,
-            AxisState::ErrorStop if matches!(self.motion, Motion::Follow) => self.hold_at_actual(),
+            AxisState::ErrorStop if matches!(self.motion, Motion::Follow) && !self.moves_itself() => {
+                self.hold_at_actual();
+            }
             AxisState::Disabled | AxisState::ErrorStop => {}
             _ if self.power.going_off && !feedback.enabled => {
                 self.power.going_off = false;
@@ -169,7 +182,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The set-point takes over where the feedback is: enabling never makes it step.
-    fn hold_at_actual(&mut self) {
+    pub(super) fn hold_at_actual(&mut self) {
         self.setpoint = standstill_planner::Setpoint::at_rest(self.actual);
         self.count_actual_turns();
         self.motion = Motion::Hold;
@@ -303,7 +316,7 @@ impl<P: Planner> Axis<P> {
         self.error_code = code;
         self.power.going_off = false;
         match reaction {
-            Reaction::Ramp if self.power.on => self.ramp_down(source, log),
+            Reaction::Ramp if self.power.on && !self.moves_itself() => self.ramp_down(source, log),
             Reaction::Ramp | Reaction::Follow => self.motion = Motion::Follow,
         }
         self.enter(AxisEvent::Fault);
@@ -355,7 +368,8 @@ impl<P: Planner> Axis<P> {
                 self.decide(id, Fate::Failed(ErrorId::CauseStillPresent));
                 return;
             }
-            let moving = matches!(self.motion, Motion::Run { .. }) && !reached;
+            let moves_itself = self.beside.report.homing != DriveHoming::Off;
+            let moving = moves_itself || (matches!(self.motion, Motion::Run { .. }) && !reached);
             let unwanted = self.power.on && !self.power.wanted;
             if moving || unwanted || self.power.fault.is_some() {
                 return;

@@ -172,6 +172,11 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// The way the actual position has gone since the scan before (u).
+    pub(super) fn actual_step(&self) -> f64 {
+        self.actual - self.past.before
+    }
+
     /// This scan has no fresh actual position.
     pub(super) fn latch_nothing(&mut self) {
         self.stir();

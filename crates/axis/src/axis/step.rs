@@ -56,15 +56,33 @@ impl<P: Planner> Axis<P> {
     // Inlined for the same reason as `publish`.
     #[inline(always)]
     fn step_along_plan(&mut self, scan: u64, log: &mut Log) {
-        let Motion::Run { plan, elapsed, scans } = &mut self.motion else {
+        let Motion::Run { plan, elapsed, .. } = &self.motion else {
             return;
         };
-        // Scans of 1 ms wrap after 10^8 years.
-        *elapsed = elapsed.wrapping_add(1);
-        if elapsed == scans {
-            self.changes = self.changes.wrapping_add(1);
+        match plan.brief(elapsed.wrapping_add(1)) {
+            Some(next) => self.step_to(next, scan, log),
+            None => self.step_along_other(scan, log),
         }
-        let next = plan.next(*elapsed);
+    }
+
+    /// The same for plans that take more to tell it.
+    #[inline(never)]
+    fn step_along_other(&mut self, scan: u64, log: &mut Log) {
+        if let Motion::Run { plan, elapsed, .. } = &mut self.motion {
+            let next = plan.next(elapsed.wrapping_add(1));
+            self.step_to(next, scan, log);
+        }
+    }
+
+    #[inline(always)]
+    fn step_to(&mut self, next: Setpoint, scan: u64, log: &mut Log) {
+        if let Motion::Run { elapsed, scans, .. } = &mut self.motion {
+            // Scans of 1 ms wrap after 10^8 years.
+            *elapsed = elapsed.wrapping_add(1);
+            if elapsed == scans {
+                self.changes = self.changes.wrapping_add(1);
+            }
+        }
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
         } else if self.watched && self.plan_would_leave() {
@@ -147,11 +165,7 @@ impl<P: Planner> Axis<P> {
         match owner.work {
             Work::Position(_) | Work::Distance(_) => self.complete_move(scan, log),
             Work::Halt => self.complete(scan, log),
-            Work::Home(position) => {
-                self.call_set_position(position, scan, log);
-                self.homed = true;
-                self.complete(scan, log);
-            }
+            Work::Home(position) => self.settle_homing(position, scan, log),
             Work::Stop if owner.held => {
                 self.motion = Motion::Hold;
                 self.stop_held = true;
@@ -185,7 +199,7 @@ impl<P: Planner> Axis<P> {
 
     /// The owner has completed, at rest or passing its end on to a blended successor.
     #[cold]
-    fn complete(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn complete(&mut self, scan: u64, log: &mut Log) {
         if self.base().velocity != 0.0 {
             return self.pass_on(scan, log);
         }

@@ -31,7 +31,7 @@ impl Lag {
 
 impl<P: Planner> Axis<P> {
     /// The set position last published less the actual position (u), on a modulo axis the shorter way round.
-    fn following_error(&self) -> f64 {
+    pub(super) fn following_error(&self) -> f64 {
         let error = self.setpoint.position - self.actual;
         match &self.modulo {
             None => error,

@@ -5,19 +5,17 @@
 //! random scans the override takes new factors, 0 among them, and commands that run or wait take new values. At the
 //! end one move is left alone with its changes, and must end where the newest of them says.
 //!
-//! A take-over that cannot stay inside a limit of the axis says so in a record; it may happen in one case of a
-//! thousand. Without a record it happens in none of the ten thousand cases that always run. Of the million it does in
-//! about thirty, which is more than there should be: among them are blends and sums of two motions.
+//! Set-points are held against the limits of the axis by the rules of `standstill-soak`. A take-over that cannot stay
+//! inside a limit says so in a record; that may happen in one case of a thousand. Without a record it never happens.
 
 mod random;
-mod seen;
 
 use random::Random;
-use seen::Seen;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Event, Factors, Fate,
-    Log, MoveProfile, Raw, Record, Request, Source, Standard, StartState, Superimpose,
+    Log, MoveProfile, Plan, Raw, Request, Source, Standard, StartState, Superimpose,
 };
+use standstill_soak::rules::limits::Track;
 
 const CYCLE: f64 = 0.01;
 /// A case that takes longer is a motion that never ends.
@@ -27,7 +25,7 @@ struct Case {
     seed: u64,
     random: Random,
     axis: Axis,
-    seen: Seen,
+    track: Track,
     log: Log,
     scan: u64,
     commands: Vec<(CommandId, Command)>,
@@ -59,11 +57,12 @@ impl Case {
             profile,
             ..AxisConfig::new(limits)
         };
+        let axis = Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).unwrap();
         Self {
             seed,
             random,
-            axis: Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).unwrap(),
-            seen: Seen::new(limits, config.modulo, CYCLE),
+            track: Track::new(&axis, CYCLE),
+            axis,
             log: Log::default(),
             scan: 0,
             commands: Vec::new(),
@@ -86,16 +85,24 @@ impl Case {
     fn advance(&mut self, scans: u64) {
         for _ in 0..scans {
             self.axis.advance(self.scan, &mut self.log);
-            let unavoidable = |record: &&Record| matches!(record.event, Event::Unavoidable(_));
-            self.unavoidable |= self.log.since(self.told).any(|record| unavoidable(&record));
+            for record in self.log.since(self.told) {
+                match (record.event, self.axis.plan()) {
+                    (Event::Unavoidable(_), _) => self.unavoidable = true,
+                    (Event::Planned { .. }, Some((plan, _))) => {
+                        let end = plan.at(u64::from(plan.scans()));
+                        self.track.leads(plan.at(0).position, end.position);
+                    }
+                    _ => {}
+                }
+            }
             self.told = self.log.total();
             let what = format!("case {}, scan {}", self.seed, self.scan);
-            let kept = self.seen.check(&self.axis.setpoint());
+            let kept = self.track.check(&self.axis.setpoint());
             self.exceeded |= kept.is_err();
             if let Err(broken) = kept
                 && !self.unavoidable
             {
-                self.silent.get_or_insert(format!("{what}: {broken}"));
+                self.silent.get_or_insert(format!("{what}: {broken:?}"));
             }
             assert_ne!(self.axis.state(), AxisState::ErrorStop, "{what}");
             self.scan += 1;
@@ -352,7 +359,7 @@ fn run(cases: core::ops::Range<u64>) {
     println!("{changes} changes in {scans} scans; {exceeded} of {count} cases out of a limit");
     println!("{} of them without a record: {silent:#?}", silent.len());
     assert!(exceeded * 1000 <= count, "{exceeded} of {count} cases");
-    assert!(silent.len() as u64 * 20_000 <= count, "{silent:#?}");
+    assert!(silent.is_empty(), "{silent:#?}");
 }
 
 /// Covers: R9, R12, R13, S6, B16, B17, V16

@@ -5,6 +5,7 @@ mod compare;
 mod ends;
 mod fmt;
 mod plan;
+mod reports;
 mod run;
 mod soak;
 mod soak_blocks;

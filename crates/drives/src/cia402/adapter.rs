@@ -1,13 +1,15 @@
 //! A drive of any CiA 402 node.
 
+use super::homing::Link;
 use super::node::{Inputs, MODE_CSP, Node, Outputs};
 use super::sequencer::{Memory, controlword};
 use super::words::{State, Statusword};
 use standstill_axis::{
-    Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals, Fault,
+    Comms, Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, DriveRequest,
+    DriveSignals, Fault,
 };
 
-/// Makes a [`Drive`] of a [`Node`], in cyclic synchronous position mode.
+/// Makes a [`Drive`] of a [`Node`], in cyclic synchronous position mode, and in homing mode while the axis asks for it.
 ///
 /// - The node's position, modulo 2^32, is extended: it may wrap as often as it likes, as long as it moves less
 ///   than 2^31 increments between two scans (DR-2).
@@ -21,6 +23,7 @@ use standstill_axis::{
 pub struct Adapter<N> {
     node: N,
     memory: Memory,
+    homing: Link,
     last: Inputs,
     /// The node's position, extended.
     position: i64,
@@ -35,6 +38,7 @@ impl<N: Node> Adapter<N> {
         Self {
             node,
             memory: Memory::default(),
+            homing: Link::default(),
             last: Inputs::default(),
             position: 0,
             fresh: true,
@@ -71,10 +75,12 @@ impl<N: Node> Adapter<N> {
         };
         self.fresh = false;
         self.last = inputs;
+        let reference = extended(self.position, self.node.home_offset());
+        self.homing.take(&inputs, DrivePosition::Increments(reference));
     }
 
     fn is_enabled(&self) -> bool {
-        self.state() == State::OperationEnabled && self.last.mode == MODE_CSP
+        self.state() == State::OperationEnabled && (self.last.mode == MODE_CSP || self.homing.leads())
     }
 }
 
@@ -122,17 +128,29 @@ impl<N: Node> Drive for Adapter<N> {
         let (word, memory) = controlword(request, Statusword(self.last.statusword), self.memory);
         self.memory = memory;
         let target = match command.position {
-            DrivePosition::Increments(increments) if self.is_enabled() => increments,
+            DrivePosition::Increments(increments) if self.is_enabled() && self.last.mode == MODE_CSP => {
+                increments
+            }
             // An axis without a scaling cannot be told what an increment is: it stays where it is.
             DrivePosition::Increments(_) | DrivePosition::Units(_) => self.position,
         };
+        let (mode, bits) = self.homing.give(&self.last, request == DriveRequest::Enable);
         let outputs = Outputs {
-            controlword: word,
-            mode: MODE_CSP,
+            controlword: word | bits,
+            mode,
             // Modulo 2^32, as the node counts.
             target_position: target as i32,
         };
         self.node.outputs(now_ns, &outputs);
+    }
+
+    fn report(&mut self, report: &mut DriveReport) {
+        report.homing = self.homing.told();
+        report.equipment = self.node.equipment();
+    }
+
+    fn order(&mut self, order: &DriveOrder) {
+        self.homing.order(order.homing);
     }
 }
 

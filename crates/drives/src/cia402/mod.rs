@@ -1,6 +1,7 @@
 //! The CiA 402 drive profile: words, sequencer, adapter, and a simulated node.
 
 mod adapter;
+mod homing;
 mod motor;
 mod node;
 mod sequencer;
@@ -9,8 +10,9 @@ mod state;
 mod words;
 
 pub use adapter::Adapter;
-pub use node::{Inputs, MODE_CSP, Node, Outputs};
+pub use homing::NodeHoming;
+pub use node::{Inputs, MODE_CSP, MODE_HM, Node, Outputs};
 pub use sequencer::{Memory, controlword};
 pub use simulated::{Cia402Drive, Reaction, Settings, SimulatedNode};
 pub use state::{TRANSITIONS, Transition, command_transition};
-pub use words::{Command, State, Statusword};
+pub use words::{Command, HomingStatus, State, Statusword};

@@ -53,14 +53,28 @@ impl Motor {
 
     /// One scan of a ramp to rest with `deceleration` (increments/scan^2).
     pub fn brake(&mut self, deceleration: f64) {
+        self.ramp(0.0, deceleration);
+    }
+
+    /// One scan of a ramp to `velocity` (increments/scan) with `rate` (increments/scan^2).
+    pub fn ramp(&mut self, velocity: f64, rate: f64) {
         let before = self.velocity;
-        self.velocity = if before.abs() <= deceleration {
-            0.0
+        let missing = velocity - before;
+        self.velocity = if missing.abs() <= rate {
+            velocity
         } else {
-            before - deceleration.copysign(before)
+            before + rate.copysign(missing)
         };
         self.place = (self.place + 0.5 * (before + self.velocity)).clamp(-EXACT, EXACT);
         self.push(nearest(self.place));
+    }
+
+    /// From now on every position counts `by` increments more.
+    pub fn count_from(&mut self, by: i64) {
+        for position in &mut self.line {
+            *position = position.saturating_add(by);
+        }
+        self.place += by as f64;
     }
 
     /// At rest, with nothing on its way.

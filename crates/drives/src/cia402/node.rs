@@ -1,7 +1,12 @@
 //! Process data of a node: what a bus carries in every scan.
 
+use standstill_axis::Equipment;
+
 /// Mode of operation 8: cyclic synchronous position.
 pub const MODE_CSP: i8 = 8;
+
+/// Mode of operation 6: homing.
+pub const MODE_HM: i8 = 6;
 
 /// What a node sends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,4 +41,19 @@ pub trait Node {
 
     /// This scan's outputs.
     fn outputs(&mut self, now_ns: i64, outputs: &Outputs);
+
+    /// What it has. By default both kinds of switches, in 60FDh, and mode 6; a node that has less says so.
+    fn equipment(&self) -> Equipment {
+        Equipment {
+            home_switch: true,
+            limit_switches: true,
+            marker: false,
+            homing: true,
+        }
+    }
+
+    /// 607Ch: the position its own homing gives to the reference (increments).
+    fn home_offset(&self) -> i32 {
+        0
+    }
 }

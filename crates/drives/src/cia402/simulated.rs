@@ -1,11 +1,12 @@
 //! A node that only exists in memory, with every state and transition of the profile.
 
 use super::adapter::Adapter;
+use super::homing::{NodeHoming, Progress};
 use super::motor::Motor;
-use super::node::{Inputs, MODE_CSP, Node, Outputs};
+use super::node::{Inputs, MODE_CSP, MODE_HM, Node, Outputs};
 use super::state::{Transition, command_transition};
 use super::words::{Command, State};
-use standstill_axis::Powered;
+use standstill_axis::{Equipment, Powered};
 
 /// A simulated node behind the adapter: a drive for tests without hardware.
 pub type Cia402Drive = Adapter<SimulatedNode>;
@@ -48,6 +49,8 @@ pub struct Settings {
     pub ends: Option<(i64, i64)>,
     /// The home switch is active from here to there (increments).
     pub home: Option<(i64, i64)>,
+    /// What it does in homing mode; `None`: it does not know the mode.
+    pub homing: Option<NodeHoming>,
 }
 
 impl Default for Settings {
@@ -64,11 +67,12 @@ impl Default for Settings {
             fault: Reaction::Ramp,
             ends: None,
             home: None,
+            homing: None,
         }
     }
 }
 
-/// A CiA 402 node in cyclic synchronous position mode.
+/// A CiA 402 node in cyclic synchronous position mode or homing mode.
 #[derive(Clone, Copy, Debug)]
 pub struct SimulatedNode {
     settings: Settings,
@@ -80,6 +84,9 @@ pub struct SimulatedNode {
     controlword: u16,
     mode: i8,
     motor: Motor,
+    homing: Progress,
+    /// Increments its own homing has taken off its count.
+    origin: i64,
     error_code: u16,
     fault_pending: bool,
     cause_present: bool,
@@ -105,6 +112,8 @@ impl SimulatedNode {
             controlword: 0,
             mode: MODE_CSP,
             motor: Motor::new(settings.position, settings.delay),
+            homing: Progress::Idle,
+            origin: 0,
             error_code: 0,
             fault_pending: false,
             cause_present: false,
@@ -125,6 +134,11 @@ impl SimulatedNode {
     /// Actual position (increments).
     pub fn position(&self) -> i64 {
         self.motor.actual()
+    }
+
+    /// Increments its own homing has taken off its count since the start.
+    pub fn origin(&self) -> i64 {
+        self.origin
     }
 
     /// The transitions taken so far: bit n for number n.
@@ -198,6 +212,9 @@ impl SimulatedNode {
         self.leaving = None;
         if !state.has_torque() {
             self.motor.let_go();
+        }
+        if state != State::OperationEnabled {
+            self.homing = Progress::Idle;
         }
     }
 
@@ -285,11 +302,54 @@ impl SimulatedNode {
             || self.leaving.is_some();
         if brakes {
             self.motor.brake(self.settings.deceleration);
+        } else if self.state == State::OperationEnabled && self.mode == MODE_HM {
+            self.home();
         } else if self.state == State::OperationEnabled {
             // The target comes modulo 2^32: the one nearest to the last is meant.
             let newest = self.motor.newest();
             let step = i64::from(target.wrapping_sub(newest as i32));
             self.motor.follow(newest.saturating_add(step));
+        }
+    }
+
+    /// A mode it does not know stays without an answer.
+    fn take_mode(&mut self, mode: i8) {
+        if mode == MODE_CSP || (mode == MODE_HM && self.settings.homing.is_some()) {
+            if mode != self.mode {
+                self.homing = Progress::Idle;
+            }
+            self.mode = mode;
+        }
+    }
+
+    /// One scan of homing mode.
+    fn home(&mut self) {
+        let asked = self.controlword & (Command::HOMING | Command::HALT) == Command::HOMING;
+        let at_rest = self.motor.is_at_rest();
+        self.homing = match (self.homing, asked) {
+            (Progress::Idle, true) if at_rest => Progress::Searching,
+            (Progress::Idle | Progress::Searching, false) => Progress::Idle,
+            (progress, _) => progress,
+        };
+        let rate = self.settings.deceleration;
+        let Some(NodeHoming { up, velocity }) = self.settings.homing else {
+            return self.motor.brake(rate);
+        };
+        if self.homing != Progress::Searching {
+            return self.motor.brake(rate);
+        }
+        let (end, home) = (if up { 0b10 } else { 0b01 }, 0b100);
+        if self.switches() & home != 0 {
+            let reference = self.position();
+            self.origin = self.origin.saturating_add(reference);
+            self.motor.count_from(reference.saturating_neg());
+            self.homing = Progress::Attained;
+            self.motor.brake(rate);
+        } else if self.switches() & end != 0 {
+            self.homing = Progress::Failed;
+            self.motor.brake(rate);
+        } else {
+            self.motor.ramp(if up { velocity } else { -velocity }, rate);
         }
     }
 
@@ -302,13 +362,17 @@ impl SimulatedNode {
             | bit(self.warning, 7)
             | bit(self.remote, 9)
             | bit(is_limited, 11)
-            | bit(follows, 12)
+            | if self.mode == MODE_HM {
+                self.homing.status(self.motor.is_at_rest()).bits()
+            } else {
+                bit(follows, 12)
+            }
     }
 
     /// 60FDh
     fn switches(&self) -> u32 {
         let Settings { ends, home, .. } = self.settings;
-        let position = self.position();
+        let position = self.position().saturating_add(self.origin);
         let bit = |is_set: bool, number: u32| u32::from(is_set) << number;
         bit(ends.is_some_and(|(low, _)| position <= low), 0)
             | bit(ends.is_some_and(|(_, high)| position >= high), 1)
@@ -332,8 +396,17 @@ impl Node for SimulatedNode {
         self.waited = self.waited.saturating_add(1);
         self.by_itself();
         self.obey(outputs.controlword);
-        self.mode = outputs.mode;
+        self.take_mode(outputs.mode);
         self.turn(outputs.target_position);
+    }
+
+    fn equipment(&self) -> Equipment {
+        Equipment {
+            home_switch: self.settings.home.is_some(),
+            limit_switches: self.settings.ends.is_some(),
+            marker: false,
+            homing: self.settings.homing.is_some(),
+        }
     }
 }
 

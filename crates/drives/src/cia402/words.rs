@@ -66,6 +66,43 @@ impl State {
     }
 }
 
+/// What bits 13, 12 and 10 tell in homing mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum HomingStatus {
+    /// 0 0 0: it moves.
+    InProgress,
+    /// 0 0 1: interrupted or not started.
+    Stopped,
+    /// 0 1 0: the reference is known, the drive still moves.
+    Attained,
+    /// 0 1 1: done.
+    Done,
+    /// 1 0 0: an error, and the drive still moves; also 1 1 0, which is none of the profile's.
+    ErrorMoving,
+    /// 1 0 1: an error, and the drive stands; also 1 1 1.
+    ErrorStopped,
+}
+
+impl HomingStatus {
+    /// Whether the drive stands.
+    pub const fn is_at_rest(self) -> bool {
+        matches!(self, Self::Stopped | Self::Done | Self::ErrorStopped)
+    }
+
+    /// Its bits in a status word.
+    pub const fn bits(self) -> u16 {
+        let (error, attained, reached) = match self {
+            Self::InProgress => (0, 0, 0),
+            Self::Stopped => (0, 0, 1),
+            Self::Attained => (0, 1, 0),
+            Self::Done => (0, 1, 1),
+            Self::ErrorMoving => (1, 0, 0),
+            Self::ErrorStopped => (1, 0, 1),
+        };
+        error << 13 | attained << 12 | reached << 10
+    }
+}
+
 /// A status word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Statusword(pub u16);
@@ -97,6 +134,19 @@ impl Statusword {
     /// Bit 11: an internal limit is active.
     pub const fn internal_limit(self) -> bool {
         self.0 & (1 << 11) != 0
+    }
+
+    /// Bits 13, 12 and 10 in homing mode.
+    pub const fn homing(self) -> HomingStatus {
+        let (error, attained, reached) = (self.0 >> 13 & 1, self.0 >> 12 & 1, self.0 >> 10 & 1);
+        match (error, attained, reached) {
+            (0, 0, 0) => HomingStatus::InProgress,
+            (0, 0, _) => HomingStatus::Stopped,
+            (0, _, 0) => HomingStatus::Attained,
+            (0, _, _) => HomingStatus::Done,
+            (_, _, 0) => HomingStatus::ErrorMoving,
+            (_, _, _) => HomingStatus::ErrorStopped,
+        }
     }
 
     /// Bit 12 in the cyclic modes: the drive follows the command.
@@ -132,6 +182,12 @@ const COMMANDS: [(u16, u16, Command); 5] = [
 ];
 
 impl Command {
+    /// Bit 4 of a control word in homing mode: home, as long as it is set.
+    pub const HOMING: u16 = 1 << 4;
+
+    /// Bit 8 of a control word: come to rest.
+    pub const HALT: u16 = 1 << 8;
+
     /// Bit 7 of a control word: fault reset, at its rising edge.
     pub const FAULT_RESET: u16 = 1 << 7;
 
@@ -184,6 +240,30 @@ mod tests {
             (Unknown, 52),
         ];
         assert_eq!(counts.into_iter().collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn all_patterns_of_bits_13_12_and_10_are_decoded() {
+        use HomingStatus::*;
+        let rows = [
+            InProgress,
+            Stopped,
+            Attained,
+            Done,
+            ErrorMoving,
+            ErrorStopped,
+            ErrorMoving,
+            ErrorStopped,
+        ];
+        for (pattern, expected) in (0_u16..).zip(rows) {
+            let word = (pattern & 4) << 11 | (pattern & 2) << 11 | (pattern & 1) << 10;
+            for other in [0, 0x0237, 0xcbff] {
+                assert_eq!(Statusword(word | other).homing(), expected, "{pattern:03b}");
+            }
+            if pattern < 6 {
+                assert_eq!(expected.bits(), word);
+            }
+        }
     }
 
     #[test]

@@ -105,7 +105,7 @@ impl Drive for PlantDrive {
 
     fn write(&mut self, now_ns: i64, command: &DriveCommand) {
         if let Some(name) = command.rename {
-            self.servo.shift(name - self.servo.set_point().position);
+            self.servo.rename(name - self.servo.set_point().position);
         }
         let followed = self.stage.is_enabled();
         self.stage.write(

@@ -6,7 +6,7 @@ mod plant;
 mod servo;
 
 pub use drive::PlantDrive;
-pub use plant::{Load, Mechanism, MechanismError, Plant};
+pub use plant::{Load, Mechanism, MechanismError, Plant, Stops};
 pub use servo::{Gains, Servo, SetPoint};
 
 /// Steps of the loops and the mechanism in one scan.

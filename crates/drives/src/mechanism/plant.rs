@@ -60,6 +60,31 @@ impl Plant {
     }
 }
 
+/// Mechanical stops at the ends of the travel, springs for the motor to push against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stops {
+    /// The lower one begins here (u), the upper one there.
+    pub ends: (f64, f64),
+    /// Torque for a depth (torque/u), above 0.
+    pub stiffness: f64,
+    /// Torque for a velocity while it is touched (torque s/u), from 0.
+    pub damping: f64,
+}
+
+impl Stops {
+    /// The torque against a motor at `position` (u) with `velocity` (u/s): a stop pushes, and never pulls.
+    fn torque(&self, position: f64, velocity: f64) -> f64 {
+        let (low, high) = self.ends;
+        if position > high {
+            (self.stiffness * (position - high) + self.damping * velocity).max(0.0)
+        } else if position < low {
+            (self.stiffness * (position - low) + self.damping * velocity).min(0.0)
+        } else {
+            0.0
+        }
+    }
+}
+
 /// A parameter of a mechanism or its servo that cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MechanismError {
@@ -75,6 +100,13 @@ impl fmt::Display for MechanismError {
         let wanted = match *key {
             "inertia" | "load.inertia" | "load.stiffness" | "torque" => "a finite number above 0",
             "stiffness of the whole" => "softer, or a shorter cycle",
+            "stops.stiffness" => {
+                "a number above 0, low enough for the cycle: at most the inertia of the motor by the square of a quarter of it"
+            }
+            "stops.damping" => {
+                "a number from 0, low enough for the cycle: at most the inertia of the motor by a quarter of it"
+            }
+            "stops.negative" => "a number below `stops.positive`",
             _ => "a finite number from 0",
         };
         write!(f, "`{key}` is {value:?}; give {wanted}")
@@ -91,6 +123,7 @@ impl core::error::Error for MechanismError {}
 #[derive(Clone, Copy, Debug)]
 pub struct Mechanism {
     plant: Plant,
+    stops: Option<Stops>,
     /// From (twist, motor velocity, load velocity) and torque to the same and the way, a step later.
     step: [[f64; 4]; 4],
     /// Torque that changes the motor's velocity by 1 u/s in a step.
@@ -123,6 +156,7 @@ impl Mechanism {
         let relevant = |[a, b, c, _, input]: [f64; SIZE]| [a, b, c, input];
         Ok(Self {
             plant,
+            stops: None,
             step: [twist, motor, load, way].map(relevant),
             stopping: 1.0 / motor[4],
             position,
@@ -132,9 +166,41 @@ impl Mechanism {
         })
     }
 
+    /// The same between `stops`, in scans of `cycle` seconds.
+    ///
+    /// # Errors
+    /// [`MechanismError`] if they lie the wrong way round, or are too hard to be followed in a step.
+    pub fn between(mut self, stops: Stops, cycle: f64) -> Result<Self, MechanismError> {
+        let Stops {
+            ends: (low, high),
+            stiffness,
+            damping,
+        } = stops;
+        let time = cycle / f64::from(SUBSTEPS);
+        let inertia = self.plant.inertia;
+        // Both ends finite, the other comparisons say it for the rest.
+        let ordered = low < high && (high - low).is_finite();
+        let hard = !(stiffness > 0.0 && stiffness * time * time <= inertia);
+        let stiff = !(damping >= 0.0 && damping * time <= inertia);
+        let rows = [
+            ("stops.negative", low, !ordered),
+            ("stops.stiffness", stiffness, hard),
+            ("stops.damping", damping, stiff),
+        ];
+        if let Some((key, value, _)) = rows.into_iter().find(|(.., bad)| *bad) {
+            return Err(MechanismError { key, value });
+        }
+        self.stops = Some(stops);
+        Ok(self)
+    }
+
     /// One substep under a constant torque. Cost: about 25 multiplications.
     #[inline]
     pub fn step(&mut self, torque: f64) {
+        let torque = match &self.stops {
+            Some(stops) => torque - stops.torque(self.position, self.velocity),
+            None => torque,
+        };
         let [twist, motor, load, way] = &self.step;
         let free = |row: &[f64; 4]| {
             row[0] * self.twist + row[1] * self.velocity + row[2] * self.load_velocity + row[3] * torque
@@ -179,9 +245,21 @@ impl Mechanism {
         &self.plant
     }
 
-    /// Everything is called `by` (u) more, or someone moved it by that.
+    /// Someone moved it by so much (u).
     pub fn shift(&mut self, by: f64) {
         self.position += by;
+    }
+
+    /// Everything is called `by` (u) more.
+    pub fn rename(&mut self, by: f64) {
+        self.position += by;
+        if let Some(Stops {
+            ends: (low, high), ..
+        }) = &mut self.stops
+        {
+            *low += by;
+            *high += by;
+        }
     }
 }
 

@@ -197,9 +197,15 @@ impl Servo {
         };
     }
 
-    /// Everything is called `by` (u) more, or someone moved it by that.
+    /// Someone moved it by so much (u).
     pub fn shift(&mut self, by: f64) {
         self.mechanism.shift(by);
+        self.from.position += by;
+    }
+
+    /// Everything is called `by` (u) more.
+    pub fn rename(&mut self, by: f64) {
+        self.mechanism.rename(by);
         self.from.position += by;
     }
 

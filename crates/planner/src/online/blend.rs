@@ -60,11 +60,12 @@ impl OnlinePlan {
         }
         let side = if distance < 0.0 { -1.0 } else { 1.0 };
         // One velocity for all speeds tried, so that a start faster than the limit is not brought inside first
-        // for one and not for another: the push goes for the limit anyway.
+        // for one and not for another: the push goes for the limit anyway. Faster than what held before is no
+        // start that comes from inside.
         let ramps = Ramps::new(limits, limits);
         let arrested = side * ramps.arrested(&ramps.state_inward(start)) / ramps.inward(1.0, 1);
         let raised = Limits {
-            velocity: limits.velocity.max(wanted).max(arrested),
+            velocity: limits.velocity.max(wanted).max(arrested.min(before.velocity)),
             ..*limits
         };
         let ramps = Ramps::new(&raised, &raised.or_larger(before));

@@ -177,7 +177,7 @@ impl OnlinePlan {
         }
         let time = scan as f64 * self.cycle;
         match self.found.path.at(time) {
-            Some(state) => self.on_target(state, time),
+            Some(state) => self.on_target(state, time / self.found.path.duration()),
             None => self.beyond(scan),
         }
     }
@@ -190,17 +190,31 @@ impl OnlinePlan {
         if scan >= u64::from(self.scans) || self.found.tail.is_some() || scan == 0 {
             return self.at(scan);
         }
-        let time = scan as f64 * self.cycle;
-        match self.found.path.next(time) {
-            Some(state) => self.on_target(state, time),
+        match self.found.path.next(scan as f64 * self.cycle) {
+            Some((state, part)) => self.on_target(state, part),
             None => self.beyond(scan),
         }
     }
 
-    /// A state of the path in the coordinates of the axis, with its part of the residual.
+    /// Whether `scan` is in the piece in which [`OnlinePlan::next`] looked last.
+    #[inline(always)]
+    pub(crate) fn is_in_piece(&self, scan: u64) -> bool {
+        let is_on_path = scan < u64::from(self.scans) && self.found.tail.is_none();
+        is_on_path && self.found.path.is_current(scan as f64 * self.cycle)
+    }
+
+    /// The set-point at a `scan` of that piece.
+    #[inline(always)]
+    pub(crate) fn in_piece(&self, scan: u64) -> Setpoint {
+        let (state, part) = self.found.path.on_current(scan as f64 * self.cycle);
+        self.on_target(state, part)
+    }
+
+    /// A state of the path, a `part` of its duration after the start, in the coordinates of the axis, with its share of
+    /// the residual.
     #[inline]
-    fn on_target(&self, state: Setpoint, time: f64) -> Setpoint {
-        let residual = self.found.residual * self.share(time / self.found.path.duration());
+    fn on_target(&self, state: Setpoint, part: f64) -> Setpoint {
+        let residual = self.found.residual * self.share(part);
         Setpoint {
             position: self.start.position + (state.position + residual),
             ..state

@@ -178,8 +178,10 @@ impl RampPlan {
         if self.is_at_goal(scan) || scan == 0 {
             return self.at(scan);
         }
-        let running = self.path.next(scan as f64 * self.cycle);
-        running.unwrap_or_else(|| self.at_goal(scan))
+        match self.path.next(scan as f64 * self.cycle) {
+            Some((state, _)) => state,
+            None => self.at_goal(scan),
+        }
     }
 
     /// Whether the goal velocity is reached at `scan`.

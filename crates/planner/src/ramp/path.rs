@@ -11,6 +11,14 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// either there or at a bound, so nothing else is as small.
 const CRUISING: f64 = 1e-10;
 
+/// By how much, relative to itself, the time of a boundary added up from spans may be off.
+const SAME_TIME: f64 = 16.0 * f64::EPSILON;
+
+/// The latest instant that may be `boundary`.
+fn latest(boundary: f64) -> f64 {
+    boundary * (1.0 + SAME_TIME)
+}
+
 /// A stretch of constant snap (order 4), jerk (3) or acceleration (2).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Piece {
@@ -29,6 +37,8 @@ struct Current {
     /// The instant its state belongs to (s).
     anchor: f64,
     course: Course,
+    /// When the last piece ends (s): what stands with the others is seldom at hand.
+    duration: f64,
 }
 
 impl Current {
@@ -43,6 +53,7 @@ impl Current {
             sixth_of_snap: 0.0,
             part_of_snap: 0.0,
         },
+        duration: 0.0,
     };
 }
 
@@ -191,12 +202,13 @@ impl<const N: usize> Path<N> {
         self.len.checked_sub(1).and_then(|i| self.pieces.get(i))
     }
 
-    /// The state at `time` (s) after the start; at the boundary of two pieces that of the earlier one.
+    /// The state at `time` (s) after the start; at the boundary of two pieces that of the earlier one, also where
+    /// rounding puts the boundary before `time`: of two motions that switch together none switches a scan early.
     #[inline]
     pub(crate) fn at(&self, time: f64) -> Option<Setpoint> {
         let mut begin = 0.0;
         for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
-            if time <= piece.end {
+            if time <= latest(piece.end) {
                 return Some(moved(&piece.state, time - self.anchor(index, begin, piece)));
             }
             begin = piece.end;
@@ -204,27 +216,44 @@ impl<const N: usize> Path<N> {
         None
     }
 
-    /// As [`Path::at`], for one who asks again and again for times not far apart, above 0: the piece is looked for
+    /// As [`Path::at`] with the part of the whole duration that is over, for one who asks again and again for times not far apart, above 0: the piece is looked for
     /// where it changes only.
     #[inline(always)]
-    pub(crate) fn next(&mut self, time: f64) -> Option<Setpoint> {
-        let current = &self.current;
-        if !(time > current.begin && time <= current.end) {
+    pub(crate) fn next(&mut self, time: f64) -> Option<(Setpoint, f64)> {
+        if !self.is_current(time) {
             self.current = self.piece_at(time)?;
         }
-        Some(self.current.course.after(time - self.current.anchor))
+        Some(self.on_current(time))
+    }
+
+    /// Whether `time` (s) is in the piece in which [`Path::next`] looked last.
+    #[inline(always)]
+    pub(crate) fn is_current(&self, time: f64) -> bool {
+        time > self.current.begin && time <= self.current.end
+    }
+
+    /// The state at a `time` (s) of that piece, and the part of the whole duration that is over.
+    #[inline(always)]
+    pub(crate) fn on_current(&self, time: f64) -> (Setpoint, f64) {
+        let current = &self.current;
+        (
+            current.course.after(time - current.anchor),
+            time / current.duration,
+        )
     }
 
     #[inline(never)]
     fn piece_at(&self, time: f64) -> Option<Current> {
         let mut begin = 0.0;
         for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
-            if time <= piece.end {
+            let end = latest(piece.end);
+            if time <= end {
                 return Some(Current {
-                    begin,
-                    end: piece.end,
+                    begin: latest(begin),
+                    end,
                     anchor: self.anchor(index, begin, piece),
                     course: Course::of(piece.state),
+                    duration: self.duration(),
                 });
             }
             begin = piece.end;

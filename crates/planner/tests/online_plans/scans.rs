@@ -124,8 +124,17 @@ fn passing_a_position_needs_at_most_one_scan_more_than_the_least() {
 
 #[test]
 fn a_velocity_is_reached_with_no_more_scans_than_the_least() {
+    check_ramps(include_str!("../data/least-scans-ramps.json"));
+}
+
+#[test]
+fn rest_is_reached_with_no_more_scans_than_the_least() {
+    check_ramps(include_str!("../data/least-scans-stops.json"));
+}
+
+fn check_ramps(text: &str) {
     let mut surplus = BTreeMap::new();
-    let cases = cases(include_str!("../data/least-scans-ramps.json"));
+    let cases = cases(text);
     assert_eq!(cases.len(), 100);
     for case in &cases {
         let plan = RampPlan::new(

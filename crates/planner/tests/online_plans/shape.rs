@@ -1,7 +1,9 @@
 //! What holds for single plans: units, continuity, rungs, special targets, refusals.
 
 use super::support::{self, ORDERS, Random, integrate};
-use standstill_planner::{Limits, OnlinePlan, Order, PlanError, Rung, Setpoint};
+use standstill_planner::{
+    Limits, MoveProfile, OnlinePlan, Order, Plan, PlanError, Planner, Rung, Setpoint, Standard,
+};
 
 fn plan(start: &Setpoint, target: f64, limits: &Limits, cycle: f64) -> OnlinePlan {
     OnlinePlan::new(start, target, limits, limits, cycle).expect("a plan")
@@ -491,4 +493,35 @@ fn absurd_inputs_end_in_a_plan_or_a_refusal() {
     }
     println!("planned {planned} refused {refused} rungs {rungs:?}");
     assert!(planned > 1000);
+}
+
+/// A plan that remembers where it was: scan after scan, back again, and with coordinates moved on the way.
+#[test]
+fn next_is_the_same_as_at() {
+    let mut random = Random(31);
+    for count in 0..300 {
+        let (limits, cycle, start) = moving(&mut random, ORDERS[count % 3]);
+        let way = limits.velocity * limits.velocity / limits.acceleration;
+        let planner = Standard::new(cycle);
+        let (target, velocity) = (way * random.between(-3.0, 3.0), limits.velocity * random.unit());
+        let profile = MoveProfile::default();
+        let mut plans = [
+            planner.move_to(profile, &start, target, &limits, &limits),
+            planner.move_to(profile, &Setpoint::at_rest(way), target, &limits, &limits),
+            planner.ramp_to(&start, velocity, &limits, &limits),
+            planner.pass(&start, target, velocity, &limits, &limits),
+        ]
+        .map(|plan| plan.expect("a plan"));
+        for plan in &mut plans {
+            let scans = u64::from(plan.scans());
+            let (ahead, back) = (0..scans + 3, (0..scans + 3).rev());
+            let anywhere = (0..20).map(|_| random.below(scans + 1)).collect::<Vec<_>>();
+            for scan in ahead.chain(back).chain(anywhere) {
+                assert_eq!(plan.next(scan), plan.at(scan), "{count}: {scan} of {plan:?}");
+                if scan == scans / 3 {
+                    plan.shift(way);
+                }
+            }
+        }
+    }
 }

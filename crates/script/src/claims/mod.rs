@@ -17,6 +17,10 @@ pub struct Verdict {
     pub span: Span,
     /// What it says, in one line.
     pub says: String,
+    /// The first and the last scan of the run it speaks of.
+    pub scans: Option<[u64; 2]>,
+    /// The scan in which a claim that needs only one came true.
+    pub held: Option<u64>,
     /// What spoke against it; empty if it held.
     pub failures: Vec<Failure>,
 }
@@ -59,13 +63,49 @@ pub(crate) fn judge(script: &Script, trace: &Trace, shifts: &[Shift]) -> Vec<Ver
     script
         .claims
         .iter()
-        .map(|claim| Verdict {
-            path: claim.path.clone(),
-            span: claim.span,
-            says: describe::claim(&rows, &claim.kind),
-            failures: failures(&rows, &claim.path, &claim.kind),
+        .map(|claim| {
+            let failures = failures(&rows, &claim.path, &claim.kind);
+            let scans = scans(&rows, &claim.kind);
+            Verdict {
+                path: claim.path.clone(),
+                span: claim.span,
+                says: describe::claim(&rows, &claim.kind),
+                scans,
+                held: scans
+                    .filter(|_| failures.is_empty())
+                    .and_then(|scans| held(&rows, &claim.kind, scans)),
+                failures,
+            }
         })
         .collect()
+}
+
+/// The scans of the run that a claim speaks of.
+fn scans(rows: &Rows<'_>, kind: &ClaimKind) -> Option<[u64; 2]> {
+    let last = rows.count().checked_sub(1)?;
+    let (from, to) = match kind {
+        ClaimKind::At(scan, _) => (*scan, *scan),
+        ClaimKind::By(range, _)
+        | ClaimKind::Once(range, _)
+        | ClaimKind::Exclusive(range, _)
+        | ClaimKind::Always { range, .. }
+        | ClaimKind::Never { range, .. }
+        | ClaimKind::WithinLimits { range, .. } => (range.from, range.to.unwrap_or(last).min(last)),
+    };
+    (from <= to && to <= last).then_some([from, to])
+}
+
+/// The scan in which a claim that needs only one came true.
+fn held(rows: &Rows<'_>, kind: &ClaimKind, [from, to]: [u64; 2]) -> Option<u64> {
+    match kind {
+        ClaimKind::At(_, that) | ClaimKind::By(_, that) | ClaimKind::Once(_, that) => {
+            (from..=to).find(|&scan| rows.hold(that, scan))
+        }
+        ClaimKind::Exclusive(..)
+        | ClaimKind::Always { .. }
+        | ClaimKind::Never { .. }
+        | ClaimKind::WithinLimits { .. } => None,
+    }
 }
 
 fn failures(rows: &Rows<'_>, path: &str, kind: &ClaimKind) -> Vec<Failure> {

@@ -146,6 +146,12 @@ impl Reader {
         let needs_homed = fields
             .get("needs_homed")
             .map_or(Some(false), |node| self.boolean(node, "`needs_homed`"));
+        let hardware_limits = fields
+            .get("hardware_limits")
+            .map_or(Some(config.hardware_limits), |node| {
+                self.boolean(node, "`hardware_limits`")
+            });
+        let homing = self.homing(fields);
         let override_max = self.optional(fields, "override_max", "`override_max`");
         let max_following_error = self.optional(fields, "max_following_error", "`max_following_error`");
         let in_position = self.in_position(fields);
@@ -163,6 +169,8 @@ impl Reader {
         config.on_power_off = on_power_off?;
         config.queue = usize::try_from(queue?).ok()?;
         config.needs_homed = needs_homed?;
+        config.hardware_limits = hardware_limits?;
+        config.homing = homing?;
         config.override_max = override_max?.unwrap_or(config.override_max);
         config.max_following_error = max_following_error?;
         config.in_position = in_position?;

@@ -7,7 +7,8 @@ use crate::error::{Code, Diagnostic};
 use crate::model::{Cia402Setup, DriveSetup, IdealDriveSetup, PlantSetup};
 use standstill_axis::DELAY_MAX;
 use standstill_drives::cia402::Reaction;
-use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, Servo};
+use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, Servo, Stops};
+use standstill_drives::switches::{Marker, Switches};
 
 /// How a CiA 402 drive comes to rest by itself; `stay` is for the quick stop only.
 pub(crate) const REACTIONS: [(&str, Reaction); 3] = [
@@ -15,6 +16,8 @@ pub(crate) const REACTIONS: [(&str, Reaction); 3] = [
     ("ramp", Reaction::Ramp),
     ("stay", Reaction::RampAndStay),
 ];
+
+pub(crate) const NODE_DIRECTIONS: [(&str, bool); 2] = [("positive", true), ("negative", false)];
 
 impl Reader {
     /// The drive of an axis with a scaling, or without.
@@ -61,6 +64,10 @@ impl Reader {
         let load = fields
             .get("load")
             .map_or(Some(None), |node| self.load(node).map(Some));
+        let stops = fields
+            .get("stops")
+            .map_or(Some(None), |node| self.stops(node).map(Some));
+        let switches = self.switches(&fields);
         let plant = Plant {
             inertia: inertia?,
             viscous: viscous?.unwrap_or(0.0),
@@ -76,7 +83,10 @@ impl Reader {
             self.gains(node, &mut gains)?;
         }
         // What is wrong with it shows when it is made.
-        let made = Mechanism::new(plant, 0.0, cycle).and_then(|made| Servo::new(made, gains, cycle));
+        let stops = stops?;
+        let made = Mechanism::new(plant, 0.0, cycle)
+            .and_then(|made| stops.map_or(Ok(made), |stops| made.between(stops, cycle)))
+            .and_then(|made| Servo::new(made, gains, cycle));
         if let Err(error) = made {
             self.report(Diagnostic::new(Code::BadValue, fields.brace(), error.to_string()));
             return None;
@@ -84,7 +94,9 @@ impl Reader {
         Some(PlantSetup {
             power_on: power_on?,
             plant,
+            stops,
             gains,
+            switches: switches?,
         })
     }
 
@@ -98,6 +110,21 @@ impl Reader {
         let damping = self.optional(&fields, "damping", "`damping`");
         Some(Load {
             inertia: inertia?,
+            stiffness: stiffness?,
+            damping: damping?.unwrap_or(0.0),
+        })
+    }
+
+    fn stops(&mut self, node: &Node) -> Option<Stops> {
+        let fields = self.fields(node, &shape::STOPS)?;
+        let mut needed = |key: &str| {
+            let node = self.require(&fields, key, "`stops`")?;
+            self.finite(node, &format!("`stops.{key}`"))
+        };
+        let (low, high, stiffness) = (needed("negative"), needed("positive"), needed("stiffness"));
+        let damping = self.optional(&fields, "damping", "`stops.damping`");
+        Some(Stops {
+            ends: (low?, high?),
             stiffness: stiffness?,
             damping: damping?.unwrap_or(0.0),
         })
@@ -126,9 +153,11 @@ impl Reader {
         let fields = self.fields(node, &shape::IDEAL)?;
         let delay = self.delay(&fields, "the ideal drive");
         let power_on = self.power_on(&fields);
+        let switches = self.switches(&fields);
         Some(IdealDriveSetup {
             delay: delay?,
             power_on: power_on?,
+            switches: switches?,
         })
     }
 
@@ -149,8 +178,10 @@ impl Reader {
         let [coast, ramp, _] = REACTIONS;
         let on_disable = reaction("on_disable", &[coast, ramp], Reaction::Coast);
         let on_fault = reaction("on_fault", &[coast, ramp], Reaction::Ramp);
-        let limit_switches = self.pair(&fields, "limit_switches", ["negative", "positive"]);
-        let home_switch = self.pair(&fields, "home_switch", ["from", "to"]);
+        let homing = fields
+            .get("homing")
+            .map_or(Some(None), |node| self.node_homing(node).map(Some));
+        let switches = self.switches(&fields);
         Some(Cia402Setup {
             delay: delay?,
             power_on: power_on?,
@@ -159,9 +190,56 @@ impl Reader {
             quick_stop: quick_stop?,
             on_disable: on_disable?,
             on_fault: on_fault?,
-            limit_switches: limit_switches?,
-            home_switch: home_switch?,
+            homing: homing?,
+            switches: switches?,
         })
+    }
+
+    fn node_homing(&mut self, node: &Node) -> Option<(bool, f64)> {
+        let fields = self.fields(node, &shape::NODE_HOMING)?;
+        let up = fields.get("direction").map_or(Some(true), |node| {
+            self.choice(node, "`homing.direction`", &NODE_DIRECTIONS)
+        });
+        let velocity = self
+            .require(&fields, "velocity", "`homing` of a drive")
+            .and_then(|node| self.finite(node, "`homing.velocity`"));
+        let (up, velocity) = (up?, velocity?);
+        if velocity <= 0.0 {
+            let message = format!("`homing.velocity` is {velocity:?}: it must be above 0");
+            self.report(Diagnostic::new(Code::BadValue, fields.brace(), message));
+            return None;
+        }
+        Some((up, velocity))
+    }
+
+    /// What stands along the travel of any drive.
+    fn switches(&mut self, fields: &Fields<'_>) -> Option<Switches> {
+        let limits = self.pair(fields, "limit_switches", ["negative", "positive"]);
+        let home = self.pair(fields, "home_switch", ["from", "to"]);
+        let marker = fields
+            .get("marker")
+            .map_or(Some(None), |node| self.marker(node).map(Some));
+        Some(Switches {
+            limits: limits?,
+            home: home?,
+            marker: marker?,
+            turn: None,
+        })
+    }
+
+    fn marker(&mut self, node: &Node) -> Option<Marker> {
+        let fields = self.fields(node, &shape::MARKER)?;
+        let at = self
+            .require(&fields, "at", "`marker`")
+            .and_then(|node| self.finite(node, "`marker.at`"));
+        let every = self.optional(&fields, "every", "`marker.every`");
+        let (at, every) = (at?, every?);
+        if let Some(every) = every.filter(|every| *every <= 0.0) {
+            let message = format!("`marker.every` is {every:?}: the distance of two pulses is above 0");
+            self.report(Diagnostic::new(Code::BadValue, fields.brace(), message));
+            return None;
+        }
+        Some(Marker { at, every })
     }
 
     fn delay(&mut self, fields: &Fields<'_>, what: &str) -> Option<usize> {

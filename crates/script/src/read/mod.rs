@@ -10,6 +10,7 @@ mod circle;
 mod condition;
 pub(crate) mod drive;
 mod expect;
+pub(crate) mod homing;
 pub(crate) mod json;
 pub(crate) mod names;
 pub(crate) mod shape;

@@ -58,6 +58,8 @@ pub(crate) const AXIS: Shape = Shape {
         "stop_deceleration",
         "stop_jerk",
         "on_power_off",
+        "hardware_limits",
+        "homing",
         "needs_homed",
         "override_max",
         "in_position",
@@ -78,12 +80,38 @@ pub(crate) const DEFAULTS: Shape = shape(
 pub(crate) const SCALING: Shape = shape("`scaling`", &["increments", "units", "invert", "offset", "note"]);
 pub(crate) const SOFTWARE_LIMITS: Shape = shape("`software_limits`", &["min", "max", "note"]);
 pub(crate) const IN_POSITION: Shape = shape("`in_position`", &["window", "time", "note"]);
+pub(crate) const HOMING: Shape = shape(
+    "`homing`",
+    &[
+        "procedure",
+        "direction",
+        "edge",
+        "velocity",
+        "creep",
+        "pulse",
+        "block",
+        "time_limit",
+        "distance_limit",
+        "note",
+    ],
+);
+pub(crate) const BLOCK_DETECTION: Shape = shape("`block` of a homing", &["velocity", "time", "note"]);
 pub(crate) const DRIVE: Shape = Shape {
     what: "`drive`",
     keys: &["ideal", "cia402", "plant", "note"],
     later: &[],
 };
-pub(crate) const IDEAL: Shape = shape("the ideal drive", &["delay", "power_on", "note"]);
+pub(crate) const IDEAL: Shape = shape(
+    "the ideal drive",
+    &[
+        "delay",
+        "power_on",
+        "limit_switches",
+        "home_switch",
+        "marker",
+        "note",
+    ],
+);
 pub(crate) const CIA402: Shape = shape(
     "a CiA 402 drive",
     &[
@@ -94,20 +122,37 @@ pub(crate) const CIA402: Shape = shape(
         "quick_stop",
         "on_disable",
         "on_fault",
+        "homing",
         "limit_switches",
         "home_switch",
+        "marker",
         "note",
     ],
 );
 pub(crate) const PLANT: Shape = shape(
     "a plant",
     &[
-        "power_on", "inertia", "viscous", "coulomb", "load", "gains", "torque", "note",
+        "power_on",
+        "inertia",
+        "viscous",
+        "coulomb",
+        "load",
+        "gains",
+        "torque",
+        "stops",
+        "limit_switches",
+        "home_switch",
+        "marker",
+        "note",
     ],
 );
 pub(crate) const LOAD: Shape = shape(
     "the load of a plant",
     &["inertia", "stiffness", "damping", "note"],
+);
+pub(crate) const STOPS: Shape = shape(
+    "the stops of a plant",
+    &["negative", "positive", "stiffness", "damping", "note"],
 );
 pub(crate) const GAINS: Shape = shape(
     "the gains of a plant",
@@ -122,6 +167,8 @@ pub(crate) const GAINS: Shape = shape(
 );
 pub(crate) const LIMIT_SWITCHES: Shape = shape("`limit_switches`", &["negative", "positive", "note"]);
 pub(crate) const HOME_SWITCH: Shape = shape("`home_switch`", &["from", "to", "note"]);
+pub(crate) const NODE_HOMING: Shape = shape("`homing` of a drive", &["direction", "velocity", "note"]);
+pub(crate) const MARKER: Shape = shape("`marker`", &["at", "every", "note"]);
 
 pub(crate) const BLOCK: Shape = shape("a block", &["name", "type", "task", "pins", "note"]);
 pub(crate) const WIRE: Shape = shape("a wire", &["from", "not", "any", "all", "note"]);

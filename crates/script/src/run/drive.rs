@@ -5,15 +5,17 @@ use standstill_axis::{
     Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, IdealDrive, Powered,
     StartState,
 };
-use standstill_drives::cia402::{Cia402Drive, Settings};
+use standstill_drives::cia402::{Cia402Drive, NodeHoming, Settings};
 use standstill_drives::mechanism::{Mechanism, MechanismError, PlantDrive, Servo};
 use standstill_drives::peripherals::Peripherals;
+use standstill_drives::switches::{Switches, Travel};
 
 /// A drive, and what it has beside its motion.
 #[derive(Clone, Debug)]
 pub(crate) struct ScriptDrive {
     kind: Kind,
     peripherals: Peripherals,
+    travel: Travel,
     /// As last fed back.
     position: DrivePosition,
     /// The last command in units.
@@ -36,7 +38,7 @@ impl ScriptDrive {
         let position = increments(axis.config.position);
         let enabled = axis.config.start == StartState::Standstill;
         let kind = match axis.drive {
-            DriveSetup::Ideal(IdealDriveSetup { delay, power_on }) => {
+            DriveSetup::Ideal(IdealDriveSetup { delay, power_on, .. }) => {
                 let position = match position {
                     Some(increments) => DrivePosition::Increments(increments),
                     None => DrivePosition::Units(axis.config.position),
@@ -59,17 +61,26 @@ impl ScriptDrive {
                     quick_stop: setup.quick_stop,
                     leaving: setup.on_disable,
                     fault: setup.on_fault,
-                    ends: setup.limit_switches.and_then(ordered),
-                    home: setup.home_switch.and_then(ordered),
+                    ends: setup.switches.limits.and_then(ordered),
+                    home: setup.switches.home.and_then(ordered),
+                    homing: setup.homing.map(|(up, velocity)| NodeHoming {
+                        up: up != axis.config.scaling.is_some_and(|scaling| scaling.invert()),
+                        velocity: velocity * increments_per_unit(axis) * (cycle_ns as f64 / 1e9),
+                    }),
                 })))
             }
             DriveSetup::Plant(PlantSetup {
                 power_on,
                 plant,
+                stops,
                 gains,
+                ..
             }) => {
                 let cycle = cycle_ns as f64 / 1e9;
-                let mechanism = Mechanism::new(plant, axis.config.position, cycle)?;
+                let mut mechanism = Mechanism::new(plant, axis.config.position, cycle)?;
+                if let Some(stops) = stops {
+                    mechanism = mechanism.between(stops, cycle)?;
+                }
                 let servo = Servo::new(mechanism, gains, cycle)?;
                 Kind::Plant(Box::new(PlantDrive::new(
                     servo,
@@ -79,8 +90,13 @@ impl ScriptDrive {
                 )))
             }
         };
+        let switches = Switches {
+            turn: axis.config.modulo,
+            ..*axis.drive.switches()
+        };
         Ok(Self {
             kind,
+            travel: Travel::new(switches, axis.config.scaling),
             peripherals: Peripherals::new(axis.config.modulo),
             commanded: axis.config.position,
             position: position.map_or(
@@ -158,30 +174,38 @@ impl ScriptDrive {
     }
 }
 
+fn increments_per_unit(axis: &Axis) -> f64 {
+    axis.config.scaling.map_or(1.0, |scaling| {
+        f64::from(scaling.increments()) / f64::from(scaling.units())
+    })
+}
+
 /// In increments/scan^2.
 fn deceleration(axis: &Axis, setup: &Cia402Setup, cycle_ns: i64) -> f64 {
     let rate = setup.deceleration.unwrap_or(axis.config.limits.deceleration);
     let cycle = cycle_ns as f64 / 1e9;
-    let increments = axis.config.scaling.map_or(1.0, |scaling| {
-        f64::from(scaling.increments()) / f64::from(scaling.units())
-    });
-    rate * increments * cycle * cycle
+    rate * increments_per_unit(axis) * cycle * cycle
 }
 
 impl Drive for ScriptDrive {
     fn read(&mut self, now_ns: i64) -> DriveFeedback {
-        let feedback = match &mut self.kind {
+        let mut feedback = match &mut self.kind {
             Kind::Ideal(drive) => drive.read(now_ns),
             Kind::Cia402(drive) => drive.read(now_ns),
             Kind::Plant(drive) => drive.read(now_ns),
         };
         self.position = feedback.position;
+        if let Kind::Cia402(drive) = &self.kind {
+            self.travel.drop_increments(drive.node().origin());
+        }
+        self.travel.read(&mut feedback);
         feedback
     }
 
     fn write(&mut self, now_ns: i64, command: &DriveCommand) {
         if let Some(name) = command.rename {
             self.peripherals.shift(name - self.commanded);
+            self.travel.shift(name - self.commanded);
         }
         if let DrivePosition::Units(position) = command.position {
             self.commanded = position;
@@ -200,6 +224,7 @@ impl Drive for ScriptDrive {
             Kind::Plant(drive) => drive.report(report),
         }
         self.peripherals.report(self.position, report);
+        self.travel.report(report);
     }
 
     fn order(&mut self, order: &DriveOrder) {
@@ -209,5 +234,6 @@ impl Drive for ScriptDrive {
             Kind::Plant(drive) => drive.order(order),
         }
         self.peripherals.order(order);
+        self.travel.order(order);
     }
 }

@@ -13,11 +13,11 @@ pub(crate) use layout::Layout;
 pub(crate) use rows::{Derivatives, Rows, Shift};
 
 use crate::CELLS_MAX;
-use crate::claims::{self, Verdict};
+use crate::claims::{self, Failure, Verdict};
 use crate::model::Script;
 use bench::Bench;
 use standstill_scan::{Executor, ProgramConfig, TaskConfig, Watchdog};
-use standstill_trace::{Claim, ClaimVerdict, Trace};
+use standstill_trace::{Claim, ClaimFailure, ClaimVerdict, Trace};
 
 /// Scans between two reports of progress.
 const PROGRESS_EVERY: u64 = 1 << 14;
@@ -127,7 +127,22 @@ fn told(verdict: &Verdict) -> Claim {
         } else {
             ClaimVerdict::Failed
         },
+        scans: verdict.scans.map(|scans| scans.map(row)),
+        held: verdict.held.map(row),
+        failures: verdict.failures.iter().map(told_failure).collect(),
     }
+}
+
+fn told_failure(failure: &Failure) -> ClaimFailure {
+    ClaimFailure {
+        scan: failure.scan.map(row),
+        text: failure.to_string(),
+    }
+}
+
+/// A scan as the number of its row; a run has no more rows than memory.
+fn row(scan: u64) -> usize {
+    usize::try_from(scan).unwrap_or(usize::MAX)
 }
 
 /// Scans until the script's end.

@@ -1,8 +1,12 @@
 //! A script with every key of the format, looked at where the example of the format says nothing.
 
-use standstill_axis::{AboveLimit, AxisId, Limits, MoveProfile, PowerOff, Scaling};
+use standstill_axis::{
+    AboveLimit, AxisId, BlockDetection, HomeDirection, Homing, Limits, MoveProfile, PowerOff, Procedure,
+    Scaling, SwitchEdge,
+};
 use standstill_drives::cia402::Reaction;
-use standstill_drives::mechanism::{Gains, Load, Plant};
+use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
+use standstill_drives::switches::{Marker, Switches};
 use standstill_fb::Value;
 use standstill_script::model::{
     Action, Cia402Setup, ClaimKind, Comparison, DriveChange, DriveSetup, FaultKind, IdealDriveSetup,
@@ -42,11 +46,33 @@ fn axes_take_their_configuration() {
     );
     assert_eq!(x.config.on_power_off, PowerOff::Coast);
     assert!(x.config.needs_homed);
+    assert!(!x.config.hardware_limits);
+    let homing = Homing {
+        procedure: Procedure::AbsoluteSwitch,
+        direction: HomeDirection::SwitchNegative,
+        edge: SwitchEdge::Falling,
+        velocity: 20.0,
+        creep: Some(2.0),
+        pulse: true,
+        block: None,
+        time_limit: Some(400),
+        distance_limit: Some(300.0),
+    };
+    assert_eq!(x.config.homing, homing);
     assert_eq!(
         x.drive,
         DriveSetup::Ideal(IdealDriveSetup {
             delay: 2,
-            power_on: None
+            power_on: None,
+            switches: Switches {
+                limits: Some((-120.0, 120.0)),
+                home: Some((0.0, 5.0)),
+                marker: Some(Marker {
+                    at: 2.5,
+                    every: Some(10.0)
+                }),
+                turn: None,
+            },
         })
     );
 
@@ -71,8 +97,12 @@ fn axes_take_their_configuration() {
             quick_stop: Reaction::RampAndStay,
             on_disable: Reaction::Ramp,
             on_fault: Reaction::Coast,
-            limit_switches: Some((-10.0, 10.0)),
-            home_switch: Some((-1.0, 0.5)),
+            homing: Some((false, 0.5)),
+            switches: Switches {
+                limits: Some((-10.0, 10.0)),
+                home: Some((-1.0, 0.5)),
+                ..Switches::default()
+            },
         })
     );
     assert_eq!(
@@ -89,6 +119,11 @@ fn axes_take_their_configuration() {
                     damping: 0.01
                 }),
             },
+            stops: Some(Stops {
+                ends: (-3.0, 3.0),
+                stiffness: 500.0,
+                damping: 0.5,
+            }),
             gains: Gains {
                 position: 50.0,
                 velocity: 2.0,
@@ -97,8 +132,14 @@ fn axes_take_their_configuration() {
                 feed_acceleration: 0.0,
                 torque: 9.0,
             },
+            switches: Switches::default(),
         })
     );
+    let block = BlockDetection {
+        velocity: 0.5,
+        scans: 100,
+    };
+    assert_eq!(script.axes[3].config.homing.block, Some(block));
 }
 
 #[test]

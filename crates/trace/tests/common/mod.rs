@@ -114,6 +114,9 @@ pub fn header() -> Header {
             path: "expect[0]".into(),
             text: "there.Done by 990".into(),
             verdict: ClaimVerdict::Passed,
+            scans: Some([0, 990]),
+            held: Some(741),
+            failures: Vec::new(),
         }],
     }
 }

@@ -1,0 +1,481 @@
+//! Homing: the search for the reference, by the controller or by the drive.
+//!
+//! A search is a row of endless motions, each planned anew at the latch of the scan that shows what it was looking
+//! for. The reference of a switch is one of its two ends, whichever way the axis passes it; with a creep velocity
+//! it is passed a second time, slowly and always in the same direction. Then the axis comes to rest, and the place
+//! of the reference gets its name: the axis stands as far from it as it ran on. Software limits and the override do
+//! not hold; a barred direction, a time or way too long and a limit switch in the way are axis errors.
+//!
+//! A drive that homes by itself leads, and the set-point follows it, until it is back at the command.
+//!
+//! Source: PLCopen Motion Control Part 1, MC_Home; Part 5, homing procedures; V11; CiA 402, homing mode.
+
+use super::power::Reaction;
+use super::queue::{Entry, Work};
+use super::reading::Past;
+use super::{Axis, Motion};
+use crate::{AxisState, DriveHoming, DrivePosition, ErrorId, Event, HomeDirection, Log, Procedure};
+use standstill_planner::{Planner, Setpoint};
+
+/// What a homing is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Phase {
+    /// There is none, or it has nothing to look for.
+    #[default]
+    Idle,
+    /// Towards the edge of the switch with the velocity of the search.
+    Search,
+    /// Past the edge again, for a second approach.
+    Back,
+    /// Towards the edge, slowly.
+    Creep,
+    /// Towards the next reference pulse.
+    Pulse,
+    /// Towards a mechanical stop.
+    Block,
+    /// The reference is known; to rest.
+    Found,
+    /// The drive homes by itself.
+    Drive,
+    /// The same, and has named its positions anew.
+    Named,
+    /// The drive has homed, and is to follow the command again.
+    Return,
+}
+
+/// The progress of a homing.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Search {
+    phase: Phase,
+    /// Towards larger positions.
+    up: bool,
+    /// It has turned round at a limit switch.
+    turned: bool,
+    /// The switch, as last seen.
+    was_on: bool,
+    /// Scans since the start.
+    scans: u64,
+    /// Scans in a row at less than the velocity of a stop.
+    still: u32,
+    /// Way since the start (u), and where the reference is (u).
+    way: f64,
+    reference: f64,
+}
+
+impl Search {
+    /// Nothing is looked for.
+    pub fn is_idle(&self) -> bool {
+        self.phase == Phase::Idle
+    }
+
+    /// Everything, as bits.
+    pub fn bits(&self) -> [u64; 5] {
+        let flags = [self.up, self.turned, self.was_on].map(u64::from);
+        [
+            self.phase as u64 | flags[0] << 8 | flags[1] << 9 | flags[2] << 10,
+            self.scans,
+            self.still.into(),
+            self.way.to_bits(),
+            self.reference.to_bits(),
+        ]
+    }
+
+    /// Coordinates moved by so much (u).
+    pub fn shift(&mut self, by: f64) {
+        self.reference += by;
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// Refuses a homing for which the drive lacks a signal. Nothing has moved yet.
+    pub(super) fn has_signals_to_home(&self) -> Result<(), ErrorId> {
+        let (homing, has) = (&self.config.homing, &self.beside.report.equipment);
+        let has_it = match homing.procedure {
+            Procedure::Direct | Procedure::Block => true,
+            Procedure::AbsoluteSwitch => has.home_switch,
+            Procedure::LimitSwitch => has.limit_switches,
+            Procedure::ReferencePulse => has.marker,
+            Procedure::Drive => has.homing,
+        };
+        if has_it && (has.marker || !homing.pulse) {
+            Ok(())
+        } else {
+            Err(ErrorId::HomingSignalMissing)
+        }
+    }
+
+    /// How a homing begins from here.
+    fn first_search(&self) -> Search {
+        let homing = &self.config.homing;
+        let was_on = self.home_signal(homing.direction.is_up());
+        let (phase, up) = match homing.procedure {
+            Procedure::Direct => (Phase::Idle, true),
+            Procedure::Drive => (Phase::Drive, true),
+            Procedure::ReferencePulse => (Phase::Pulse, homing.direction.is_up()),
+            Procedure::Block => (Phase::Block, homing.direction.is_up()),
+            // On the switch it only has to leave it.
+            Procedure::LimitSwitch if was_on => (Phase::Creep, !homing.direction.is_up()),
+            Procedure::LimitSwitch => (Phase::Search, homing.direction.is_up()),
+            Procedure::AbsoluteSwitch => {
+                let up = match homing.direction {
+                    // On the switch its end lies on the side the axis came from.
+                    HomeDirection::Positive | HomeDirection::Negative if was_on => !homing.is_lower_end(),
+                    HomeDirection::Positive => true,
+                    HomeDirection::Negative => false,
+                    HomeDirection::SwitchPositive => !was_on,
+                    HomeDirection::SwitchNegative => was_on,
+                };
+                // There is nothing to be found behind a limit switch.
+                (Phase::Search, up != self.is_on_limit_switch(up))
+            }
+        };
+        Search {
+            phase,
+            up,
+            turned: homing.procedure == Procedure::AbsoluteSwitch && self.is_on_limit_switch(!up),
+            was_on,
+            ..Search::default()
+        }
+    }
+
+    /// The velocity (u/s) of a phase; `None` if it has none of its own.
+    fn velocity_of(&self, search: &Search) -> Option<f64> {
+        let homing = &self.config.homing;
+        let speed = match search.phase {
+            Phase::Search | Phase::Back | Phase::Block => homing.velocity,
+            Phase::Creep | Phase::Pulse => homing.creep.unwrap_or(homing.velocity),
+            Phase::Idle | Phase::Found | Phase::Drive | Phase::Named | Phase::Return => return None,
+        };
+        // The application may have lowered the limit since.
+        let speed = speed.min(self.parameters.limits.velocity);
+        Some(if search.up { speed } else { -speed })
+    }
+
+    /// The first motion of a homing.
+    pub(super) fn homing_motion(&self, entry: &Entry, start: &Setpoint) -> Result<Motion<P::Plan>, ErrorId> {
+        self.has_signals_to_home()?;
+        let search = self.first_search();
+        let Some(velocity) = self.velocity_of(&search) else {
+            return Ok(Motion::Hold);
+        };
+        if let Some(error) = self.homing_barred(&search) {
+            return Err(error);
+        }
+        let before = self.limits_before(&entry.limits);
+        match self.planner.ramp_to(start, velocity, &entry.limits, &before) {
+            Ok(plan) => Ok(Motion::along(plan)),
+            Err(_) => Err(ErrorId::PlanRefused),
+        }
+    }
+
+    /// Why a homing may not go where it wants to.
+    fn homing_barred(&self, search: &Search) -> Option<ErrorId> {
+        let permitted = self.power.permitted;
+        // Where a switch makes it turn round it needs no permission of the switch.
+        let turns = matches!(
+            self.config.homing.procedure,
+            Procedure::AbsoluteSwitch | Procedure::LimitSwitch
+        );
+        permitted.bars(search.up, !search.up).or_else(|| {
+            (!turns && self.is_on_limit_switch(search.up)).then_some(ErrorId::OutwardFromLimitSwitch)
+        })
+    }
+
+    /// MC_Home has become the owner.
+    pub(super) fn begin_homing(&mut self) {
+        self.homing = self.first_search();
+        self.beside.order.homing = self.homing.phase == Phase::Drive;
+        self.stir();
+    }
+
+    /// MC_Home owns the axis no longer.
+    pub(super) fn end_homing(&mut self) {
+        self.homing = Search::default();
+        self.beside.order.homing = false;
+        self.beside.order.marker = false;
+        self.stir();
+    }
+
+    /// Whether the drive moves as it likes.
+    pub(super) fn moves_itself(&self) -> bool {
+        self.beside.report.homing != DriveHoming::Off
+    }
+
+    /// Whether the drive is the one that homes.
+    pub(super) fn is_homed_by_drive(&self) -> bool {
+        matches!(self.homing.phase, Phase::Drive | Phase::Named | Phase::Return)
+    }
+
+    /// Whether a homing, or what is left of one, wants to see every scan's feedback.
+    pub(super) fn is_homing(&self) -> bool {
+        !self.homing.is_idle() || self.moves_itself() || self.is_to_return()
+    }
+
+    /// Whether the set-point follows a drive that obeys the command again.
+    fn is_to_return(&self) -> bool {
+        let in_operation = matches!(self.state, AxisState::Homing | AxisState::Stopping)
+            && self.power.on
+            && !self.power.going_off;
+        in_operation && matches!(self.motion, Motion::Follow) && !self.moves_itself()
+    }
+
+    /// Whether the search goes towards a limit switch on purpose, or is on the way back from one.
+    pub(super) fn turns_at_limit_switch(&self, up: bool) -> bool {
+        let search = &self.homing;
+        self.state == AxisState::Homing && (search.phase == Phase::Search || search.up != up)
+    }
+
+    /// The switch that is looked for; `up`: the last approach goes towards larger positions.
+    fn home_signal(&self, up: bool) -> bool {
+        match self.config.homing.procedure {
+            Procedure::AbsoluteSwitch => self.signals.home_switch,
+            Procedure::LimitSwitch => self.is_on_limit_switch(up),
+            Procedure::Direct | Procedure::ReferencePulse | Procedure::Block | Procedure::Drive => false,
+        }
+    }
+
+    /// After the latch: looks at what has changed, and goes on accordingly.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn follow_homing(&mut self, scan: u64, log: &mut Log) {
+        if self.moves_itself() || self.is_to_return() || self.is_homed_by_drive() {
+            return self.follow_drive_homing(scan, log);
+        }
+        let homing = self.config.homing;
+        let mut search = self.homing;
+        let step = self.actual_step();
+        search.scans = search.scans.saturating_add(1);
+        search.way += step.abs();
+        if search.phase == Phase::Found || self.state != AxisState::Homing {
+            return;
+        }
+        let is_up = if step == 0.0 { search.up } else { step > 0.0 };
+        let on = self.home_signal(homing.direction.is_up());
+        // The end of the switch that was passed: upwards the lower one puts it on.
+        let passed = (on != search.was_on).then_some(on == is_up);
+        search.was_on = on;
+        self.homing = search;
+        if homing.time_limit.is_some_and(|limit| search.scans > limit) {
+            return self.trip(ErrorId::HomingTimedOut, 0, Reaction::Ramp, scan, log);
+        }
+        if homing.distance_limit.is_some_and(|limit| search.way > limit) {
+            return self.trip(ErrorId::HomingTooFar, 0, Reaction::Ramp, scan, log);
+        }
+        let wanted = match homing.procedure {
+            // Its inner end.
+            Procedure::LimitSwitch => homing.direction.is_up(),
+            _ => homing.is_lower_end(),
+        };
+        let edge = passed == Some(wanted) && is_up == search.up;
+        match search.phase {
+            Phase::Search if edge => self.edge_found(search, scan, log),
+            Phase::Back if edge => self.go_on(Phase::Creep, !search.up, scan, log),
+            Phase::Creep if edge => self.switch_found(scan, log),
+            Phase::Search if self.is_on_limit_switch(search.up) => self.turn_round(search, scan, log),
+            Phase::Pulse => self.look_for_pulse(search, scan, log),
+            Phase::Block => self.look_for_stop(search, step, scan, log),
+            Phase::Idle
+            | Phase::Search
+            | Phase::Back
+            | Phase::Creep
+            | Phase::Found
+            | Phase::Drive
+            | Phase::Named
+            | Phase::Return => {}
+        }
+        self.mind_permission(scan, log);
+    }
+
+    /// Where it now goes must be permitted.
+    fn mind_permission(&mut self, scan: u64, log: &mut Log) {
+        let search = self.homing;
+        let searches = self.state == AxisState::Homing && self.velocity_of(&search).is_some();
+        if let Some(error) = self
+            .power
+            .permitted
+            .bars(search.up, !search.up)
+            .filter(|_| searches)
+        {
+            self.trip(error, 0, Reaction::Ramp, scan, log);
+        }
+    }
+
+    /// The edge has been passed with the velocity of the search.
+    fn edge_found(&mut self, search: Search, scan: u64, log: &mut Log) {
+        let homing = &self.config.homing;
+        let approach = homing.direction.is_up();
+        if homing.procedure == Procedure::LimitSwitch {
+            // The reference is where it goes off again.
+            return self.go_on(Phase::Creep, !approach, scan, log);
+        }
+        match homing.creep {
+            None => self.switch_found(scan, log),
+            Some(_) if search.up == approach => self.go_on(Phase::Back, !approach, scan, log),
+            Some(_) => self.go_on(Phase::Creep, approach, scan, log),
+        }
+    }
+
+    /// The edge that counts has been passed.
+    fn switch_found(&mut self, scan: u64, log: &mut Log) {
+        if self.config.homing.pulse {
+            self.go_on(Phase::Pulse, self.homing.up, scan, log);
+            self.beside.order.marker = !self.beside.report.marker.armed;
+        } else {
+            self.found(self.actual, None, scan, log);
+        }
+    }
+
+    /// A limit switch stands in the way of the search.
+    fn turn_round(&mut self, search: Search, scan: u64, log: &mut Log) {
+        if search.turned {
+            return self.trip(ErrorId::HomingSwitchNotFound, 0, Reaction::Ramp, scan, log);
+        }
+        self.homing.turned = true;
+        self.go_on(Phase::Search, !search.up, scan, log);
+    }
+
+    /// The pulse has been latched, or the latch has yet to be armed.
+    fn look_for_pulse(&mut self, search: Search, scan: u64, log: &mut Log) {
+        let told = self.beside.report.marker;
+        if !self.beside.order.marker {
+            // What it latched for someone else has to go first.
+            self.beside.order.marker = !told.armed;
+        } else if let Some(latched) = told.latched.filter(|_| told.armed) {
+            self.beside.order.marker = false;
+            self.homing = search;
+            self.found(self.place_of(latched), None, scan, log);
+        }
+    }
+
+    /// Whether the axis stands at a mechanical stop; then the set-point comes back to it.
+    fn look_for_stop(&mut self, mut search: Search, step: f64, scan: u64, log: &mut Log) {
+        let Some(block) = self.config.homing.block else {
+            return;
+        };
+        let slow = block.velocity * self.planner.cycle();
+        let stands = step.abs() < slow && self.setpoint.velocity.abs() >= block.velocity;
+        search.still = if stands { search.still.saturating_add(1) } else { 0 };
+        self.homing = search;
+        if search.still >= block.scans {
+            let back = self.setpoint.position - self.following_error();
+            self.found(self.actual, Some(back), scan, log);
+        }
+    }
+
+    /// The reference is at `reference` (u): the axis comes to rest, or goes `to` a place (u) first.
+    fn found(&mut self, reference: f64, to: Option<f64>, scan: u64, log: &mut Log) {
+        self.homing.reference = reference;
+        self.homing.phase = Phase::Found;
+        let Some(owner) = self.owner else { return };
+        let (start, limits) = (self.setpoint, &owner.limits);
+        let planned = match to {
+            Some(end) => {
+                let profile = self.config.profile;
+                self.planner.move_to(profile, &start, end, limits, &self.in_force)
+            }
+            None => self.planner.ramp_to(&start, 0.0, limits, &self.in_force),
+        };
+        match planned {
+            Ok(plan) => self.adopt(owner, Motion::along(plan), scan, log),
+            Err(_) => self.trip(ErrorId::PlanRefused, 0, Reaction::Ramp, scan, log),
+        }
+    }
+
+    /// The next phase, in a direction.
+    fn go_on(&mut self, phase: Phase, up: bool, scan: u64, log: &mut Log) {
+        self.homing.phase = phase;
+        self.homing.up = up;
+        let Some(owner) = self.owner else { return };
+        let velocity = self.velocity_of(&self.homing).unwrap_or(0.0);
+        let planned = self
+            .planner
+            .ramp_to(&self.setpoint, velocity, &owner.limits, &self.in_force);
+        match planned {
+            Ok(plan) => self.adopt(owner, Motion::along(plan), scan, log),
+            Err(_) => self.trip(ErrorId::PlanRefused, 0, Reaction::Ramp, scan, log),
+        }
+    }
+
+    /// The drive homes by itself, or has yet to return to the command.
+    fn follow_drive_homing(&mut self, scan: u64, log: &mut Log) {
+        let told = self.beside.report.homing;
+        if let (DriveHoming::Attained(reference) | DriveHoming::Done(reference), Phase::Drive) =
+            (told, self.homing.phase)
+        {
+            self.take_names_of_drive(reference, scan, log);
+        }
+        let homes = matches!(self.homing.phase, Phase::Drive | Phase::Named);
+        match told {
+            DriveHoming::Off if self.is_to_return() => {
+                self.hold_at_actual();
+                if self.homing.phase == Phase::Return {
+                    self.homing.phase = Phase::Found;
+                }
+            }
+            DriveHoming::Off => {}
+            DriveHoming::Failed if homes => {
+                self.trip(ErrorId::DriveHomingFailed, 0, Reaction::Follow, scan, log);
+            }
+            DriveHoming::Done(_) if homes => {
+                self.motion = Motion::Follow;
+                self.homing.phase = Phase::Return;
+                self.beside.order.homing = false;
+            }
+            DriveHoming::Busy | DriveHoming::Attained(_) | DriveHoming::Done(_) | DriveHoming::Failed => {
+                self.motion = Motion::Follow;
+            }
+        }
+        let limit = self.config.homing.time_limit;
+        self.homing.scans = self.homing.scans.saturating_add(1);
+        if self.is_homed_by_drive() && limit.is_some_and(|limit| self.homing.scans > limit) {
+            self.trip(ErrorId::HomingTimedOut, 0, Reaction::Ramp, scan, log);
+        }
+    }
+
+    /// From this scan on the drive calls its positions anew: the place of `reference` is where the homing has its
+    /// Position. What positions were before that cannot be compared with them, so this scan counts as at rest.
+    fn take_names_of_drive(&mut self, reference: DrivePosition, scan: u64, log: &mut Log) {
+        let Some(Work::Home(position)) = self.owner.map(|owner| owner.work) else {
+            return;
+        };
+        self.homing.phase = Phase::Named;
+        self.homing.reference = position;
+        let by = position - self.place_of(reference);
+        self.shift += by;
+        self.actual = self.shown_place(self.actual + by);
+        let step = self.actual - self.setpoint.position;
+        self.record(Event::Shifted { by: step }, self.owner_source(scan), log);
+        self.coordinates = self.coordinates.wrapping_add(1);
+        self.past = Past::new(self.actual);
+        self.setpoint = Setpoint::at_rest(self.actual);
+        self.motion = Motion::Follow;
+    }
+
+    /// A homing at its goal: the reference gets its name.
+    #[cold]
+    pub(super) fn settle_homing(&mut self, position: f64, scan: u64, log: &mut Log) {
+        let here = self.setpoint.position;
+        let reference = self.homing.reference;
+        let name = match self.homing.phase {
+            Phase::Idle => position,
+            Phase::Found if here == reference => position,
+            Phase::Found => self.shown_place(here + (position - reference)),
+            Phase::Search
+            | Phase::Back
+            | Phase::Creep
+            | Phase::Pulse
+            | Phase::Block
+            | Phase::Drive
+            | Phase::Named
+            | Phase::Return => return,
+        };
+        self.call_set_position(name, scan, log);
+        self.homed = true;
+        self.complete(scan, log);
+    }
+
+    /// A place (u) as programs see it.
+    fn shown_place(&self, place: f64) -> f64 {
+        self.modulo.as_ref().map_or(place, |modulo| modulo.in_turn(place))
+    }
+}

@@ -1,0 +1,61 @@
+//! Hardware limit switches: an axis that moves onto one stops, and one that stands on one may only move back.
+//!
+//! Moving towards a limit switch that is active is an axis error: ErrorStop, with the stop dynamics. The axis then
+//! stands behind the edge of the switch, which has to stay active up to the end of the travel. A motion that would
+//! lead further out is refused when its turn comes, as one that MC_Power bars. Homing uses the switches without
+//! error where it looks for them or turns round at them.
+
+use super::power::Reaction;
+use super::{Axis, Permission};
+use crate::{DriveSignals, ErrorId, Log};
+use standstill_planner::Planner;
+
+impl<P: Planner> Axis<P> {
+    /// Takes over this scan's signals. A drive that counts the other way has its positive end at the lower one.
+    pub(super) fn latch_signals(&mut self, told: DriveSignals) {
+        self.signals = told;
+        if self.config.scaling.is_some_and(|scaling| scaling.invert()) {
+            self.signals.limit_switch_positive = told.limit_switch_negative;
+            self.signals.limit_switch_negative = told.limit_switch_positive;
+        }
+    }
+
+    /// Whether the limit switch at the upper or the lower end is active.
+    #[inline]
+    pub(super) fn is_on_limit_switch(&self, up: bool) -> bool {
+        if up {
+            self.signals.limit_switch_positive
+        } else {
+            self.signals.limit_switch_negative
+        }
+    }
+
+    /// After the latch: ErrorStop if the axis moves onto a switch.
+    pub(super) fn mind_limit_switches(&mut self, scan: u64, log: &mut Log) {
+        let velocity = self.setpoint.velocity;
+        let up = velocity > 0.0;
+        let minded = self.config.hardware_limits || !self.homing.is_idle();
+        if minded && velocity != 0.0 && self.is_on_limit_switch(up) && !self.turns_at_limit_switch(up) {
+            self.trip(ErrorId::LimitSwitchReached, 0, Reaction::Ramp, scan, log);
+        }
+    }
+
+    /// The directions that neither MC_Power bars nor a limit switch.
+    pub(super) fn permission(&self) -> Permission {
+        let free = |up: bool| !(self.config.hardware_limits && self.is_on_limit_switch(up));
+        let permitted = self.power.permitted;
+        Permission {
+            positive: permitted.positive && free(true),
+            negative: permitted.negative && free(false),
+        }
+    }
+
+    /// Why a motion that leads so far up or down is barred, if it is.
+    pub(super) fn bars(&self, up: bool, down: bool) -> Option<ErrorId> {
+        let by_power = self.power.permitted.bars(up, down);
+        by_power.or_else(|| {
+            let barred = self.permission().bars(up, down);
+            barred.map(|_| ErrorId::OutwardFromLimitSwitch)
+        })
+    }
+}

@@ -1,0 +1,82 @@
+//! `standstill report`, and what `run` writes beside its text: a trace as a page, a picture, a waveform.
+
+use crate::exit::{Exit, Failure, complain};
+use standstill_report::{ReportError, Source, html};
+use standstill_script::suite::shown;
+use standstill_trace::file::{self, replace};
+use standstill_trace::{Loaded, svg, vcd};
+use std::path::{Path, PathBuf};
+
+/// The files to write, each if it is wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct Targets<'a> {
+    /// The page.
+    pub html: Option<&'a Path>,
+    /// The picture.
+    pub svg: Option<&'a Path>,
+    /// The waveform.
+    pub vcd: Option<&'a Path>,
+}
+
+/// Reads the traces and writes what is wanted of them.
+pub fn report(traces: &[PathBuf], targets: Targets<'_>) -> Result<Exit, Failure> {
+    if let Targets {
+        html: None,
+        svg: None,
+        vcd: None,
+    } = targets
+    {
+        return Err(Failure::usage(
+            "nothing to write: give -o FILE.html, --svg FILE or --vcd FILE",
+        ));
+    }
+    if traces.len() > 1 && (targets.svg.is_some() || targets.vcd.is_some()) {
+        return Err(Failure::usage(
+            "--svg and --vcd take one trace; -o lays several over each other",
+        ));
+    }
+    let loaded: Vec<(String, Loaded)> = traces.iter().map(|path| load(path)).collect::<Result<_, _>>()?;
+    let sources: Vec<_> = loaded.iter().map(|(name, loaded)| source(name, loaded)).collect();
+    write_all(&sources, targets)?;
+    Ok(Exit::Passed)
+}
+
+fn load(path: &Path) -> Result<(String, Loaded), Failure> {
+    let (name, loaded) = (shown(path), file::load(path)?);
+    if !loaded.lacks.is_empty() {
+        complain(&format!("note: {name} lacks {}", loaded.lacks.join(", ")));
+    }
+    Ok((name, loaded))
+}
+
+fn source<'a>(name: &'a str, loaded: &'a Loaded) -> Source<'a> {
+    Source {
+        name,
+        trace: &loaded.trace,
+        lacks: &loaded.lacks,
+    }
+}
+
+/// Writes what is wanted.
+pub fn write_all(sources: &[Source<'_>], targets: Targets<'_>) -> Result<(), Failure> {
+    if let Some(path) = targets.html {
+        let page = html(sources).map_err(failure)?;
+        replace(path, |out| out.write_all(page.as_bytes()))?;
+    }
+    if let ([source], Some(path)) = (sources, targets.svg) {
+        let picture = svg::report(source.trace);
+        replace(path, |out| out.write_all(picture.as_bytes()))?;
+    }
+    if let ([source], Some(path)) = (sources, targets.vcd) {
+        replace(path, |mut out| vcd::write(source.trace, &mut out))?;
+    }
+    Ok(())
+}
+
+fn failure(error: ReportError) -> Failure {
+    let exit = match error {
+        ReportError::Count(_) => Exit::Usage,
+        ReportError::Empty(_) | ReportError::Cycle { .. } => Exit::BadInput,
+    };
+    Failure::Told(exit, format!("error: {error}"))
+}

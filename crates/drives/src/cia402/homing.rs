@@ -1,0 +1,129 @@
+//! Homing by the drive, mode 6: how a controller asks for it, and how a simulated node does it.
+
+use super::node::{Inputs, MODE_CSP, MODE_HM};
+use super::words::{Command, HomingStatus, State, Statusword};
+use standstill_axis::{DriveHoming, DrivePosition};
+
+/// The controller's side: mode 6 is asked for, bit 4 set once it is acknowledged (CI-7), the status judged from then
+/// on, and mode 8 taken back once the drive stands.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Link {
+    /// The axis wants the drive to home.
+    wanted: bool,
+    /// Mode 6 has been asked for, and mode 8 is not back yet.
+    leads: bool,
+    /// Bit 4 has been sent.
+    started: bool,
+    /// Bit 12 has been seen FALSE: what it tells from now on is of this homing.
+    fresh: bool,
+    told: DriveHoming,
+}
+
+impl Link {
+    /// Takes what the axis orders.
+    pub fn order(&mut self, wanted: bool) {
+        if wanted && !self.wanted {
+            self.leads = true;
+            (self.started, self.fresh) = (false, false);
+            self.told = DriveHoming::Busy;
+        }
+        self.wanted = wanted;
+    }
+
+    /// Takes what arrived; `reference` is where the drive has it once it is known.
+    pub fn take(&mut self, inputs: &Inputs, reference: DrivePosition) {
+        if !self.leads {
+            return;
+        }
+        if !self.wanted {
+            self.leads = inputs.mode != MODE_CSP;
+            self.told = if self.leads {
+                DriveHoming::Busy
+            } else {
+                DriveHoming::Off
+            };
+            return;
+        }
+        if matches!(self.told, DriveHoming::Done(_) | DriveHoming::Failed) || !is_in_mode(inputs) {
+            return;
+        }
+        let status = Statusword(inputs.statusword).homing();
+        self.fresh |= !matches!(status, HomingStatus::Attained | HomingStatus::Done);
+        if self.started && self.fresh {
+            self.told = match status {
+                HomingStatus::InProgress | HomingStatus::Stopped => DriveHoming::Busy,
+                HomingStatus::Attained => DriveHoming::Attained(reference),
+                HomingStatus::Done => DriveHoming::Done(reference),
+                HomingStatus::ErrorMoving | HomingStatus::ErrorStopped => DriveHoming::Failed,
+            };
+        }
+    }
+
+    /// Mode and further bits of the control word, given what arrived last and whether operation is asked for.
+    pub fn give(&mut self, inputs: &Inputs, enable: bool) -> (i8, u16) {
+        if !self.leads {
+            return (MODE_CSP, 0);
+        }
+        let in_mode = is_in_mode(inputs) && enable;
+        if self.wanted {
+            self.started |= in_mode;
+            return (MODE_HM, if in_mode { Command::HOMING } else { 0 });
+        }
+        if in_mode && !Statusword(inputs.statusword).homing().is_at_rest() {
+            (MODE_HM, Command::HALT)
+        } else {
+            (MODE_CSP, 0)
+        }
+    }
+
+    /// Whether the drive may be in a mode other than 8 because it was asked to.
+    pub fn leads(&self) -> bool {
+        self.leads
+    }
+
+    /// For the axis.
+    pub fn told(&self) -> DriveHoming {
+        self.told
+    }
+}
+
+fn is_in_mode(inputs: &Inputs) -> bool {
+    inputs.mode == MODE_HM && Statusword(inputs.statusword).state() == State::OperationEnabled
+}
+
+/// What a simulated node does in mode 6: it goes to the home switch, calls the place where it goes on 0, and comes to
+/// rest. A limit switch in the way is an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeHoming {
+    /// Towards larger positions.
+    pub up: bool,
+    /// Velocity (increments/scan), above 0.
+    pub velocity: f64,
+}
+
+/// The node's side.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Progress {
+    /// Not started, or interrupted.
+    #[default]
+    Idle,
+    /// On the way to the switch.
+    Searching,
+    /// The switch has been found.
+    Attained,
+    /// It has not been found.
+    Failed,
+}
+
+impl Progress {
+    pub fn status(self, is_at_rest: bool) -> HomingStatus {
+        match (self, is_at_rest) {
+            (Self::Searching, _) | (Self::Idle, false) => HomingStatus::InProgress,
+            (Self::Idle, true) => HomingStatus::Stopped,
+            (Self::Attained, false) => HomingStatus::Attained,
+            (Self::Attained, true) => HomingStatus::Done,
+            (Self::Failed, false) => HomingStatus::ErrorMoving,
+            (Self::Failed, true) => HomingStatus::ErrorStopped,
+        }
+    }
+}

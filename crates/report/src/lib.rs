@@ -1,0 +1,93 @@
+//! Traces as a page to look at: curves with their limits, states, a timing diagram of every pin, claims, events, and a
+//! cursor that reads the exact values. One trace, or several laid over each other.
+//!
+//! The page is one file that loads nothing: its content policy allows its own script and style, by their hashes, and
+//! nothing else. Texts of a trace become texts of the page, never markup. Rows travel as the exact companion of the trace
+//! ([`standstill_trace::exact`]), so every bit is there; `page/decode.js` unpacks them.
+//!
+//! What is not here: curves are drawn by uPlot (`vendor/`, MIT licence), everything else of the page stands readable in
+//! `page/`; no step builds it. The crate reads no clock and no files: same traces, same bytes.
+
+#![forbid(unsafe_code)]
+
+mod facts;
+mod page;
+
+use standstill_trace::Trace;
+use standstill_trace::time_literal;
+
+/// So many traces fit over each other: there are as many colours.
+pub const TRACES_MAX: usize = 6;
+
+/// A trace with the name it goes by, and what its file did not tell.
+#[derive(Clone, Copy, Debug)]
+pub struct Source<'a> {
+    /// What stands for it on the page, such as its file.
+    pub name: &'a str,
+    /// The trace.
+    pub trace: &'a Trace,
+    /// What is missing, one phrase each ([`standstill_trace::Loaded::lacks`]).
+    pub lacks: &'a [String],
+}
+
+/// Why there is no page of these traces.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ReportError {
+    /// There is none, or there are too many.
+    #[error("{0} traces: a report shows 1 to {TRACES_MAX}")]
+    Count(usize),
+    /// A trace without rows.
+    #[error("{0}: the trace has no rows, there is nothing to show")]
+    Empty(String),
+    /// Scans of different length: scan n is not the same time in both.
+    #[error(
+        "{first} has scans of {}, {other} of {}: only traces of the same cycle can be laid over each other",
+        time_literal(*first_ns),
+        time_literal(*other_ns)
+    )]
+    Cycle {
+        /// Name of the first trace.
+        first: String,
+        /// Its cycle (ns).
+        first_ns: u64,
+        /// Name of a trace with another one.
+        other: String,
+        /// That cycle (ns).
+        other_ns: u64,
+    },
+}
+
+/// The page of these traces. Where they have different lengths the shorter ones end earlier, and the page says so.
+///
+/// Cost: that of [`standstill_trace::exact::encode`] for each trace.
+///
+/// # Errors
+/// No trace or too many, one without rows, or different cycles.
+pub fn html(sources: &[Source<'_>]) -> Result<String, ReportError> {
+    check(sources)?;
+    Ok(page::page(sources))
+}
+
+/// What [`html`] would refuse, without the work.
+///
+/// # Errors
+/// As [`html`].
+pub fn check(sources: &[Source<'_>]) -> Result<(), ReportError> {
+    let first = match sources {
+        [first, ..] if sources.len() <= TRACES_MAX => first,
+        _ => return Err(ReportError::Count(sources.len())),
+    };
+    if let Some(empty) = sources.iter().find(|source| source.trace.scans() == 0) {
+        return Err(ReportError::Empty(empty.name.to_owned()));
+    }
+    let cycle = |source: &Source<'_>| source.trace.header().cycle_ns;
+    match sources.iter().find(|source| cycle(source) != cycle(first)) {
+        None => Ok(()),
+        Some(other) => Err(ReportError::Cycle {
+            first: first.name.to_owned(),
+            first_ns: cycle(first),
+            other: other.name.to_owned(),
+            other_ns: cycle(other),
+        }),
+    }
+}

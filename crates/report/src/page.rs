@@ -1,0 +1,103 @@
+//! The parts of the page, put together.
+
+use crate::{Source, facts};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+use standstill_trace::{Header, events, exact};
+use std::fmt::Write;
+
+const TEMPLATE: &str = include_str!("../page/page.html");
+
+const STYLE: &str = concat!(
+    include_str!("../vendor/uPlot.min.css"),
+    "\n",
+    include_str!("../page/page.css")
+);
+
+/// uPlot with its licence, then ours: from the bytes to the page.
+const SCRIPT: &str = concat!(
+    "/*\n",
+    include_str!("../vendor/uPlot-LICENSE"),
+    "*/\n",
+    include_str!("../vendor/uPlot.iife.min.js"),
+    "\n'use strict';\n",
+    include_str!("../page/decode.js"),
+    include_str!("../page/rows.js"),
+    include_str!("../page/curves.js"),
+    include_str!("../page/board.js"),
+    include_str!("../page/page.js"),
+);
+
+/// The whole page.
+pub fn page(sources: &[Source<'_>]) -> String {
+    let about = json!({"traces": sources.iter().map(about).collect::<Vec<_>>()}).to_string();
+    filled(|place| match place {
+        "style_hash" => hash(STYLE),
+        "script_hash" => hash(SCRIPT),
+        "version" => env!("CARGO_PKG_VERSION").to_owned(),
+        "title" => facts::escaped(&facts::title(sources)),
+        "facts" => facts::facts(sources),
+        "sources" => facts::sources(sources),
+        "failures" => facts::failures(sources),
+        "footer" => facts::footer(sources),
+        // In a script element only this character could end the text.
+        "about" => about.replace('<', "\\u003c"),
+        "rows" => sources.iter().map(rows).collect(),
+        "style" => STYLE.to_owned(),
+        "script" => SCRIPT.to_owned(),
+        other => format!("{{{other}}}"),
+    })
+}
+
+/// The template with its places filled. What goes in is not looked at again.
+fn filled(text_of: impl Fn(&str) -> String) -> String {
+    let mut page = String::new();
+    let mut rest = TEMPLATE;
+    while let Some((before, after)) = rest.split_once('{') {
+        page.push_str(before);
+        let (place, after) = after.split_once('}').unwrap_or((after, ""));
+        page.push_str(&text_of(place));
+        rest = after;
+    }
+    page.push_str(rest);
+    page
+}
+
+/// A source expression of the content policy: this text and no other.
+fn hash(text: &str) -> String {
+    format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text.as_bytes())))
+}
+
+/// Everything of a trace but its rows.
+fn about(source: &Source<'_>) -> Value {
+    let header = source.trace.header();
+    let events: Vec<Value> = events(source.trace)
+        .into_iter()
+        .map(|event| json!([event.scan, event.subject, event.text]))
+        .collect();
+    json!({"name": source.name, "header": told(header), "events": events})
+}
+
+/// The header without what the rows tell anyway.
+fn told(header: &Header) -> Value {
+    let instances = header.instances.iter();
+    let instances: Vec<Value> = instances
+        .map(|instance| json!({"name": instance.name, "type": instance.block}))
+        .collect();
+    json!({
+        "cycle_ns": header.cycle_ns,
+        "axes": header.axes,
+        "instances": instances,
+        "claims": header.claims,
+    })
+}
+
+/// The rows of a trace.
+fn rows(source: &Source<'_>) -> String {
+    let mut text = String::from("<script type=\"text/plain\" class=\"rows\">");
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "{}</script>", STANDARD.encode(exact::encode(source.trace)));
+    text
+}

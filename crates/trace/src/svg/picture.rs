@@ -1,0 +1,236 @@
+//! The drawing itself: panels below each other on one scale of scans.
+
+use std::fmt::Write;
+
+use super::range::{Range, escaped, limits, path};
+use crate::column::{Cell, Role};
+use crate::events::same;
+use crate::header::Axis;
+use crate::number::{cell_text, time_literal};
+use crate::panels::{Curve, Wave, compact};
+use crate::trace::Trace;
+
+/// Width of the picture.
+const WIDTH: f64 = 880.0;
+
+/// Room for labels left of the curves.
+pub const GUTTER: f64 = 190.0;
+
+/// Room right of the curves, for half a tick label.
+const MARGIN: f64 = 30.0;
+
+/// Height of a curve.
+pub const CURVE: f64 = 84.0;
+
+/// Height of a band of states, and of the row of a Boolean.
+pub const ROW: f64 = 18.0;
+
+/// Height of a Boolean that is TRUE.
+const LEVEL: f64 = 11.0;
+
+/// Between one panel and the next.
+pub const GAP: f64 = 14.0;
+
+/// Width of a character of a label, for what fits into a band.
+const CHARACTER: f64 = 6.6;
+
+const STYLE: &str = "<style>\n\
+    text { fill: #222 } .small { font-size: 10px } .unit { fill: #666 }\n\
+    path { fill: none; stroke-width: 1.5 } .frame { stroke: #bbb; stroke-width: 1 } .grid { stroke: #e4e4e4; stroke-width: 1 }\n\
+    .limit { stroke: #c02020; stroke-width: 1; stroke-dasharray: 5 4 } .curve { stroke: #1d5fc4 }\n\
+    .in { stroke: #8a5a00 } .out { stroke: #14773f } rect { fill: #eef2f8; stroke: #bbb }\n\
+    @media (prefers-color-scheme: dark) { text { fill: #eee } .unit { fill: #aaa } .frame { stroke: #666 }\n\
+    .grid { stroke: #333 } .limit { stroke: #ff7070 } .curve { stroke: #7fb2ff } .in { stroke: #e0b050 }\n\
+    .out { stroke: #63d297 } rect { fill: #232a36; stroke: #666 } }\n\
+    </style>\n";
+
+/// A cell for a box: numbers as labels have them.
+fn box_text(cell: Cell<'_>) -> String {
+    match cell {
+        Cell::Real(value) => compact(value),
+        other => cell_text(other),
+    }
+}
+
+/// A picture that grows downwards.
+pub struct Picture {
+    pub body: String,
+    /// Where the next panel begins.
+    pub y: f64,
+    pub scans: usize,
+}
+
+impl Picture {
+    /// An empty one, over so many scans.
+    pub const fn new(scans: usize) -> Self {
+        Self {
+            body: String::new(),
+            y: GAP,
+            scans,
+        }
+    }
+
+    /// Where a scan is, the number of scans being the right end.
+    pub fn x(&self, scan: usize) -> f64 {
+        GUTTER + (WIDTH - MARGIN - GUTTER) * (scan as f64 / self.scans.max(1) as f64)
+    }
+
+    pub fn line(&mut self, class: &str, path: &str) {
+        // Writing to a String cannot fail, here and below.
+        let _ = writeln!(self.body, "<path class=\"{class}\" d=\"{path}\"/>");
+    }
+
+    pub fn text(&mut self, class: &str, anchor: &str, [x, y]: [f64; 2], text: &str) {
+        let text = escaped(text);
+        let _ = writeln!(
+            self.body,
+            "<text class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>"
+        );
+    }
+
+    pub fn label(&mut self, class: &str, y: f64, text: &str) {
+        self.text(class, "end", [GUTTER - 8.0, y], text);
+    }
+
+    /// The band of an axis' states, each named where it fits.
+    pub fn states(&mut self, trace: &Trace, axis: &Axis) {
+        let name = format!("{}.State", axis.name);
+        if let Some(column) = trace.column(&name) {
+            self.label("", self.y + 0.7 * ROW, &name);
+            self.boxes(trace.cells(column), ROW);
+            self.y += ROW + GAP;
+        }
+    }
+
+    /// A box for every stretch of equal cells, with its text where that fits.
+    pub fn boxes<'t>(&mut self, cells: impl Iterator<Item = Cell<'t>>, row: f64) {
+        let y = self.y;
+        let cells: Vec<Cell<'_>> = cells.collect();
+        let mut first = 0;
+        for run in cells.chunk_by(|one, other| same(*one, *other)) {
+            let [left, right] = [first, first + run.len()].map(|scan| self.x(scan));
+            let _ = writeln!(
+                self.body,
+                "<rect x=\"{left:.1}\" y=\"{y:.1}\" width=\"{:.1}\" height=\"{row}\"/>",
+                right - left
+            );
+            if let Some(text) = run.first().map(|cell| box_text(*cell))
+                && CHARACTER * text.len() as f64 <= right - left
+            {
+                self.text("small", "middle", [0.5 * (left + right), y + 0.7 * row], &text);
+            }
+            first += run.len();
+        }
+    }
+
+    pub fn curve(&mut self, curve: &Curve<'_>, ticks: &[usize]) {
+        let range = Range::of(curve.least, curve.greatest);
+        self.line_of(&curve.title, &curve.values, &range, &limits(curve), ticks);
+    }
+
+    /// A panel with one curve.
+    pub fn line_of(&mut self, title: &str, values: &[f64], range: &Range, limits: &[f64], ticks: &[usize]) {
+        let (top, bottom) = (self.y, self.y + CURVE);
+        let height = |value: f64| bottom - CURVE * range.part(value);
+        self.grid(ticks, top, bottom);
+        if range.least < 0.0 && range.greatest > 0.0 {
+            let zero = format!("M{GUTTER} {:.1}H{:.1}", height(0.0), WIDTH - MARGIN);
+            self.line("frame", &zero);
+        }
+        for limit in limits.iter().filter(|limit| range.has(**limit)) {
+            let y = height(*limit);
+            self.line("limit", &format!("M{GUTTER} {y:.1}H{:.1}", WIDTH - MARGIN));
+        }
+        self.trail("curve", values, height);
+        self.label("", top + 0.5 * CURVE, title);
+        for value in [range.greatest, range.least] {
+            let y = height(value).clamp(top + 6.0, bottom - 2.0) + 3.0;
+            if (y - top - 0.5 * CURVE).abs() > 12.0 {
+                self.label("small unit", y, &compact(value));
+            }
+        }
+        self.y = bottom + GAP;
+    }
+
+    /// A line through values, broken where they are not finite.
+    pub fn trail(&mut self, class: &str, values: &[f64], height: impl Fn(f64) -> f64) {
+        let points: Vec<[f64; 2]> = (0..)
+            .map(|scan| self.x(scan))
+            .zip(values.iter().map(|value| height(*value)))
+            .map(|(x, y)| [x, y])
+            .collect();
+        for part in points
+            .split(|[_, y]| !y.is_finite())
+            .filter(|part| !part.is_empty())
+        {
+            self.line(class, &path(part));
+        }
+    }
+
+    /// Vertical lines at the ticks, and a frame.
+    pub fn grid(&mut self, ticks: &[usize], top: f64, bottom: f64) {
+        let path: String = ticks
+            .iter()
+            .map(|tick| format!("M{:.1} {top:.1}V{bottom:.1}", self.x(*tick)))
+            .collect();
+        self.line("grid", &path);
+        let right = WIDTH - MARGIN;
+        self.line("frame", &format!("M{GUTTER} {top:.1}V{bottom:.1}H{right:.1}"));
+    }
+
+    /// What `rows` draws, with a grid below it, which it is to hide.
+    pub fn over_grid(&mut self, ticks: &[usize], rows: impl FnOnce(&mut Self)) {
+        let (top, place) = (self.y, self.body.len());
+        rows(self);
+        let rows = self.body.split_off(place);
+        if !rows.is_empty() {
+            self.grid(ticks, top, self.y + 4.0);
+        }
+        self.body.push_str(&rows);
+    }
+
+    pub fn wave(&mut self, wave: &Wave) {
+        let low = self.y + 0.8 * ROW;
+        let height = |level: bool| if level { low - LEVEL } else { low };
+        let mut path = String::new();
+        let mut level = wave.levels.first().copied().unwrap_or_default();
+        let _ = write!(path, "M{:.1} {:.1}", self.x(0), height(level));
+        for (scan, next) in wave.levels.iter().enumerate() {
+            if *next != level {
+                let _ = write!(path, "H{:.1}V{:.1}", self.x(scan), height(*next));
+                level = *next;
+            }
+        }
+        let _ = write!(path, "H{:.1}", self.x(self.scans));
+        let class = match wave.role {
+            Role::Variable | Role::Input => "in",
+            Role::AxisState | Role::AxisValue | Role::InOut | Role::Output => "out",
+        };
+        self.line(class, &path);
+        self.label("", low - 1.0, &wave.name);
+        self.y += ROW;
+    }
+
+    /// All of it, below a title that readers of pages are told.
+    pub fn finish(self, title: &str) -> String {
+        let height = self.y + GAP;
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH:.0} {height:.0}\" font-family=\"sans-serif\" \
+             font-size=\"12\">\n<title>{}</title>\n{STYLE}{}</svg>\n",
+            escaped(title),
+            self.body
+        )
+    }
+
+    /// The time axis.
+    pub fn time(&mut self, cycle_ns: u64, ticks: &[usize]) {
+        let bottom = self.y + 4.0;
+        for tick in ticks {
+            let place = [self.x(*tick), bottom + 12.0];
+            self.text("small", "middle", place, &tick.to_string());
+        }
+        let cycle = time_literal(cycle_ns);
+        self.label("small unit", bottom + 12.0, &format!("scan of {cycle}"));
+        self.y = bottom + 12.0;
+    }
+}
