@@ -10,11 +10,12 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_Home; Part 5, homing procedures; V11; CiA 402, homing mode.
 
+mod by_drive;
+
 use super::power::Reaction;
-use super::queue::{Entry, Work};
-use super::reading::Past;
+use super::queue::Entry;
 use super::{Axis, Motion};
-use crate::{AxisState, DriveHoming, DrivePosition, ErrorId, Event, HomeDirection, Log, Procedure};
+use crate::{AxisState, ErrorId, HomeDirection, Log, Procedure};
 use standstill_planner::{Planner, Setpoint};
 
 /// What a homing is doing.
@@ -196,27 +197,9 @@ impl<P: Planner> Axis<P> {
         self.stir();
     }
 
-    /// Whether the drive moves as it likes.
-    pub(super) fn moves_itself(&self) -> bool {
-        self.beside.report.homing != DriveHoming::Off
-    }
-
-    /// Whether the drive is the one that homes.
-    pub(super) fn is_homed_by_drive(&self) -> bool {
-        matches!(self.homing.phase, Phase::Drive | Phase::Named | Phase::Return)
-    }
-
     /// Whether a homing, or what is left of one, wants to see every scan's feedback.
     pub(super) fn is_homing(&self) -> bool {
         !self.homing.is_idle() || self.moves_itself() || self.is_to_return()
-    }
-
-    /// Whether the set-point follows a drive that obeys the command again.
-    fn is_to_return(&self) -> bool {
-        let in_operation = matches!(self.state, AxisState::Homing | AxisState::Stopping)
-            && self.power.on
-            && !self.power.going_off;
-        in_operation && matches!(self.motion, Motion::Follow) && !self.moves_itself()
     }
 
     /// Whether the search goes towards a limit switch on purpose, or is on the way back from one.
@@ -396,64 +379,14 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The drive homes by itself, or has yet to return to the command.
-    fn follow_drive_homing(&mut self, scan: u64, log: &mut Log) {
-        let told = self.beside.report.homing;
-        if let (DriveHoming::Attained(reference) | DriveHoming::Done(reference), Phase::Drive) =
-            (told, self.homing.phase)
-        {
-            self.take_names_of_drive(reference, scan, log);
-        }
-        let homes = matches!(self.homing.phase, Phase::Drive | Phase::Named);
-        match told {
-            DriveHoming::Off if self.is_to_return() => {
-                self.hold_at_actual();
-                if self.homing.phase == Phase::Return {
-                    self.homing.phase = Phase::Found;
-                }
-            }
-            DriveHoming::Off => {}
-            DriveHoming::Failed if homes => {
-                self.trip(ErrorId::DriveHomingFailed, 0, Reaction::Follow, scan, log);
-            }
-            DriveHoming::Done(_) if homes => {
-                self.motion = Motion::Follow;
-                self.homing.phase = Phase::Return;
-                self.beside.order.homing = false;
-            }
-            DriveHoming::Busy | DriveHoming::Attained(_) | DriveHoming::Done(_) | DriveHoming::Failed => {
-                self.motion = Motion::Follow;
-            }
-        }
-        let limit = self.config.homing.time_limit;
-        self.homing.scans = self.homing.scans.saturating_add(1);
-        if self.is_homed_by_drive() && limit.is_some_and(|limit| self.homing.scans > limit) {
-            self.trip(ErrorId::HomingTimedOut, 0, Reaction::Ramp, scan, log);
-        }
-    }
-
-    /// From this scan on the drive calls its positions anew: the place of `reference` is where the homing has its
-    /// Position. What positions were before that cannot be compared with them, so this scan counts as at rest.
-    fn take_names_of_drive(&mut self, reference: DrivePosition, scan: u64, log: &mut Log) {
-        let Some(Work::Home(position)) = self.owner.map(|owner| owner.work) else {
-            return;
-        };
-        self.homing.phase = Phase::Named;
-        self.homing.reference = position;
-        let by = position - self.place_of(reference);
-        self.shift += by;
-        self.actual = self.shown_place(self.actual + by);
-        let step = self.actual - self.setpoint.position;
-        self.record(Event::Shifted { by: step }, self.owner_source(scan), log);
-        self.coordinates = self.coordinates.wrapping_add(1);
-        self.past = Past::new(self.actual);
-        self.setpoint = Setpoint::at_rest(self.actual);
-        self.motion = Motion::Follow;
-    }
-
     /// A homing at its goal: the reference gets its name.
     #[cold]
     pub(super) fn settle_homing(&mut self, position: f64, scan: u64, log: &mut Log) {
+        if self.homing.phase == Phase::Found && matches!(self.motion, Motion::Run { .. }) {
+            // A drive is told the new name of the set-point it has, so the last one of the ramp goes to it first.
+            self.motion = Motion::Hold;
+            return;
+        }
         let here = self.setpoint.position;
         let reference = self.homing.reference;
         let name = match self.homing.phase {

@@ -90,22 +90,26 @@ impl<P: Planner> Axis<P> {
         };
         // Further out than it is: from outside it may come in, and in the middle of a reversal a stop turns back.
         let leaves = |rest: f64| (rest > max && rest > next.position) || (rest < min && rest < next.position);
+        // Between two scans it may come out and turn: a stop from there leads in again.
+        let outside = |position: f64| position < min || position > max;
+        let comes_out = outside(next.position) && !outside(self.setpoint.position);
         let leaving = match owner.work {
             Work::Velocity { .. } => true,
-            Work::Profile { .. } if !owner.is_endless() => self.watched && leaves(self.end_of_plan()),
+            Work::Profile { .. } if !owner.is_endless() && !self.watched => return false,
+            Work::Profile { .. } if !owner.is_endless() => leaves(self.end_of_plan()),
             Work::Profile { .. } => true,
             Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
             Work::Halt | Work::Stop => leaves(self.end_of_plan() + self.superimposed_left()),
             // With something superimposed, ends and turns were checked when it was planned.
-            Work::Position(_) | Work::Distance(_) | Work::Through { .. } if !self.watched => false,
+            Work::Position(_) | Work::Distance(_) | Work::Through { .. } if !self.watched => return false,
             // It turns back where it stops, or its end has another name since it began.
             Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
                 leaves(self.end_of_plan()) || leaves(self.rest(next, &owner.limits))
             }
             // Supervision of the travel is up to the application.
-            Work::Torque { .. } | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
+            Work::Torque { .. } | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return false,
         };
-        leaving && leaves(self.rest(next, &self.stop_limits()))
+        comes_out || (leaving && leaves(self.rest(next, &self.stop_limits())))
     }
 
     /// Where a ramp to rest from `state` within `limits` ends (u).

@@ -17,7 +17,7 @@ use crate::kernel::ON_LIMIT;
 use crate::turns::{split, two_product, two_sum};
 use crate::{Field, Limits, Order, PlanError, Setpoint};
 use path::Path;
-use solve::{Course, Ramp, Ramps, heading};
+use solve::{Course, Ramp, Ramps, heading, unmoved};
 
 /// Most pieces of a plan.
 const MAX_PIECES: usize = 20;
@@ -115,8 +115,9 @@ impl RampPlan {
             let end = path.fill(start, ramps.scale().outward(&spans));
             path.pin(velocity);
             let arrives = is_there(&end, velocity, (start, limits, path.duration()));
-            // A ramp from a viable state exceeds nothing, which the tests see and this need not look for.
-            let excess = if viable {
+            // A ramp from a viable state exceeds nothing, which the tests see and this need not look for; a stop that
+            // is free to turn does by that.
+            let excess = if viable && (course == Course::Kept || velocity != 0.0) {
                 None
             } else {
                 excess::excess(&path, velocity, Some(heading), limits)
@@ -130,7 +131,18 @@ impl RampPlan {
             .filter(|(_, _, excess, fits, arrives)| {
                 *fits && *arrives && excess.is_none_or(|excess| excess.velocity == 0.0)
             })
-            .unwrap_or_else(|| proposed(Course::Kept));
+            .unwrap_or_else(|| {
+                let kept = proposed(Course::Kept);
+                // A stop that has to turn back turns once: to turn back less far it would turn twice (R11a).
+                let turns = velocity == 0.0
+                    && kept.2.is_some()
+                    && !kept.0.keeps_side(heading, unmoved(limits.velocity));
+                let once = turns.then(|| proposed(Course::Free));
+                once.filter(|(path, _, _, fits, arrives)| {
+                    *fits && *arrives && path.duration() < kept.0.duration()
+                })
+                .unwrap_or(kept)
+            });
         let too_long = PlanError::TooLong {
             field: Field::EndVelocity,
             value: velocity,

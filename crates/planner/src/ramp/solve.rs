@@ -334,17 +334,21 @@ const fn levels(order: Order, derivative: u32) -> u32 {
     (order.degree() as u32).saturating_sub(derivative)
 }
 
-/// The direction a motion has, 1 or -1: the sign of the velocity, or if that is nothing but rounding beside
-/// its bound `velocity`, of the first derivative that moves it.
-pub(crate) fn heading(start: &Setpoint, goal: f64, velocity: f64, order: Order) -> f64 {
-    let small = if velocity.is_finite() {
+/// A speed that is nothing but rounding beside its bound `velocity`.
+pub(crate) fn unmoved(velocity: f64) -> f64 {
+    if velocity.is_finite() {
         ON_LIMIT * velocity
     } else {
         0.0
-    };
+    }
+}
+
+/// The direction a motion has, 1 or -1: the sign of the velocity, or if that is nothing but rounding beside
+/// its bound `velocity`, of the first derivative that moves it.
+pub(crate) fn heading(start: &Setpoint, goal: f64, velocity: f64, order: Order) -> f64 {
     let unless_it_jumps = |least| if order >= least { 0.0 } else { f64::INFINITY };
     let decisive = [
-        (start.velocity, small),
+        (start.velocity, unmoved(velocity)),
         (start.acceleration, unless_it_jumps(Order::Three)),
         (start.jerk, unless_it_jumps(Order::Four)),
         (goal, 0.0),

@@ -149,6 +149,7 @@ fn blocks(random: &mut Random, axis: usize) -> Vec<BlockSetup> {
     let owners = of(&[
         Kind::Motion,
         Kind::Stop,
+        Kind::Jog,
         Kind::Superimposed,
         Kind::HaltSuperimposed,
     ]);

@@ -2,6 +2,7 @@
 
 use super::scenario::{Action, Bench, FAULT_CODE, FaultKind, Scenario, axis_id};
 use crate::rules::arrows::{Part, Reach};
+use crate::rules::fence::Fence;
 use crate::rules::limits::{Track, check_excess};
 use crate::rules::{Broken, Call, Held, Kind, Outputs, Shown, Truth, check_call, check_truth};
 use standstill_axis::{
@@ -29,7 +30,7 @@ pub struct Instance {
     pub axis: usize,
     /// What its last call left.
     pub shown: Shown,
-    /// Execute or Enable, if it has one of them.
+    /// Execute, Enable or JogForward, if it has one of them.
     pub trigger: Option<usize>,
     /// Execute or Enable as it stands, and as it stood at the last call.
     pub on: bool,
@@ -97,6 +98,7 @@ struct Run<'a, H> {
     instances: Vec<Instance>,
     reach: Reach,
     tracks: Vec<Track>,
+    fences: Vec<Fence>,
     /// The state of each axis as last seen.
     states: Vec<AxisState>,
     following: Vec<bool>,
@@ -109,7 +111,7 @@ impl Instance {
     fn new(block: BlockInstance, axis: usize) -> Self {
         let info = block.info();
         let place = |pin: &str| info.pin(pin).map(|(place, _)| place);
-        let trigger = place("Execute").or_else(|| place("Enable"));
+        let trigger = ["Execute", "Enable", "JogForward"].into_iter().find_map(place);
         let on = trigger.and_then(|pin| block.get(pin)) == Some(Value::Bool(true));
         Self {
             kind: Kind::of(info),
@@ -162,6 +164,7 @@ pub fn run(scenario: &Scenario, hands: &mut impl Hands) -> (Seen, Option<Failure
             .iter()
             .map(|axis| Track::new(axis, scenario.cycle()))
             .collect(),
+        fences: machine.axes().iter().map(Fence::new).collect(),
         states: machine.axes().iter().map(Axis::state).collect(),
         following: vec![true; machine.axes().len()],
         records: 0,
@@ -244,6 +247,7 @@ impl<H: Hands> Run<'_, H> {
         let axis = &context.axes[instance.axis];
         let state = axis.state();
         let refusing = matches!(state, AxisState::Disabled | AxisState::ErrorStop);
+        let newest = axis.newest_command();
         instance.block.call(context);
         let axis = &context.axes[instance.axis];
         let (was, now) = (instance.shown, instance.outputs.read(&instance.block));
@@ -272,6 +276,14 @@ impl<H: Hands> Run<'_, H> {
             powered: axis.is_powered(),
         };
         check_call(&call)?;
+        if instance.kind == Kind::Jog {
+            // Its commands follow each other; what became of one of them is not what it shows.
+            if axis.newest_command() != newest {
+                self.seen.accepted += 1;
+                (instance.command, instance.fate) = (Some(axis.newest_command()), None);
+            }
+            instance.command = instance.command.filter(|_| now.busy);
+        }
         if instance.follows_commands() {
             let rising = execute && !executed;
             if rising {
@@ -321,6 +333,7 @@ impl<H: Hands> Run<'_, H> {
         if !following {
             self.tracks[index].check(&setpoint)?;
         }
+        self.fences[index].check(axis)?;
         if state == AxisState::ErrorStop && axis.error_id().number() >= 900 {
             return Err(Broken {
                 id: "R79",
@@ -402,7 +415,10 @@ impl<H: Hands> Run<'_, H> {
                         found = Some((index, broken));
                     }
                 }
-                Event::Shifted { .. } => track.forget(),
+                Event::Shifted { .. } => {
+                    track.forget();
+                    self.fences[record.axis.index()].forget();
+                }
                 Event::Planned { .. } => {
                     if let Some((plan, _)) = machine.axes()[record.axis.index()].plan() {
                         track.leads(plan.at(0).position, plan.at(u64::from(plan.scans())).position);

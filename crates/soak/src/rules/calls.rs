@@ -15,6 +15,8 @@ pub enum Kind {
     Superimposed,
     /// MC_HaltSuperimposed, which has nothing to do in states without motion.
     HaltSuperimposed,
+    /// MC_Jog: two buttons in place of Execute, and one command after the other that owns the axis.
+    Jog,
     /// Execute without a command that owns the axis: MC_Reset, MC_SetPosition.
     Administrative,
     /// MC_Power.
@@ -31,6 +33,7 @@ impl Kind {
         let has = |pin: &str| info.pin(pin).is_some();
         match info.name {
             "MC_Stop" => Self::Stop,
+            "MC_Jog" => Self::Jog,
             "MC_MoveSuperimposed" => Self::Superimposed,
             "MC_HaltSuperimposed" => Self::HaltSuperimposed,
             "MC_Power" => Self::Power,
@@ -192,11 +195,36 @@ pub fn check_call(call: &Call) -> Result<(), Broken> {
                 "an output is TRUE without Enable",
             )
         }
+        Kind::Jog => {
+            check_outputs(now)?;
+            rule(
+                !(now.busy && !call.was.busy && call.refusing),
+                "R78",
+                "a command is accepted without power or in ErrorStop",
+            )
+        }
         Kind::Other => Ok(()),
         Kind::Motion | Kind::Stop | Kind::Superimposed | Kind::HaltSuperimposed | Kind::Administrative => {
             check_execute(call)
         }
     }
+}
+
+/// The outputs of a command beside each other; how many of Busy, Done, CommandAborted, Error are TRUE.
+fn check_outputs(now: &Shown) -> Result<u32, Broken> {
+    let count = u32::from(now.busy) + u32::from(now.done) + u32::from(now.aborted) + u32::from(now.error);
+    rule(
+        count <= 1,
+        "R21",
+        "more than one of Busy, Done, CommandAborted, Error",
+    )?;
+    rule(
+        !(now.active && now.is_terminal()),
+        "R23",
+        "Active beside a terminal output",
+    )?;
+    rule(!now.active || now.busy, "R24", "Active without Busy")?;
+    Ok(count)
 }
 
 fn check_execute(call: &Call) -> Result<(), Broken> {
@@ -208,23 +236,12 @@ fn check_execute(call: &Call) -> Result<(), Broken> {
         now,
         ..
     } = call;
-    let count = u32::from(now.busy) + u32::from(now.done) + u32::from(now.aborted) + u32::from(now.error);
-    rule(
-        count <= 1,
-        "R21",
-        "more than one of Busy, Done, CommandAborted, Error",
-    )?;
+    let count = check_outputs(now)?;
     rule(
         !execute || count == 1,
         "R22",
         "Execute without any of Busy, Done, CommandAborted, Error",
     )?;
-    rule(
-        !(now.active && now.is_terminal()),
-        "R23",
-        "Active beside a terminal output",
-    )?;
-    rule(!now.active || now.busy, "R24", "Active without Busy")?;
     rule(
         !now.reached || (now.active && now.busy),
         "R43",

@@ -5,6 +5,7 @@
 
 pub mod arrows;
 mod calls;
+pub mod fence;
 pub mod limits;
 mod truth;
 

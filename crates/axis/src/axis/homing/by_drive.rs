@@ -1,0 +1,86 @@
+//! Homing by the drive: the drive leads, and the set-point follows it until it is back at the command.
+//!
+//! Source: CiA 402, homing mode; V11, CI-3.
+
+use super::super::power::Reaction;
+use super::super::queue::Work;
+use super::super::reading::Past;
+use super::super::{Axis, Motion};
+use super::Phase;
+use crate::{AxisState, DriveHoming, DrivePosition, ErrorId, Event, Log};
+use standstill_planner::{Planner, Setpoint};
+
+impl<P: Planner> Axis<P> {
+    /// Whether the drive moves as it likes.
+    pub(in crate::axis) fn moves_itself(&self) -> bool {
+        self.beside.report.homing != DriveHoming::Off
+    }
+
+    /// Whether the drive is the one that homes.
+    pub(in crate::axis) fn is_homed_by_drive(&self) -> bool {
+        matches!(self.homing.phase, Phase::Drive | Phase::Named | Phase::Return)
+    }
+
+    /// Whether the set-point follows a drive that obeys the command again.
+    pub(super) fn is_to_return(&self) -> bool {
+        let in_operation = matches!(self.state, AxisState::Homing | AxisState::Stopping)
+            && self.power.on
+            && !self.power.going_off;
+        in_operation && matches!(self.motion, Motion::Follow) && !self.moves_itself()
+    }
+
+    /// The drive homes by itself, or has yet to return to the command.
+    pub(super) fn follow_drive_homing(&mut self, scan: u64, log: &mut Log) {
+        let told = self.beside.report.homing;
+        if let (DriveHoming::Attained(reference) | DriveHoming::Done(reference), Phase::Drive) =
+            (told, self.homing.phase)
+        {
+            self.take_names_of_drive(reference, scan, log);
+        }
+        let homes = matches!(self.homing.phase, Phase::Drive | Phase::Named);
+        match told {
+            DriveHoming::Off if self.is_to_return() => {
+                self.hold_at_actual();
+                if self.homing.phase == Phase::Return {
+                    self.homing.phase = Phase::Found;
+                }
+            }
+            DriveHoming::Off => {}
+            DriveHoming::Failed if homes => {
+                self.trip(ErrorId::DriveHomingFailed, 0, Reaction::Follow, scan, log);
+            }
+            DriveHoming::Done(_) if homes => {
+                self.motion = Motion::Follow;
+                self.homing.phase = Phase::Return;
+                self.beside.order.homing = false;
+            }
+            DriveHoming::Busy | DriveHoming::Attained(_) | DriveHoming::Done(_) | DriveHoming::Failed => {
+                self.motion = Motion::Follow;
+            }
+        }
+        let limit = self.config.homing.time_limit;
+        self.homing.scans = self.homing.scans.saturating_add(1);
+        if self.is_homed_by_drive() && limit.is_some_and(|limit| self.homing.scans > limit) {
+            self.trip(ErrorId::HomingTimedOut, 0, Reaction::Ramp, scan, log);
+        }
+    }
+
+    /// From this scan on the drive calls its positions anew: the place of `reference` is where the homing has its
+    /// Position. What positions were before that cannot be compared with them, so this scan counts as at rest.
+    fn take_names_of_drive(&mut self, reference: DrivePosition, scan: u64, log: &mut Log) {
+        let Some(Work::Home(position)) = self.owner.map(|owner| owner.work) else {
+            return;
+        };
+        self.homing.phase = Phase::Named;
+        self.homing.reference = position;
+        let by = position - self.place_of(reference);
+        self.shift += by;
+        self.actual = self.shown_place(self.actual + by);
+        let step = self.actual - self.setpoint.position;
+        self.record(Event::Shifted { by: step }, self.owner_source(scan), log);
+        self.coordinates = self.coordinates.wrapping_add(1);
+        self.past = Past::new(self.actual);
+        self.setpoint = Setpoint::at_rest(self.actual);
+        self.motion = Motion::Follow;
+    }
+}
