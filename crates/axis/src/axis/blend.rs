@@ -74,7 +74,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn limits_of(limits: &Limits, motion: &Motion<P::Plan>) -> Limits {
         match motion {
             Motion::Run { plan, .. } => raised(limits, plan),
-            Motion::Follow | Motion::Hold => *limits,
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => *limits,
         }
     }
 
@@ -203,7 +203,14 @@ impl<P: Planner> Axis<P> {
                 (towards, velocity.abs(), None)
             }
             Work::Halt => (direction, 0.0, None),
-            Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return REST,
+            Work::Profile { .. }
+            | Work::Torque { .. }
+            | Work::Stop
+            | Work::Home(_)
+            | Work::SetPosition { .. }
+            | Work::Write(_) => {
+                return REST;
+            }
         };
         // What MC_Power bars would be refused at the end, too late to stop there. A continuous move may need a run-up.
         let runs_up = matches!(next.entry.work, Work::Through { end_velocity, .. } if end_velocity != 0.0);

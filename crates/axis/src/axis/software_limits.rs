@@ -54,6 +54,9 @@ impl<P: Planner> Axis<P> {
             // It brakes as hard as it would there.
             _ if entry.paused => outside(self.end_of_plan()),
             Work::Velocity { .. } => true,
+            // A curve was checked to its end, which may have got another name since.
+            Work::Profile { .. } if !entry.is_endless() => outside(self.end_of_plan()),
+            Work::Profile { .. } => true,
             Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
             Work::Halt | Work::Stop => outside(self.end_of_plan()),
             // From rest the way leads straight to the target, from motion perhaps past it.
@@ -61,7 +64,8 @@ impl<P: Planner> Axis<P> {
                 outside(self.end_of_plan())
                     || (!self.setpoint.is_at_rest() && outside(self.rest(&self.setpoint, &entry.limits)))
             }
-            Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
+            // Supervision of the travel is up to the application.
+            Work::Torque { .. } | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
         }
     }
 
@@ -71,7 +75,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn plan_would_leave(&self) -> bool {
         match &self.motion {
             Motion::Run { plan, elapsed, .. } => self.would_leave(&plan.at(*elapsed)),
-            Motion::Follow | Motion::Hold => false,
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => false,
         }
     }
 
@@ -91,6 +95,9 @@ impl<P: Planner> Axis<P> {
         let comes_out = outside(next.position) && !outside(self.setpoint.position);
         let leaving = match owner.work {
             Work::Velocity { .. } => true,
+            Work::Profile { .. } if !owner.is_endless() && !self.watched => return false,
+            Work::Profile { .. } if !owner.is_endless() => leaves(self.end_of_plan()),
+            Work::Profile { .. } => true,
             Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
             Work::Halt | Work::Stop => leaves(self.end_of_plan() + self.superimposed_left()),
             // With something superimposed, ends and turns were checked when it was planned.
@@ -99,7 +106,8 @@ impl<P: Planner> Axis<P> {
             Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
                 leaves(self.end_of_plan()) || leaves(self.rest(next, &owner.limits))
             }
-            Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return false,
+            // Supervision of the travel is up to the application.
+            Work::Torque { .. } | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return false,
         };
         comes_out || (leaving && leaves(self.rest(next, &self.stop_limits())))
     }
@@ -116,7 +124,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn end_of_plan(&self) -> f64 {
         match &self.motion {
             Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
-            Motion::Follow | Motion::Hold => self.setpoint.position,
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => self.setpoint.position,
         }
     }
 }

@@ -105,7 +105,8 @@ impl<P: Planner> Axis<P> {
             }
             _ => self.check(command, Way::Wait, source, log)?,
         };
-        let same_kind = work.kind() == entry.work.kind() && work.obeys_override();
+        let same_kind = work.kind() == entry.work.kind()
+            && (work.obeys_override() || matches!(work, Work::Torque { .. }));
         Ok(same_kind.then_some((work, limits)))
     }
 
