@@ -204,7 +204,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The coordinates moved by `by` (u) under a paused owner: an absolute end keeps its number.
+    /// The coordinates moved by `by` (u) under an owner that is paused or halted: an absolute end keeps its number.
     #[cold]
     pub(super) fn shift_paused(&mut self, by: f64) {
         if let Motion::Run { plan, .. } = &mut self.motion {
