@@ -142,6 +142,7 @@ impl<P: Planner> Axis<P> {
         }
         self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
         self.record(Event::Shifted { by }, source, log);
+        self.pass_at_rest(source.scan, log);
         Ok(())
     }
 

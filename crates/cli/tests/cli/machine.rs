@@ -339,3 +339,21 @@ fn rows_without_times_are_a_sample_apart() {
     let wrong = map.replace("{\"every\": \"T#20ms\"}", "{\"every\": \"T#10ms\"}");
     assert_eq!(compare(&folder, "logger.csv", &wrong).status, 1);
 }
+
+#[test]
+fn encodings_and_line_ends_of_other_systems_are_read() {
+    let folder = folder("machine_encodings");
+    let good = fs::read_to_string(folder.join("logger.csv")).unwrap();
+    let utf16 = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<_>>();
+    for bytes in [
+        good.replace('\n', "\r\n").into_bytes(),
+        [b"\xef\xbb\xbf", good.as_bytes()].concat(),
+        [vec![0xff, 0xfe], utf16(&good)].concat(),
+        good.replace("s,mm,,", "s,mm,,\n\n").into_bytes(),
+        format!("Logger 3.1, \"front\ndate,2024-05-28\n\n{good}\nEOF\n\n").into_bytes(),
+    ] {
+        fs::write(folder.join("other.csv"), bytes).unwrap();
+        let ended = compare(&folder, "other.csv", LOGGER);
+        assert_eq!((ended.status, ended.err.as_str()), (0, ""));
+    }
+}

@@ -171,7 +171,7 @@ impl Reader {
 
     fn window(&mut self, node: &Node) -> Option<(i64, i64)> {
         let fields = self.fields(node, &shape::WINDOW)?;
-        let (from, to) = self.from_to(&fields, "`window`")?;
+        let (from, to) = self.limits_of_time(&fields, "`window`")?;
         if from >= 0 {
             return Some((from, to));
         }
@@ -180,7 +180,7 @@ impl Reader {
         None
     }
 
-    fn from_to(&mut self, fields: &Fields<'_>, what: &str) -> Option<(i64, i64)> {
+    fn limits_of_time(&mut self, fields: &Fields<'_>, what: &str) -> Option<(i64, i64)> {
         let from = self.require(fields, "from", what)?;
         let from = self.time_literal(from, "`from`")?;
         let to_node = self.require(fields, "to", what)?;
@@ -376,7 +376,7 @@ impl Reader {
             self.report(diagnostic.help("take one of its edges: {\"edge\": .., \"to\": ..}"));
             return None;
         }
-        let (from, to) = self.from_to(&fields, shape::FIT.what)?;
+        let (from, to) = self.limits_of_time(&fields, shape::FIT.what)?;
         let cycle = i128::from(trace.header().cycle_ns.max(1));
         if (i128::from(to) - i128::from(from)) / cycle >= i128::from(FIT_SCANS) {
             let message = format!("the fit would try more than {FIT_SCANS} scans");
