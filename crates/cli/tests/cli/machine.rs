@@ -357,3 +357,31 @@ fn encodings_and_line_ends_of_other_systems_are_read() {
         assert_eq!((ended.status, ended.err.as_str()), (0, ""));
     }
 }
+
+#[test]
+fn times_may_count_from_1601() {
+    let folder = folder("machine_ticks");
+    let good = fs::read_to_string(folder.join("logger.csv")).unwrap();
+    let (head, rows) = good.split_at(good.find("0.00,").unwrap());
+    let ticks = rows.lines().enumerate().map(|(row, line)| {
+        let (_, cells) = line.split_once(',').unwrap();
+        format!("{},{cells}\n", 133_612_345_678_900_000_u64 + 200_000 * row as u64)
+    });
+    write(
+        &folder,
+        "ticks.csv",
+        &(head.to_owned() + &ticks.collect::<String>()),
+    );
+    let ended = compare(&folder, "ticks.csv", &logger_with("\"s\"", "\"100ns\""));
+    assert_eq!((ended.status, ended.err.as_str()), (0, ""), "{}", ended.out);
+    let far = head.to_owned() + "0,0,0,0\n1e12,0,0,0\n";
+    write(&folder, "far.csv", &far);
+    let ended = compare(&folder, "far.csv", LOGGER);
+    assert_eq!(ended.status, 3);
+    assert!(ended.err.contains("more than 73 years"), "{}", ended.err);
+    for offset in ["T#100000d", "T#-100000d"] {
+        let ended = compare(&folder, "logger.csv", &logger_with("T#0s", offset));
+        assert_eq!(ended.status, 3, "{}", ended.err);
+        assert!(ended.err.contains("nothing to compare"), "{}", ended.err);
+    }
+}

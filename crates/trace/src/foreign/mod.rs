@@ -196,7 +196,9 @@ pub fn read(text: &str, layout: &Layout, wanted: &[Wanted]) -> Result<Recording,
                 (Times::Every(step), _) => {
                     let index = i64::try_from(rows).ok();
                     let ns = index.and_then(|index| index.checked_mul(*step));
-                    let ns = ns.ok_or_else(|| cell.error("its time does not fit in 64 bits of ns"))?;
+                    let ns = ns.filter(|ns| *ns < number::TIME_MAX);
+                    let ns = ns
+                        .ok_or_else(|| cell.error("more than 73 years lie between this row and the first"))?;
                     if cell.text.is_empty() {
                         continue;
                     }

@@ -10,13 +10,22 @@ pub struct Marks {
     mark: Option<char>,
     /// The line it was found in; `None` if it was said.
     line: Option<usize>,
+    /// The first time of all (ns): ticks since 1601 do not fit in 64 bits of nanoseconds, what lies between them does.
+    base: Option<i128>,
 }
+
+/// The longest recording (ns), 73 years; sums of two such times do not overflow.
+pub const TIME_MAX: i64 = 1 << 61;
 
 impl Marks {
     pub fn new(said: Option<char>, delimiter: char) -> Self {
         // Between commas a comma cannot stand, but in quotes.
         let mark = said.or((delimiter == ',').then_some('.'));
-        Self { mark, line: None }
+        Self {
+            mark,
+            line: None,
+            base: None,
+        }
     }
 
     pub const fn found(&self) -> Option<char> {
@@ -53,11 +62,15 @@ impl Marks {
             .ok_or_else(|| cell.error("no finite number"))
     }
 
-    /// A time in nanoseconds, exact but for what is below them.
+    /// A time in nanoseconds since the first one that was read, exact but for what is below them.
     pub fn time(&mut self, cell: &Cell<'_>, unit: Unit) -> Result<i64, ReadError> {
         let text = self.pointed(cell)?;
-        nanoseconds(&text, unit)
-            .ok_or_else(|| cell.error("no time: a number that fits in 64 bits of ns is needed"))
+        let ns = nanoseconds(&text, unit).ok_or_else(|| cell.error("no time: a number is needed"))?;
+        let base = *self.base.get_or_insert(ns);
+        i64::try_from(ns - base)
+            .ok()
+            .filter(|ns| ns.abs() < TIME_MAX)
+            .ok_or_else(|| cell.error("more than 73 years lie between this time and the first"))
     }
 
     /// A value that holds, as traces write it.
@@ -105,7 +118,7 @@ pub fn is_number(text: &str) -> bool {
 }
 
 /// The nanoseconds of a decimal number; what is below one is cut off.
-fn nanoseconds(text: &str, unit: Unit) -> Option<i64> {
+fn nanoseconds(text: &str, unit: Unit) -> Option<i128> {
     let zeros = match unit {
         Unit::Seconds => 9,
         Unit::Milliseconds => 6,
@@ -123,8 +136,8 @@ fn nanoseconds(text: &str, unit: Unit) -> Option<i64> {
     };
     let (whole, decimals) = digits.split_once('.').unwrap_or((digits, ""));
     let all = format!("{whole}{decimals}");
-    // 38 digits fit in 128 bits.
-    if all.is_empty() || all.len() > 38 || !all.bytes().all(|byte| byte.is_ascii_digit()) {
+    // 36 digits fit in 128 bits.
+    if all.is_empty() || all.len() > 36 || !all.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
     }
     let mut value: i128 = all.parse().ok()?;
@@ -140,7 +153,8 @@ fn nanoseconds(text: &str, unit: Unit) -> Option<i64> {
         value /= 10;
         shift += 1;
     }
-    i64::try_from(sign * value).ok()
+    // The difference of two such values does not overflow.
+    (value < 1 << 120).then_some(sign * value)
 }
 
 #[cfg(test)]
@@ -156,19 +170,11 @@ mod tests {
             ("1e-3", Unit::Seconds, 1_000_000),
             ("2.5E+1", Unit::Microseconds, 25_000),
             ("12.0009", Unit::Nanoseconds, 12),
-            ("90000000000000001", Unit::Ticks, 9_000_000_000_000_000_100),
+            ("133612345678900001", Unit::Ticks, 13_361_234_567_890_000_100),
         ] {
             assert_eq!(nanoseconds(text, unit), Some(ns), "{text}");
         }
-        for text in [
-            "",
-            ".",
-            "1e",
-            "1e99",
-            "12:00",
-            "1e9999999999",
-            "132000000000000000",
-        ] {
+        for text in ["", ".", "1e", "1e99", "12:00", "1e9999999999"] {
             assert_eq!(nanoseconds(text, Unit::Seconds), None, "{text}");
         }
     }

@@ -85,7 +85,7 @@ pub fn compare(recorded: &[Edge], found: &[Edge], window: (i64, i64), tolerance:
                 let inside = |ns: i64| ns >= window.0 && ns <= window.1;
                 if inside(a.0) || inside(b.0) {
                     matched += 1;
-                    farthest = farthest.max((a.0 - b.0).abs());
+                    farthest = farthest.max(i64::try_from(a.0.abs_diff(b.0)).unwrap_or(i64::MAX));
                 }
                 left.next();
                 right.next();

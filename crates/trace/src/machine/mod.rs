@@ -277,7 +277,10 @@ pub fn compare(recording: &Recording, trace: &Trace, map: &Map) -> Result<Compar
             show::time(offset.ns)
         )));
     }
-    let (first, last) = ((from + cycle - 1).div_euclid(cycle), to.div_euclid(cycle));
+    let (first, last) = (
+        from.saturating_add(cycle - 1).div_euclid(cycle),
+        to.div_euclid(cycle),
+    );
     let (Ok(first), Ok(last)) = (usize::try_from(first), usize::try_from(last)) else {
         return Err(nothing(&offset, (start, end), trace_end));
     };
