@@ -53,6 +53,17 @@ pub enum Command {
         /// The trace as it is
         found: PathBuf,
     },
+    /// Hold a trace against the recording of a machine
+    Compare {
+        /// The recording: CSV as a scope, a PLC's trace or a logger exports it
+        #[arg(value_name = "REF")]
+        recording: PathBuf,
+        /// The trace (.csv, .jsonl, .exact)
+        trace: PathBuf,
+        /// What stands where in the recording, and what may differ
+        #[arg(long, value_name = "MAP.json")]
+        map: PathBuf,
+    },
     /// Plan moves: one JSON object a line in, one a line out
     Plan {
         /// The lines; standard input if absent or `-`
@@ -79,8 +90,12 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Print the JSON Schema of scripts
-    Schema,
+    /// Print the JSON Schema of scripts, or of the maps of `compare`
+    Schema {
+        /// Of what
+        #[arg(value_enum, default_value_t = Schema::Script)]
+        of: Schema,
+    },
     /// Lay out scripts in their canonical form
     Fmt {
         /// Scripts, and folders of them; `-` lays out standard input to standard output
@@ -90,6 +105,15 @@ pub enum Command {
         #[arg(long)]
         check: bool,
     },
+}
+
+/// What `schema` describes.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum Schema {
+    /// Scan scripts
+    Script,
+    /// Maps for `compare`
+    Map,
 }
 
 /// What `soak` tries.

@@ -5,6 +5,7 @@
 
 mod args;
 mod blocks;
+mod compare;
 mod exit;
 mod explain;
 mod fmt;
@@ -18,7 +19,7 @@ mod suggest;
 mod table;
 mod test;
 
-use args::{Arguments, Command, Soak};
+use args::{Arguments, Command, Schema, Soak};
 use clap::Parser;
 use exit::{Exit, Failure};
 use standstill_script::suite::shown;
@@ -73,6 +74,11 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             report::report(traces, targets)
         }
         Command::Explain { expected, found } => explain::explain(expected, found, out),
+        Command::Compare {
+            recording,
+            trace,
+            map,
+        } => compare::compare(recording, trace, map, out),
         Command::Plan { file, samples } => {
             let file = file.as_deref().unwrap_or(Path::new("-"));
             with_lines(file, |lines, name| {
@@ -96,8 +102,12 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         } => soak::blocks(*seed, *count, resume.as_deref(), failures, out),
         Command::Blocks { json: true } => blocks::json(out),
         Command::Blocks { json: false } => blocks::table(out),
-        Command::Schema => {
-            write!(out, "{}", standstill_script::schema())?;
+        Command::Schema { of } => {
+            let text = match of {
+                Schema::Script => standstill_script::schema(),
+                Schema::Map => standstill_script::map_schema(),
+            };
+            write!(out, "{text}")?;
             Ok(Exit::Passed)
         }
         Command::Fmt { paths, check } if paths.iter().all(|path| is_standard(path)) => {

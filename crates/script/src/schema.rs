@@ -55,7 +55,7 @@ fn document() -> Value {
 }
 
 /// An object with the keys of `shape`; `schema_of` gives the schema of each.
-fn object(shape: &Shape, schema_of: impl Fn(&str) -> Value) -> Value {
+pub(crate) fn object(shape: &Shape, schema_of: impl Fn(&str) -> Value) -> Value {
     let property = |key: &&str| {
         let schema = if *key == "note" {
             json!({"type": "string"})
@@ -68,12 +68,12 @@ fn object(shape: &Shape, schema_of: impl Fn(&str) -> Value) -> Value {
     json!({"type": "object", "properties": properties, "additionalProperties": false})
 }
 
-fn required(keys: &[&str], mut object: Value) -> Value {
+pub(crate) fn required(keys: &[&str], mut object: Value) -> Value {
     add(&mut object, "required", json!(keys));
     object
 }
 
-fn add(schema: &mut Value, key: &str, value: Value) {
+pub(crate) fn add(schema: &mut Value, key: &str, value: Value) {
     if let Value::Object(members) = schema {
         members.insert(key.to_owned(), value);
     }

@@ -151,7 +151,7 @@ fn quoted(text: &str, delimiter: char) -> Cow<'_, str> {
 }
 
 /// The cells of one line.
-fn split(line: &str, delimiter: char, number: usize) -> Result<Vec<Field<'_>>, ReadError> {
+pub(crate) fn split(line: &str, delimiter: char, number: usize) -> Result<Vec<Field<'_>>, ReadError> {
     let line = line.strip_suffix('\r').unwrap_or(line);
     let mut fields = Vec::new();
     let mut rest = line;

@@ -4,6 +4,7 @@ mod blocks;
 mod compare;
 mod ends;
 mod fmt;
+mod machine;
 mod plan;
 mod reports;
 mod run;

@@ -12,6 +12,7 @@ pub(crate) mod drive;
 mod expect;
 pub(crate) mod homing;
 pub(crate) mod json;
+pub(crate) mod machine_map;
 pub(crate) mod names;
 pub(crate) mod shape;
 pub(crate) mod step;

@@ -224,3 +224,48 @@ pub(crate) const CLAIMS: [Shape; 7] = [
     CLAIM_EXCLUSIVE,
     CLAIM_WITHIN_LIMITS,
 ];
+
+/// The objects of a map for `standstill compare`.
+pub(crate) mod machine {
+    use super::{Shape, shape};
+
+    pub(crate) const MAP: Shape = shape(
+        "a map",
+        &[
+            "$schema",
+            "standstill_compare",
+            "recording",
+            "offset",
+            "window",
+            "time_tolerance",
+            "signals",
+            "note",
+        ],
+    );
+    pub(crate) const RECORDING: Shape = shape("`recording`", &["delimiter", "decimal", "time", "note"]);
+    pub(crate) const TIME: Shape = shape("`time`", &["column", "unit", "every", "note"]);
+    pub(crate) const WINDOW: Shape = shape("`window`", &["from", "to", "note"]);
+    pub(crate) const EDGE: Shape = shape("an offset by an edge", &["edge", "to", "number", "note"]);
+    pub(crate) const FIT: Shape = shape("a fitted offset", &["fit", "from", "to", "note"]);
+    pub(crate) const CURVE: Shape = shape(
+        "the map of a number",
+        &[
+            "column",
+            "factor",
+            "sign",
+            "zero",
+            "tolerance",
+            "time_tolerance",
+            "note",
+        ],
+    );
+    pub(crate) const BOOL: Shape = shape(
+        "the map of a truth value",
+        &["column", "invert", "time_tolerance", "note"],
+    );
+    pub(crate) const WHOLE: Shape = shape("the map of a whole number", &["column", "time_tolerance", "note"]);
+    pub(crate) const WORD: Shape = shape(
+        "the map of a word",
+        &["column", "values", "time_tolerance", "note"],
+    );
+}

@@ -2,8 +2,8 @@
 
 use crate::cases::{By, GOOD, cases};
 use boon::{Compiler, SchemaIndex, Schemas};
-use standstill_script::{read, schema};
-use std::path::Path;
+use standstill_script::{map_schema, read, schema};
+use std::path::{Path, PathBuf};
 
 struct Validator {
     schemas: Schemas,
@@ -12,13 +12,15 @@ struct Validator {
 
 impl Validator {
     fn new() -> Self {
+        Self::of(&schema())
+    }
+
+    fn of(text: &str) -> Self {
         let mut schemas = Schemas::new();
         let mut compiler = Compiler::new();
-        let document = serde_json::from_str(&schema()).unwrap();
-        compiler
-            .add_resource("scan-script.schema.json", document)
-            .unwrap();
-        let index = compiler.compile("scan-script.schema.json", &mut schemas).unwrap();
+        let document = serde_json::from_str(text).unwrap();
+        compiler.add_resource("it.schema.json", document).unwrap();
+        let index = compiler.compile("it.schema.json", &mut schemas).unwrap();
         Self { schemas, index }
     }
 
@@ -32,12 +34,47 @@ impl Validator {
 
 #[test]
 fn the_committed_schema_is_fresh() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scan-script.schema.json");
-    let committed = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(
-        committed == schema(),
-        "docs/scan-script.schema.json is stale: write the output of `standstill schema` to it"
-    );
+    for (file, fresh, command) in [
+        ("scan-script.schema.json", schema(), "schema"),
+        ("compare-map.schema.json", map_schema(), "schema map"),
+    ] {
+        let path = docs().join(file);
+        let committed = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(
+            committed == fresh,
+            "docs/{file} is stale: write the output of `standstill {command}` to it"
+        );
+    }
+}
+
+fn docs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
+}
+
+#[test]
+fn the_schema_of_maps_takes_good_ones_and_refuses_others() {
+    let validator = Validator::of(&map_schema());
+    let good = std::fs::read_to_string(docs().join("compare/map.json")).unwrap();
+    assert_eq!(validator.accepts(&good), Ok(()));
+    for offset in ["\"T#-1ms\"", r#"{"edge": "feed.Busy", "to": true, "number": 2}"#] {
+        let fit = r#"{"fit": "X.Position", "from": "T#-200ms", "to": "T#200ms"}"#;
+        assert!(good.contains(fit));
+        assert_eq!(validator.accepts(&good.replace(fit, offset)), Ok(()));
+        assert!(validator.accepts(&good.replace(fit, "0")).is_err());
+    }
+    for (from, to) in [
+        ("\"column\": \"Axis1.ActPos\", ", ""),
+        ("\"sign\": -1", "\"sign\": 2"),
+        ("\"ms\"", "\"minutes\""),
+        ("\"tolerance\": 0.02", "\"tolerance\": -0.02"),
+        ("\"signals\"", "\"signal\""),
+    ] {
+        assert!(good.contains(from), "{from}");
+        assert!(
+            validator.accepts(&good.replacen(from, to, 1)).is_err(),
+            "{from} as {to}"
+        );
+    }
 }
 
 #[test]

@@ -1,0 +1,249 @@
+//! Recordings of machines: CSV as scopes, traces of a PLC and loggers export it.
+//!
+//! Such files have header blocks of any length, their own names, decimal points or commas, and times in their own
+//! unit. What the reader must find is said by name, so it needs to know no maker's form: the line of names is the one
+//! that holds the most of the names asked for, the rows begin where the time below it is a number.
+//!
+//! The work is proportional to the length of the text, but for the search of the names in its first
+//! [`HEADER_LINES`] lines.
+
+mod number;
+mod table;
+mod text;
+
+pub use text::decode;
+
+use number::Marks;
+use std::collections::BTreeMap;
+use std::fmt;
+use table::Table;
+
+use crate::read::ReadError;
+
+/// Lines in which the line of names is looked for.
+pub const HEADER_LINES: usize = 1000;
+
+/// Which column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The one of this name.
+    Name(String),
+    /// The one of this number, from 1.
+    Number(usize),
+}
+
+/// The unit of a column of times.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Seconds.
+    Seconds,
+    /// Milliseconds.
+    Milliseconds,
+    /// Microseconds.
+    Microseconds,
+    /// Nanoseconds.
+    Nanoseconds,
+    /// Ticks of 100 ns, as Windows counts.
+    Ticks,
+}
+
+/// Where the times of the samples stand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Times {
+    /// In a column. Where several have its name, each signal takes the nearest one to its left.
+    Column {
+        /// The column.
+        place: Place,
+        /// What its numbers count.
+        unit: Unit,
+    },
+    /// Nowhere: the rows are so many nanoseconds apart; more than 0.
+    Every(i64),
+}
+
+/// The form of a recording.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// What stands between cells; found out if `None`.
+    pub delimiter: Option<char>,
+    /// What stands before decimals, `.` or `,`; found out if `None`.
+    pub decimal: Option<char>,
+    /// The times.
+    pub times: Times,
+}
+
+/// What the cells of a column are read as.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reading {
+    /// Numbers, joined by straight lines.
+    Curve,
+    /// Truth values (`TRUE`, `FALSE` in any case, 1, 0), which hold until the next sample.
+    Bool,
+    /// Whole numbers, which hold.
+    Whole,
+    /// Words, which hold; those found here stand for others.
+    Word(BTreeMap<String, String>),
+}
+
+/// A column that is wanted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// The signal it is wanted for: goes into messages.
+    pub signal: String,
+    /// Which column.
+    pub place: Place,
+    /// How to read it.
+    pub reading: Reading,
+}
+
+/// What was recorded of one signal; times (ns) count from the earliest sample of the recording.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Channel {
+    /// Samples, their times rising.
+    Curve(Vec<(i64, f64)>),
+    /// Values that hold.
+    Steps(Steps),
+}
+
+/// Values that hold until they change.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Steps {
+    /// The first value and every change, each with its time (ns).
+    pub changes: Vec<(i64, String)>,
+    /// The time (ns) of the last sample.
+    pub last_ns: i64,
+}
+
+impl Channel {
+    /// The times (ns) of the first and the last sample; `None` if there is none.
+    #[must_use]
+    pub fn span(&self) -> Option<(i64, i64)> {
+        match self {
+            Self::Curve(samples) => Some((samples.first()?.0, samples.last()?.0)),
+            Self::Steps(steps) => Some((steps.changes.first()?.0, steps.last_ns)),
+        }
+    }
+
+    fn shift(&mut self, by: i64) {
+        match self {
+            Self::Curve(samples) => samples.iter_mut().for_each(|(ns, _)| *ns -= by),
+            Self::Steps(steps) => {
+                steps.changes.iter_mut().for_each(|(ns, _)| *ns -= by);
+                steps.last_ns -= by;
+            }
+        }
+    }
+}
+
+/// A recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// One channel for each wanted column, in that order.
+    pub channels: Vec<Channel>,
+    /// Rows that were read.
+    pub rows: usize,
+    /// What stands between cells.
+    pub delimiter: char,
+    /// What stands before decimals; `None` if no number has any.
+    pub decimal: Option<char>,
+    /// The last line has no end: it may have been cut.
+    pub open_end: bool,
+}
+
+impl fmt::Display for Recording {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let delimiter = match self.delimiter {
+            '\t' => "tabs".to_owned(),
+            other => format!("`{other}`"),
+        };
+        write!(out, "{} rows, cells between {delimiter}", self.rows)?;
+        match self.decimal {
+            Some(mark) => write!(out, ", decimals behind `{mark}`"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Reads the wanted columns.
+///
+/// # Errors
+/// Columns that are not there or twice, rows that are cut short, cells that cannot be read as wanted, times that do
+/// not rise; with line and column.
+pub fn read(text: &str, layout: &Layout, wanted: &[Wanted]) -> Result<Recording, ReadError> {
+    let table = Table::find(text, layout, wanted)?;
+    let mut marks = Marks::new(layout.decimal, table.delimiter);
+    let mut channels: Vec<Channel> = wanted
+        .iter()
+        .map(|wanted| match wanted.reading {
+            Reading::Curve => Channel::Curve(Vec::new()),
+            _ => Channel::Steps(Steps::default()),
+        })
+        .collect();
+    let mut rows = 0;
+    for row in table.rows() {
+        let row = row?;
+        for ((wanted, column), channel) in wanted.iter().zip(&table.columns).zip(&mut channels) {
+            let cell = row.cell(column.value, &wanted.signal)?;
+            let ns = match (&layout.times, column.time) {
+                (Times::Column { unit, .. }, Some(time)) => {
+                    let time = row.cell(time, "the time")?;
+                    // Slower channels leave the rows between their samples empty.
+                    if time.text.is_empty() || cell.text.is_empty() {
+                        continue;
+                    }
+                    marks.time(&time, *unit)?
+                }
+                (Times::Every(step), _) => {
+                    let index = i64::try_from(rows).ok();
+                    let ns = index.and_then(|index| index.checked_mul(*step));
+                    let ns = ns.filter(|ns| *ns < number::TIME_MAX);
+                    let ns = ns
+                        .ok_or_else(|| cell.error("more than 73 years lie between this row and the first"))?;
+                    if cell.text.is_empty() {
+                        continue;
+                    }
+                    ns
+                }
+                (Times::Column { .. }, None) => continue,
+            };
+            if channel.span().is_some_and(|(_, last)| last >= ns) {
+                let message = format!(
+                    "the time of {} does not rise: it is that of the sample before, or an earlier one",
+                    wanted.signal
+                );
+                return Err(ReadError::at(cell.line, None, message));
+            }
+            match (channel, &wanted.reading) {
+                (Channel::Curve(samples), _) => samples.push((ns, marks.number(&cell)?)),
+                (Channel::Steps(steps), reading) => {
+                    let value = marks.step(&cell, reading)?;
+                    if steps.changes.last().is_none_or(|(_, last)| *last != value) {
+                        steps.changes.push((ns, value));
+                    }
+                    steps.last_ns = ns;
+                }
+            }
+        }
+        rows += 1;
+    }
+    for (wanted, channel) in wanted.iter().zip(&channels) {
+        if channel.span().is_none() {
+            let message = format!("no row has a sample of {}", wanted.signal);
+            return Err(ReadError::at(table.first_row, None, message));
+        }
+    }
+    let start = channels
+        .iter()
+        .filter_map(|channel| Some(channel.span()?.0))
+        .min();
+    channels
+        .iter_mut()
+        .for_each(|channel| channel.shift(start.unwrap_or(0)));
+    Ok(Recording {
+        channels,
+        rows,
+        delimiter: table.delimiter,
+        decimal: marks.found(),
+        open_end: !text.ends_with('\n'),
+    })
+}
