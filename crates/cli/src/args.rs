@@ -30,6 +30,9 @@ pub enum Command {
         /// Take the runs as they are for goldens, where all claims hold
         #[arg(long)]
         accept: bool,
+        /// Write the outcome to this file, as JUnit XML
+        #[arg(long, value_name = "FILE.xml")]
+        junit: Option<PathBuf>,
     },
     /// Draw traces: a page to look into, a picture, a waveform
     Report {

@@ -9,6 +9,7 @@ mod exit;
 mod explain;
 mod fmt;
 mod json;
+mod junit;
 mod plan;
 mod progress;
 mod report;
@@ -58,7 +59,14 @@ fn explained(error: &clap::Error) -> Exit {
 fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
     match command {
         Command::Run(arguments) => run::run(arguments, out),
-        Command::Test { paths, accept } => test::test(paths, *accept, out),
+        Command::Test { paths, accept, junit } => {
+            let wish = test::Wish {
+                paths,
+                accept: *accept,
+                junit: junit.as_deref(),
+            };
+            test::test(wish, out)
+        }
         Command::Report {
             traces,
             output,

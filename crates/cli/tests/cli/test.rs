@@ -126,3 +126,61 @@ fn a_golden_that_is_no_snapshot_is_a_bad_file() {
     );
     assert_eq!(read(&folder, "move.snap"), "not a snapshot");
 }
+
+#[test]
+fn the_outcome_goes_into_a_junit_file_that_a_reader_understands() {
+    let folder = with_script("test_junit");
+    fs::create_dir_all(folder.join("more")).unwrap();
+    write(
+        &folder,
+        "more/late.scan.json",
+        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
+    );
+    write(&folder, "more/no.scan.json", "{<");
+    assert_eq!(
+        standstill(&folder, &["test", "--accept", "move.scan.json"]).status,
+        0
+    );
+    let ended = standstill(&folder, &["test", ".", "--junit", "out.xml"]);
+    assert_eq!(ended.status, 3);
+    assert!(
+        ended.out.ends_with(
+            "\nto look at\n  ./more/late.scan.json\n  ./more/no.scan.json\n3 scripts: 1 passed, 1 failed, 1 broken\n"
+        ),
+        "{}",
+        ended.out
+    );
+    let text = read(&folder, "out.xml");
+    let document = roxmltree::Document::parse(&text).unwrap();
+    let told: Vec<_> = document
+        .descendants()
+        .filter(|node| node.has_tag_name("testcase"))
+        .map(|node| {
+            let ending = node.first_element_child();
+            let kind = ending.map_or("", |ending| ending.tag_name().name());
+            let message = ending
+                .and_then(|ending| ending.attribute("message"))
+                .unwrap_or("");
+            (node.attribute("name").unwrap(), kind, message.to_owned())
+        })
+        .collect();
+    let [late, no, passed] = told.as_slice() else {
+        panic!("{told:?}")
+    };
+    assert_eq!((passed.0, passed.1), ("move", ""));
+    assert_eq!((late.0, late.1), ("late", "failure"));
+    assert!(late.2.starts_with("expect[0]"), "{late:?}");
+    assert_eq!((no.0, no.1), ("no", "error"));
+    assert!(no.2.starts_with("error[syntax]"), "{no:?}");
+}
+
+#[test]
+fn a_junit_file_that_cannot_be_written_leaves_nothing_behind() {
+    let folder = with_script("test_junit_refused");
+    assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
+    let ended = standstill(&folder, &["test", ".", "--junit", "nowhere/out.xml"]);
+    assert_eq!(ended.status, 4);
+    assert!(ended.err.starts_with("error: nowhere/out.xml: "), "{}", ended.err);
+    assert!(ended.out.ends_with("1 script: 1 passed\n"), "{}", ended.out);
+    assert!(!folder.join("nowhere").exists());
+}
