@@ -33,6 +33,9 @@ pub enum Command {
         /// Write the outcome to this file, as JUnit XML
         #[arg(long, value_name = "FILE.xml")]
         junit: Option<PathBuf>,
+        /// Write a page of every script that fails into this folder: golden and run over each other
+        #[arg(long, value_name = "FOLDER")]
+        report: Option<PathBuf>,
     },
     /// Draw traces: a page to look into, a picture, a waveform
     Report {

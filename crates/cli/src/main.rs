@@ -7,6 +7,7 @@ mod args;
 mod blocks;
 mod exit;
 mod explain;
+mod failing;
 mod fmt;
 mod json;
 mod junit;
@@ -59,11 +60,17 @@ fn explained(error: &clap::Error) -> Exit {
 fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
     match command {
         Command::Run(arguments) => run::run(arguments, out),
-        Command::Test { paths, accept, junit } => {
+        Command::Test {
+            paths,
+            accept,
+            junit,
+            report,
+        } => {
             let wish = test::Wish {
                 paths,
                 accept: *accept,
                 junit: junit.as_deref(),
+                report: report.as_deref(),
             };
             test::test(wish, out)
         }

@@ -1,6 +1,7 @@
 //! `standstill test`: scripts as tests, held against their claims and goldens.
 
 use crate::exit::{Exit, Failure, go_on};
+use crate::failing::Pages;
 use crate::junit::{self, Case, Ending};
 use crate::progress::Progress;
 use standstill_script::golden::{Mode, Standing};
@@ -19,12 +20,15 @@ pub struct Wish<'a> {
     pub accept: bool,
     /// Where to write the outcome as JUnit XML.
     pub junit: Option<&'a Path>,
+    /// The folder for pages of scripts that fail.
+    pub report: Option<&'a Path>,
 }
 
 /// Judges all scripts at the paths, in sorted order, and reports goldens that have no script any more.
 pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
     let mode = Mode::from_environment(wish.accept).map_err(|error| Failure::usage(&error.to_string()))?;
     let scripts = found(wish.paths)?;
+    let mut pages = wish.report.map(Pages::new).transpose()?;
     let mut tally = Tally::default();
     let mut progress = Progress::new(true);
     for (index, script) in scripts.iter().enumerate() {
@@ -36,7 +40,13 @@ pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
         let judged = suite::judge_file(script, mode, told);
         progress.clear();
         let (ending, text) = match judged {
-            Ok(report) => tally.judged(&name, &report, out)?,
+            Ok(report) => {
+                let judged = tally.judged(&name, &report, out)?;
+                if let (Ending::Failed, Some(pages)) = (judged.0, &mut pages) {
+                    writeln!(out, "    report: {}", pages.write(script, &report)?)?;
+                }
+                judged
+            }
             Err(error) => tally.broken(&name, error.into(), out)?,
         };
         tally.cases.push(Case {

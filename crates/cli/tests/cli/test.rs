@@ -184,3 +184,76 @@ fn a_junit_file_that_cannot_be_written_leaves_nothing_behind() {
     assert!(ended.out.ends_with("1 script: 1 passed\n"), "{}", ended.out);
     assert!(!folder.join("nowhere").exists());
 }
+
+#[test]
+fn a_failing_script_gets_a_page_of_golden_and_run() {
+    let folder = with_script("test_report");
+    fs::create_dir_all(folder.join("more")).unwrap();
+    write(&folder, "more/fine.scan.json", SCRIPT);
+    assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
+    let other = SCRIPT.replace(
+        "\"GO\": true}}",
+        "\"GO\": true}}, {\"at\": 25, \"set\": {\"GO\": false}}",
+    );
+    write(&folder, "move.scan.json", &other);
+    let ended = standstill(
+        &folder,
+        &["test", ".", "../test_report/move.scan.json", "--report", "pages"],
+    );
+    assert_eq!((ended.status, ended.err.as_str()), (1, ""));
+    assert!(
+        ended.out.contains("\n    report: pages/move.html\n"),
+        "{}",
+        ended.out
+    );
+    assert!(
+        ended.out.contains("\n    report: pages/test_report/move.html\n"),
+        "{}",
+        ended.out
+    );
+    let page = read(&folder, "pages/move.html");
+    let traces = page
+        .matches("<script type=\"text/plain\" class=\"rows\">")
+        .count();
+    assert_eq!(traces, 2);
+    assert!(page.contains("<b>A</b>expected: golden of ./move.scan.json: 30 scans"));
+    assert!(page.contains("<b>B</b>found: ./move.scan.json: 30 scans"));
+    assert!(page.contains("data-scan=\"25\">first difference in scan 25 (T#250ms)</button>"));
+    assert!(page.contains("\"marks\":[25]"));
+    assert!(page.contains("move.Execute  expected TRUE  found FALSE"));
+    assert!(!folder.join("pages/more").exists(), "only what failed has a page");
+}
+
+#[test]
+fn a_page_of_one_run_where_there_is_nothing_to_lay_it_over() {
+    let folder = with_script("test_report_alone");
+    assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
+    let alone = |script: &str, title: &str| {
+        write(&folder, "move.scan.json", script);
+        let ended = standstill(&folder, &["test", ".", "--report", "pages"]);
+        assert_eq!(ended.status, 1);
+        let page = read(&folder, "pages/move.html");
+        assert_eq!(page.matches("class=\"rows\">").count(), 1, "{title}");
+        assert!(page.contains(title), "{title}");
+    };
+    // The claim fails, the run is as recorded.
+    alone(&SCRIPT.replace("\"at\": 21", "\"at\": 19"), "1 of 2 claims hold");
+    // Other cycles have no common scans.
+    let slow = SCRIPT
+        .replace("T#10ms", "T#20ms")
+        .replace("\"at\": 21", "\"at\": 25");
+    alone(&slow, "cycle: expected T#10ms, found T#20ms");
+    fs::remove_file(folder.join("move.exact")).unwrap();
+    alone(
+        &SCRIPT.replace("\"scans\": 30", "\"scans\": 31"),
+        "2 of 2 claims hold",
+    );
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_told_before_the_tests_run() {
+    let folder = with_script("test_report_refused");
+    let ended = standstill(&folder, &["test", ".", "--report", "move.scan.json"]);
+    assert_eq!((ended.status, ended.out.as_str()), (4, ""));
+    assert!(ended.err.starts_with("error: move.scan.json: "), "{}", ended.err);
+}
