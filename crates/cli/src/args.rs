@@ -36,6 +36,9 @@ pub enum Command {
         /// Write a page of every script that fails into this folder: golden and run over each other
         #[arg(long, value_name = "FOLDER")]
         report: Option<PathBuf>,
+        /// Let scripts include files from this folder, too
+        #[arg(long, value_name = "FOLDER")]
+        include_from: Vec<PathBuf>,
     },
     /// Draw traces: a page to look into, a picture, a waveform
     Report {
@@ -168,6 +171,9 @@ pub struct RunArguments {
     /// Replace the value of a parameter of the script
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
     pub set: Vec<(String, f64)>,
+    /// Let the scripts include files from this folder, too
+    #[arg(long, value_name = "FOLDER")]
+    pub include_from: Vec<PathBuf>,
     /// Print failing claims and one line a script
     #[arg(long, short)]
     pub quiet: bool,

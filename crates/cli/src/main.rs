@@ -65,12 +65,14 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             accept,
             junit,
             report,
+            include_from,
         } => {
             let wish = test::Wish {
                 paths,
                 accept: *accept,
                 junit: junit.as_deref(),
                 report: report.as_deref(),
+                include_from,
             };
             test::test(wish, out)
         }

@@ -22,6 +22,8 @@ pub struct Wish<'a> {
     pub junit: Option<&'a Path>,
     /// The folder for pages of scripts that fail.
     pub report: Option<&'a Path>,
+    /// Folders that scripts may include files from.
+    pub include_from: &'a [PathBuf],
 }
 
 /// Judges all scripts at the paths, in sorted order, and reports goldens that have no script any more.
@@ -37,7 +39,7 @@ pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
         progress.show(|| place.clone());
         let begin = Instant::now();
         let told = |scans| progress.show(|| format!("{place}, {scans} scans"));
-        let judged = suite::judge_file(script, mode, told);
+        let judged = suite::judge_file(script, mode, wish.include_from, told);
         progress.clear();
         let (ending, text) = match judged {
             Ok(report) => {

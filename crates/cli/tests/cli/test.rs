@@ -257,3 +257,71 @@ fn a_folder_that_cannot_be_made_is_told_before_the_tests_run() {
     assert_eq!((ended.status, ended.out.as_str()), (4, ""));
     assert!(ended.err.starts_with("error: move.scan.json: "), "{}", ended.err);
 }
+
+#[test]
+fn files_outside_the_folder_are_included_only_where_that_is_allowed() {
+    let folder = scratch("test_include");
+    fs::create_dir_all(folder.join("jobs/in")).unwrap();
+    fs::create_dir_all(folder.join("machines")).unwrap();
+    let machine = r#"{"standstill": 1, "inputs": {"lamp": false}}"#;
+    write(&folder, "machines/m.machine.json", machine);
+    write(&folder, "jobs/in/m.machine.json", machine);
+    let script = |path: &str| SCRIPT.replacen("{\n", &format!("{{\n  \"include\": \"{path}\",\n"), 1);
+    write(&folder, "jobs/in.scan.json", &script("in/m.machine.json"));
+    assert_eq!(standstill(&folder, &["test", "jobs", "--accept"]).status, 0);
+    let out = script("../machines/m.machine.json");
+    write(&folder, "jobs/in.scan.json", &out);
+    for command in ["run", "test"] {
+        let ended = standstill(&folder, &[command, "jobs/in.scan.json"]);
+        assert_eq!(ended.status, 3, "{command}");
+        let place = "--> jobs/in.scan.json:2:14";
+        assert!(
+            ended.err.contains(place) && ended.err.contains("outside the script's folder"),
+            "{}",
+            ended.err
+        );
+        let allowed = standstill(
+            &folder,
+            &[command, "jobs/in.scan.json", "--include-from", "machines"],
+        );
+        assert_ne!(allowed.status, 3, "{}", allowed.err);
+    }
+    // A mistake in the machine file is told there.
+    write(
+        &folder,
+        "machines/m.machine.json",
+        &machine.replace("lamp", "1amp"),
+    );
+    let ended = standstill(
+        &folder,
+        &["run", "jobs/in.scan.json", "--include-from", "machines"],
+    );
+    assert!(
+        ended.err.contains("--> jobs/../machines/m.machine.json:1:30"),
+        "{}",
+        ended.err
+    );
+    write(&folder, "jobs/in.scan.json", &script("in/gone.json"));
+    let ended = standstill(&folder, &["run", "jobs/in.scan.json"]);
+    assert!(
+        ended
+            .err
+            .contains("`in/gone.json` cannot be included: there is no such file"),
+        "{}",
+        ended.err
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_does_not_lead_outside() {
+    let folder = scratch("test_include_link");
+    fs::create_dir_all(folder.join("jobs")).unwrap();
+    write(&folder, "m.machine.json", r#"{"standstill": 1}"#);
+    std::os::unix::fs::symlink("../m.machine.json", folder.join("jobs/m.machine.json")).unwrap();
+    let script = SCRIPT.replacen("{\n", "{\n  \"include\": \"m.machine.json\",\n", 1);
+    write(&folder, "jobs/a.scan.json", &script);
+    let ended = standstill(&folder, &["run", "jobs/a.scan.json"]);
+    assert_eq!(ended.status, 3);
+    assert!(ended.err.contains("outside the script's folder"), "{}", ended.err);
+}
