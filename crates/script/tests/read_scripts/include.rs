@@ -19,8 +19,11 @@ const MACHINE: &str = r#"{
 }
 "#;
 
+/// A path and its text.
+type File<'a> = (&'a str, &'a str);
+
 /// The good script with one more key, beside these files.
-fn with(keys: &str, files: &[(&str, &str)]) -> Result<standstill_script::model::Script, ScriptError> {
+fn with(keys: &str, files: &[File<'_>]) -> Result<standstill_script::model::Script, ScriptError> {
     let text = GOOD.replacen("{\n", &format!("{{\n  {keys},\n"), 1);
     read_with(&text, "jobs/jog.scan.json", &[], &mut |wanted| {
         let file = files.iter().find(|(name, _)| *name == wanted);
@@ -100,7 +103,7 @@ fn every_mistake_names_its_file_and_place() {
     let both = bent("\"lamp\"", "\"n\"").replace("\"from\": \"lamp\"", "\"from\": \"n\"");
     let round = r#"{"standstill": 1, "include": "sub/b.json"}"#;
     let back = r#"{"standstill": 1, "include": "../m.json"}"#;
-    let cases: Vec<(&str, &str, Vec<(&str, &str)>)> = vec![
+    let cases: Vec<(&str, &str, Vec<File<'_>>)> = vec![
         ("a file that is not there", include, vec![]),
         ("an absolute path", r#""include": "/etc/m.json""#, vec![]),
         ("a path with backslashes", r#""include": "sub\\m.json""#, vec![]),
