@@ -30,6 +30,15 @@ pub enum Command {
         /// Take the runs as they are for goldens, where all claims hold
         #[arg(long)]
         accept: bool,
+        /// Write the outcome to this file, as JUnit XML
+        #[arg(long, value_name = "FILE.xml")]
+        junit: Option<PathBuf>,
+        /// Write a page of every script that fails into this folder: golden and run over each other
+        #[arg(long, value_name = "FOLDER")]
+        report: Option<PathBuf>,
+        /// Let scripts include files from this folder, too
+        #[arg(long, value_name = "FOLDER")]
+        include_from: Vec<PathBuf>,
     },
     /// Draw traces: a page to look into, a picture, a waveform
     Report {
@@ -186,6 +195,9 @@ pub struct RunArguments {
     /// Replace the value of a parameter of the script
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
     pub set: Vec<(String, f64)>,
+    /// Let the scripts include files from this folder, too
+    #[arg(long, value_name = "FOLDER")]
+    pub include_from: Vec<PathBuf>,
     /// Print failing claims and one line a script
     #[arg(long, short)]
     pub quiet: bool,

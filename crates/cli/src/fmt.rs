@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 pub fn files(paths: &[PathBuf], check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let mut exit = Exit::Passed;
     for path in paths {
-        for script in suite::find(path)? {
+        for script in suite::find_texts(path)? {
             let this = lay_out(&script, check, out);
             exit = exit.max(go_on(this, out)?);
         }

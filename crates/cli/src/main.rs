@@ -8,8 +8,10 @@ mod blocks;
 mod compare;
 mod exit;
 mod explain;
+mod failing;
 mod fmt;
 mod json;
+mod junit;
 mod plan;
 mod progress;
 mod report;
@@ -59,7 +61,22 @@ fn explained(error: &clap::Error) -> Exit {
 fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
     match command {
         Command::Run(arguments) => run::run(arguments, out),
-        Command::Test { paths, accept } => test::test(paths, *accept, out),
+        Command::Test {
+            paths,
+            accept,
+            junit,
+            report,
+            include_from,
+        } => {
+            let wish = test::Wish {
+                paths,
+                accept: *accept,
+                junit: junit.as_deref(),
+                report: report.as_deref(),
+                include_from,
+            };
+            test::test(wish, out)
+        }
         Command::Report {
             traces,
             output,

@@ -60,7 +60,7 @@ fn source<'a>(name: &'a str, loaded: &'a Loaded) -> Source<'a> {
 /// Writes what is wanted.
 pub fn write_all(sources: &[Source<'_>], targets: Targets<'_>) -> Result<(), Failure> {
     if let Some(path) = targets.html {
-        let page = html(sources).map_err(failure)?;
+        let page = html(sources).map_err(page_failure)?;
         replace(path, |out| out.write_all(page.as_bytes()))?;
     }
     if let ([source], Some(path)) = (sources, targets.svg) {
@@ -73,7 +73,8 @@ pub fn write_all(sources: &[Source<'_>], targets: Targets<'_>) -> Result<(), Fai
     Ok(())
 }
 
-fn failure(error: ReportError) -> Failure {
+/// What goes with traces that make no page.
+pub fn page_failure(error: ReportError) -> Failure {
     let exit = match error {
         ReportError::Count(_) => Exit::Usage,
         ReportError::Empty(_) | ReportError::Cycle { .. } => Exit::BadInput,

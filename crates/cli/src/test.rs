@@ -1,17 +1,76 @@
 //! `standstill test`: scripts as tests, held against their claims and goldens.
 
 use crate::exit::{Exit, Failure, go_on};
+use crate::failing::Pages;
+use crate::junit::{self, Case, Ending};
 use crate::progress::Progress;
 use standstill_script::golden::{Mode, Standing};
 use standstill_script::suite::{self, Report};
 use std::fmt;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// What `test` was asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Wish<'a> {
+    /// Scripts, and folders of them.
+    pub paths: &'a [PathBuf],
+    /// Goldens become what the runs are.
+    pub accept: bool,
+    /// Where to write the outcome as JUnit XML.
+    pub junit: Option<&'a Path>,
+    /// The folder for pages of scripts that fail.
+    pub report: Option<&'a Path>,
+    /// Folders that scripts may include files from.
+    pub include_from: &'a [PathBuf],
+}
 
 /// Judges all scripts at the paths, in sorted order, and reports goldens that have no script any more.
-pub fn test(paths: &[PathBuf], accept: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
-    let mode = Mode::from_environment(accept).map_err(|error| Failure::usage(&error.to_string()))?;
+pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
+    let mode = Mode::from_environment(wish.accept).map_err(|error| Failure::usage(&error.to_string()))?;
+    let scripts = found(wish.paths)?;
+    let mut pages = wish.report.map(Pages::new).transpose()?;
     let mut tally = Tally::default();
+    let mut progress = Progress::new(true);
+    for (index, script) in scripts.iter().enumerate() {
+        let name = suite::shown(script);
+        let place = format!("{} of {}{}: {name}", index + 1, scripts.len(), tally.trouble());
+        progress.show(|| place.clone());
+        let begin = Instant::now();
+        let told = |scans| progress.show(|| format!("{place}, {scans} scans"));
+        let judged = suite::judge_file(script, mode, wish.include_from, told);
+        progress.clear();
+        let (ending, text) = match judged {
+            Ok(report) => {
+                let judged = tally.judged(&name, &report, out)?;
+                if let (Ending::Failed, Some(pages)) = (judged.0, &mut pages) {
+                    writeln!(out, "    report: {}", pages.write(script, &report)?)?;
+                }
+                judged
+            }
+            Err(error) => tally.broken(&name, error.into(), out)?,
+        };
+        tally.cases.push(Case {
+            file: name,
+            ending,
+            text,
+            took: begin.elapsed(),
+        });
+    }
+    for folder in wish.paths.iter().filter(|path| path.is_dir()) {
+        tally.orphans(&suite::orphans(folder)?, out)?;
+    }
+    write!(out, "{tally}")?;
+    if let Some(path) = wish.junit {
+        junit::save(&tally.cases, path)?;
+    }
+    Ok(tally.exit())
+}
+
+/// All scripts at the paths.
+fn found(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut all = Vec::new();
     for path in paths {
         let scripts = suite::find(path)?;
         if scripts.is_empty() {
@@ -22,25 +81,9 @@ pub fn test(paths: &[PathBuf], accept: bool, out: &mut dyn Write) -> Result<Exit
             );
             return Err(Failure::usage(&message));
         }
-        let mut progress = Progress::new(true);
-        for (index, script) in scripts.iter().enumerate() {
-            let name = suite::shown(script);
-            let place = format!("{} of {}: {name}", index + 1, scripts.len());
-            progress.show(|| place.clone());
-            let told = |scans| progress.show(|| format!("{place}, {scans} scans"));
-            let judged = suite::judge_file(script, mode, told);
-            progress.clear();
-            match judged {
-                Ok(report) => tally.judged(&name, &report, out)?,
-                Err(error) => tally.broken(&name, error.into(), out)?,
-            }
-        }
-        if path.is_dir() {
-            tally.orphans(&suite::orphans(path)?, out)?;
-        }
+        all.extend(scripts);
     }
-    writeln!(out, "{tally}")?;
-    Ok(tally.exit())
+    Ok(all)
 }
 
 /// What came of the scripts so far.
@@ -52,10 +95,17 @@ struct Tally {
     /// How those ended that could not be judged.
     broken: Vec<Exit>,
     orphans: usize,
+    /// Everything that was judged, in order.
+    cases: Vec<Case>,
 }
 
 impl Tally {
-    fn judged(&mut self, name: &str, report: &Report, out: &mut dyn Write) -> Result<(), Failure> {
+    fn judged(
+        &mut self,
+        name: &str,
+        report: &Report,
+        out: &mut dyn Write,
+    ) -> Result<(Ending, String), Failure> {
         let (count, word) = match (&report.golden, report.passed()) {
             (_, false) | (Standing::Failed(_), _) => (&mut self.failed, "FAILED"),
             (Standing::Accepted, true) => (&mut self.accepted, "accepted"),
@@ -63,28 +113,54 @@ impl Tally {
         };
         *count += 1;
         writeln!(out, "{word:<8}  {name}")?;
-        for line in report.to_string().lines() {
+        let text = report.to_string();
+        for line in text.lines() {
             writeln!(out, "    {line}")?;
         }
-        Ok(())
+        let ending = if report.passed() {
+            Ending::Passed
+        } else {
+            Ending::Failed
+        };
+        Ok((ending, text))
     }
 
-    fn broken(&mut self, name: &str, failure: Failure, out: &mut dyn Write) -> Result<(), Failure> {
+    fn broken(
+        &mut self,
+        name: &str,
+        failure: Failure,
+        out: &mut dyn Write,
+    ) -> Result<(Ending, String), Failure> {
+        let text = match &failure {
+            Failure::Told(_, text) => text.clone(),
+            Failure::Output(_) => String::new(),
+        };
         writeln!(out, "BROKEN    {name}")?;
         self.broken.push(go_on(Err(failure), out)?);
-        Ok(())
+        Ok((Ending::Broken, text))
     }
 
     fn orphans(&mut self, orphans: &[PathBuf], out: &mut dyn Write) -> Result<(), Failure> {
         self.orphans += orphans.len();
         for orphan in orphans {
-            writeln!(
-                out,
-                "ORPHAN    {}\n    its script is not there any more",
-                suite::shown(orphan)
-            )?;
+            let (name, text) = (suite::shown(orphan), "its script is not there any more");
+            writeln!(out, "ORPHAN    {name}\n    {text}")?;
+            self.cases.push(Case {
+                file: name,
+                ending: Ending::Failed,
+                text: text.to_owned(),
+                took: std::time::Duration::ZERO,
+            });
         }
         Ok(())
+    }
+
+    /// What has gone wrong so far, in a few words for the line of progress.
+    fn trouble(&self) -> String {
+        match self.failed + self.broken.len() {
+            0 => String::new(),
+            count => format!(", {count} failed"),
+        }
     }
 
     fn exit(&self) -> Exit {
@@ -93,6 +169,7 @@ impl Tally {
     }
 }
 
+/// What failed among several, by name, then the counts: the end of a long list is what one sees of it.
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
@@ -101,7 +178,15 @@ impl fmt::Display for Tally {
             failed,
             broken,
             orphans,
+            cases,
         } = self;
+        let bad = cases.iter().filter(|case| case.ending != Ending::Passed);
+        if cases.len() > 1 && bad.clone().next().is_some() {
+            writeln!(f, "\nto look at")?;
+            for case in bad {
+                writeln!(f, "  {}", case.file)?;
+            }
+        }
         let scripts = passed + accepted + failed + broken.len();
         let counts = [
             (*passed, "passed"),
@@ -113,6 +198,6 @@ impl fmt::Display for Tally {
         let counts = counts.iter().filter(|(count, _)| *count > 0);
         let counts: Vec<_> = counts.map(|(count, what)| format!("{count} {what}")).collect();
         let plural = if scripts == 1 { "" } else { "s" };
-        write!(f, "{scripts} script{plural}: {}", counts.join(", "))
+        writeln!(f, "{scripts} script{plural}: {}", counts.join(", "))
     }
 }

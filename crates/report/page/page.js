@@ -8,7 +8,7 @@ const LEAST_SPAN = 8; // scans
 // What every part of the page looks at.
 const shared = {
   traces: [], scans: 0, cycleNs: 0, view: { min: 0, max: 1 }, cursor: null, width: 0, ticks: [], theme: null, numbers: null,
-  groups: [], filter: '',
+  groups: [], filter: '', marks: [],
 };
 
 const find = (selector) => document.querySelector(selector);
@@ -47,6 +47,7 @@ function paint(all) {
   }
   drawRuler();
   drawOverview();
+  placeMarks();
   placeCursor();
 }
 
@@ -85,6 +86,16 @@ function setCursor(scan) {
   schedule();
 }
 shared.goTo = setCursor;
+
+// The lines of the marks, at the start of their scans.
+function placeMarks() {
+  const x = scale(shared.view, shared.width);
+  [...find('#marks').children].forEach((line, at) => {
+    const place = x(shared.marks[at]);
+    line.style.left = `${find('#board').plotLeft + place}px`;
+    line.hidden = place < 0 || place > shared.width;
+  });
+}
 
 function placeCursor() {
   const line = find('#cursor');
@@ -149,6 +160,8 @@ function drawOverview() {
   for (const { failures } of shared.traces.flatMap((trace) => trace.header.claims)) {
     for (const { scan } of failures || []) if (scan !== undefined) context.fillRect(Math.round(x(scan)) - 1, 3, 2, height - 6);
   }
+  context.fillStyle = theme.cursor;
+  for (const scan of shared.marks) context.fillRect(Math.round(x(scan)) - 1, 0, 3, height);
   const [left, right] = [x(shared.view.min), x(shared.view.max)];
   context.fillStyle = theme.traces[0];
   context.globalAlpha = 0.18;
@@ -316,6 +329,7 @@ function wire() {
     act(event);
     event.preventDefault();
   });
+  for (const button of document.querySelectorAll('.goto')) button.addEventListener('click', () => setCursor(Number(button.dataset.scan)));
   find('#in').addEventListener('click', () => zoom(0.5, shared.cursor === null ? undefined : shared.cursor));
   find('#out').addEventListener('click', () => zoom(2, shared.cursor === null ? undefined : shared.cursor));
   find('#fit').addEventListener('click', () => setView(0, shared.scans));
@@ -362,6 +376,8 @@ async function start() {
   shared.theme = readTheme();
   shared.events = shared.traces.flatMap((trace) => trace.events.map(([scan, subject, text]) => ({ trace, scan, subject, text })))
     .sort((one, other) => one.scan - other.scan);
+  shared.marks = about.marks.map((scan) => Math.min(scan, shared.scans - 1));
+  find('#marks').replaceChildren(...shared.marks.map((scan) => element('div', { className: 'mark-line', title: `scan ${scan}` })));
   shared.groups = makeGroups(shared);
   find('#groups').replaceChildren(...shared.groups.map((group) => group.element));
   for (const group of shared.groups) {
@@ -374,7 +390,7 @@ async function start() {
   shared.refresh();
   layOut();
   listEvents();
-  setCursor(0);
+  setCursor(shared.marks.length > 0 ? shared.marks[0] : 0);
   document.documentElement.dataset.ready = 'true';
 }
 

@@ -1,6 +1,6 @@
 //! What the page says in words: facts, sources, failing claims. Everything here is markup that is ready to go out.
 
-use crate::Source;
+use crate::{Mark, Source};
 use standstill_trace::{ClaimVerdict, Trace, time_literal};
 use std::fmt::Write;
 
@@ -118,6 +118,26 @@ pub fn sources(sources: &[Source<'_>]) -> String {
             "<p class=\"lacks\">{} lacks {}.</p>",
             escaped(source.name),
             escaped(&source.lacks.join(", "))
+        );
+    }
+    text
+}
+
+/// The places to look at, each a button that goes there.
+pub fn marks(marks: &[Mark]) -> String {
+    let mut text = String::new();
+    for mark in marks {
+        let title = escaped(&mark.title);
+        let title = match mark.scan {
+            Some(scan) => {
+                format!("<button type=\"button\" class=\"goto\" data-scan=\"{scan}\">{title}</button>")
+            }
+            None => format!("<b>{title}</b>"),
+        };
+        let _ = writeln!(
+            text,
+            "<div class=\"difference\">{title}<pre>{}</pre></div>",
+            escaped(mark.text.trim_end())
         );
     }
     text

@@ -30,6 +30,17 @@ pub struct Source<'a> {
     pub lacks: &'a [String],
 }
 
+/// A place to look at first. Its line stands over all plots, and the cursor begins there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mark {
+    /// The scan, if it is about one; past the end of a trace is fine.
+    pub scan: Option<usize>,
+    /// A few words.
+    pub title: String,
+    /// All there is to tell, in lines.
+    pub text: String,
+}
+
 /// Why there is no page of these traces.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReportError {
@@ -64,8 +75,16 @@ pub enum ReportError {
 /// # Errors
 /// No trace or too many, one without rows, or different cycles.
 pub fn html(sources: &[Source<'_>]) -> Result<String, ReportError> {
+    html_marked(sources, &[])
+}
+
+/// As [`html`], with places to look at.
+///
+/// # Errors
+/// As [`html`].
+pub fn html_marked(sources: &[Source<'_>], marks: &[Mark]) -> Result<String, ReportError> {
     check(sources)?;
-    Ok(page::page(sources))
+    Ok(page::page(sources, marks))
 }
 
 /// What [`html`] would refuse, without the work.

@@ -1,6 +1,6 @@
 //! The parts of the page, put together.
 
-use crate::{Source, facts};
+use crate::{Mark, Source, facts};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
@@ -31,8 +31,9 @@ const SCRIPT: &str = concat!(
 );
 
 /// The whole page.
-pub fn page(sources: &[Source<'_>]) -> String {
-    let about = json!({"traces": sources.iter().map(about).collect::<Vec<_>>()}).to_string();
+pub fn page(sources: &[Source<'_>], marks: &[Mark]) -> String {
+    let scans: Vec<usize> = marks.iter().filter_map(|mark| mark.scan).collect();
+    let about = json!({"traces": sources.iter().map(about).collect::<Vec<_>>(), "marks": scans}).to_string();
     filled(|place| match place {
         "style_hash" => hash(STYLE),
         "script_hash" => hash(SCRIPT),
@@ -40,6 +41,7 @@ pub fn page(sources: &[Source<'_>]) -> String {
         "title" => facts::escaped(&facts::title(sources)),
         "facts" => facts::facts(sources),
         "sources" => facts::sources(sources),
+        "marks" => facts::marks(marks),
         "failures" => facts::failures(sources),
         "footer" => facts::footer(sources),
         // In a script element only this character could end the text.

@@ -4,7 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use standstill_report::{ReportError, Source, TRACES_MAX, check, html};
+use standstill_report::{Mark, ReportError, Source, TRACES_MAX, check, html, html_marked};
 use standstill_trace::{
     Axis, Cell, Claim, ClaimFailure, ClaimVerdict, Header, Input, Note, Trace, digest, exact,
 };
@@ -186,4 +186,20 @@ fn what_a_file_lacks_is_said_on_the_page() {
         lacks: &lacks,
     };
     assert!(html(&[source]).unwrap().contains("a.csv lacks the header."));
+}
+
+#[test]
+fn marks_are_texts_and_places_to_go_to() {
+    let trace = trace("plain", 1_000_000, 5);
+    let mark = |scan| Mark {
+        scan,
+        title: NASTY.into(),
+        text: NASTY.into(),
+    };
+    let page = html_marked(&[source("a", &trace)], &[mark(Some(3)), mark(None)]).unwrap();
+    assert!(!page.contains("<img src=x"), "no markup from texts");
+    assert_eq!(page.matches("data-scan=\"3\"").count(), 1);
+    let about = scripts(&page, "<script type=\"application/json\" id=\"about\">");
+    let about: Value = serde_json::from_str(about[0]).unwrap();
+    assert_eq!(about["marks"], serde_json::json!([3]));
 }

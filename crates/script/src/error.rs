@@ -80,6 +80,10 @@ codes! {
     WireCycle = "wire_cycle",
     /// A scan outside the run.
     OutsideRun = "outside_run",
+    /// A file that cannot be included: it is not there, includes itself, or lies outside what is allowed.
+    BadInclude = "bad_include",
+    /// An override of something that is not both in an included file and here.
+    BadOverride = "bad_override",
     /// A script whose trace would be larger than the runtime records.
     TooLarge = "too_large",
 }
@@ -113,6 +117,15 @@ impl Diagnostic {
         }
     }
 
+    /// The same, so many bytes further on.
+    pub(crate) fn moved(mut self, by: usize) -> Self {
+        self.span = self.span.map(|span| span.moved(by));
+        if let Some(related) = &mut self.related {
+            related.0 = related.0.moved(by);
+        }
+        self
+    }
+
     pub(crate) fn label(mut self, label: impl Into<String>) -> Self {
         self.label = label.into();
         self
@@ -134,11 +147,52 @@ impl Diagnostic {
     }
 }
 
+/// A text that a script is made of.
+#[derive(Clone, Debug)]
+pub(crate) struct File {
+    name: String,
+    text: String,
+    /// Place of its first byte among those of all files.
+    start: usize,
+}
+
+impl File {
+    /// `text` without a byte order mark.
+    pub(crate) fn new(name: &str, text: &str, start: usize) -> Self {
+        Self {
+            // The same on every system; see the contract's rule for paths.
+            name: name.replace('\\', "/"),
+            text: text.to_owned(),
+            start,
+        }
+    }
+
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Its folder with the `/` behind it, empty if none.
+    pub(crate) fn folder(&self) -> &str {
+        let end = self.name.rfind('/').map_or(0, |slash| slash + 1);
+        self.name.get(..end).unwrap_or_default()
+    }
+
+    /// Where the next file may start: one further, because a message may point at the end of a file.
+    pub(crate) fn after(&self) -> usize {
+        self.start + self.text.len() + 1
+    }
+
+    /// A place of all files as one of this file.
+    fn inner(&self, span: Span) -> std::ops::Range<usize> {
+        span.start.saturating_sub(self.start)..span.end.saturating_sub(self.start)
+    }
+}
+
 /// Why a script was refused: at least one [`Diagnostic`], in the order of the text.
 #[derive(Clone, Debug)]
 pub struct ScriptError {
-    file_name: String,
-    text: String,
+    /// The script, then what it includes; never empty.
+    files: Vec<File>,
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -150,19 +204,30 @@ const SHOWN_CHARS: usize = 60;
 
 impl ScriptError {
     /// `text` without a byte order mark: spans count from there.
-    pub(crate) fn new(file_name: &str, text: &str, mut diagnostics: Vec<Diagnostic>) -> Self {
+    pub(crate) fn new(file_name: &str, text: &str, diagnostics: Vec<Diagnostic>) -> Self {
+        Self::of(vec![File::new(file_name, text, 0)], diagnostics)
+    }
+
+    /// `files` in the order of their places, the script first.
+    pub(crate) fn of(files: Vec<File>, mut diagnostics: Vec<Diagnostic>) -> Self {
         diagnostics.sort_by_key(|diagnostic| diagnostic.span.unwrap_or_default().start);
-        Self {
-            // The same on every system; see the contract's rule for paths.
-            file_name: file_name.replace('\\', "/"),
-            text: text.to_owned(),
-            diagnostics,
-        }
+        Self { files, diagnostics }
+    }
+
+    /// The file a place is in.
+    fn file(&self, place: Span) -> &File {
+        let later = self.files.partition_point(|file| file.start <= place.start);
+        &self.files[later.saturating_sub(1)]
+    }
+
+    /// Name of the file a place is in, with `/`.
+    pub fn file_of(&self, place: Span) -> &str {
+        &self.file(place).name
     }
 
     /// The file's name as given, with `/`.
     pub fn file_name(&self) -> &str {
-        &self.file_name
+        self.file_of(Span::default())
     }
 
     /// What is wrong, in the order of the text.
@@ -172,7 +237,8 @@ impl ScriptError {
 
     /// Line and column of a span's first character, both from 1; the column counts characters.
     pub fn line_column(&self, span: Span) -> (usize, usize) {
-        line_column(&self.text, span.start)
+        let file = self.file(span);
+        line_column(&file.text, file.inner(span).start)
     }
 
     /// The message for people: per diagnostic what is wrong, file, line and column, the excerpt, a remedy.
@@ -188,7 +254,7 @@ impl ScriptError {
             .collect();
         let hidden = self.diagnostics.len().saturating_sub(DIAGNOSTICS_SHOWN);
         if hidden > 0 {
-            out.push(format!("error: {hidden} more errors in {}", self.file_name));
+            out.push(format!("error: {hidden} more errors in {}", self.file_name()));
         }
         out.join("\n\n")
     }
@@ -200,23 +266,29 @@ impl ScriptError {
             .primary_title(visible(&diagnostic.message))
             .id(diagnostic.code.name());
         let mut group = match diagnostic.span {
-            None => Group::with_title(title).element(Origin::path(self.file_name.as_str())),
+            None => Group::with_title(title).element(Origin::path(self.file_name())),
             Some(span) => {
-                let mut primary = AnnotationKind::Primary.span(span.start..span.end);
+                let file = self.file(span);
+                let mut primary = AnnotationKind::Primary.span(file.inner(span));
                 if !diagnostic.label.is_empty() {
                     primary = primary.label(visible(&diagnostic.label));
                 }
-                let context = diagnostic.related.as_deref().map(|(span, label)| {
-                    AnnotationKind::Context
-                        .span(span.start..span.end)
-                        .label(visible(label))
-                });
-                title.element(
-                    Snippet::source(self.text.as_str())
-                        .path(self.file_name.as_str())
-                        .annotation(primary)
-                        .annotations(context),
-                )
+                let snippet = |file: &'a File| Snippet::source(file.text.as_str()).path(file.name.as_str());
+                let own = snippet(file).annotation(primary);
+                match diagnostic.related.as_deref() {
+                    None => title.element(own),
+                    Some((span, label)) => {
+                        let other = self.file(*span);
+                        let context = AnnotationKind::Context
+                            .span(other.inner(*span))
+                            .label(visible(label));
+                        if other.start == file.start {
+                            title.element(own.annotation(context))
+                        } else {
+                            title.element(own).element(snippet(other).annotation(context))
+                        }
+                    }
+                }
             }
         };
         if let Some(help) = &diagnostic.help {

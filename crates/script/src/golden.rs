@@ -4,6 +4,7 @@
 //! A golden is a record of what a reviewed version did, never a claim; a script whose claims fail gets none.
 
 use crate::run::Outcome;
+use standstill_trace::Trace;
 use standstill_trace::golden::{self, GoldenError, Verdict};
 use std::path::{Path, PathBuf};
 
@@ -61,6 +62,14 @@ pub enum Standing {
 pub fn snap_path(script: &Path) -> PathBuf {
     // Two extensions are one too many for `with_extension`.
     script.with_extension("").with_extension("snap")
+}
+
+/// The run that the golden of a script records; none without a golden, or where its exact trace is no help.
+///
+/// # Errors
+/// As [`judge`].
+pub fn expected(script: &Path) -> Result<Option<Trace>, GoldenError> {
+    golden::expected(&snap_path(script))
 }
 
 /// Holds a run against the golden of its script, and does to the golden what `mode` permits.

@@ -20,7 +20,7 @@ pub use claims::{Failure, Verdict};
 pub use error::{Code, DIAGNOSTICS_SHOWN, Diagnostic, ScriptError};
 pub use format::format;
 pub use read::machine_map::read_map;
-pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read};
+pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read, read_with};
 pub use run::{Outcome, RunError, run, run_with};
 pub use schema::schema;
 pub use schema_map::map_schema;

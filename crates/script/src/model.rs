@@ -195,13 +195,23 @@ pub struct Task {
     pub watchdog: Option<u32>,
 }
 
-/// A place in the script's text, for messages.
+/// A place in the script's text, for messages; those of included files follow on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Span {
     /// First byte.
     pub start: usize,
     /// Byte after the last.
     pub end: usize,
+}
+
+impl Span {
+    /// The same piece, so many bytes further on.
+    pub(crate) const fn moved(self, by: usize) -> Self {
+        Self {
+            start: self.start + by,
+            end: self.end + by,
+        }
+    }
 }
 
 /// When a step applies.

@@ -31,10 +31,12 @@ pub fn schema() -> String {
 
 fn document() -> Value {
     let mut root = object(&shape::SCRIPT, script_key);
+    add(&mut root, "required", json!(["standstill", "cycle", "scans"]));
+    // Included files may have the rest.
     add(
         &mut root,
-        "required",
-        json!(["standstill", "cycle", "scans", "axes", "blocks"]),
+        "anyOf",
+        json!([{"required": ["axes", "blocks"]}, {"required": ["include"]}]),
     );
     add(&mut root, "dependentRequired", json!({"after": ["stop_when"]}));
     add(
@@ -117,6 +119,7 @@ fn script_key(key: &str) -> Value {
     match key {
         "standstill" => json!({"const": VERSION}),
         "covers" => list(text(), 0),
+        "include" | "override" => any(&[text(), list(text(), 0)]),
         "cycle" => of("time_literal"),
         "scans" => any(&[integer(1, SCANS_MAX as i64), of("time_literal")]),
         "after" => of("scans"),

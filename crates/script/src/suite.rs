@@ -4,7 +4,7 @@
 
 use crate::golden::{self, Mode, Standing};
 use crate::run::{Outcome, RunError, run_with};
-use crate::{ScriptError, Verdict, read};
+use crate::{ScriptError, Verdict, read_with};
 use standstill_trace::golden::GoldenError;
 use std::fmt;
 use std::fs;
@@ -13,6 +13,9 @@ use std::path::{Path, PathBuf};
 
 /// What the name of a scan script ends in.
 pub const EXTENSION: &str = ".scan.json";
+
+/// What the name of a machine file ends in, which scripts include.
+pub const MACHINE_EXTENSION: &str = ".machine.json";
 
 /// Endings of the files that belong to a script.
 const COMPANIONS: [&str; 3] = [".snap", ".exact", ".snap.new"];
@@ -100,23 +103,30 @@ pub fn shown(path: &Path) -> String {
 }
 
 /// Reads and runs the script at `path`, and holds it against its claims and its golden. `progress` is told
-/// from time to time how many scans are done.
+/// from time to time how many scans are done. Files that it includes lie below its folder or below one of `allowed`.
 ///
 /// # Errors
 /// [`SuiteError`]; claims and goldens that fail are no error but stand in the report.
-pub fn judge_file(path: &Path, mode: Mode, progress: impl FnMut(u64)) -> Result<Report, SuiteError> {
-    let outcome = run_file(path, &[], progress)?;
+pub fn judge_file(
+    path: &Path,
+    mode: Mode,
+    allowed: &[PathBuf],
+    progress: impl FnMut(u64),
+) -> Result<Report, SuiteError> {
+    let outcome = run_file(path, &[], allowed, progress)?;
     let golden = golden::judge(path, &outcome, mode)?;
     Ok(Report { outcome, golden })
 }
 
-/// Reads and runs the script at `path`, with these values in place of its own parameters.
+/// Reads and runs the script at `path`, with these values in place of its own parameters; `allowed` as for
+/// [`judge_file`].
 ///
 /// # Errors
 /// [`SuiteError`], but for [`SuiteError::Golden`].
 pub fn run_file(
     path: &Path,
     parameters: &[(String, f64)],
+    allowed: &[PathBuf],
     progress: impl FnMut(u64),
 ) -> Result<Outcome, SuiteError> {
     let bytes = fs::read(path).map_err(SuiteError::io(path))?;
@@ -124,11 +134,53 @@ pub fn run_file(
         path: path.to_owned(),
         valid: error.utf8_error().valid_up_to(),
     })?;
-    let script = read(&text, &shown(path), parameters)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut load = |inner: &str| included(folder, inner, allowed);
+    let script = read_with(&text, &shown(path), parameters, &mut load)?;
     run_with(&script, progress).map_err(|source| SuiteError::Run {
         path: path.to_owned(),
         source,
     })
+}
+
+/// The text of a file below `folder`, or below one of `allowed`; why not, in words that are the same everywhere.
+fn included(folder: &Path, inner: &str, allowed: &[PathBuf]) -> Result<String, String> {
+    let why = |error: io::Error| match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::InvalidData => "it is not UTF-8".to_owned(),
+        _ => error.to_string(),
+    };
+    // The system's own view of both, so that no link leads outside.
+    let real = |path: &Path| {
+        fs::canonicalize(if path == Path::new("") {
+            Path::new(".")
+        } else {
+            path
+        })
+    };
+    let file = real(&folder.join(inner)).map_err(why)?;
+    let below = |root: &Path| real(root).is_ok_and(|root| file.starts_with(root));
+    if !below(folder) && !allowed.iter().any(|root| below(root)) {
+        return Err("it lies outside the script's folder; `--include-from` allows another one".to_owned());
+    }
+    fs::read_to_string(&file).map_err(why)
+}
+
+/// All scan scripts and machine files in a folder, as [`find`].
+///
+/// # Errors
+/// A folder that cannot be read.
+pub fn find_texts(path: &Path) -> Result<Vec<PathBuf>, SuiteError> {
+    if !path.is_dir() {
+        return find(path);
+    }
+    let mut files = walk(path)?;
+    files.retain(|file| {
+        [EXTENSION, MACHINE_EXTENSION]
+            .iter()
+            .any(|ending| stem(file, ending).is_some())
+    });
+    Ok(files)
 }
 
 /// All scan scripts in a folder and the folders in it, sorted by path; a path that is a file is taken as it

@@ -34,7 +34,7 @@ fn trials() -> Result<Vec<Trial>, Box<dyn std::error::Error>> {
 }
 
 fn judge(script: &Path, mode: Mode) -> Result<(), Failed> {
-    let report = suite::judge_file(script, mode, |_| {})?;
+    let report = suite::judge_file(script, mode, &[], |_| {})?;
     if report.passed() {
         Ok(())
     } else {

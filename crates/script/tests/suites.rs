@@ -57,7 +57,7 @@ fn script(position: f64) -> String {
 }
 
 fn judged(path: &Path, mode: Mode) -> Report {
-    judge_file(path, mode, |_| {}).unwrap_or_else(|error| panic!("{error}"))
+    judge_file(path, mode, &[], |_| {}).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn failed(report: &Report) -> &str {
@@ -164,7 +164,7 @@ fn scripts_are_found_in_sorted_order_and_orphans_reported() {
 #[test]
 fn what_is_no_script_is_told_apart_from_what_cannot_be_read() {
     let folder = Folder::new("broken");
-    let judge = |file: &str| judge_file(&folder.0.join(file), Mode::Check, |_| {});
+    let judge = |file: &str| judge_file(&folder.0.join(file), Mode::Check, &[], |_| {});
     assert!(matches!(judge("nowhere.scan.json"), Err(SuiteError::Io { .. })));
     folder.write("broken.scan.json", "{,}");
     assert!(matches!(judge("broken.scan.json"), Err(SuiteError::Script(_))));

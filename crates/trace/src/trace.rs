@@ -96,6 +96,17 @@ impl Trace {
         self.header.claims = claims;
     }
 
+    /// Takes title, units and limits from the header of another run of the same script, for a trace that was read
+    /// without its own.
+    pub fn describe_as(&mut self, other: &Header) {
+        self.header.title.clone_from(&other.title);
+        for axis in &mut self.header.axes {
+            if let Some(known) = other.axes.iter().find(|known| known.name == axis.name) {
+                axis.clone_from(known);
+            }
+        }
+    }
+
     /// The columns in file order, without `scan` and `time_ns`.
     #[must_use]
     pub fn columns(&self) -> &[Column] {

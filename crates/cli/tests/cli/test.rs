@@ -126,3 +126,202 @@ fn a_golden_that_is_no_snapshot_is_a_bad_file() {
     );
     assert_eq!(read(&folder, "move.snap"), "not a snapshot");
 }
+
+#[test]
+fn the_outcome_goes_into_a_junit_file_that_a_reader_understands() {
+    let folder = with_script("test_junit");
+    fs::create_dir_all(folder.join("more")).unwrap();
+    write(
+        &folder,
+        "more/late.scan.json",
+        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
+    );
+    write(&folder, "more/no.scan.json", "{<");
+    assert_eq!(
+        standstill(&folder, &["test", "--accept", "move.scan.json"]).status,
+        0
+    );
+    let ended = standstill(&folder, &["test", ".", "--junit", "out.xml"]);
+    assert_eq!(ended.status, 3);
+    assert!(
+        ended.out.ends_with(
+            "\nto look at\n  ./more/late.scan.json\n  ./more/no.scan.json\n3 scripts: 1 passed, 1 failed, 1 broken\n"
+        ),
+        "{}",
+        ended.out
+    );
+    let text = read(&folder, "out.xml");
+    let document = roxmltree::Document::parse(&text).unwrap();
+    let told: Vec<_> = document
+        .descendants()
+        .filter(|node| node.has_tag_name("testcase"))
+        .map(|node| {
+            let ending = node.first_element_child();
+            let kind = ending.map_or("", |ending| ending.tag_name().name());
+            let message = ending
+                .and_then(|ending| ending.attribute("message"))
+                .unwrap_or("");
+            (node.attribute("name").unwrap(), kind, message.to_owned())
+        })
+        .collect();
+    let [late, no, passed] = told.as_slice() else {
+        panic!("{told:?}")
+    };
+    assert_eq!((passed.0, passed.1), ("move", ""));
+    assert_eq!((late.0, late.1), ("late", "failure"));
+    assert!(late.2.starts_with("expect[0]"), "{late:?}");
+    assert_eq!((no.0, no.1), ("no", "error"));
+    assert!(no.2.starts_with("error[syntax]"), "{no:?}");
+}
+
+#[test]
+fn a_junit_file_that_cannot_be_written_leaves_nothing_behind() {
+    let folder = with_script("test_junit_refused");
+    assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
+    let ended = standstill(&folder, &["test", ".", "--junit", "nowhere/out.xml"]);
+    assert_eq!(ended.status, 4);
+    assert!(ended.err.starts_with("error: nowhere/out.xml: "), "{}", ended.err);
+    assert!(ended.out.ends_with("1 script: 1 passed\n"), "{}", ended.out);
+    assert!(!folder.join("nowhere").exists());
+}
+
+#[test]
+fn a_failing_script_gets_a_page_of_golden_and_run() {
+    let folder = with_script("test_report");
+    fs::create_dir_all(folder.join("more")).unwrap();
+    write(&folder, "more/fine.scan.json", SCRIPT);
+    assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
+    let other = SCRIPT.replace(
+        "\"GO\": true}}",
+        "\"GO\": true}}, {\"at\": 25, \"set\": {\"GO\": false}}",
+    );
+    write(&folder, "move.scan.json", &other);
+    let ended = standstill(
+        &folder,
+        &["test", ".", "../test_report/move.scan.json", "--report", "pages"],
+    );
+    assert_eq!((ended.status, ended.err.as_str()), (1, ""));
+    assert!(
+        ended.out.contains("\n    report: pages/move.html\n"),
+        "{}",
+        ended.out
+    );
+    assert!(
+        ended.out.contains("\n    report: pages/test_report/move.html\n"),
+        "{}",
+        ended.out
+    );
+    let page = read(&folder, "pages/move.html");
+    let traces = page
+        .matches("<script type=\"text/plain\" class=\"rows\">")
+        .count();
+    assert_eq!(traces, 2);
+    assert!(page.contains("<b>A</b>expected: golden of ./move.scan.json: 30 scans"));
+    assert!(page.contains("<b>B</b>found: ./move.scan.json: 30 scans"));
+    assert!(page.contains("data-scan=\"25\">first difference in scan 25 (T#250ms)</button>"));
+    assert!(page.contains("\"marks\":[25]"));
+    assert!(page.contains("move.Execute  expected TRUE  found FALSE"));
+    assert!(!folder.join("pages/more").exists(), "only what failed has a page");
+}
+
+#[test]
+fn a_page_of_one_run_where_there_is_nothing_to_lay_it_over() {
+    let folder = with_script("test_report_alone");
+    assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
+    let alone = |script: &str, title: &str| {
+        write(&folder, "move.scan.json", script);
+        let ended = standstill(&folder, &["test", ".", "--report", "pages"]);
+        assert_eq!(ended.status, 1);
+        let page = read(&folder, "pages/move.html");
+        assert_eq!(page.matches("class=\"rows\">").count(), 1, "{title}");
+        assert!(page.contains(title), "{title}");
+    };
+    // The claim fails, the run is as recorded.
+    alone(&SCRIPT.replace("\"at\": 21", "\"at\": 19"), "1 of 2 claims hold");
+    // Other cycles have no common scans.
+    let slow = SCRIPT
+        .replace("T#10ms", "T#20ms")
+        .replace("\"at\": 21", "\"at\": 25");
+    alone(&slow, "cycle: expected T#10ms, found T#20ms");
+    fs::remove_file(folder.join("move.exact")).unwrap();
+    alone(
+        &SCRIPT.replace("\"scans\": 30", "\"scans\": 31"),
+        "2 of 2 claims hold",
+    );
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_told_before_the_tests_run() {
+    let folder = with_script("test_report_refused");
+    let ended = standstill(&folder, &["test", ".", "--report", "move.scan.json"]);
+    assert_eq!((ended.status, ended.out.as_str()), (4, ""));
+    assert!(ended.err.starts_with("error: move.scan.json: "), "{}", ended.err);
+}
+
+#[test]
+fn files_outside_the_folder_are_included_only_where_that_is_allowed() {
+    let folder = scratch("test_include");
+    fs::create_dir_all(folder.join("jobs/in")).unwrap();
+    fs::create_dir_all(folder.join("machines")).unwrap();
+    let machine = r#"{"standstill": 1, "inputs": {"lamp": false}}"#;
+    write(&folder, "machines/m.machine.json", machine);
+    write(&folder, "jobs/in/m.machine.json", machine);
+    let script = |path: &str| SCRIPT.replacen("{\n", &format!("{{\n  \"include\": \"{path}\",\n"), 1);
+    write(&folder, "jobs/in.scan.json", &script("in/m.machine.json"));
+    assert_eq!(standstill(&folder, &["test", "jobs", "--accept"]).status, 0);
+    let out = script("../machines/m.machine.json");
+    write(&folder, "jobs/in.scan.json", &out);
+    for command in ["run", "test"] {
+        let ended = standstill(&folder, &[command, "jobs/in.scan.json"]);
+        assert_eq!(ended.status, 3, "{command}");
+        let place = "--> jobs/in.scan.json:2:14";
+        assert!(
+            ended.err.contains(place) && ended.err.contains("outside the script's folder"),
+            "{}",
+            ended.err
+        );
+        let allowed = standstill(
+            &folder,
+            &[command, "jobs/in.scan.json", "--include-from", "machines"],
+        );
+        assert_ne!(allowed.status, 3, "{}", allowed.err);
+    }
+    // A mistake in the machine file is told there.
+    write(
+        &folder,
+        "machines/m.machine.json",
+        &machine.replace("lamp", "1amp"),
+    );
+    let ended = standstill(
+        &folder,
+        &["run", "jobs/in.scan.json", "--include-from", "machines"],
+    );
+    assert!(
+        ended.err.contains("--> jobs/../machines/m.machine.json:1:30"),
+        "{}",
+        ended.err
+    );
+    write(&folder, "jobs/in.scan.json", &script("in/gone.json"));
+    let ended = standstill(&folder, &["run", "jobs/in.scan.json"]);
+    assert!(
+        ended
+            .err
+            .contains("`in/gone.json` cannot be included: there is no such file"),
+        "{}",
+        ended.err
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_does_not_lead_outside() {
+    let folder = scratch("test_include_link");
+    fs::create_dir_all(folder.join("jobs")).unwrap();
+    write(&folder, "m.machine.json", r#"{"standstill": 1}"#);
+    std::os::unix::fs::symlink("../m.machine.json", folder.join("jobs/m.machine.json")).unwrap();
+    let script = SCRIPT.replacen("{\n", "{\n  \"include\": \"m.machine.json\",\n", 1);
+    write(&folder, "jobs/a.scan.json", &script);
+    let ended = standstill(&folder, &["run", "jobs/a.scan.json"]);
+    assert_eq!(ended.status, 3);
+    assert!(ended.err.contains("outside the script's folder"), "{}", ended.err);
+}

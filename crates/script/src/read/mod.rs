@@ -11,6 +11,7 @@ mod condition;
 pub(crate) mod drive;
 mod expect;
 pub(crate) mod homing;
+mod include;
 pub(crate) mod json;
 pub(crate) mod machine_map;
 pub(crate) mod names;
@@ -67,18 +68,47 @@ struct Reader {
 /// # Errors
 /// [`ScriptError`] with everything that is wrong; after a syntax error only that.
 pub fn read(text: &str, file_name: &str, overrides: &[(String, f64)]) -> Result<Script, ScriptError> {
+    read_with(text, file_name, overrides, &mut |_| {
+        Err("there are no files here".to_owned())
+    })
+}
+
+/// As [`read`], for a script that may include machine files: `load` gives the text of a file, named relative to
+/// the script's folder, or says why not. It is asked for each file once, and for 63 at most.
+///
+/// # Errors
+/// As [`read`]; messages about an included file name that file.
+pub fn read_with(
+    text: &str,
+    file_name: &str,
+    overrides: &[(String, f64)],
+    load: &mut dyn FnMut(&str) -> Result<String, String>,
+) -> Result<Script, ScriptError> {
     let plain = without_mark(text);
-    let error = |diagnostics| ScriptError::new(file_name, plain, diagnostics);
-    let root = json::parse(plain).map_err(|diagnostic| error(vec![diagnostic]))?;
+    let root =
+        json::parse(plain).map_err(|diagnostic| ScriptError::new(file_name, plain, vec![diagnostic]))?;
     let mut reader = Reader::default();
-    match reader.script(&root, overrides) {
-        Some(script) if reader.errors.is_empty() => Ok(Script {
-            hash: fnv1a_64(text.as_bytes()),
-            ..script
-        }),
+    let mut files = include::Files::new(file_name, plain, load);
+    let root = reader.with_includes(root, &mut files);
+    // What is missing may stand in a file that could not be had.
+    let script = if reader.errors.is_empty() {
+        reader.script(&root, overrides)
+    } else {
+        None
+    };
+    match script {
+        Some(script) if reader.errors.is_empty() => {
+            let included = files.read.iter().skip(1).map(|file| file.text().as_bytes());
+            Ok(Script {
+                hash: std::iter::once(text.as_bytes())
+                    .chain(included)
+                    .fold(FNV_START, fnv1a_64),
+                ..script
+            })
+        }
         _ => {
             debug_assert!(!reader.errors.is_empty(), "refused without a reason");
-            Err(error(reader.errors))
+            Err(ScriptError::of(files.read, reader.errors))
         }
     }
 }
@@ -88,9 +118,12 @@ pub(crate) fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
-/// FNV-1a, 64 bits.
-fn fnv1a_64(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+/// What FNV-1a, 64 bits, begins with.
+const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
+
+/// FNV-1a, 64 bits, of what `hash` is of and these bytes.
+fn fnv1a_64(hash: u64, bytes: &[u8]) -> u64 {
+    bytes.iter().fold(hash, |hash, byte| {
         (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })
 }
@@ -98,7 +131,7 @@ fn fnv1a_64(bytes: &[u8]) -> u64 {
 impl Reader {
     fn script(&mut self, root: &Node, overrides: &[(String, f64)]) -> Option<Script> {
         let fields = self.fields(root, &shape::SCRIPT)?;
-        self.version(&fields)?;
+        self.version(&fields, "a script")?;
         if let Some(node) = fields.get("$schema") {
             self.text(node, "`$schema`")?;
         }
@@ -138,8 +171,8 @@ impl Reader {
         Some(script)
     }
 
-    fn version(&mut self, fields: &Fields<'_>) -> Option<()> {
-        let node = self.require(fields, "standstill", "a script")?;
+    fn version(&mut self, fields: &Fields<'_>, what: &str) -> Option<()> {
+        let node = self.require(fields, "standstill", what)?;
         let version = self.whole(
             node,
             "`standstill`, the version of the format,",

@@ -28,6 +28,8 @@ pub(crate) const SCRIPT: Shape = shape(
         "covers",
         "cycle",
         "scans",
+        "include",
+        "override",
         "parameters",
         "axes",
         "inputs",
@@ -37,6 +39,23 @@ pub(crate) const SCRIPT: Shape = shape(
         "expect",
         "stop_when",
         "after",
+    ],
+);
+/// What scripts include.
+pub(crate) const MACHINE: Shape = shape(
+    "a machine file",
+    &[
+        "$schema",
+        "standstill",
+        "title",
+        "include",
+        "override",
+        "parameters",
+        "axes",
+        "inputs",
+        "tasks",
+        "blocks",
+        "note",
     ],
 );
 pub(crate) const PARAM: Shape = shape("a parameter's use", &["param", "note"]);

@@ -948,5 +948,27 @@ pub fn cases() -> Vec<Case> {
             CAMS,
             r#""type": "MC_DigitalCamSwitch", "pins": {"Axis": "X"}"#,
         ),
+        // Machine files; more of them stand in `include.rs`.
+        case(
+            "bad_include",
+            Reader,
+            "a file where there are none",
+            "\"scans\": 100,",
+            "\"scans\": 100, \"include\": \"feeder.machine.json\",",
+        ),
+        case(
+            "bad_override",
+            Reader,
+            "an override without an include",
+            "\"scans\": 100,",
+            "\"scans\": 100, \"override\": [\"X\"],",
+        ),
+        case(
+            "wrong_type",
+            Schema,
+            "an include that is no path",
+            "\"scans\": 100,",
+            "\"scans\": 100, \"include\": {\"file\": \"feeder.machine.json\"},",
+        ),
     ]
 }

@@ -6,5 +6,6 @@ mod document;
 mod errors;
 mod every_key;
 mod format;
+mod include;
 mod mutations;
 mod schema;

@@ -113,6 +113,19 @@ pub fn judge(snap: &Path, trace: &Trace) -> Result<Verdict, GoldenError> {
     })))
 }
 
+/// The reviewed run of this path (`x.snap`) from its companion; none if there is no golden, or no companion that
+/// belongs to it.
+///
+/// # Errors
+/// As [`judge`].
+pub fn expected(snap: &Path) -> Result<Option<Trace>, GoldenError> {
+    let Some(reviewed) = reviewed(snap)? else {
+        return Ok(None);
+    };
+    let companion = read_if_there(&exact_path(snap))?;
+    Ok(expected_trace(&reviewed, companion.as_deref()).ok())
+}
+
 /// Makes this run the golden of this path: writes `x.snap` and `x.exact` where they do not hold it already,
 /// and says whether it wrote. Whether a run deserves it (its claims hold, this is no CI) is for the caller
 /// to say.

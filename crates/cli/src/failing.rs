@@ -1,0 +1,111 @@
+//! Pages of failing tests: the golden as it should be, the run laid over it, the first difference marked.
+
+use crate::exit::Failure;
+use crate::report::page_failure;
+use standstill_report::{Mark, Source, check, html_marked};
+use standstill_script::golden;
+use standstill_script::suite::{Report, SuiteError, shown};
+use standstill_trace::compare::{Difference, compare};
+use standstill_trace::file::replace;
+use standstill_trace::{Trace, time_literal};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+/// The folder the pages go to.
+#[derive(Debug)]
+pub struct Pages<'a> {
+    root: &'a Path,
+    written: BTreeSet<PathBuf>,
+}
+
+impl<'a> Pages<'a> {
+    /// Makes the folder: to be asked for before the tests, not after them.
+    pub fn new(root: &'a Path) -> Result<Self, Failure> {
+        make(root)?;
+        Ok(Self {
+            root,
+            written: BTreeSet::new(),
+        })
+    }
+
+    /// Writes the page of a script that failed; its path.
+    pub fn write(&mut self, script: &Path, report: &Report) -> Result<String, Failure> {
+        let path = self.place(script);
+        make(path.parent().unwrap_or(self.root))?;
+        let page = page(script, report)?;
+        replace(&path, |out| out.write_all(page.as_bytes()))?;
+        Ok(shown(&path))
+    }
+
+    /// Where the page of a script goes: below the folder as the script stands below its own.
+    fn place(&mut self, script: &Path) -> PathBuf {
+        let parts = script.components();
+        let inner: PathBuf = parts
+            .filter(|part| matches!(part, Component::Normal(_)))
+            .collect();
+        // Two extensions are one too many for `with_extension`.
+        let stem = self.root.join(inner).with_extension("").with_extension("");
+        let mut path = stem.with_added_extension("html");
+        // `a/x` and `../a/x` are two scripts.
+        let mut number = 2;
+        while !self.written.insert(path.clone()) {
+            path = stem.with_added_extension(format!("{number}.html"));
+            number += 1;
+        }
+        path
+    }
+}
+
+fn make(folder: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(folder).map_err(|error| Failure::io(&shown(folder), &error))
+}
+
+fn page(script: &Path, report: &Report) -> Result<String, Failure> {
+    let run = &report.outcome.trace;
+    let mut golden = golden::expected(script).map_err(SuiteError::from)?;
+    if let Some(expected) = &mut golden {
+        expected.describe_as(run.header());
+    }
+    // A run that differs in nothing is not shown twice.
+    let difference = golden.as_ref().and_then(|expected| compare(expected, run));
+    let name = shown(script);
+    let names = [format!("expected: golden of {name}"), format!("found: {name}")];
+    let lacks = ["the notes of its run".to_owned()];
+    let found = source(&names[1], run, &[]);
+    let marks: Vec<Mark> = difference.as_ref().map(mark).into_iter().collect();
+    let both = match (&golden, &difference) {
+        (Some(expected), Some(_)) => vec![source(&names[0], expected, &lacks), found],
+        _ => vec![found],
+    };
+    // Runs of different cycle have no common scans; the mark tells the cycles.
+    let sources = if check(&both).is_ok() { both } else { vec![found] };
+    html_marked(&sources, &marks).map_err(page_failure)
+}
+
+fn source<'a>(name: &'a str, trace: &'a Trace, lacks: &'a [String]) -> Source<'a> {
+    Source { name, trace, lacks }
+}
+
+/// The first difference; past the end of the shorter trace if only their lengths differ.
+fn mark(difference: &Difference) -> Mark {
+    let (expected, found) = difference.scans;
+    let scan = match &difference.first {
+        Some(first) => Some(first.scan),
+        None => (expected != found).then(|| expected.min(found)),
+    };
+    let title = match (&difference.first, scan) {
+        (Some(first), _) => format!(
+            "first difference in scan {} ({})",
+            first.scan,
+            time_literal(first.time_ns)
+        ),
+        (None, Some(scan)) => format!("one run ends before scan {scan}"),
+        (None, None) => "what is recorded of the run differs".to_owned(),
+    };
+    Mark {
+        scan,
+        title,
+        text: difference.to_string(),
+    }
+}

@@ -1,0 +1,329 @@
+//! `include`: what a script shares with others, read from machine files and put below its own.
+//!
+//! A machine file is a part of a script: axes, inputs, tasks, blocks and parameters. They are put together before
+//! anything is read, so the reader never knows where an entry came from; its place does, see
+//! [`ScriptError`](crate::ScriptError).
+
+use super::json::{self, Json, Key, Node};
+use super::{Reader, shape, without_mark};
+use crate::error::{Code, Diagnostic, File, quoted};
+use crate::model::Span;
+
+/// Most files of one script.
+pub(super) const FILES_MAX: usize = 64;
+
+/// The keys of a script that a machine file may have.
+const SECTIONS: [&str; 5] = ["parameters", "axes", "inputs", "tasks", "blocks"];
+
+type Members = Vec<(Key, Node)>;
+
+/// Gives the text of a file, named relative to the script's folder, or says why not.
+pub(super) type Load<'a> = &'a mut dyn FnMut(&str) -> Result<String, String>;
+
+/// The texts of a script. Places count on through all of them.
+pub(super) struct Files<'a> {
+    load: Load<'a>,
+    /// The script first.
+    pub(super) read: Vec<File>,
+    /// Paths of `read` but for the first, relative to the script's folder.
+    paths: Vec<String>,
+    /// The files that lead to the one being read.
+    open: Vec<String>,
+}
+
+impl<'a> Files<'a> {
+    pub(super) fn new(file_name: &str, text: &str, load: Load<'a>) -> Self {
+        Self {
+            load,
+            read: vec![File::new(file_name, text, 0)],
+            paths: Vec::new(),
+            open: Vec::new(),
+        }
+    }
+}
+
+impl Reader {
+    /// The script with what it includes.
+    pub(super) fn with_includes(&mut self, root: Node, files: &mut Files<'_>) -> Node {
+        let Node { span, json } = root;
+        let json = match json {
+            Json::Map(members) => Json::Map(self.expanded(members, files)),
+            other => other,
+        };
+        Node { span, json }
+    }
+
+    /// The members of a script or a machine file, those of the files it includes first.
+    fn expanded(&mut self, members: Members, files: &mut Files<'_>) -> Members {
+        let is = |wanted: &'static str| move |(key, _): &&(Key, Node)| key.text == wanted;
+        let paths = members
+            .iter()
+            .find(is("include"))
+            .map(|(_, node)| self.texts(node));
+        let overrides = members
+            .iter()
+            .find(is("override"))
+            .map(|(_, node)| self.texts(node));
+        let mut below = Members::new();
+        for (path, span) in paths.unwrap_or_default() {
+            for (key, node) in self.machine(&path, span, files) {
+                self.lay(&mut below, key, node, &mut Vec::new());
+            }
+        }
+        let mut overrides: Vec<_> = overrides.unwrap_or_default();
+        let mut rest = Members::new();
+        for (key, node) in members {
+            match key.text.as_str() {
+                "include" | "override" => {}
+                section if SECTIONS.contains(&section) => self.lay(&mut below, key, node, &mut overrides),
+                _ => rest.push((key, node)),
+            }
+        }
+        for (name, span) in overrides {
+            let message = format!("nothing overrides {}", quoted(&name));
+            self.report(
+                Diagnostic::new(Code::BadOverride, span, message)
+                    .help("`override` names what an included file and this one both have"),
+            );
+        }
+        rest.extend(below);
+        rest
+    }
+
+    /// The strings of a list, or the one that stands for it.
+    fn texts(&mut self, node: &Node) -> Vec<(String, Span)> {
+        let items = match &node.json {
+            Json::List(items) => items.as_slice(),
+            _ => std::slice::from_ref(node),
+        };
+        let text = |node: &Node| match &node.json {
+            Json::Text(text) => Some((text.clone(), node.span)),
+            _ => {
+                let diagnostic =
+                    self.wrong_type(node, "`include` or `override`", "a string or a list of them");
+                self.report(diagnostic);
+                None
+            }
+        };
+        items.iter().filter_map(text).collect()
+    }
+
+    /// The sections of a machine file; none of a file that was read before.
+    fn machine(&mut self, path: &str, span: Span, files: &mut Files<'_>) -> Members {
+        let refused = |message: String| Diagnostic::new(Code::BadInclude, span, message);
+        let Some(path) = beside(files.open.last().map_or("", String::as_str), path) else {
+            let message = format!("{} is no path to a machine file", quoted(path));
+            self.report(
+                refused(message).help("write a relative path with `/`, from the file that includes it"),
+            );
+            return Members::new();
+        };
+        if files.open.contains(&path) {
+            let message = format!("{} includes itself", quoted(&path));
+            self.report(refused(message).help(format!("the way: {} -> {path}", files.open.join(" -> "))));
+            return Members::new();
+        }
+        if files.paths.contains(&path) {
+            return Members::new();
+        }
+        if files.read.len() >= FILES_MAX {
+            self.report(refused(format!("more than the {FILES_MAX} files of one script")));
+            return Members::new();
+        }
+        let text = match (files.load)(&path) {
+            Ok(text) => text,
+            Err(why) => {
+                self.report(refused(format!("{} cannot be included: {why}", quoted(&path))));
+                return Members::new();
+            }
+        };
+        let start = files.read.last().map_or(0, File::after);
+        let folder = files.read.first().map_or("", |script| script.folder());
+        let file = File::new(&format!("{folder}{path}"), without_mark(&text), start);
+        let parsed = json::parse(file.text());
+        files.read.push(file);
+        files.paths.push(path.clone());
+        let mut root = match parsed {
+            Ok(root) => root,
+            Err(diagnostic) => {
+                self.report(diagnostic.moved(start));
+                return Members::new();
+            }
+        };
+        move_places(&mut root, start);
+        let good = self
+            .fields(&root, &shape::MACHINE)
+            .and_then(|fields| self.version(&fields, "a machine file"));
+        let Json::Map(members) = root.json else {
+            return Members::new();
+        };
+        if good.is_none() {
+            return Members::new();
+        }
+        files.open.push(path);
+        let mut members = self.expanded(members, files);
+        files.open.pop();
+        members.retain(|(key, _)| SECTIONS.contains(&key.text.as_str()));
+        members
+    }
+
+    /// Lays a section over those that are there. An override that was used is taken from the list.
+    fn lay(&mut self, below: &mut Members, key: Key, node: Node, overrides: &mut Vec<(String, Span)>) {
+        let Some((_, there)) = below.iter_mut().find(|(other, _)| other.text == key.text) else {
+            below.push((key, node));
+            return;
+        };
+        match (&mut there.json, node.json) {
+            (Json::Map(there), Json::Map(entries)) => {
+                for (key, node) in entries {
+                    match there.iter_mut().find(|(other, _)| same(&other.text, &key.text)) {
+                        None => there.push((key, node)),
+                        Some((other, entry)) => {
+                            if self.permitted(&key.text, key.span, other.span, overrides) {
+                                replace(entry, node);
+                            }
+                        }
+                    }
+                }
+            }
+            (Json::List(there), Json::List(entries)) => {
+                for node in entries {
+                    let name = name_of(&node);
+                    let clash = name.as_ref().and_then(|(name, _)| {
+                        let of = |other: &Node| name_of(other).is_some_and(|(other, _)| same(&other, name));
+                        there.iter_mut().find(|other| of(other))
+                    });
+                    match (clash, name) {
+                        (Some(entry), Some((name, span))) => {
+                            let other = name_of(entry).map_or(entry.span, |(_, span)| span);
+                            if self.permitted(&name, span, other, overrides) {
+                                replace(entry, node);
+                            }
+                        }
+                        _ => there.push(node),
+                    }
+                }
+            }
+            // Of the wrong type, or about to be laid over something that is: the reader says so.
+            (there, json @ (Json::Map(_) | Json::List(_)))
+                if !matches!(there, Json::Map(_) | Json::List(_)) =>
+            {
+                drop(json);
+            }
+            (_, json) => {
+                *there = Node {
+                    span: node.span,
+                    json,
+                };
+            }
+        }
+    }
+
+    /// Whether the entry may be laid over one of an included file; reports it if not.
+    fn permitted(
+        &mut self,
+        name: &str,
+        span: Span,
+        other: Span,
+        overrides: &mut Vec<(String, Span)>,
+    ) -> bool {
+        if let Some(at) = overrides.iter().position(|(wanted, _)| same(wanted, name)) {
+            overrides.remove(at);
+            return true;
+        }
+        let message = format!("the name {} is taken by an included file", quoted(name));
+        self.report(
+            Diagnostic::new(Code::DuplicateName, span, message)
+                .related(other, "by this one")
+                .help(format!(
+                    "to change what that file says of it, add \"override\": [\"{name}\"]"
+                )),
+        );
+        false
+    }
+}
+
+fn same(one: &str, other: &str) -> bool {
+    one.eq_ignore_ascii_case(other)
+}
+
+/// The `name` of a block.
+fn name_of(node: &Node) -> Option<(String, Span)> {
+    let Json::Map(members) = &node.json else {
+        return None;
+    };
+    let (_, node) = members.iter().find(|(key, _)| key.text == "name")?;
+    match &node.json {
+        Json::Text(name) => Some((name.clone(), node.span)),
+        _ => None,
+    }
+}
+
+/// Keys that are given replace those of the entry, pins one by one; the others stay.
+fn replace(entry: &mut Node, by: Node) {
+    match (&mut entry.json, by.json) {
+        (Json::Map(there), Json::Map(members)) => {
+            for (key, node) in members {
+                match there.iter_mut().find(|(other, _)| other.text == key.text) {
+                    Some((_, pins)) if key.text == "pins" => replace_members(pins, node),
+                    Some((other, value)) => (*other, *value) = (key, node),
+                    None => there.push((key, node)),
+                }
+            }
+        }
+        (_, json) => {
+            *entry = Node { span: by.span, json };
+        }
+    }
+}
+
+/// As [`replace`], one level and no more.
+fn replace_members(entry: &mut Node, by: Node) {
+    match (&mut entry.json, by.json) {
+        (Json::Map(there), Json::Map(members)) => {
+            for (key, node) in members {
+                match there.iter_mut().find(|(other, _)| other.text == key.text) {
+                    Some((other, value)) => (*other, *value) = (key, node),
+                    None => there.push((key, node)),
+                }
+            }
+        }
+        (_, json) => {
+            *entry = Node { span: by.span, json };
+        }
+    }
+}
+
+/// The path of a file named in another one, relative to the script's folder, without `.` and, as far as it goes,
+/// without `..`; none if it is empty, absolute or written with backslashes.
+fn beside(from: &str, path: &str) -> Option<String> {
+    if path.is_empty() || path.starts_with('/') || path.contains(['\\', ':', '\0']) {
+        return None;
+    }
+    let mut parts: Vec<&str> = from.split('/').collect();
+    parts.pop();
+    for part in path.split('/') {
+        match (part, parts.last()) {
+            ("" | ".", _) => {}
+            ("..", Some(last)) if *last != ".." => {
+                parts.pop();
+            }
+            _ => parts.push(part),
+        }
+    }
+    (!parts.is_empty()).then(|| parts.join("/"))
+}
+
+/// Moves every place of a tree; bounded by the depth the JSON reader allows.
+fn move_places(node: &mut Node, by: usize) {
+    let moved = |span: &mut Span| *span = span.moved(by);
+    moved(&mut node.span);
+    match &mut node.json {
+        Json::List(items) => items.iter_mut().for_each(|item| move_places(item, by)),
+        Json::Map(members) => members.iter_mut().for_each(|(key, value)| {
+            moved(&mut key.span);
+            move_places(value, by);
+        }),
+        Json::Null | Json::Bool(_) | Json::Number(_) | Json::Text(_) => {}
+    }
+}
