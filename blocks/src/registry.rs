@@ -2,22 +2,25 @@
 
 use crate::administrative::{
     mc_abort_trigger::McAbortTrigger, mc_digital_cam_switch::McDigitalCamSwitch, mc_power::McPower,
-    mc_read_actual_position::McReadActualPosition, mc_read_actual_velocity::McReadActualVelocity,
-    mc_read_axis_error::McReadAxisError, mc_read_axis_info::McReadAxisInfo,
-    mc_read_bool_parameter::McReadBoolParameter, mc_read_digital_input::McReadDigitalInput,
-    mc_read_digital_output::McReadDigitalOutput, mc_read_motion_state::McReadMotionState,
-    mc_read_parameter::McReadParameter, mc_read_status::McReadStatus, mc_reset::McReset,
-    mc_set_override::McSetOverride, mc_set_position::McSetPosition, mc_touch_probe::McTouchProbe,
+    mc_read_actual_position::McReadActualPosition, mc_read_actual_torque::McReadActualTorque,
+    mc_read_actual_velocity::McReadActualVelocity, mc_read_axis_error::McReadAxisError,
+    mc_read_axis_info::McReadAxisInfo, mc_read_bool_parameter::McReadBoolParameter,
+    mc_read_digital_input::McReadDigitalInput, mc_read_digital_output::McReadDigitalOutput,
+    mc_read_motion_state::McReadMotionState, mc_read_parameter::McReadParameter,
+    mc_read_status::McReadStatus, mc_reset::McReset, mc_set_override::McSetOverride,
+    mc_set_position::McSetPosition, mc_touch_probe::McTouchProbe,
     mc_write_bool_parameter::McWriteBoolParameter, mc_write_digital_output::McWriteDigitalOutput,
     mc_write_parameter::McWriteParameter,
 };
 use crate::homing::mc_home::McHome;
 use crate::single_axis::{
-    mc_halt::McHalt, mc_halt_superimposed::McHaltSuperimposed, mc_jog::McJog,
-    mc_move_absolute::McMoveAbsolute, mc_move_additive::McMoveAdditive,
-    mc_move_continuous_absolute::McMoveContinuousAbsolute,
+    mc_acceleration_profile::McAccelerationProfile, mc_halt::McHalt,
+    mc_halt_superimposed::McHaltSuperimposed, mc_jog::McJog, mc_move_absolute::McMoveAbsolute,
+    mc_move_additive::McMoveAdditive, mc_move_continuous_absolute::McMoveContinuousAbsolute,
     mc_move_continuous_relative::McMoveContinuousRelative, mc_move_relative::McMoveRelative,
-    mc_move_superimposed::McMoveSuperimposed, mc_move_velocity::McMoveVelocity, mc_stop::McStop,
+    mc_move_superimposed::McMoveSuperimposed, mc_move_velocity::McMoveVelocity,
+    mc_position_profile::McPositionProfile, mc_stop::McStop, mc_torque_control::McTorqueControl,
+    mc_velocity_profile::McVelocityProfile,
 };
 use crate::standard::{
     ctd::Ctd, ctu::Ctu, ctud::Ctud, f_trig::FTrig, r_trig::RTrig, rs::Rs, sr::Sr, tof::Tof, ton::Ton, tp::Tp,
@@ -67,13 +70,15 @@ macro_rules! registry {
 
 registry! {
     McPower McReset McReadStatus McReadMotionState McReadAxisInfo McReadAxisError
-    McReadActualPosition McReadActualVelocity McSetPosition McSetOverride
+    McReadActualPosition McReadActualVelocity McReadActualTorque McSetPosition McSetOverride
     McReadParameter McReadBoolParameter McWriteParameter McWriteBoolParameter
     McReadDigitalInput McReadDigitalOutput McWriteDigitalOutput
     McTouchProbe McAbortTrigger McDigitalCamSwitch
     McHome
     McStop McHalt McMoveAbsolute McMoveRelative McMoveAdditive McMoveVelocity
-    McMoveContinuousAbsolute McMoveContinuousRelative McMoveSuperimposed McHaltSuperimposed McJog
+    McMoveContinuousAbsolute McMoveContinuousRelative McTorqueControl
+    McPositionProfile McVelocityProfile McAccelerationProfile
+    McMoveSuperimposed McHaltSuperimposed McJog
     RTrig FTrig Sr Rs Ctu Ctd Ctud Ton Tof Tp
 }
 

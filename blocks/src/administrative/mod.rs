@@ -5,6 +5,7 @@ pub mod mc_abort_trigger;
 pub mod mc_digital_cam_switch;
 pub mod mc_power;
 pub mod mc_read_actual_position;
+pub mod mc_read_actual_torque;
 pub mod mc_read_actual_velocity;
 pub mod mc_read_axis_error;
 pub mod mc_read_axis_info;

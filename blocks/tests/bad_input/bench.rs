@@ -4,13 +4,16 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Comms, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals,
-    InstanceId, Limits, Log, Source, Standard, StartState,
+    InstanceId, Limits, Log, Source, Standard, StartState, TorqueReport,
 };
 use standstill_blocks::BlockInstance;
-use standstill_fb::{AnyInstance, Context, PinType, Value};
+use standstill_fb::{AnyInstance, Context, PinType, TableRef, Value};
 
 /// Sample time (s).
 const CYCLE: f64 = 0.001;
+
+/// A table with one point for the profile blocks: in 4 s (DeltaTime in ns) to 1, not level.
+const POINTS: [f64; 3] = [4e9, 1.0, 0.0];
 
 /// The axis the blocks are wired to.
 pub const AXIS: AxisId = AxisId::new(0);
@@ -69,13 +72,16 @@ impl Bench {
             ("Distance", Value::Lreal(1.0)),
             ("Velocity", Value::Lreal(5.0)),
             ("VelocityDiff", Value::Lreal(1.0)),
+            ("Torque", Value::Lreal(1.0)),
         ];
         let parameter = if name.contains("Bool") { 6 } else { 9 };
         let number = ("ParameterNumber", Value::Int(parameter));
         let value = name == "MC_WriteParameter";
         let value = value.then_some(("Value", Value::Lreal(10.0)));
         let good = good.into_iter().chain([number]).chain(value);
-        for (pin, value) in good {
+        let points = Value::Table(TableRef { first: 0, records: 1 });
+        let tables = ["TimePosition", "TimeVelocity", "TimeAcceleration"].map(|pin| (pin, points));
+        for (pin, value) in good.chain(tables) {
             if let Some((index, _)) = block.info().pin(pin)
                 && index < block.info().input_count()
             {
@@ -126,6 +132,12 @@ impl Bench {
     /// Feedback is latched.
     pub fn latch(&mut self) {
         for (axis, drive) in self.axes.iter_mut().zip(&self.drives) {
+            // It can hold a torque, under which it does not move.
+            axis.report_mut().torque = Some(TorqueReport {
+                actual: 0.0,
+                most: 10.0,
+                limited: false,
+            });
             let feedback = DriveFeedback {
                 enabled: drive.request == DriveRequest::Enable,
                 voltage: true,
@@ -145,7 +157,7 @@ impl Bench {
             instance: InstanceId(0),
             axes: &mut self.axes,
             log: &mut self.log,
-            tables: &[],
+            tables: &POINTS,
         });
     }
 

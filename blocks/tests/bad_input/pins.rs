@@ -56,9 +56,12 @@ fn clamped(bench: &Bench, pin: &str) -> bool {
 }
 
 fn refused(bench: &Bench, pin: &str) -> bool {
-    bench.log.since(0).any(
-        |record| matches!(record, Record { event: Event::Refused { pin: found, .. }, .. } if *found == pin),
-    )
+    bench.log.since(0).any(|record| match record.event {
+        Event::Refused { pin: found, .. } => found == pin,
+        // A value of a profile that is no good where it meets its table.
+        Event::PointRefused { .. } => true,
+        _ => false,
+    })
 }
 
 /// Covers: R17, R18, R34, R38, R53, R56, R58, R91, R92, V1, V2, V8, V8a, T5

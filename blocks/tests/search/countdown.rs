@@ -1,7 +1,10 @@
 //! A planner that only counts: every change takes two scans. At velocity 2 a move takes two scans even to
 //! where it is: what is superimposed must not make the positions many.
 
-use standstill_axis::{Excess, Limits, MoveProfile, Passage, Plan, PlanError, Planner, Setpoint};
+use standstill_axis::{
+    Excess, Limits, MoveProfile, Passage, Plan, PlanError, Planner, ProfileFault, ProfileKind, ProfilePoint,
+    Setpoint,
+};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Countdown;
@@ -83,6 +86,25 @@ impl Planner for Countdown {
     ) -> Result<Option<Count>, PlanError> {
         let velocity = passage.wanted.copysign(target - start.position);
         self.pass(start, target, velocity, limits, before).map(Some)
+    }
+
+    fn profile(
+        &self,
+        kind: ProfileKind,
+        start: &Setpoint,
+        points: &[ProfilePoint],
+        _: &Limits,
+        _: Option<(f64, f64)>,
+    ) -> Result<Count, ProfileFault> {
+        let last = points.last().map_or(0.0, |point| point.value);
+        let goal = match kind {
+            ProfileKind::Position => Setpoint::at_rest(last),
+            ProfileKind::Velocity | ProfileKind::Acceleration => Setpoint {
+                velocity: last,
+                ..Setpoint::at_rest(start.position)
+            },
+        };
+        Ok(Count::to(start, goal, false))
     }
 
     fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits) -> f64 {

@@ -278,6 +278,17 @@ pub enum Command {
         /// Its sign multiplies that of the velocity (V3).
         direction: Raw<Direction>,
     },
+    /// Not to a place or a velocity, but a torque within velocity and acceleration; a velocity of 0 takes the axis limit.
+    Torque {
+        /// Torque to hold, in the drive's unit, signed.
+        torque: f64,
+        /// Its largest change a second; 0 for none.
+        ramp: f64,
+        /// Dynamic values.
+        dynamics: Dynamics,
+        /// Its sign multiplies that of the torque.
+        direction: Raw<Direction>,
+    },
     /// MC_Jog: to an endless motion, or by a distance; the velocity must be positive.
     Jog {
         /// Towards larger positions.
@@ -347,6 +358,12 @@ impl Command {
                 dynamics,
             } => (*distance, *end_velocity, 0, dynamics),
             Self::MoveVelocity { dynamics, direction } => (0.0, 0.0, direction.number(), dynamics),
+            Self::Torque {
+                torque,
+                ramp,
+                dynamics,
+                direction,
+            } => (*torque, *ramp, direction.number(), dynamics),
             Self::Jog {
                 forward,
                 distance,

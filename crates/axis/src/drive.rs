@@ -106,6 +106,26 @@ pub struct ProbeReport {
     pub latched: Option<DrivePosition>,
 }
 
+/// What a drive tells of its torque, or force, in the unit it is set up with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorqueReport {
+    /// Actual torque; positive towards larger positions.
+    pub actual: f64,
+    /// The largest torque it can hold; 0 if it only measures.
+    pub most: f64,
+    /// It does not hold the torque it is asked for: it is at a limit of the velocity or of its own.
+    pub limited: bool,
+}
+
+/// A torque to hold instead of following positions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorqueOrder {
+    /// In the drive's unit.
+    pub torque: f64,
+    /// The least and the largest velocity (u/s) at which it is held.
+    pub velocity: (f64, f64),
+}
+
 /// What a drive has that a homing may need.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Equipment {
@@ -138,6 +158,8 @@ pub enum DriveHoming {
 /// What a drive tells beside its motion. What it does not know stays as in the default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DriveReport {
+    /// Its torque; none if it does not know it.
+    pub torque: Option<TorqueReport>,
     /// Its digital inputs, 0 to 31, one bit each.
     pub inputs: u32,
     /// What its digital outputs show, 0 to 31.
@@ -164,6 +186,8 @@ pub enum Edge {
 /// What a drive is asked beside its motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DriveOrder {
+    /// The torque to hold instead of the position; only of a drive that told it can.
+    pub torque: Option<TorqueOrder>,
     /// Its digital outputs.
     pub outputs: u32,
     /// Which edge each probe is to latch; none disarms it. A probe is armed anew by one scan without an edge.

@@ -141,6 +141,18 @@ error_ids! {
         "Move the other limit first, or switch one of them off.";
     ParameterOnModulo = 147, "Software limits do not exist on a modulo axis: its positions come round.",
         "Leave the parameters 2 to 5 alone on this axis.";
+    ProfileTableInvalid = 160, "A profile's table has no point after the start, more than 40, a DeltaTime that is not above 0 (the first may be 0), or a value that is NaN or infinite.",
+        "Give 1 to 40 points, each later than the one before; the record in the log names the point.";
+    ProfileStartMismatch = 161, "The first point of a profile is for the start (DeltaTime 0), and the axis has another value there.",
+        "Leave the point out, give it a DeltaTime in which to get there, or bring the axis there first.";
+    ProfileBeyondLimits = 162, "The curve of a profile would exceed a limit of the axis.",
+        "Raise TimeScale, lower the amplitude, or move the point that the record in the log names; it also says how far the limit is exceeded.";
+    ProfileScaleInvalid = 163, "TimeScale is not above 0, or a scale or Offset of a profile is NaN or infinite.",
+        "Give TimeScale above 0 and finite numbers for the others.";
+    TorqueInvalid = 170, "Torque or TorqueRamp is NaN or infinite, or TorqueRamp is negative.",
+        "Give a finite Torque, and a TorqueRamp above 0, or 0 for none.";
+    TorqueAboveLimit = 171, "Torque is above the largest one the drive can hold.",
+        "Lower Torque, or raise the limit of the drive.";
 
     NotPowered = 201, "The axis is Disabled.",
         "Switch it on with MC_Power and wait for Status.";
@@ -162,6 +174,10 @@ error_ids! {
         "Set EnableNegative to TRUE at the MC_Power instance called last, or move the other way.";
     OutwardFromLimitSwitch = 210, "The axis stands on a hardware limit switch and the motion would lead further out.",
         "Move back from the switch: the other way, or to a target on that side.";
+    ProfileInterrupted = 212, "A profile was stopped because MC_Power barred a direction it needs; its times have passed.",
+        "Start it again when the direction is permitted.";
+    TorqueControls = 213, "MC_TorqueControl owns the axis, so there is no set position to add a motion to.",
+        "Let another motion take over first.";
     TriggerTaken = 215, "Another instance waits for this probe.",
         "Wait for it, or abort it with MC_AbortTrigger; each probe serves one instance at a time.";
 
@@ -196,6 +212,10 @@ error_ids! {
         "Choose a homing the drive has the signals for, or give the drive what is missing.";
     DriveHomingFailed = 511, "The drive gave up its homing.",
         "Read the drive's own error and check its homing method and switches, then call MC_Reset.";
+    TorqueUnknown = 520, "The drive of the axis does not tell its torque.",
+        "Use a drive that measures it.";
+    TorqueNotHeld = 521, "The drive of the axis cannot hold a torque.",
+        "Use a drive that can; its motion is as before.";
 
     CommunicationLost = 601, "The communication with the drive was lost.",
         "Restore it, then call MC_Reset.";

@@ -24,7 +24,7 @@ mod state;
 
 pub use axis::{
     Axis, Beside, CamTrack, Factors, MotionState, Outlook, Pace, Parameter, ParameterValue, Permission,
-    Source, TouchProbe, Way,
+    Profile, ProfileRow, Source, TouchProbe, Way,
 };
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,
@@ -35,7 +35,7 @@ pub use config::{
 };
 pub use drive::{
     Comms, DIGITAL, Drive, DriveCommand, DriveFeedback, DriveHoming, DriveOrder, DrivePosition, DriveReport,
-    DriveRequest, DriveSignals, Edge, Equipment, Fault, PROBES, ProbeReport,
+    DriveRequest, DriveSignals, Edge, Equipment, Fault, PROBES, ProbeReport, TorqueOrder, TorqueReport,
 };
 pub use error_id::{ErrorClass, ErrorId, RETIRED};
 pub use fate::{FATES_KEPT, Fate};
@@ -45,6 +45,7 @@ pub use log::{Event, Goal, LOG_KEPT, Log, Record};
 pub use scaling::{Scaling, Turn};
 pub use standstill_planner::turns::split;
 pub use standstill_planner::{
-    Excess, Limits, MoveProfile, Order, Passage, Plan, PlanError, Planner, Setpoint, Standard, StandardPlan,
+    Excess, Limits, MoveProfile, Order, PROFILE_POINTS, Passage, Plan, PlanError, Planner, ProfileFault,
+    ProfileKind, ProfilePoint, Setpoint, Standard, StandardPlan,
 };
 pub use state::{ARROWS, Arrow, AxisEvent, AxisState, Refused, next};

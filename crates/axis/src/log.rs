@@ -36,6 +36,19 @@ pub enum Event {
         /// The error the block shows.
         error: ErrorId,
     },
+    /// A profile was refused because of a point of its table, or of the way to it.
+    PointRefused {
+        /// The point, from 1.
+        point: u16,
+        /// IEC name of the field, or the quantity whose limit the curve would break.
+        what: &'static str,
+        /// The value there.
+        value: f64,
+        /// The limit it broke; NaN if there is none to name.
+        limit: f64,
+        /// The error the block shows.
+        error: ErrorId,
+    },
     /// A value above the axis limit was lowered to it.
     Clamped {
         /// IEC name of the pin.

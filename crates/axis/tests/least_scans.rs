@@ -6,8 +6,8 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Direction, Dynamics, Excess, Fate, Limits, Log,
-    MoveProfile, Passage, Plan, PlanError, Planner, Request, Setpoint, Source, Standard, StandardPlan,
-    StartState,
+    MoveProfile, Passage, Plan, PlanError, Planner, ProfileFault, ProfileKind, ProfilePoint, Request,
+    Setpoint, Source, Standard, StandardPlan, StartState,
 };
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -107,6 +107,17 @@ impl Planner for Placing {
         _: &Limits,
     ) -> Result<Option<Placed>, PlanError> {
         unreachable!("only ramps are asked for")
+    }
+
+    fn profile(
+        &self,
+        _: ProfileKind,
+        _: &Setpoint,
+        _: &[ProfilePoint],
+        _: &Limits,
+        _: Option<(f64, f64)>,
+    ) -> Result<Placed, ProfileFault> {
+        unreachable!("no profile is commanded")
     }
 
     fn entry_speed(&self, _: f64, _: f64, _: f64, _: &Limits) -> f64 {

@@ -152,7 +152,7 @@ impl ExecuteCore {
     }
 
     /// The command that goes on in a call with `execute`: none if it ended, or a rising edge is about to replace it.
-    pub(crate) fn running(&self, execute: bool) -> Option<(AxisId, CommandId)> {
+    pub fn running(&self, execute: bool) -> Option<(AxisId, CommandId)> {
         let rising = execute && !self.executed;
         self.command.filter(|_| !rising)
     }

@@ -69,6 +69,11 @@ impl<R, const N: usize> Default for TableOf<R, N> {
 }
 
 impl<R, const N: usize> TableOf<R, N> {
+    /// Where the table stands.
+    pub const fn place(&self) -> TableRef {
+        self.place
+    }
+
     /// The table at `place`.
     pub const fn new(place: TableRef) -> Self {
         Self {

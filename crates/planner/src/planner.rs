@@ -2,8 +2,8 @@
 
 use crate::grid::Family;
 use crate::{
-    Excess, GridPlan, Limits, Method, OnlinePlan, Passage, PlanError, RampPlan, Rung, SampledPlan, Segment,
-    Setpoint, UnequalPlan, online, sum,
+    Excess, GridPlan, Limits, Method, OnlinePlan, Passage, PlanError, ProfileFault, ProfileKind, ProfilePlan,
+    ProfilePoint, RampPlan, Rung, SampledPlan, Segment, Setpoint, UnequalPlan, online, sum,
 };
 
 /// Plans moves for an axis.
@@ -75,6 +75,19 @@ pub trait Planner {
         limits: &Limits,
         before: &Limits,
     ) -> Result<Option<Self::Plan>, PlanError>;
+
+    /// The curve through `points` from `start`, inside `limits` and, where given, a range of positions (u).
+    ///
+    /// # Errors
+    /// [`ProfileFault`] names the point and what is wrong with it.
+    fn profile(
+        &self,
+        kind: ProfileKind,
+        start: &Setpoint,
+        points: &[ProfilePoint],
+        limits: &Limits,
+        range: Option<(f64, f64)>,
+    ) -> Result<Self::Plan, ProfileFault>;
 
     /// The largest speed (u/s), at most `wanted`, at which a move over `distance` (u, not negative) can
     /// begin up to one scan late and still pass its end with no more than the speed `exit`.
@@ -221,10 +234,6 @@ pub struct Standard {
 
 /// A plan of [`Standard`].
 #[derive(Clone, Copy, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "without a heap a plan is as large as the largest"
-)]
 pub enum StandardPlan {
     /// From rest to rest, every switch on the grid.
     Grid(GridPlan),
@@ -236,6 +245,8 @@ pub enum StandardPlan {
     Online(OnlinePlan),
     /// To rest, by the method of a paper.
     Sampled(SampledPlan),
+    /// Through points.
+    Profile(ProfilePlan),
 }
 
 /// A plan is copied about by value, once a command.
@@ -304,6 +315,13 @@ impl Standard {
 }
 
 impl StandardPlan {
+    /// From now on `cruise`, its own motion at its end, brought back.
+    fn bring_back_cruise(&mut self, mut cruise: RampPlan, scan: u64, length: f64) -> Option<i64> {
+        let turns = cruise.bring_back(scan, length);
+        *self = Self::Ramp(cruise);
+        turns
+    }
+
     #[inline(never)]
     fn numbers_at(&self, scan: u64) -> [f64; 5] {
         let setpoint = match self {
@@ -312,6 +330,7 @@ impl StandardPlan {
             Self::Ramp(ramp) => ramp.at(scan),
             Self::Online(plan) => plan.at(scan),
             Self::Sampled(plan) => plan.at(scan),
+            Self::Profile(plan) => plan.at(scan),
         };
         setpoint.numbers()
     }
@@ -326,6 +345,7 @@ impl StandardPlan {
             Self::Ramp(ramp) => ramp.next(scan),
             Self::Online(plan) => plan.next(scan),
             Self::Sampled(plan) => plan.at(scan),
+            Self::Profile(plan) => plan.at(scan),
         };
         setpoint.numbers()
     }
@@ -390,6 +410,17 @@ impl Planner for Standard {
             .map(|plan| plan.map(StandardPlan::Online))
     }
 
+    fn profile(
+        &self,
+        kind: ProfileKind,
+        start: &Setpoint,
+        points: &[ProfilePoint],
+        limits: &Limits,
+        range: Option<(f64, f64)>,
+    ) -> Result<StandardPlan, ProfileFault> {
+        ProfilePlan::new(kind, start, points, limits, range, self.cycle).map(StandardPlan::Profile)
+    }
+
     fn entry_speed(&self, wanted: f64, distance: f64, exit: f64, limits: &Limits) -> f64 {
         online::entry_speed(wanted, distance, exit, limits, self.cycle)
     }
@@ -418,9 +449,11 @@ impl Planner for Standard {
 }
 
 impl StandardPlan {
-    /// The stretches of constant highest derivative, in order of time; at most 46 of them.
+    /// The stretches of constant highest derivative, in order of time; at most 46 of them, and none of a profile.
     pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
         let (grid, unequal, ramp, online, sampled) = match self {
+            // Its stretches have no constant derivative.
+            Self::Profile(_) => (None, None, None, None, None),
             Self::Grid(grid) => (Some(grid), None, None, None, None),
             Self::Unequal(grid) => (None, Some(grid), None, None, None),
             Self::Ramp(ramp) => (None, None, Some(ramp), None, None),
@@ -445,6 +478,7 @@ impl Plan for StandardPlan {
             Self::Ramp(ramp) => ramp.scans(),
             Self::Online(plan) => plan.scans(),
             Self::Sampled(plan) => plan.scans(),
+            Self::Profile(plan) => plan.scans(),
         }
     }
 
@@ -453,7 +487,7 @@ impl Plan for StandardPlan {
     fn at(&self, scan: u64) -> Setpoint {
         match self {
             Self::Grid(grid) => grid.at(scan),
-            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) => {
+            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) | Self::Profile(_) => {
                 Setpoint::of(self.numbers_at(scan))
             }
         }
@@ -463,7 +497,7 @@ impl Plan for StandardPlan {
     fn brief(&self, scan: u64) -> Option<Setpoint> {
         match self {
             Self::Grid(grid) => Some(grid.at(scan)),
-            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) => None,
+            Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) | Self::Profile(_) => None,
         }
     }
 
@@ -472,7 +506,12 @@ impl Plan for StandardPlan {
         match self {
             Self::Online(plan) if plan.is_in_piece(scan) => Some(plan.in_piece(scan)),
             Self::Ramp(ramp) if ramp.is_at_goal(scan) => Some(ramp.at_goal(scan)),
-            Self::Grid(_) | Self::Unequal(_) | Self::Ramp(_) | Self::Online(_) | Self::Sampled(_) => None,
+            Self::Grid(_)
+            | Self::Unequal(_)
+            | Self::Ramp(_)
+            | Self::Online(_)
+            | Self::Sampled(_)
+            | Self::Profile(_) => None,
         }
     }
 
@@ -486,7 +525,7 @@ impl Plan for StandardPlan {
 
     fn excess(&self) -> Option<Excess> {
         match self {
-            Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) => None,
+            Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) | Self::Profile(_) => None,
             Self::Ramp(ramp) => ramp.excess(),
             Self::Online(plan) => plan.excess(),
         }
@@ -494,7 +533,7 @@ impl Plan for StandardPlan {
 
     fn excess_over(&self, limits: &Limits) -> Option<Excess> {
         match self {
-            Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) => None,
+            Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) | Self::Profile(_) => None,
             Self::Ramp(ramp) => ramp.excess_over(limits),
             Self::Online(plan) => plan.excess_over(limits),
         }
@@ -502,7 +541,7 @@ impl Plan for StandardPlan {
 
     fn rung(&self) -> Option<Rung> {
         match self {
-            Self::Grid(_) | Self::Unequal(_) | Self::Ramp(_) | Self::Sampled(_) => None,
+            Self::Grid(_) | Self::Unequal(_) | Self::Ramp(_) | Self::Sampled(_) | Self::Profile(_) => None,
             Self::Online(plan) => Some(plan.rung()),
         }
     }
@@ -514,6 +553,7 @@ impl Plan for StandardPlan {
             Self::Ramp(ramp) => ramp.shift(by),
             Self::Online(plan) => plan.shift(by),
             Self::Sampled(plan) => plan.shift(by),
+            Self::Profile(plan) => plan.shift(by),
         }
     }
 
@@ -522,10 +562,12 @@ impl Plan for StandardPlan {
             Self::Grid(_) | Self::Unequal(_) | Self::Sampled(_) => None,
             Self::Ramp(ramp) => ramp.bring_back(scan, length),
             Self::Online(plan) => {
-                let mut cruise = plan.cruise(scan)?;
-                let turns = cruise.bring_back(scan, length);
-                *self = Self::Ramp(cruise);
-                turns
+                let cruise = plan.cruise(scan)?;
+                self.bring_back_cruise(cruise, scan, length)
+            }
+            Self::Profile(plan) => {
+                let cruise = plan.cruise(scan)?;
+                self.bring_back_cruise(cruise, scan, length)
             }
         }
     }

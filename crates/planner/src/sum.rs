@@ -102,6 +102,11 @@ fn sum(a: &Setpoint, b: &Setpoint) -> Setpoint {
     }
 }
 
+/// Whether a plan is on a curve that has no pieces of constant snap.
+fn is_curve((plan, elapsed): Part<'_>) -> bool {
+    matches!(plan, StandardPlan::Profile(profile) if elapsed < u64::from(profile.scans()))
+}
+
 /// Whether the sum of two plans keeps `limits` from now until both have ended, and does not turn outside
 /// `range` (u), given in the sum of their positions.
 ///
@@ -115,6 +120,10 @@ pub(crate) fn fits(
     range: Option<(f64, f64)>,
     cycle: f64,
 ) -> bool {
+    // What a curve through points leaves is not looked for: to its end there is none.
+    if is_curve(first) || is_curve(second) {
+        return false;
+    }
     let mut one = Walk::new(first.0.segments(), first, cycle);
     let mut two = Walk::new(second.0.segments(), second, cycle);
     let range = range.map(|range| widened(range, first, second));
@@ -174,6 +183,15 @@ fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, range: Option<(f64
 /// A motion within it keeps `limits` together with the plan whatever their times. Bounded by
 /// [`MAX_SWITCHES`] pieces.
 pub(crate) fn room(part: Part<'_>, limits: &Limits, cycle: f64) -> Limits {
+    if is_curve(part) {
+        return Limits {
+            velocity: 0.0,
+            acceleration: 0.0,
+            deceleration: 0.0,
+            jerk: 0.0,
+            snap: 0.0,
+        };
+    }
     let mut walk = Walk::new(part.0.segments(), part, cycle);
     let mut peak = Setpoint {
         velocity: walk.goal.abs(),
@@ -218,6 +236,9 @@ pub(crate) fn room(part: Part<'_>, limits: &Limits, cycle: f64) -> Limits {
 /// The first scan after `elapsed` at or after the end of the piece in force at `elapsed`; `elapsed` itself
 /// from the end of the plan on.
 pub(crate) fn next_switch((plan, elapsed): Part<'_>, cycle: f64) -> u64 {
+    if is_curve((plan, elapsed)) {
+        return u64::from(plan.scans());
+    }
     let walk = Walk::new(plan.segments(), (plan, elapsed), cycle);
     if !walk.left.is_finite() {
         return elapsed;
@@ -229,6 +250,9 @@ pub(crate) fn next_switch((plan, elapsed): Part<'_>, cycle: f64) -> u64 {
 /// How far (u) the rest of a plan moves up and how far down, up to its goal: the sums over the stretches between
 /// its turns. Bounded by [`MAX_SWITCHES`] pieces with at most two roots each.
 pub(crate) fn ways(part: Part<'_>, cycle: f64) -> (f64, f64) {
+    if let StandardPlan::Profile(profile) = part.0 {
+        return profile.ways(part.1);
+    }
     let mut walk = Walk::new(part.0.segments(), part, cycle);
     let (mut up, mut down) = (0.0, 0.0);
     for _ in 0..MAX_SWITCHES {

@@ -4,7 +4,8 @@
 
 use standstill_axis::{
     AxisConfig, AxisId, Command, Direction, DrivePosition, Dynamics, Excess, IdealDrive, Limits, MoveProfile,
-    Passage, Plan, PlanError, Planner, Raw, Request, Setpoint, StartState,
+    Passage, Plan, PlanError, Planner, ProfileFault, ProfileKind, ProfilePoint, Raw, Request, Setpoint,
+    StartState,
 };
 use standstill_fb::Context;
 use standstill_scan::{
@@ -56,6 +57,17 @@ impl Planner for Noting {
         _: &Limits,
     ) -> Result<Option<Note>, PlanError> {
         Ok(None)
+    }
+
+    fn profile(
+        &self,
+        _: ProfileKind,
+        _: &Setpoint,
+        _: &[ProfilePoint],
+        _: &Limits,
+        _: Option<(f64, f64)>,
+    ) -> Result<Note, ProfileFault> {
+        Ok(Note(self.0))
     }
 
     fn entry_speed(&self, wanted: f64, _: f64, _: f64, _: &Limits) -> f64 {

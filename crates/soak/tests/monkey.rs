@@ -1,6 +1,7 @@
 //! What a random program does, its minutes repeat to the bit, and its scan script is one that runs.
 
-use standstill_soak::monkey::{Failure, Scenario, Who, play, record, replay};
+use standstill_fb::Value;
+use standstill_soak::monkey::{Action, Failure, Scenario, Who, play, record, replay, shrink_by};
 use standstill_soak::rules::Broken;
 
 /// Runs the script of a scenario: whether its claims hold.
@@ -42,4 +43,54 @@ fn the_script_of_a_failure_fails_where_it_happens() {
         .iter()
         .filter(|state| !passes(&scenario, Some(&forbidding(**state))));
     assert_eq!(failing.count(), 1);
+}
+
+/// A rule that is broken whenever an MC_MoveVelocity is told to move: what is left is that, told as a script.
+#[test]
+fn what_does_not_matter_is_left_out() {
+    let told_to_move = |scenario: &Scenario| {
+        let told = scenario.steps.iter().find(|step| match step.action {
+            Action::Set { block, value, .. } => {
+                scenario.blocks[block].block == "MC_MoveVelocity" && value == Value::Bool(true)
+            }
+            Action::Fault { .. } | Action::Clear { .. } => false,
+        });
+        let failure = told.map(|step| Failure {
+            scan: step.scan,
+            who: Who::Axis(0),
+            broken: Broken {
+                id: "S3",
+                what: "the state changes along no arrow",
+            },
+            shown: None,
+            state: None,
+        });
+        (scenario.scans, failure)
+    };
+    let mut shrunk = 0;
+    for number in 0..40 {
+        let (_, _, scenario) = record(3, number, 400);
+        let (_, Some(failure)) = told_to_move(&scenario) else {
+            continue;
+        };
+        let (steps, blocks) = (scenario.steps.len(), scenario.blocks.len());
+        let (failure, least) = shrink_by(failure, scenario, told_to_move);
+        assert!(
+            steps > 1 || blocks > 1,
+            "episode {number} had nothing to leave out"
+        );
+        assert_eq!(
+            (least.axes.len(), least.blocks.len(), least.steps.len()),
+            (1, 1, 1),
+            "{number}"
+        );
+        assert_eq!(least.blocks[0].block, "MC_MoveVelocity");
+        assert_eq!(
+            (least.scans, told_to_move(&least).1),
+            (failure.scan + 1, Some(failure))
+        );
+        assert!(passes(&least, None));
+        shrunk += 1;
+    }
+    assert!(shrunk >= 10, "{shrunk}");
 }

@@ -3,6 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, state diagram and sections on aborting and buffered commands; the
 //! table "state x command" with the choices V6, V6a, V7a, V11.
 
+use super::profile::start_event;
 use super::queue::{Entry, Place, Work};
 use super::{Axis, Motion, Source};
 use crate::{
@@ -31,6 +32,7 @@ pub(super) fn direction_of(command: &Command) -> Option<Direction> {
         | Command::MoveRelative { .. }
         | Command::MoveContinuousRelative { .. }
         | Command::MoveVelocity { .. }
+        | Command::Torque { .. }
         | Command::Jog { .. }
         | Command::Halt { .. }
         | Command::Stop { .. }
@@ -74,14 +76,7 @@ impl<P: Planner> Axis<P> {
         source: Source,
         log: &mut Log,
     ) -> Result<CommandId, ErrorId> {
-        let (mode, way) = self.admit(request).map_err(|(pin, error)| {
-            let value = if pin == "BufferMode" {
-                f64::from(request.buffer_mode.number())
-            } else {
-                f64::NAN
-            };
-            self.refuse(pin, value, f64::NAN, error, source, log)
-        })?;
+        let (mode, way) = self.admit_recorded(request, source, log)?;
         let (work, limits) = self.check(&request.command, way, source, log)?;
         let mut entry = Entry::new(self.new_id(), source.instance, work, limits, mode);
         entry.direction = direction_of(&request.command);
@@ -121,6 +116,23 @@ impl<P: Planner> Axis<P> {
                 self.enter(AxisEvent::StopReleased);
             }
         }
+    }
+
+    /// [`Axis::admit`], a refusal recorded.
+    pub(super) fn admit_recorded(
+        &self,
+        request: &Request,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(BufferMode, Way), ErrorId> {
+        self.admit(request).map_err(|(pin, error)| {
+            let value = if pin == "BufferMode" {
+                f64::from(request.buffer_mode.number())
+            } else {
+                f64::NAN
+            };
+            self.refuse(pin, value, f64::NAN, error, source, log)
+        })
     }
 
     /// The rules of the axis state.
@@ -266,6 +278,12 @@ impl<P: Planner> Axis<P> {
                 })?;
                 Ok((work, self.resolve(dynamics, source, log)?))
             }
+            Command::Torque {
+                torque,
+                ramp,
+                ref dynamics,
+                direction,
+            } => self.check_torque((torque, ramp), dynamics, direction, source, log),
             Command::Jog {
                 forward,
                 distance,
@@ -348,10 +366,11 @@ impl<P: Planner> Axis<P> {
     fn commanded_target(&self) -> Option<f64> {
         let owner = self.owner.as_ref()?;
         match owner.work {
-            Work::Position(_) | Work::Distance(_) => owner.end,
+            Work::Position(_) | Work::Distance(_) | Work::Profile { .. } => owner.end,
             Work::Halt => Some(self.end_of_plan()),
             Work::Through { .. }
             | Work::Velocity { .. }
+            | Work::Torque { .. }
             | Work::Stop
             | Work::Home(_)
             | Work::SetPosition { .. }
@@ -451,13 +470,22 @@ impl<P: Planner> Axis<P> {
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
             Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
+            Work::Torque { .. } => {
+                let velocity = self.torque_goal(entry) * entry.limits.velocity;
+                self.planner.ramp_to(start, velocity, &entry.limits, before)
+            }
+            // Its times have passed.
+            Work::Profile { .. } => return Err(ErrorId::ProfileInterrupted),
             Work::Home(_) => return self.homing_motion(entry, start),
             Work::SetPosition { .. } | Work::Write(_) => return Ok(Motion::Hold),
         };
         match planned {
             Ok(plan) => {
                 self.permitted(entry, &plan, before)?;
-                Ok(Motion::along(plan))
+                match entry.work {
+                    Work::Torque { .. } if !entry.halted => Ok(self.under_torque(plan)),
+                    _ => Ok(Motion::along(plan)),
+                }
             }
             Err(error) => Err(refusal(error)),
         }
@@ -483,9 +511,10 @@ impl<P: Planner> Axis<P> {
                 ..
             } => ("Distance", distance),
             Work::Velocity { velocity, .. } => ("Velocity", velocity),
+            Work::Torque { torque, .. } => ("Torque", torque),
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),
             Work::Home(position) | Work::SetPosition { position, .. } => ("Position", position),
-            Work::Write(_) => ("", f64::NAN),
+            Work::Profile { .. } | Work::Write(_) => ("", f64::NAN),
         };
         let limit = match error {
             ErrorId::TargetOutsideSoftwareLimits | ErrorId::OutwardFromSoftwareLimit => {
@@ -506,12 +535,7 @@ impl<P: Planner> Axis<P> {
         scan: u64,
         log: &mut Log,
     ) {
-        self.enter(match entry.work {
-            Work::Position(_) | Work::Distance(_) | Work::Halt => AxisEvent::StartDiscrete,
-            Work::Velocity { .. } | Work::Through { .. } => AxisEvent::StartContinuous,
-            Work::Stop => AxisEvent::Stop,
-            Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => AxisEvent::StartHoming,
-        });
+        self.enter(start_event(&entry.work));
         self.before = before;
         self.adopt(entry, motion, scan, log);
         if matches!(entry.work, Work::Home(_)) {

@@ -74,7 +74,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn limits_of(limits: &Limits, motion: &Motion<P::Plan>) -> Limits {
         match motion {
             Motion::Run { plan, .. } => raised(limits, plan),
-            Motion::Follow | Motion::Hold => *limits,
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => *limits,
         }
     }
 
@@ -83,9 +83,14 @@ impl<P: Planner> Axis<P> {
     pub(super) fn pass_on(&mut self, scan: u64, log: &mut Log) {
         self.hand_over(self.passed_end(), scan, log);
         if self.queue.is_empty() && self.base().velocity != 0.0 && self.goal_reached() && self.passes_on() {
-            // Those that waited were checked when the owner was told to pass on, and yet all failed.
+            // Those that waited were checked when the owner was told to pass on, and yet all failed: it may have been
+            // too late to come to rest when coordinates moved under the software limits.
             self.end_owner(Fate::Done);
-            self.trip(ErrorId::PlanRefused, 0, Reaction::Ramp, scan, log);
+            let error = match self.allowed(self.setpoint.position) {
+                Ok(_) => ErrorId::PlanRefused,
+                Err(_) => ErrorId::SoftwareLimitReached,
+            };
+            self.trip(error, 0, Reaction::Ramp, scan, log);
         }
     }
 
@@ -203,7 +208,14 @@ impl<P: Planner> Axis<P> {
                 (towards, velocity.abs(), None)
             }
             Work::Halt => (direction, 0.0, None),
-            Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return REST,
+            Work::Profile { .. }
+            | Work::Torque { .. }
+            | Work::Stop
+            | Work::Home(_)
+            | Work::SetPosition { .. }
+            | Work::Write(_) => {
+                return REST;
+            }
         };
         // What MC_Power bars would be refused at the end, too late to stop there. A continuous move may need a run-up.
         let runs_up = matches!(next.entry.work, Work::Through { end_velocity, .. } if end_velocity != 0.0);

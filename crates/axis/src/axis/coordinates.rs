@@ -142,13 +142,15 @@ impl<P: Planner> Axis<P> {
         }
         self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
         self.record(Event::Shifted { by }, source, log);
+        self.pass_at_rest(source.scan, log);
         Ok(())
     }
 
     /// The motion in progress in coordinates moved by `by` (u): an absolute move is planned anew to the same
     /// number, every other one goes on as it is.
     fn move_motion(&mut self, by: f64, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
-        if self.is_paused() {
+        let is_halted = self.owner.as_ref().is_some_and(|owner| owner.halted);
+        if self.is_paused() || is_halted {
             self.shift_paused(by);
             return Ok(());
         }

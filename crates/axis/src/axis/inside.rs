@@ -23,7 +23,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn excess_of(&self, motion: &Motion<P::Plan>) -> Option<Excess> {
         match motion {
             Motion::Run { plan, .. } => self.beyond_axis(plan),
-            Motion::Hold | Motion::Follow => None,
+            Motion::Hold | Motion::Follow | Motion::Torque { .. } => None,
         }
     }
 

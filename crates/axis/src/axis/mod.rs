@@ -4,8 +4,8 @@
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`inside`] keeps take-overs within the axis
 //! limits, [`superimposed`] adds a second motion, [`factors`] is the override, [`replan`] changes the owner's motion
 //! while it runs, [`update`] gives it new values, [`jog`] checks what MC_Jog asks for, [`queued`] lets administrative
-//! commands wait, [`parameters`] has what can be written by number, [`supervision`] watches the distance to the
-//! actual position, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges,
+//! commands wait, [`parameters`] has what can be written by number, [`torque`] holds torques, [`supervision`] watches the distance to the
+//! actual position, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges, [`profile`] moves along curves through points,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`limit_switches`] off the hardware ones, [`permission`] out of barred directions, [`homing`] searches the reference, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
 //! ask.
@@ -25,6 +25,7 @@ mod parameters;
 mod permission;
 mod power;
 mod probe;
+mod profile;
 mod queue;
 mod queued;
 mod reading;
@@ -33,6 +34,7 @@ mod software_limits;
 mod step;
 mod superimposed;
 mod supervision;
+mod torque;
 mod update;
 
 use crate::fate::Fates;
@@ -47,6 +49,7 @@ pub use outputs::CamTrack;
 pub use parameters::{Parameter, ParameterValue};
 pub use permission::Permission;
 pub use probe::TouchProbe;
+pub use profile::{Profile, ProfileRow};
 use queue::{Entry, Queue, Work};
 pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
@@ -69,6 +72,9 @@ enum Motion<Plan> {
     Hold,
     /// A plan, so many scans after its start, and the scans it has: asked for several times in every scan.
     Run { plan: Plan, elapsed: u64, scans: u64 },
+    /// The actual position under a torque: the last one ordered, and the ramp of its velocity limit, so many scans after its
+    /// start.
+    Torque { plan: Plan, elapsed: u64, torque: f64 },
 }
 
 impl<P: Plan> Motion<P> {
@@ -85,7 +91,7 @@ impl<P: Plan> Motion<P> {
     fn scans_left(&self) -> Option<u32> {
         match self {
             Self::Follow => None,
-            Self::Hold => Some(0),
+            Self::Hold | Self::Torque { .. } => Some(0),
             Self::Run { elapsed, scans, .. } => {
                 // At least 1, to tell a plan at its goal from holding.
                 let left = scans.saturating_sub(*elapsed);
@@ -429,7 +435,7 @@ impl<P: Planner> Axis<P> {
     pub fn plan(&self) -> Option<(&P::Plan, u64)> {
         match &self.motion {
             Motion::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
-            Motion::Follow | Motion::Hold => None,
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => None,
         }
     }
 
@@ -462,11 +468,13 @@ impl<P: Planner> Axis<P> {
         {
             return match owner.work {
                 Work::Stop if self.stop_held => Fate::Done,
-                Work::Velocity { .. } | Work::Through { .. } => Fate::Active {
+                Work::Velocity { .. } | Work::Through { .. } | Work::Torque { .. } => Fate::Active {
                     reached: self.goal_reached() && !self.is_held_up(),
                 },
+                Work::Profile { .. } if self.profile_is_over() => Fate::Done,
                 Work::Position(_)
                 | Work::Distance(_)
+                | Work::Profile { .. }
                 | Work::Halt
                 | Work::Stop
                 | Work::Home(_)
@@ -579,6 +587,7 @@ impl<P: Planner> Axis<P> {
             Motion::Run { elapsed, scans, .. } => elapsed >= scans,
             Motion::Hold => true,
             Motion::Follow => false,
+            Motion::Torque { torque, .. } => self.torque_is_held(*torque),
         }
     }
 
@@ -633,10 +642,11 @@ impl<P: Planner> Axis<P> {
     }
 
     fn end_owner(&mut self, fate: Fate) {
+        let is_over = self.profile_is_over();
         if let Some(owner) = self.owner.take() {
-            // A stop that stands has completed, whatever ends its hold.
-            let fate = if self.stop_held { Fate::Done } else { fate };
-            self.decide(owner.id, fate);
+            // A stop that stands has completed, whatever ends its hold, and a profile at its end.
+            let over = self.stop_held || is_over;
+            self.decide(owner.id, if over { Fate::Done } else { fate });
             if matches!(owner.work, Work::Home(_)) {
                 self.end_homing();
             }

@@ -111,7 +111,9 @@ impl<P: Planner> Axis<P> {
     fn barred_now(&self) -> Option<ErrorId> {
         let limits = self.stop_limits();
         let owner = match (&self.motion, &self.owner) {
-            (Motion::Run { plan, elapsed, .. }, Some(owner)) if owner.leads_on() && !owner.paused => {
+            (Motion::Run { plan, elapsed, .. } | Motion::Torque { plan, elapsed, .. }, Some(owner))
+                if owner.leads_on() && !owner.paused =>
+            {
                 self.barred((plan, *elapsed), &limits, &self.in_force)
             }
             _ => None,
@@ -137,7 +139,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn pause(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
         let source = self.owner_source(scan);
         self.record(Event::Paused { error }, source, log);
-        if !matches!(self.motion, Motion::Run { .. }) {
+        if !matches!(self.motion, Motion::Run { .. } | Motion::Torque { .. }) {
             return self.brake_superimposed();
         }
         if let Some(mut owner) = self.owner.filter(Entry::leads_on) {
@@ -202,7 +204,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The coordinates moved by `by` (u) under a paused owner: an absolute end keeps its number.
+    /// The coordinates moved by `by` (u) under an owner that is paused or halted: an absolute end keeps its number.
     #[cold]
     pub(super) fn shift_paused(&mut self, by: f64) {
         if let Motion::Run { plan, .. } = &mut self.motion {
@@ -233,7 +235,12 @@ impl Entry {
     /// Whether it leads anywhere, so that it could be barred.
     fn leads_on(&self) -> bool {
         match self.work {
-            Work::Position(_) | Work::Distance(_) | Work::Through { .. } | Work::Velocity { .. } => true,
+            Work::Position(_)
+            | Work::Distance(_)
+            | Work::Through { .. }
+            | Work::Velocity { .. }
+            | Work::Profile { .. }
+            | Work::Torque { .. } => true,
             Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
         }
     }

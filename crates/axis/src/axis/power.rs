@@ -78,7 +78,8 @@ impl<P: Planner> Axis<P> {
             && comms == Comms::Ok
             && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         let is_pending = self.reset.is_some() || self.shift_due || self.rename.is_some();
-        let is_watched = self.parameters.lag.on || self.is_homing();
+        let is_torque = matches!(self.motion, Motion::Torque { .. });
+        let is_watched = self.parameters.lag.on || self.is_homing() || is_torque;
         if !(is_powered && is_well && !is_pending && self.past.is_whole() && !is_watched) {
             Calm::No
         } else if self.layer.is_some() {
@@ -135,6 +136,7 @@ impl<P: Planner> Axis<P> {
             let position = self.position_of(feedback);
             self.latch_and_mend(position);
             self.follow_power(feedback, scan, log);
+            self.follow_actual();
             self.supervise(scan, log);
             if self.is_homing() {
                 self.follow_homing(scan, log);

@@ -3,7 +3,7 @@
 use super::accept::REST;
 use super::parameters::{Parameter, ParameterValue};
 use crate::{BufferMode, CommandId, Direction, InstanceId, QUEUE_MAX};
-use standstill_planner::{Limits, Passage};
+use standstill_planner::{Limits, Passage, ProfileKind};
 
 /// Where a motion leads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +37,17 @@ pub(super) enum Work {
     Through { to: Place, end_velocity: f64 },
     /// To a velocity (u/s); with `along` its sign is taken relative to the motion when it becomes active.
     Velocity { velocity: f64, along: bool },
+    /// Along a curve; with `due` it owns the axis, but its points have yet to come from its block.
+    Profile {
+        kind: ProfileKind,
+        due: bool,
+        /// Time in its table when the plan in progress began (s), and the factor of its times.
+        since: f64,
+        time_scale: f64,
+    },
+    /// A torque, changed by so much a second (0: at once); with `along` its sign is relative to the motion when it becomes
+    /// active.
+    Torque { torque: f64, ramp: f64, along: bool },
     /// To velocity zero.
     Halt,
     /// To velocity zero, locked.
@@ -64,6 +75,8 @@ impl Work {
                 ..
             } => Some(from + distance),
             Self::Velocity { .. }
+            | Self::Profile { .. }
+            | Self::Torque { .. }
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
@@ -79,6 +92,8 @@ impl Work {
             Self::Distance(distance) => Some(Place::By(distance)),
             Self::Through { to, .. } => Some(to),
             Self::Velocity { .. }
+            | Self::Profile { .. }
+            | Self::Torque { .. }
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
@@ -94,6 +109,8 @@ impl Work {
             Self::Velocity { velocity, .. } => velocity,
             Self::Position(_)
             | Self::Distance(_)
+            | Self::Profile { .. }
+            | Self::Torque { .. }
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
@@ -112,6 +129,8 @@ impl Work {
             Self::Velocity { along, .. } => Self::Velocity { velocity, along },
             Self::Position(_)
             | Self::Distance(_)
+            | Self::Profile { .. }
+            | Self::Torque { .. }
             | Self::Halt
             | Self::Stop
             | Self::Home(_)
@@ -132,7 +151,14 @@ impl Work {
     pub fn obeys_override(&self) -> bool {
         match self {
             Self::Position(_) | Self::Distance(_) | Self::Through { .. } | Self::Velocity { .. } => true,
-            Self::Halt | Self::Stop | Self::Home(_) | Self::SetPosition { .. } | Self::Write(_) => false,
+            // A profile keeps its times, and a torque is no motion.
+            Self::Profile { .. }
+            | Self::Torque { .. }
+            | Self::Halt
+            | Self::Stop
+            | Self::Home(_)
+            | Self::SetPosition { .. }
+            | Self::Write(_) => false,
         }
     }
 
@@ -142,6 +168,9 @@ impl Work {
             Self::Distance(_) => "distance",
             Self::Through { .. } => "through",
             Self::Velocity { .. } => "velocity",
+            Self::Profile { due: true, .. } => "profile due",
+            Self::Profile { .. } => "profile",
+            Self::Torque { .. } => "torque",
             Self::Halt => "halt",
             Self::Stop => "stop",
             Self::Home(_) => "home",
@@ -233,7 +262,11 @@ impl Entry {
 
     /// Whether it goes on until another command takes over.
     pub fn is_endless(&self) -> bool {
-        matches!(self.work, Work::Velocity { .. } | Work::Through { .. })
+        match self.work {
+            Work::Velocity { .. } | Work::Through { .. } | Work::Torque { .. } => true,
+            Work::Profile { kind, .. } => kind != ProfileKind::Position,
+            _ => false,
+        }
     }
 }
 

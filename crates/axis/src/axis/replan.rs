@@ -163,7 +163,7 @@ impl<P: Planner> Axis<P> {
 
     /// Sets `entry`, which is the owner or becomes it, in motion.
     pub(super) fn adopt(&mut self, entry: Entry, motion: Motion<P::Plan>, scan: u64, log: &mut Log) {
-        if let Motion::Run { plan, .. } = &motion {
+        if let Motion::Run { plan, .. } | Motion::Torque { plan, .. } = &motion {
             self.record_plan(&entry, plan, scan, log);
         }
         self.in_force = Self::limits_of(&entry.limits, &motion);
@@ -186,7 +186,10 @@ impl<P: Planner> Axis<P> {
             scan,
             instance: entry.instance,
         };
-        let positioning = matches!(entry.work, Work::Position(_) | Work::Distance(_));
+        let positioning = matches!(
+            entry.work,
+            Work::Position(_) | Work::Distance(_) | Work::Profile { .. }
+        );
         let end = plan.at(u64::from(plan.scans()));
         let goal = match entry.end {
             _ if entry.halted || entry.passed => Goal::Velocity(end.velocity),

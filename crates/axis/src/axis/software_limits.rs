@@ -54,6 +54,9 @@ impl<P: Planner> Axis<P> {
             // It brakes as hard as it would there.
             _ if entry.paused => outside(self.end_of_plan()),
             Work::Velocity { .. } => true,
+            // A curve was checked to its end, which may have got another name since.
+            Work::Profile { .. } if !entry.is_endless() => outside(self.end_of_plan()),
+            Work::Profile { .. } => true,
             Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
             Work::Halt | Work::Stop => outside(self.end_of_plan()),
             // From rest the way leads straight to the target, from motion perhaps past it.
@@ -61,7 +64,8 @@ impl<P: Planner> Axis<P> {
                 outside(self.end_of_plan())
                     || (!self.setpoint.is_at_rest() && outside(self.rest(&self.setpoint, &entry.limits)))
             }
-            Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
+            // Supervision of the travel is up to the application.
+            Work::Torque { .. } | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
         }
     }
 
@@ -71,7 +75,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn plan_would_leave(&self) -> bool {
         match &self.motion {
             Motion::Run { plan, elapsed, .. } => self.would_leave(&plan.at(*elapsed)),
-            Motion::Follow | Motion::Hold => false,
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => false,
         }
     }
 
@@ -79,9 +83,7 @@ impl<P: Planner> Axis<P> {
     /// is the set-point it is about to publish. Cost: at most two ramps.
     #[inline(never)]
     pub(super) fn would_leave(&self, next: &Setpoint) -> bool {
-        let (Some((min, max)), Some(owner), Motion::Run { .. }) =
-            (self.parameters.software_limits, &self.owner, &self.motion)
-        else {
+        let Some((min, max)) = self.parameters.software_limits else {
             return false;
         };
         // Further out than it is: from outside it may come in, and in the middle of a reversal a stop turns back.
@@ -89,17 +91,44 @@ impl<P: Planner> Axis<P> {
         // Between two scans it may come out and turn: a stop from there leads in again.
         let outside = |position: f64| position < min || position > max;
         let comes_out = outside(next.position) && !outside(self.setpoint.position);
-        let leaving = match owner.work {
-            Work::Velocity { .. } => true,
-            Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
-            Work::Halt | Work::Stop => leaves(self.end_of_plan() + self.superimposed_left()),
-            // With something superimposed, ends and turns were checked when it was planned.
-            Work::Position(_) | Work::Distance(_) | Work::Through { .. } if !self.watched => return false,
-            // It turns back where it stops, or its end has another name since it began.
-            Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
-                leaves(self.end_of_plan()) || leaves(self.rest(next, &owner.limits))
-            }
-            Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return false,
+        let work = match (&self.motion, &self.owner) {
+            (Motion::Run { .. }, Some(owner)) => Some(owner.work),
+            // Over an owner that stands, or none, a superimposed motion goes on alone: it was checked when it was
+            // planned, but then its end may have had another name, or none.
+            (Motion::Hold, _) => None,
+            (Motion::Run { .. }, None) | (Motion::Follow | Motion::Torque { .. }, _) => return false,
+        };
+        let leaving = match work {
+            None => leaves(next.position + self.superimposed_left()),
+            Some(work) => match work {
+                Work::Velocity { .. } => true,
+                Work::Profile { .. } => match self.owner.as_ref().is_some_and(Entry::is_endless) {
+                    true => true,
+                    false if !self.watched => return false,
+                    false => leaves(self.end_of_plan()),
+                },
+                Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
+                Work::Halt | Work::Stop => leaves(self.end_of_plan() + self.superimposed_left()),
+                // Where one that goes on leads to with something superimposed was not checked.
+                Work::Through { .. } if self.layer.is_some() => {
+                    leaves(self.end_of_plan() + self.superimposed_left())
+                }
+                // With something superimposed, ends and turns were checked when it was planned.
+                Work::Position(_) | Work::Distance(_) | Work::Through { .. } if !self.watched => {
+                    return false;
+                }
+                // It turns back where it stops, or its end has another name since it began.
+                Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
+                    leaves(self.end_of_plan())
+                        || self
+                            .owner
+                            .is_some_and(|owner| leaves(self.rest(next, &owner.limits)))
+                }
+                // Supervision of the travel is up to the application.
+                Work::Torque { .. } | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => {
+                    return false;
+                }
+            },
         };
         comes_out || (leaving && leaves(self.rest(next, &self.stop_limits())))
     }
@@ -116,7 +145,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn end_of_plan(&self) -> f64 {
         match &self.motion {
             Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
-            Motion::Follow | Motion::Hold => self.setpoint.position,
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => self.setpoint.position,
         }
     }
 }

@@ -30,6 +30,7 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     fn advance_with_care(&mut self, scan: u64, log: &mut Log) {
         self.apply_power(scan, log);
+        self.follow_torque_order();
         if self.layer.is_none() && self.is_short_of_goal() {
             self.step_along_plan(scan, log);
         } else {
@@ -114,6 +115,7 @@ impl<P: Planner> Axis<P> {
             }
             Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
             Motion::Run { .. } => self.step_along_plan(scan, log),
+            Motion::Torque { .. } => self.step_torque(),
         }
         if self.modulo.is_some() {
             self.bring_back();
@@ -142,7 +144,9 @@ impl<P: Planner> Axis<P> {
                 *elapsed = 1;
                 plan.at(1)
             }
-            Motion::Follow | Motion::Hold => Setpoint::at_rest(self.setpoint.position),
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => {
+                Setpoint::at_rest(self.setpoint.position)
+            }
         };
         self.publish(next);
     }
@@ -177,7 +181,13 @@ impl<P: Planner> Axis<P> {
                 self.hand_over(self.setpoint.position, scan, log);
             }
             // An endless motion gives way when it has reached its velocity.
-            Work::Velocity { .. } | Work::Through { .. } => self.hand_over(self.passed_end(), scan, log),
+            Work::Velocity { .. } | Work::Through { .. } | Work::Torque { .. } => {
+                self.hand_over(self.passed_end(), scan, log);
+            }
+            // Its block has yet to give the points.
+            Work::Profile { due: true, .. } => {}
+            Work::Profile { .. } if owner.is_endless() => self.hand_over(self.setpoint.position, scan, log),
+            Work::Profile { .. } => self.complete_move(scan, log),
             // They never own the axis.
             Work::SetPosition { .. } | Work::Write(_) => {}
         }
@@ -218,6 +228,9 @@ impl<P: Planner> Axis<P> {
             }
             if self.write_queued(scan, log) {
                 continue;
+            }
+            if let Work::Profile { .. } = next.work {
+                return self.begin_due(next);
             }
             let passage_from = self.aim(&mut next, from);
             next.passage = self.passage(&next, passage_from, 1);

@@ -83,7 +83,7 @@ impl<P: Plan> Layer<P> {
         }
     }
 
-    fn moves(&self) -> bool {
+    pub fn moves(&self) -> bool {
         matches!(self.motion, Motion::Run { .. })
     }
 
@@ -103,7 +103,7 @@ impl<P: Plan> Layer<P> {
                 _,
             ) => *target,
             (_, Motion::Run { plan, .. }) => plan.at(u64::from(plan.scans())).position,
-            (_, Motion::Hold | Motion::Follow) => self.added.position,
+            (_, Motion::Hold | Motion::Follow | Motion::Torque { .. }) => self.added.position,
         };
         end - self.added.position
     }
@@ -289,6 +289,7 @@ impl<P: Planner> Axis<P> {
             AxisState::ErrorStop => Err(ErrorId::InErrorStop),
             AxisState::Stopping => Err(ErrorId::InStopping),
             AxisState::Homing => Err(ErrorId::InHoming),
+            _ if matches!(self.motion, Motion::Torque { .. }) => Err(ErrorId::TorqueControls),
             AxisState::Standstill
             | AxisState::DiscreteMotion
             | AxisState::ContinuousMotion
@@ -307,7 +308,7 @@ impl<P: Planner> Axis<P> {
                 .and_then(|owner| owner.end)
                 .unwrap_or(f64::NAN),
             (Motion::Run { plan, .. }, _) => plan.at(u64::from(plan.scans())).position,
-            (Motion::Hold | Motion::Follow, _) => layer.base.position,
+            (Motion::Hold | Motion::Follow | Motion::Torque { .. }, _) => layer.base.position,
         }
     }
 
@@ -355,7 +356,7 @@ impl<P: Planner> Axis<P> {
         let Some(layer) = &mut self.layer else { return };
         layer.base = match &mut self.motion {
             Motion::Follow => Setpoint::at_rest(self.actual),
-            Motion::Hold => Setpoint::at_rest(layer.base.position),
+            Motion::Hold | Motion::Torque { .. } => Setpoint::at_rest(layer.base.position),
             Motion::Run { plan, elapsed, scans } => {
                 *elapsed = elapsed.saturating_add(1);
                 if elapsed == scans {
@@ -393,7 +394,7 @@ impl<P: Planner> Axis<P> {
         let Some(layer) = &mut self.layer else { return };
         let reached = match &layer.motion {
             Motion::Run { elapsed, scans, .. } => elapsed >= scans,
-            Motion::Hold | Motion::Follow => true,
+            Motion::Hold | Motion::Follow | Motion::Torque { .. } => true,
         };
         if reached {
             layer.added = Setpoint::at_rest(layer.added.position);

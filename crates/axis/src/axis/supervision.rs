@@ -49,7 +49,7 @@ impl<P: Planner> Axis<P> {
     /// The following error is larger than it may be.
     pub(super) fn lags(&self) -> bool {
         let lag = &self.parameters.lag;
-        let is_led = self.power.on && !matches!(self.motion, Motion::Follow);
+        let is_led = self.power.on && !matches!(self.motion, Motion::Follow | Motion::Torque { .. });
         lag.on && is_led && self.following_error().abs() > lag.most
     }
 

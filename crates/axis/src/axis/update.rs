@@ -105,7 +105,8 @@ impl<P: Planner> Axis<P> {
             }
             _ => self.check(command, Way::Wait, source, log)?,
         };
-        let same_kind = work.kind() == entry.work.kind() && work.obeys_override();
+        let same_kind = work.kind() == entry.work.kind()
+            && (work.obeys_override() || matches!(work, Work::Torque { .. }));
         Ok(same_kind.then_some((work, limits)))
     }
 
@@ -132,14 +133,24 @@ impl<P: Planner> Axis<P> {
 
     /// A command that waits has changed: the owner may have to pass its end at another speed (B16).
     fn arm_anew(&mut self, scan: u64, log: &mut Log) {
-        let Some(owner) = self.owner.filter(|owner| owner.end.is_some()) else {
-            return;
+        let leads = |owner: &Entry| owner.end.is_some();
+        if !self.pass_at_rest(scan, log) && self.owner.as_ref().is_some_and(leads) {
+            self.arm(BufferMode::BlendingPrevious, scan, log);
+        }
+    }
+
+    /// If what was to take over in motion no longer can, the owner comes to rest at its end. Returns whether that is so.
+    pub(super) fn pass_at_rest(&mut self, scan: u64, log: &mut Log) -> bool {
+        let blends = |owner: &Entry| owner.end.is_some() && owner.passage != REST;
+        let Some(owner) = self.owner.filter(blends) else {
+            return false;
         };
-        if owner.passage == REST || self.passage(&owner, self.base().position, 0) != REST {
-            return self.arm(BufferMode::BlendingPrevious, scan, log);
+        if self.passage(&owner, self.base().position, 0) != REST {
+            return false;
         }
         if matches!(self.motion, Motion::Run { .. }) && self.replan(owner, scan, log).is_err() {
             // To rest from here it would take too long: it goes on as it was planned.
         }
+        true
     }
 }

@@ -2,7 +2,8 @@
 
 use super::servo::{Servo, SetPoint};
 use standstill_axis::{
-    Comms, Drive, DriveCommand, DriveFeedback, DrivePosition, IdealDrive, Powered, Scaling,
+    Comms, Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, IdealDrive, Powered,
+    Scaling, TorqueOrder, TorqueReport,
 };
 
 /// A simulated drive that turns a mechanism. Its power stage is that of an [`IdealDrive`]; without torque the
@@ -15,6 +16,8 @@ pub struct PlantDrive {
     scaling: Option<Scaling>,
     /// What was told last before the communication was lost.
     stale: DrivePosition,
+    /// The torque to hold, of this scan's order.
+    torque: Option<TorqueOrder>,
 }
 
 impl PlantDrive {
@@ -26,6 +29,7 @@ impl PlantDrive {
             servo,
             scaling,
             stale: DrivePosition::Units(0.0),
+            torque: None,
         };
         drive.stale = drive.told(servo.mechanism().position());
         drive
@@ -112,7 +116,10 @@ impl Drive for PlantDrive {
             },
         );
         // The first set-point in operation is the actual position, whatever was on its way.
-        if followed && self.stage.is_enabled() {
+        let operates = followed && self.stage.is_enabled();
+        if let Some(order) = self.torque.take().filter(|_| operates) {
+            self.servo.hold(order.torque, order.velocity);
+        } else if operates {
             self.servo.follow(SetPoint {
                 position: self.meant(command.position),
                 velocity: command.velocity,
@@ -120,5 +127,17 @@ impl Drive for PlantDrive {
         } else {
             self.servo.coast();
         }
+    }
+
+    fn report(&mut self, report: &mut DriveReport) {
+        report.torque = Some(TorqueReport {
+            actual: self.servo.torque(),
+            most: self.servo.most_torque(),
+            limited: self.servo.is_limited(),
+        });
+    }
+
+    fn order(&mut self, order: &DriveOrder) {
+        self.torque = order.torque;
     }
 }

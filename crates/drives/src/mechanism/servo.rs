@@ -89,6 +89,8 @@ pub struct Servo {
     /// Torque of the integral part.
     integral: f64,
     torque: f64,
+    /// A torque that was to be held was not, at the end of the last scan.
+    limited: bool,
 }
 
 impl Servo {
@@ -109,6 +111,7 @@ impl Servo {
             },
             integral: 0.0,
             torque: 0.0,
+            limited: false,
         })
     }
 
@@ -146,6 +149,40 @@ impl Servo {
             self.mechanism.step(self.torque);
             part += step;
         }
+    }
+
+    /// A scan under `torque`, at a velocity from `least` to `most` (u/s). At these bounds a loop takes over that brakes what
+    /// is beyond them. Position control goes on from here without a step. Cost: four steps.
+    pub fn hold(&mut self, torque: f64, (least, most): (f64, f64)) {
+        let bound = self.gains.torque;
+        for _ in 0..SUBSTEPS {
+            let velocity = self.mechanism.velocity();
+            let slower = self.gains.velocity * (most - velocity);
+            let faster = self.gains.velocity * (least - velocity);
+            let within = torque.min(slower).max(faster);
+            self.torque = within.max(-bound).min(bound);
+            self.mechanism.step(self.torque);
+        }
+        self.limited = self.torque != torque;
+        self.integral = if self.gains.integral > 0.0 {
+            self.torque
+        } else {
+            0.0
+        };
+        self.from = SetPoint {
+            position: self.mechanism.position(),
+            velocity: self.mechanism.velocity(),
+        };
+    }
+
+    /// Whether the torque of the last [`Servo::hold`] was limited.
+    pub fn is_limited(&self) -> bool {
+        self.limited
+    }
+
+    /// The largest torque.
+    pub fn most_torque(&self) -> f64 {
+        self.gains.torque
     }
 
     /// A scan without torque.

@@ -3,7 +3,7 @@
 use super::bench::{ScriptMachine, instance_id};
 use super::rows::Shift;
 use crate::model::Script;
-use standstill_axis::{Event, Excess, Goal, LOG_KEPT, Order, Record, StandardPlan};
+use standstill_axis::{Event, Excess, Goal, LOG_KEPT, Order, Record, Setpoint, StandardPlan};
 use standstill_trace::{Note, Trace, shortest};
 
 /// How many records have been taken from the ring so far.
@@ -77,6 +77,7 @@ fn instance_name<'a>(script: &'a Script, record: &Record) -> Option<&'a str> {
 fn subject(script: &Script, record: &Record) -> String {
     match record.event {
         Event::Refused { .. }
+        | Event::PointRefused { .. }
         | Event::Clamped { .. }
         | Event::Raised { .. }
         | Event::Superimposed { .. }
@@ -88,6 +89,14 @@ fn subject(script: &Script, record: &Record) -> String {
         | Event::Paused { .. }
         | Event::Fault { .. }
         | Event::Shifted { .. } => axis_name(script, record),
+    }
+}
+
+fn limit_text(limit: f64) -> String {
+    if limit.is_nan() {
+        String::new()
+    } else {
+        format!(", limit {}", shortest(limit))
     }
 }
 
@@ -106,12 +115,19 @@ fn text(script: &Script, record: &Record, plan: Option<&StandardPlan>) -> String
                 "BufferMode" | "Direction" | "ExecutionMode" => format!(", {pin} {value}"),
                 pin => format!(", {pin} {}", shortest(value)),
             };
-            let limit = if limit.is_nan() {
-                String::new()
-            } else {
-                format!(", limit {}", shortest(limit))
-            };
+            let limit = limit_text(limit);
             format!("refused: {number} {}{value}{limit}", error.name())
+        }
+        Event::PointRefused {
+            point,
+            what,
+            value,
+            limit,
+            error,
+        } => {
+            let (number, name) = (error.number(), error.name());
+            let (value, limit) = (shortest(value), limit_text(limit));
+            format!("refused: {number} {name}, point {point}, {what} {value}{limit}")
         }
         Event::Clamped { pin, value, limit } => {
             format!("clamped: {pin} {} to {}", shortest(value), shortest(limit))
@@ -193,6 +209,14 @@ fn plan_text(plan: &StandardPlan) -> String {
                 .map(|piece| [piece.duration, piece.acceleration, piece.jerk, piece.snap])
                 .collect();
             format!("{} {}", plan.rung().name(), ramp_text(pieces))
+        }
+        StandardPlan::Profile(plan) => {
+            let node = |(time, state): (f64, Setpoint)| {
+                let state = [state.position, state.velocity, state.acceleration, state.jerk].map(shortest);
+                format!("{} s: {}", shortest(time), state.join(" "))
+            };
+            let nodes: Vec<_> = plan.nodes().map(node).collect();
+            format!("curve through {}", nodes.join(", "))
         }
         StandardPlan::Sampled(plan) => ramp_text(
             plan.profile()

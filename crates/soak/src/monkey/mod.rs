@@ -12,7 +12,7 @@ mod shrink;
 
 pub use run::{Failure, Seen, Who};
 pub use scenario::{Action, AxisSetup, BlockSetup, FaultKind, Scenario, Step};
-pub use shrink::shrink;
+pub use shrink::{shrink, shrink_by};
 
 use crate::random::Random;
 use hands::{Monkey, Replay};

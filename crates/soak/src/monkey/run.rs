@@ -425,6 +425,7 @@ impl<H: Hands> Run<'_, H> {
                     }
                 }
                 Event::Refused { .. }
+                | Event::PointRefused { .. }
                 | Event::Clamped { .. }
                 | Event::Raised { .. }
                 | Event::Superimposed { .. }

@@ -9,7 +9,8 @@ use standstill_fb::Value;
 /// Scans run at most to find a smaller one.
 const BUDGET: u64 = 4_000_000;
 
-struct Shrinker {
+struct Shrinker<J> {
+    judge: J,
     best: Scenario,
     failure: Failure,
     /// Scans left to run.
@@ -18,7 +19,19 @@ struct Shrinker {
 
 /// The smallest scenario found that breaks the same rule as `scenario`, and how it does so.
 pub fn shrink(failure: Failure, scenario: Scenario) -> (Failure, Scenario) {
+    shrink_by(failure, scenario, |candidate| {
+        let (seen, failure) = replay(candidate);
+        (seen.scans, failure)
+    })
+}
+
+/// As [`shrink`], with another judge: what it tells of a scenario is how many scans it ran, and what broke in them.
+pub fn shrink_by<J>(failure: Failure, scenario: Scenario, judge: J) -> (Failure, Scenario)
+where
+    J: Fn(&Scenario) -> (u64, Option<Failure>),
+{
     let mut shrinker = Shrinker {
+        judge,
         best: scenario,
         failure,
         budget: BUDGET,
@@ -41,14 +54,14 @@ pub fn shrink(failure: Failure, scenario: Scenario) -> (Failure, Scenario) {
     (shrinker.failure, shrinker.best)
 }
 
-impl Shrinker {
+impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
     /// Takes `candidate` if it breaks the same rule.
     fn attempt(&mut self, candidate: Scenario) -> bool {
         if candidate == self.best || self.budget < candidate.scans {
             return false;
         }
-        let (seen, failure) = replay(&candidate);
-        self.budget -= seen.scans;
+        let (scans, failure) = (self.judge)(&candidate);
+        self.budget = self.budget.saturating_sub(scans);
         match failure {
             Some(failure) if failure.broken == self.failure.broken => {
                 self.failure = failure;

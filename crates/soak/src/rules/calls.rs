@@ -39,6 +39,10 @@ impl Kind {
             "MC_Power" => Self::Power,
             // They wait for, or switch, what a drive has beside its motion; here nothing comes from there.
             "MC_TouchProbe" | "MC_DigitalCamSwitch" => Self::Other,
+            // The drives here have no torque.
+            "MC_TorqueControl" | "MC_ReadActualTorque" => Self::Other,
+            // No table stands here, so they are always refused.
+            "MC_PositionProfile" | "MC_VelocityProfile" | "MC_AccelerationProfile" => Self::Other,
             _ if !has("Axis") => Self::Other,
             // MC_TouchProbe can be aborted, but moves nothing.
             _ if has("Execute") && has("Active") => Self::Motion,

@@ -4,7 +4,7 @@ use super::{Added, Adds, Layer};
 use crate::axis::accept::refusal;
 use crate::axis::queue::{Entry, Work};
 use crate::axis::{Axis, Motion, Source};
-use crate::{AxisState, Dynamics, ErrorId, Event, Log};
+use crate::{AxisState, Dynamics, ErrorId, Event, Fate, Log};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 /// Motions tried, one after the other, until one fits.
@@ -95,7 +95,7 @@ impl<P: Planner> Axis<P> {
     fn rest_of_base(&self) -> Option<(&P::Plan, u64)> {
         match &self.motion {
             Motion::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
-            Motion::Hold | Motion::Follow => None,
+            Motion::Hold | Motion::Follow | Motion::Torque { .. } => None,
         }
     }
 
@@ -204,7 +204,7 @@ impl<P: Planner> Axis<P> {
         };
         let left = match &layer.motion {
             Motion::Run { elapsed, scans, .. } if command.planned => scans.saturating_sub(*elapsed),
-            Motion::Run { .. } | Motion::Hold | Motion::Follow => u64::MAX,
+            Motion::Run { .. } | Motion::Hold | Motion::Follow | Motion::Torque { .. } => u64::MAX,
         };
         match proposed.filter(|proposal| u64::from(proposal.plan.scans()) < left) {
             Some(Proposal {
@@ -278,7 +278,7 @@ impl<P: Planner> Axis<P> {
         let Some(command) = &layer.command else { return };
         let due = match &self.motion {
             Motion::Run { elapsed, .. } => *elapsed >= layer.retry,
-            Motion::Hold | Motion::Follow => true,
+            Motion::Hold | Motion::Follow | Motion::Torque { .. } => true,
         };
         if (command.planned && !command.lowered) || !due {
             return;
@@ -326,6 +326,12 @@ impl<P: Planner> Axis<P> {
             if !matches!(self.state, AxisState::Standstill | AxisState::Homing) {
                 return Err(ErrorId::InMotion);
             }
+        }
+        if matches!(entry.work, Work::Torque { .. }) && self.layer.is_some() {
+            if self.layer.as_ref().is_some_and(Layer::moves) {
+                return Ok(None);
+            }
+            self.end_superimposed(Fate::Aborted);
         }
         match self.layer {
             None => self.plan_for(entry).map(Some),

@@ -1,0 +1,110 @@
+//! `MC_VelocityProfile`: a motion along a curve of velocity over time.
+//!
+//! Source: PLCopen Motion Control Part 1, section of that name. The curve is told in docs/profiles.md.
+
+use super::profile::{Pins, Point, Points, ProfileCore, Shape};
+use standstill_axis::{AxisId, BufferMode, ErrorId, Planner, ProfileKind, ProfileRow, Raw};
+use standstill_fb::{Block, Context, Group, Time, pins, record};
+
+record! {
+    /// A point of a velocity profile.
+    pub struct VelocityPoint = "MC_TV_REF" {
+        /// Time since the point before, above 0; of the first one since the start, which may be 0.
+        DeltaTime => delta_time: Time, "";
+        /// Velocity there, signed.
+        Velocity => velocity: f64, "u/s";
+        /// The curve is level there: no acceleration and no jerk.
+        Level => level: bool, "";
+    }
+}
+
+impl Point for VelocityPoint {
+    const KIND: ProfileKind = ProfileKind::Velocity;
+    const PIN: &'static str = "TimeVelocity";
+
+    fn row(&self) -> ProfileRow {
+        ProfileRow {
+            delta_ns: self.delta_time.0,
+            value: self.velocity,
+            level: self.level,
+        }
+    }
+}
+
+pins! {
+    in_outs {
+        /// The axis to move.
+        Axis => axis: AxisId;
+        /// The points, at most 40.
+        TimeVelocity => time_velocity: Points<VelocityPoint>;
+    }
+    inputs {
+        /// A rising edge starts the profile with the values of that call.
+        Execute => execute: bool = false, "";
+        /// Changed inputs hold for the points still ahead while TRUE, if it was TRUE at the rising edge.
+        ContinuousUpdate => continuous_update: bool = false, "";
+        /// Factor of all times, above 0.
+        TimeScale => time_scale: f64 = 1.0, "";
+        /// Factor of all velocities.
+        VelocityScale => velocity_scale: f64 = 1.0, "";
+        /// Added to all velocities.
+        Offset => offset: f64 = 0.0, "u/s";
+        /// How the command follows the one before it; it starts at rest or with what the one before leaves it.
+        BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
+    }
+    vendor_inputs {}
+    outputs {
+        /// The last point has been reached; the axis keeps its velocity.
+        ProfileCompleted => profile_completed: bool, "";
+        /// Not finished.
+        Busy => busy: bool, "";
+        /// The block controls the axis.
+        Active => active: bool, "";
+        /// Interrupted by another command.
+        CommandAborted => command_aborted: bool, "";
+        /// Refused, or ended by an error.
+        Error => error: bool, "";
+        /// Why; 0 without an error.
+        ErrorID => error_id: ErrorId, "";
+    }
+    vendor_outputs {}
+}
+
+/// State kept between calls.
+#[doc(alias = "MC_VelocityProfile")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct McVelocityProfile {
+    core: ProfileCore<VelocityPoint>,
+}
+
+impl Block for McVelocityProfile {
+    const NAME: &'static str = "MC_VelocityProfile";
+    const GROUP: Group = Group::SingleAxis;
+    const DOC: &'static str = "Moves one axis along a curve of velocity over time.";
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+
+    fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
+        let pins = Pins {
+            axis: inputs.axis,
+            execute: inputs.execute,
+            continuous_update: inputs.continuous_update,
+            buffer_mode: inputs.buffer_mode,
+        };
+        let shape = Shape {
+            table: inputs.time_velocity,
+            time_scale: inputs.time_scale,
+            scale: inputs.velocity_scale,
+            offset: inputs.offset,
+        };
+        let phase = self.core.scan(&pins, &shape, context);
+        Outputs {
+            profile_completed: phase.is_done(),
+            busy: phase.is_busy(),
+            active: phase.is_active(),
+            command_aborted: phase.is_aborted(),
+            error: phase.is_error(),
+            error_id: phase.error_id(),
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! What the three profile blocks share: values taken at the rising edge, and points given when the turn has come.
+//!
+//! Source: PLCopen Motion Control Part 1, sections on Execute/Done and ContinuousUpdate; R8 to R14, V24.
+
+use standstill_axis::{
+    Axis, AxisId, BufferMode, CommandId, ErrorId, Log, PROFILE_POINTS, Planner, Profile, ProfileKind,
+    ProfileRow, Raw, Source,
+};
+use standstill_fb::{Context, ExecuteCore, Phase, Record, TableOf};
+
+/// A record of one of the three tables.
+pub trait Point: Record {
+    /// What its value is.
+    const KIND: ProfileKind;
+
+    /// The pin of the table.
+    const PIN: &'static str;
+
+    /// The same for the axis.
+    fn row(&self) -> ProfileRow;
+}
+
+/// The table at a pin.
+pub type Points<R> = TableOf<R, PROFILE_POINTS>;
+
+/// What a profile is made of, as it stands at the pins.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape<R> {
+    /// The table.
+    pub table: Points<R>,
+    /// TimeScale.
+    pub time_scale: f64,
+    /// Factor of the values.
+    pub scale: f64,
+    /// Offset.
+    pub offset: f64,
+}
+
+impl<R: Point> Shape<R> {
+    fn is_same(&self, other: &Self) -> bool {
+        let bits = |shape: &Self| [shape.time_scale, shape.scale, shape.offset].map(f64::to_bits);
+        self.table.place() == other.table.place() && bits(self) == bits(other)
+    }
+
+    /// Hands the profile with the points of the table to `to`.
+    fn read<T>(&self, tables: &[f64], to: impl FnOnce(&Profile<'_>) -> T) -> Option<T> {
+        let table = self.table.read(tables)?;
+        let mut rows = [ProfileRow::default(); PROFILE_POINTS];
+        for (row, record) in rows.iter_mut().zip(table.rows()) {
+            *row = record.row();
+        }
+        Some(to(&Profile {
+            kind: R::KIND,
+            rows: rows.get(..table.rows().len())?,
+            time_scale: self.time_scale,
+            scale: self.scale,
+            offset: self.offset,
+        }))
+    }
+}
+
+/// The pins all three have.
+#[derive(Clone, Copy, Debug)]
+pub struct Pins {
+    /// Axis.
+    pub axis: AxisId,
+    /// Execute.
+    pub execute: bool,
+    /// ContinuousUpdate.
+    pub continuous_update: bool,
+    /// BufferMode.
+    pub buffer_mode: Raw<BufferMode>,
+}
+
+/// State kept between calls.
+#[derive(Clone, Copy, Debug)]
+pub struct ProfileCore<R> {
+    execute: ExecuteCore,
+    /// The values that hold; none before the first command.
+    given: Option<Shape<R>>,
+    /// Changed values count, from a rising edge with ContinuousUpdate TRUE until it is FALSE (R10, R11).
+    continuous: bool,
+}
+
+impl<R> Default for ProfileCore<R> {
+    fn default() -> Self {
+        Self {
+            execute: ExecuteCore::default(),
+            given: None,
+            continuous: false,
+        }
+    }
+}
+
+impl<R: Point> ProfileCore<R> {
+    /// One call. Cost while the profile runs: some comparisons; at its start and when a value changes that of reading
+    /// the table and of [`Axis::profile`].
+    pub fn scan<P: Planner>(&mut self, pins: &Pins, shape: &Shape<R>, context: &mut Context<'_, P>) -> Phase {
+        if let Some((axis, id)) = self.execute.running(pins.execute) {
+            self.follow(axis, id, pins, shape, context);
+        }
+        let (given, continuous) = (&mut self.given, &mut self.continuous);
+        self.execute.scan(pins.execute, context, |context, _| {
+            let tables = context.tables;
+            let (axis, log, source) = context.axis(pins.axis)?;
+            let id = shape
+                .read(tables, |profile| {
+                    axis.profile(profile, pins.buffer_mode, source, log)
+                })
+                .unwrap_or_else(|| Err(unknown(axis, R::PIN, source, log)))?;
+            (*given, *continuous) = (Some(*shape), pins.continuous_update);
+            Ok((pins.axis, id))
+        })
+    }
+
+    /// A command in progress, before its fate is asked for: new values, and the points when its turn has come.
+    fn follow<P: Planner>(
+        &mut self,
+        axis: AxisId,
+        id: CommandId,
+        pins: &Pins,
+        shape: &Shape<R>,
+        context: &mut Context<'_, P>,
+    ) {
+        self.continuous &= pins.continuous_update;
+        let tables = context.tables;
+        let (Some(given), Ok((axis, log, source))) = (&mut self.given, context.axis(axis)) else {
+            return;
+        };
+        let changed = self.continuous && !given.is_same(shape);
+        if changed {
+            *given = *shape;
+        }
+        if axis.profile_is_due(id) {
+            let start = |profile: &Profile<'_>| axis.start_profile(id, profile, source, log);
+            if given.read(tables, start).is_none() {
+                // Without its points it cannot start.
+                let none = Profile {
+                    kind: R::KIND,
+                    rows: &[],
+                    time_scale: given.time_scale,
+                    scale: given.scale,
+                    offset: given.offset,
+                };
+                axis.start_profile(id, &none, source, log);
+            }
+        } else if changed {
+            // The block shows no Error: its command goes on as it was (R21).
+            let _recorded = given.read(tables, |profile| axis.update_profile(id, profile, source, log));
+        }
+    }
+}
+
+/// The table does not stand where the pin says.
+fn unknown<P: Planner>(axis: &Axis<P>, pin: &'static str, source: Source, log: &mut Log) -> ErrorId {
+    let error = ErrorId::TableUnknown;
+    axis.note_refusal(pin, f64::NAN, f64::NAN, error, source, log);
+    error
+}

@@ -1,0 +1,445 @@
+//! Profiles: motions along curves through points of a table.
+//!
+//! The curve is planned in full when the command becomes active: it starts in the state the axis is in then and is
+//! refused, with the point and the limit, if it would leave a limit of the axis. From then on it is a plan like others.
+//! Its times are fixed, so the override does not act on it, nothing is superimposed on it, and one that is stopped does
+//! not go on.
+//!
+//! A profile that waits has no points here: they stand in a table of the runtime, which only its block can read. When its
+//! turn comes it owns the axis, which goes on as its predecessor left it, and its block gives the points in its next call.
+//! Where the block is called in every scan, before the motion step, that costs no scan.
+//!
+//! Source: PLCopen Motion Control Part 1, MC_PositionProfile, MC_VelocityProfile, MC_AccelerationProfile; V24.
+
+use super::accept::Way;
+use super::power::Reaction;
+use super::queue::{Entry, Work};
+use super::{Axis, Motion, Source};
+use crate::{AxisEvent, BufferMode, Command, CommandId, Dynamics, ErrorId, Event, Fate, Log, Raw, Request};
+use standstill_planner::{
+    PROFILE_POINTS, Plan, Planner, ProfileCause, ProfileFault, ProfileKind, ProfilePoint,
+};
+
+/// A record of a profile's table.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ProfileRow {
+    /// Time since the record before; of the first since the start (ns).
+    pub delta_ns: i64,
+    /// Value there: u, u/s or u/s^2.
+    pub value: f64,
+    /// The curve is level there.
+    pub level: bool,
+}
+
+/// MC_PositionProfile and its like: values as they stand at the pins and in the table, unchecked.
+#[derive(Clone, Copy, Debug)]
+pub struct Profile<'a> {
+    /// What the values are.
+    pub kind: ProfileKind,
+    /// The table, of which a profile takes at most [`PROFILE_POINTS`].
+    pub rows: &'a [ProfileRow],
+    /// Factor of all times; above 0.
+    pub time_scale: f64,
+    /// Factor of all values.
+    pub scale: f64,
+    /// What is added to all values.
+    pub offset: f64,
+}
+
+/// The points of a profile that are still ahead.
+struct Points {
+    points: [ProfilePoint; PROFILE_POINTS],
+    count: usize,
+    /// Those behind.
+    passed: usize,
+}
+
+impl Points {
+    fn get(&self) -> &[ProfilePoint] {
+        self.points.get(..self.count).unwrap_or_default()
+    }
+}
+
+impl Profile<'_> {
+    /// The points after `since` (s of the table's times); refused with the pin, its value and limit.
+    fn points(&self, since: f64) -> Result<Points, (&'static str, f64, f64, ErrorId)> {
+        let invalid = ErrorId::ProfileScaleInvalid;
+        if !(self.time_scale > 0.0 && self.time_scale.is_finite()) {
+            return Err(("TimeScale", self.time_scale, 0.0, invalid));
+        }
+        if !self.scale.is_finite() {
+            return Err((self.scale_pin(), self.scale, f64::NAN, invalid));
+        }
+        if !self.offset.is_finite() {
+            return Err(("Offset", self.offset, f64::NAN, invalid));
+        }
+        let mut points = Points {
+            points: [ProfilePoint::default(); PROFILE_POINTS],
+            count: 0,
+            passed: 0,
+        };
+        let table = ErrorId::ProfileTableInvalid;
+        if self.rows.len() > PROFILE_POINTS {
+            let (rows, most) = (self.rows.len() as f64, PROFILE_POINTS as f64);
+            return Err((self.table_pin(), rows, most, table));
+        }
+        // Summed in nanoseconds, so that no rounding adds up (V24).
+        let mut sum: i64 = 0;
+        for row in self.rows {
+            sum = sum
+                .checked_add(row.delta_ns)
+                .ok_or(("DeltaTime", row.delta_ns as f64, f64::NAN, table))?;
+            let time = sum as f64 / 1e9;
+            if since > 0.0 && time <= since {
+                points.passed += 1;
+                continue;
+            }
+            if let Some(slot) = points.points.get_mut(points.count) {
+                *slot = ProfilePoint {
+                    time: (time - since) * self.time_scale,
+                    value: self.offset + self.scale * row.value,
+                    level: row.level,
+                };
+                points.count += 1;
+            }
+        }
+        Ok(points)
+    }
+
+    /// The pin of the table.
+    const fn table_pin(&self) -> &'static str {
+        match self.kind {
+            ProfileKind::Position => "TimePosition",
+            ProfileKind::Velocity => "TimeVelocity",
+            ProfileKind::Acceleration => "TimeAcceleration",
+        }
+    }
+
+    /// The pin of the amplitude.
+    const fn scale_pin(&self) -> &'static str {
+        match self.kind {
+            ProfileKind::Position => "PositionScale",
+            ProfileKind::Velocity => "VelocityScale",
+            ProfileKind::Acceleration => "AccelerationScale",
+        }
+    }
+
+    /// The field of the table with the values.
+    const fn field(&self) -> &'static str {
+        match self.kind {
+            ProfileKind::Position => "Position",
+            ProfileKind::Velocity => "Velocity",
+            ProfileKind::Acceleration => "Acceleration",
+        }
+    }
+
+    /// What a block shows of the planner's refusal, and what it is about.
+    fn refusal(&self, fault: &ProfileFault) -> (&'static str, ErrorId) {
+        let (table, beyond) = (ErrorId::ProfileTableInvalid, ErrorId::ProfileBeyondLimits);
+        match fault.cause {
+            ProfileCause::Count => (self.table_pin(), table),
+            ProfileCause::Time => ("DeltaTime", table),
+            ProfileCause::Value => (self.field(), table),
+            ProfileCause::Start => (self.field(), ErrorId::ProfileStartMismatch),
+            ProfileCause::TooLong => ("DeltaTime", ErrorId::MoveTooLong),
+            ProfileCause::Position => ("Position", ErrorId::TargetOutsideSoftwareLimits),
+            ProfileCause::Velocity => ("Velocity", beyond),
+            ProfileCause::Acceleration => ("Acceleration", beyond),
+            ProfileCause::Deceleration => ("Deceleration", beyond),
+            ProfileCause::Jerk => ("Jerk", beyond),
+            ProfileCause::Snap => ("Snap", beyond),
+        }
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// Takes a profile, or refuses it without any effect on the axis or the queue (R38).
+    ///
+    /// One that starts at once is planned at once. One that waits is only looked at; its block must ask
+    /// [`Axis::profile_is_due`] in each call and then give it to [`Axis::start_profile`].
+    ///
+    /// Cost: that of [`Planner::profile`].
+    ///
+    /// # Errors
+    /// The [`ErrorId`] the block shows; the refusal is recorded with the point, the value and the limit.
+    pub fn profile(
+        &mut self,
+        profile: &Profile<'_>,
+        buffer_mode: Raw<BufferMode>,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<CommandId, ErrorId> {
+        // Among other commands it has the place of any move.
+        let any = Command::Halt {
+            dynamics: Dynamics::default(),
+        };
+        let request = Request {
+            buffer_mode,
+            ..Request::aborting(any)
+        };
+        let (mode, way) = self.admit_recorded(&request, source, log)?;
+        if profile.kind == ProfileKind::Position && self.config.needs_homed && !self.homed {
+            let (pin, error) = (profile.table_pin(), ErrorId::NotHomed);
+            return Err(self.refuse(pin, f64::NAN, f64::NAN, error, source, log));
+        }
+        let work = Work::Profile {
+            kind: profile.kind,
+            due: way == Way::Wait,
+            since: 0.0,
+            time_scale: profile.time_scale,
+        };
+        let mut entry = Entry::new(self.new_id(), source.instance, work, self.parameters.limits, mode);
+        match way {
+            Way::Wait => {
+                self.looked_at(profile, source, log)?;
+                self.queue.push(entry);
+                self.start_beside(source.scan, log);
+            }
+            Way::Now => {
+                let motion = self.plan_profile(&mut entry, profile, source, log)?;
+                let before = self.limits_before(&entry.limits);
+                self.end_all(Fate::Aborted, Fate::Aborted);
+                self.begin(entry, motion, before, source.scan, log);
+            }
+        }
+        Ok(entry.id)
+    }
+
+    /// Whether the profile `id` owns the axis and has yet to get its points.
+    pub fn profile_is_due(&self, id: CommandId) -> bool {
+        let due = |owner: &Entry| matches!(owner.work, Work::Profile { due: true, .. });
+        self.owner
+            .as_ref()
+            .is_some_and(|owner| owner.id == id && due(owner))
+    }
+
+    /// The profile `id`, which is due, starts with these points. If it cannot, it ends with the error and the next command
+    /// has its turn; without one an axis in motion enters ErrorStop.
+    ///
+    /// Cost: that of [`Planner::profile`].
+    pub fn start_profile(&mut self, id: CommandId, profile: &Profile<'_>, source: Source, log: &mut Log) {
+        let Some(mut owner) = self.owner.filter(|_| self.profile_is_due(id)) else {
+            return;
+        };
+        owner.work = Work::Profile {
+            kind: profile.kind,
+            due: false,
+            since: 0.0,
+            time_scale: profile.time_scale,
+        };
+        match self.plan_profile(&mut owner, profile, source, log) {
+            Ok(motion) => {
+                self.enter(start_event(&owner.work));
+                self.before = self.limits_before(&owner.limits);
+                self.adopt(owner, motion, source.scan, log);
+            }
+            Err(error) => self.drop_profile(error, source.scan, log),
+        }
+    }
+
+    /// New values for the profile `id` in progress (ContinuousUpdate): from the present state to the points still ahead,
+    /// in the time that is left to them times the new factor. Otherwise as [`Axis::profile`].
+    ///
+    /// # Errors
+    /// What a new profile with these values would show. It is recorded, and the profile goes on as it was.
+    pub fn update_profile(
+        &mut self,
+        id: CommandId,
+        profile: &Profile<'_>,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(), ErrorId> {
+        let Some(mut owner) = self.owner.filter(|owner| owner.id == id && !owner.paused) else {
+            return Ok(());
+        };
+        let (
+            Work::Profile {
+                due: false,
+                since,
+                time_scale,
+                ..
+            },
+            Motion::Run { elapsed, scans, .. },
+        ) = (owner.work, &self.motion)
+        else {
+            return Ok(());
+        };
+        if elapsed >= scans {
+            return Ok(());
+        }
+        owner.work = Work::Profile {
+            kind: profile.kind,
+            due: false,
+            since: since + *elapsed as f64 * self.planner.cycle() / time_scale,
+            time_scale: profile.time_scale,
+        };
+        owner.limits = self.parameters.limits;
+        let motion = self.plan_profile(&mut owner, profile, source, log)?;
+        self.before = self.limits_before(&owner.limits);
+        self.adopt(owner, motion, source.scan, log);
+        Ok(())
+    }
+
+    /// The next command is a profile: it owns the axis from now on, which goes on as its predecessor left it. It waits for
+    /// something that is being superimposed; what waits for room beside it would not find any.
+    pub(super) fn begin_due(&mut self, mut next: Entry) {
+        if self.layer.as_ref().is_some_and(|layer| layer.moves()) {
+            return;
+        }
+        let before = self.limits_before(&next.limits);
+        self.end_superimposed(Fate::Aborted);
+        self.queue.pop();
+        self.end_owner(self.fate_at_hand_over());
+        let starts_at_rest = self.setpoint.is_at_rest();
+        if starts_at_rest {
+            self.motion = Motion::Hold;
+        }
+        next.limits = self.parameters.limits;
+        self.in_force = before;
+        self.watched = self.needs_watching(&next);
+        // From rest it may still come to nothing, and no arrow leads from ContinuousMotion to Standstill.
+        self.enter(if starts_at_rest {
+            AxisEvent::StartDiscrete
+        } else {
+            start_event(&next.work)
+        });
+        self.own(next);
+    }
+
+    /// Whether the owner is a profile without an end that has come to its end: it has completed, and keeps its velocity.
+    pub(super) fn profile_is_over(&self) -> bool {
+        let is_endless = self.owner.as_ref().is_some_and(|owner| {
+            matches!(owner.work, Work::Profile { due: false, .. }) && owner.is_endless() && !owner.paused
+        });
+        is_endless && self.goal_reached()
+    }
+
+    /// A due profile cannot start.
+    #[cold]
+    fn drop_profile(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
+        self.end_owner(Fate::Failed(error));
+        if self.setpoint.is_at_rest() {
+            self.motion = Motion::Hold;
+            self.enter(AxisEvent::MotionDone);
+        }
+        self.hand_over(self.setpoint.position, scan, log);
+        if self.owner.is_none() && !self.setpoint.is_at_rest() {
+            self.trip(error, 0, Reaction::Ramp, scan, log);
+        }
+    }
+
+    /// Refuses what no start could make good.
+    fn looked_at(&self, profile: &Profile<'_>, source: Source, log: &mut Log) -> Result<(), ErrorId> {
+        let refuse = |(pin, value, limit, error)| self.refuse(pin, value, limit, error, source, log);
+        let points = profile.points(0.0).map_err(refuse)?;
+        let mut before = 0.0;
+        for (index, point) in points.get().iter().enumerate() {
+            let cause = if !point.value.is_finite() {
+                Some((ProfileCause::Value, point.value))
+            } else if !(point.time > before || (index == 0 && point.time == 0.0)) {
+                Some((ProfileCause::Time, point.time - before))
+            } else {
+                None
+            };
+            if let Some((cause, value)) = cause {
+                let fault = ProfileFault {
+                    cause,
+                    point: index + 1,
+                    value,
+                    limit: if cause == ProfileCause::Time {
+                        0.0
+                    } else {
+                        f64::NAN
+                    },
+                };
+                return Err(self.refuse_profile(profile, &fault, 0, source, log));
+            }
+            before = point.time;
+        }
+        if before > 0.0 {
+            return Ok(());
+        }
+        let fault = ProfileFault {
+            cause: ProfileCause::Count,
+            point: 0,
+            value: points.count as f64,
+            limit: PROFILE_POINTS as f64,
+        };
+        Err(self.refuse_profile(profile, &fault, 0, source, log))
+    }
+
+    /// The curve from the present state. Nothing changes but `entry`.
+    fn plan_profile(
+        &self,
+        entry: &mut Entry,
+        profile: &Profile<'_>,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<Motion<P::Plan>, ErrorId> {
+        let since = match entry.work {
+            Work::Profile { since, .. } => since,
+            _ => 0.0,
+        };
+        let points = profile
+            .points(since)
+            .map_err(|(pin, value, limit, error)| self.refuse(pin, value, limit, error, source, log))?;
+        if since > 0.0 {
+            // It goes on in the frame it is in.
+            entry.turns = 0;
+        } else {
+            self.aim(entry, self.setpoint.position);
+        }
+        let start = self.in_frame_of(entry, &self.setpoint).unwrap_or(self.setpoint);
+        let range = self.parameters.software_limits;
+        let plan = self
+            .planner
+            .profile(profile.kind, &start, points.get(), &entry.limits, range)
+            .map_err(|fault| self.refuse_profile(profile, &fault, points.passed, source, log))?;
+        self.permitted(entry, &plan, &entry.limits)
+            .map_err(|error| self.refuse(profile.table_pin(), f64::NAN, f64::NAN, error, source, log))?;
+        entry.end =
+            (profile.kind == ProfileKind::Position).then(|| plan.at(u64::from(plan.scans())).position);
+        Ok(Motion::along(plan))
+    }
+
+    fn refuse_profile(
+        &self,
+        profile: &Profile<'_>,
+        fault: &ProfileFault,
+        passed: usize,
+        source: Source,
+        log: &mut Log,
+    ) -> ErrorId {
+        let (what, error) = profile.refusal(fault);
+        if fault.point == 0 {
+            return self.refuse(what, fault.value, fault.limit, error, source, log);
+        }
+        let refused = Event::PointRefused {
+            point: u16::try_from(fault.point + passed).unwrap_or(u16::MAX),
+            what,
+            value: fault.value,
+            limit: fault.limit,
+            error,
+        };
+        self.record(refused, source, log);
+        error
+    }
+}
+
+/// The state a command leads to.
+pub(super) fn start_event(work: &Work) -> AxisEvent {
+    match work {
+        Work::Position(_)
+        | Work::Distance(_)
+        | Work::Halt
+        | Work::Profile {
+            kind: ProfileKind::Position,
+            ..
+        } => AxisEvent::StartDiscrete,
+        Work::Velocity { .. } | Work::Through { .. } | Work::Profile { .. } | Work::Torque { .. } => {
+            AxisEvent::StartContinuous
+        }
+        Work::Stop => AxisEvent::Stop,
+        Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => AxisEvent::StartHoming,
+    }
+}

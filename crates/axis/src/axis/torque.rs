@@ -1,0 +1,175 @@
+//! A torque instead of a position.
+//!
+//! While MC_TorqueControl owns the axis the drive holds a torque, and the set-point is the actual state: position and
+//! velocity as latched. So another motion takes over from where the axis is and as fast as it is. The velocity limit that
+//! goes with the torque is a ramp with the accelerations of the command, from the velocity at its start to the limit.
+//!
+//! Source: PLCopen Motion Control Part 1, MC_TorqueControl and MC_ReadActualTorque; V25.
+
+use super::queue::{Entry, Work};
+use super::{Axis, Motion, Source};
+use crate::{Direction, Dynamics, ErrorId, Log, Raw, TorqueOrder, TorqueReport};
+use standstill_planner::{Limits, Plan, Planner, Setpoint};
+
+impl<P: Planner> Axis<P> {
+    /// The actual torque, in the unit of the drive; positive towards larger positions.
+    ///
+    /// # Errors
+    /// [`ErrorId::TorqueUnknown`] if the drive does not tell it, [`ErrorId::CommunicationLost`] if what is known is old.
+    pub fn actual_torque(&self) -> Result<f64, ErrorId> {
+        self.fresh_position()?;
+        let report = self.beside.report.torque.ok_or(ErrorId::TorqueUnknown)?;
+        Ok(report.actual)
+    }
+
+    /// The values at the pins of MC_TorqueControl.
+    pub(super) fn check_torque(
+        &self,
+        (torque, ramp): (f64, f64),
+        dynamics: &Dynamics,
+        direction: Raw<Direction>,
+        source: Source,
+        log: &mut Log,
+    ) -> Result<(Work, Limits), ErrorId> {
+        let mut refuse = |pin, value, limit, error| Err(self.refuse(pin, value, limit, error, source, log));
+        let most = match self.beside.report.torque {
+            Some(TorqueReport { most, .. }) if most > 0.0 => most,
+            _ => return refuse("Axis", f64::NAN, f64::NAN, ErrorId::TorqueNotHeld),
+        };
+        if !torque.is_finite() {
+            return refuse("Torque", torque, f64::NAN, ErrorId::TorqueInvalid);
+        }
+        if !(ramp >= 0.0 && ramp.is_finite()) {
+            return refuse("TorqueRamp", ramp, 0.0, ErrorId::TorqueInvalid);
+        }
+        if torque.abs() > most {
+            return refuse("Torque", torque, most, ErrorId::TorqueAboveLimit);
+        }
+        let (torque, along) = match direction.get() {
+            Some(Direction::Unset | Direction::Positive) => (torque, false),
+            Some(Direction::Negative) => (-torque, false),
+            Some(Direction::Current) => (torque, true),
+            Some(Direction::ShortestWay) | None => {
+                let number = f64::from(direction.number());
+                return refuse("Direction", number, f64::NAN, ErrorId::DirectionInvalid);
+            }
+        };
+        // As the accelerations do, it takes what the axis has.
+        let velocity = if dynamics.velocity == 0.0 {
+            self.parameters.limits.velocity
+        } else {
+            self.positive_velocity("Velocity", dynamics.velocity, source, log)?
+        };
+        let limits = Limits {
+            velocity,
+            ..self.resolve(dynamics, source, log)?
+        };
+        Ok((Work::Torque { torque, ramp, along }, limits))
+    }
+
+    /// The direction of the torque of `entry`: 1, -1, or 0.
+    pub(super) fn torque_goal(&self, entry: &Entry) -> f64 {
+        let torque = torque_of(entry);
+        if torque > 0.0 {
+            1.0
+        } else if torque < 0.0 {
+            -1.0
+        } else {
+            0.0
+        }
+    }
+
+    /// Under a torque, from the one that acts now; `plan` is the ramp of the velocity limit.
+    pub(super) fn under_torque(&self, plan: P::Plan) -> Motion<P::Plan> {
+        let torque = match (&self.motion, &self.beside.report.torque) {
+            (Motion::Torque { torque, .. }, _) => *torque,
+            (_, Some(report)) => report.actual,
+            (_, None) => 0.0,
+        };
+        Motion::Torque {
+            plan,
+            elapsed: 0,
+            torque,
+        }
+    }
+
+    /// After the latch: under a torque the set-point is the actual state.
+    pub(super) fn follow_actual(&mut self) {
+        if let (Motion::Torque { .. }, Ok(velocity)) = (&self.motion, self.actual_velocity()) {
+            self.setpoint = Setpoint {
+                velocity,
+                ..Setpoint::at_rest(self.actual)
+            };
+            self.count_actual_turns();
+        }
+    }
+
+    /// The torque of this scan, on its ramp, and the velocity at which it is held.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn step_torque(&mut self) {
+        let cycle = self.planner.cycle();
+        let Some(owner) = self.owner else { return };
+        let (
+            Work::Torque { ramp, .. },
+            Motion::Torque {
+                plan,
+                elapsed,
+                torque,
+            },
+        ) = (owner.work, &mut self.motion)
+        else {
+            return;
+        };
+        *elapsed = elapsed.saturating_add(1);
+        let (goal, limit) = (torque_of(&owner), plan.at(*elapsed).velocity);
+        let step = if ramp > 0.0 { ramp * cycle } else { f64::INFINITY };
+        let left = goal - *torque;
+        *torque = if left.abs() <= step {
+            goal
+        } else {
+            *torque + step.copysign(left)
+        };
+        let most = owner.limits.velocity;
+        let velocity = if goal > 0.0 {
+            (limit.min(-most), limit)
+        } else if goal < 0.0 {
+            (limit, limit.max(most))
+        } else {
+            (-most, most)
+        };
+        self.beside.order.torque = Some(TorqueOrder {
+            torque: *torque,
+            velocity,
+        });
+        // Whether the torque is held may change in every scan.
+        self.touch();
+        self.publish(self.setpoint);
+    }
+
+    /// What the drive was asked to hold is over when the motion is another one.
+    #[inline]
+    pub(super) fn follow_torque_order(&mut self) {
+        if self.beside.order.torque.is_some() && !matches!(self.motion, Motion::Torque { .. }) {
+            self.beside.order.torque = None;
+        }
+    }
+
+    /// The torque ordered last is the one commanded, and nothing limits it (R40).
+    pub(super) fn torque_is_held(&self, torque: f64) -> bool {
+        let goal = self.owner.as_ref().map(torque_of);
+        let limited = self.beside.report.torque.is_some_and(|report| report.limited);
+        goal == Some(torque) && !limited
+    }
+}
+
+/// The torque that `entry` asks for.
+fn torque_of(entry: &Entry) -> f64 {
+    match entry.work {
+        Work::Torque {
+            torque, along: true, ..
+        } => torque * entry.sign,
+        Work::Torque { torque, .. } => torque,
+        _ => 0.0,
+    }
+}
