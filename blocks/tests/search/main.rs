@@ -98,7 +98,7 @@ fn kinds() -> Vec<&'static str> {
         .iter()
         .filter(|info| {
             let kind = Kind::of(info);
-            kind == Kind::Motion || kind.is_superimposed()
+            matches!(kind, Kind::Motion | Kind::Jog) || kind.is_superimposed()
         })
         .map(|info| info.name)
         .collect()
@@ -145,7 +145,8 @@ searches! {
     move_continuous_absolute_and_all_after_it "MC_MoveContinuousAbsolute"
     move_continuous_relative_and_all_after_it "MC_MoveContinuousRelative"
     move_superimposed_and_all_after_it "MC_MoveSuperimposed"
-    two_halts_of_what_is_superimposed "MC_HaltSuperimposed"
+    halt_superimposed_and_all_after_it "MC_HaltSuperimposed"
+    two_jogs "MC_Jog"
 }
 
 #[test]

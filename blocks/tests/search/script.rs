@@ -9,7 +9,7 @@ pub fn print(first: &str, second: &str, path: &[Inputs]) -> String {
         let goal = match block {
             "MC_MoveAbsolute" => format!(", \"Position\": {position}, \"Velocity\": 1"),
             "MC_MoveVelocity" => ", \"Velocity\": 1".to_string(),
-            "MC_MoveRelative" | "MC_MoveAdditive" => ", \"Velocity\": 2".to_string(),
+            "MC_Jog" | "MC_MoveRelative" | "MC_MoveAdditive" => ", \"Velocity\": 2".to_string(),
             "MC_MoveContinuousAbsolute" => {
                 format!(", \"Position\": {position}, \"Velocity\": 1, \"EndVelocity\": 1")
             }
@@ -38,12 +38,17 @@ pub fn print(first: &str, second: &str, path: &[Inputs]) -> String {
     };
     for (scan, inputs) in (1..).zip(path) {
         let mut set = Vec::new();
-        for (name, index) in [("first", 0), ("second", 1)] {
+        for (name, index, block) in [("first", 0, first), ("second", 1, second)] {
             if inputs.mode[index] != before.mode[index] {
                 set.push(format!("\"{name}.BufferMode\": {}", inputs.mode[index]));
             }
             if inputs.execute[index] != before.execute[index] {
-                set.push(format!("\"{name}.Execute\": {}", inputs.execute[index]));
+                let trigger = if block == "MC_Jog" {
+                    "JogForward"
+                } else {
+                    "Execute"
+                };
+                set.push(format!("\"{name}.{trigger}\": {}", inputs.execute[index]));
             }
         }
         let plain = [

@@ -270,9 +270,10 @@ impl System {
             }
         }
         for (place, index) in [(FIRST, 0), (SECOND, 1)] {
+            let trigger = trigger(&self.blocks[place]);
             set(
                 &mut self.blocks[place],
-                "Execute",
+                trigger,
                 Value::Bool(inputs.execute[index]),
             );
             if self.blocks[place].info().pin("BufferMode").is_some() {
@@ -369,4 +370,13 @@ impl System {
 fn set(block: &mut BlockInstance, pin: &str, value: Value) {
     let (index, _) = block.info().pin(pin).expect("a pin of the block");
     block.set(index, value).expect("a value of the pin's type");
+}
+
+/// The pin that gives the command.
+pub fn trigger(block: &BlockInstance) -> &'static str {
+    if block.info().pin("Execute").is_some() {
+        "Execute"
+    } else {
+        "JogForward"
+    }
 }

@@ -247,7 +247,7 @@ fn taylor(knots: [Knot; STENCIL], time: f64) -> [f64; 4] {
     }
     // Horner's scheme on the Newton form, in powers of the distance from `time`.
     let mut series = [0.0; 4];
-    for (knot, coefficient) in knots.iter().zip(newton).rev() {
+    for (knot, coefficient) in knots.iter().rev().zip(newton.into_iter().rev()) {
         let [zeroth, first, second, third] = series;
         let away = time - knot.time;
         series = [
