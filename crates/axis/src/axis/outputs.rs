@@ -4,7 +4,7 @@
 
 use super::queue::{Work, Write};
 use super::{Axis, Source};
-use crate::{CommandId, Comms, DIGITAL, ErrorId, ExecutionMode, Fate, Log, Raw};
+use crate::{CommandId, DIGITAL, ErrorId, ExecutionMode, Fate, Log, Raw};
 use standstill_planner::Planner;
 
 /// What an output that follows positions remembers (MC_DigitalCamSwitch). It is kept with the output, which has but one
@@ -101,9 +101,6 @@ impl<P: Planner> Axis<P> {
 
     /// What the drive tells is of this scan.
     fn told(&self) -> Result<(), ErrorId> {
-        match self.power.comms {
-            Comms::Ok => Ok(()),
-            Comms::Lost => Err(ErrorId::CommunicationLost),
-        }
+        self.fresh_position().map(|_| ())
     }
 }

@@ -5,8 +5,8 @@
 
 use super::{Axis, Calm, Motion, Permission, Power, Source};
 use crate::{
-    AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DriveHoming, DrivePosition, DriveRequest, ErrorId,
-    Event, Fate, InstanceId, Log, PowerOff,
+    AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
+    InstanceId, Log, PowerOff,
 };
 use standstill_planner::Planner;
 
@@ -104,7 +104,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// A modulo axis takes over this scan's actual position.
+    /// A modulo axis takes over this scan's actual position. Calm, it has nothing to mend.
     #[inline(never)]
     fn latch_round(&mut self, feedback: &DriveFeedback) {
         let position = self.position_of(feedback);
@@ -357,7 +357,7 @@ impl<P: Planner> Axis<P> {
 
     #[cold]
     fn try_reset(&mut self) {
-        let reached = self.goal_reached();
+        let (reached, moves_itself) = (self.goal_reached(), self.moves_itself());
         let Some(reset) = &mut self.reset else { return };
         let id = reset.id;
         if self.state == AxisState::ErrorStop {
@@ -368,7 +368,6 @@ impl<P: Planner> Axis<P> {
                 self.decide(id, Fate::Failed(ErrorId::CauseStillPresent));
                 return;
             }
-            let moves_itself = self.beside.report.homing != DriveHoming::Off;
             let moving = moves_itself || (matches!(self.motion, Motion::Run { .. }) && !reached);
             let unwanted = self.power.on && !self.power.wanted;
             if moving || unwanted || self.power.fault.is_some() {

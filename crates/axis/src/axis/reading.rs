@@ -140,7 +140,7 @@ impl Past {
 
 /// `place` (u) as many turns of `length` (u) away as bring it nearest to `to`.
 #[cold]
-fn nearest(place: f64, to: f64, length: f64) -> f64 {
+pub(super) fn nearest(place: f64, to: f64, length: f64) -> f64 {
     if (place - to).abs() < length / 2.0 {
         return place;
     }

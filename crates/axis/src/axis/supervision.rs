@@ -6,10 +6,10 @@
 //! Source: PLCopen Motion Control Part 1, parameters 6 and 7; V12d.
 
 use super::power::Reaction;
+use super::reading::nearest;
 use super::{Axis, Motion};
 use crate::{ErrorId, Log};
 use standstill_planner::Planner;
-use standstill_planner::turns::split;
 
 /// Supervision of the following error.
 #[derive(Clone, Copy, Debug)]
@@ -35,14 +35,7 @@ impl<P: Planner> Axis<P> {
         let error = self.setpoint.position - self.actual;
         match &self.modulo {
             None => error,
-            Some(modulo) => {
-                let (_, ahead) = split(error, modulo.length);
-                if ahead > modulo.length / 2.0 {
-                    ahead - modulo.length
-                } else {
-                    ahead
-                }
-            }
+            Some(modulo) => nearest(error, 0.0, modulo.length),
         }
     }
 
