@@ -5,6 +5,7 @@
 
 use crate::exit::Failure;
 use standstill_trace::file::replace;
+use standstill_trace::markup::escaped;
 use std::fmt::Write;
 use std::path::Path;
 use std::time::Duration;
@@ -127,28 +128,6 @@ fn seconds(time: Duration) -> String {
 fn attribute(text: &str) -> String {
     // A reader would make a space of a line end.
     escaped(text).replace('\n', "&#10;")
-}
-
-/// Text as XML 1.0 has it in elements.
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&apos;"),
-            '\n' => out.push('\n'),
-            // As they stand a reader would make a line end or a space of them.
-            '\r' => out.push_str("&#13;"),
-            '\t' => out.push_str("&#9;"),
-            '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
-            control if control < ' ' => out.push('\u{fffd}'),
-            other => out.push(other),
-        }
-    }
-    out
 }
 
 #[cfg(test)]

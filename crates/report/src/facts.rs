@@ -1,6 +1,7 @@
 //! What the page says in words: facts, sources, failing claims. Everything here is markup that is ready to go out.
 
 use crate::{Mark, Source};
+use standstill_trace::markup::escaped;
 use standstill_trace::{ClaimVerdict, Trace, time_literal};
 use std::fmt::Write;
 
@@ -9,22 +10,6 @@ const LETTERS: [&str; crate::TRACES_MAX] = ["A", "B", "C", "D", "E", "F"];
 
 /// Failing claims that are told in full.
 const FAILURES_TOLD: usize = 12;
-
-/// Text as HTML has it, in elements and in quoted attributes.
-pub fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            _ => escaped.push(character),
-        }
-    }
-    escaped
-}
 
 /// The title of the page.
 pub fn title(sources: &[Source<'_>]) -> String {

@@ -5,6 +5,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
+use standstill_trace::markup::escaped;
 use standstill_trace::{Header, events, exact};
 use std::fmt::Write;
 
@@ -38,7 +39,7 @@ pub fn page(sources: &[Source<'_>], marks: &[Mark]) -> String {
         "style_hash" => hash(STYLE),
         "script_hash" => hash(SCRIPT),
         "version" => env!("CARGO_PKG_VERSION").to_owned(),
-        "title" => facts::escaped(&facts::title(sources)),
+        "title" => escaped(&facts::title(sources)),
         "facts" => facts::facts(sources),
         "sources" => facts::sources(sources),
         "marks" => facts::marks(marks),

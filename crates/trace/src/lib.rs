@@ -38,6 +38,7 @@ pub mod golden;
 mod header;
 pub mod jsonl;
 pub mod machine;
+pub mod markup;
 mod number;
 mod panels;
 pub mod plot;

@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use super::range::{Range, escaped, limits, path};
+use super::range::{Range, limits, path};
 use crate::column::{Cell, Role};
 use crate::events::same;
 use crate::header::Axis;
+use crate::markup::escaped;
 use crate::number::{cell_text, time_literal};
 use crate::panels::{Curve, Wave, compact};
 use crate::trace::Trace;

@@ -95,18 +95,3 @@ pub fn path(points: &[[f64; 2]]) -> String {
     }
     text
 }
-
-/// Text as XML has it; control characters, which XML has not, are left out.
-pub fn escaped(text: &str) -> String {
-    let mut escaped = String::new();
-    for character in text.chars().filter(|character| !character.is_control()) {
-        match character {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            _ => escaped.push(character),
-        }
-    }
-    escaped
-}
