@@ -1,6 +1,7 @@
 //! The arguments of the program.
 
 use clap::{Args, Parser, Subcommand};
+use standstill_sweep::Shard;
 use standstill_trace::csv;
 use std::path::PathBuf;
 
@@ -87,6 +88,8 @@ pub enum Command {
         #[arg(value_name = "CASES.jsonl")]
         cases: PathBuf,
     },
+    /// Run a script with many values of its parameters, and write a row of figures a case
+    Sweep(SweepArguments),
     /// Try random cases for as long as wanted
     Soak {
         /// What to try
@@ -99,7 +102,7 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Print the JSON Schema of scripts, or of the maps of `compare`
+    /// Print the JSON Schema of scripts, of the maps of `compare`, or of sweeps
     Schema {
         /// Of what
         #[arg(value_enum, default_value_t = Schema::Script)]
@@ -123,6 +126,8 @@ pub enum Schema {
     Script,
     /// Maps for `compare`
     Map,
+    /// Sweeps
+    Sweep,
 }
 
 /// What `soak` tries.
@@ -201,6 +206,29 @@ pub struct RunArguments {
     /// Print failing claims and one line a script
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+/// What `sweep` takes.
+#[derive(Args, Debug)]
+pub struct SweepArguments {
+    /// What varies, and what is taken of every run
+    #[arg(value_name = "SWEEP.json")]
+    pub sweep: PathBuf,
+    /// Write the table to this file, and go on from what an interrupted run left in FILE.csv.part
+    #[arg(long, short, value_name = "FILE.csv")]
+    pub output: Option<PathBuf>,
+    /// Compute every N-th case only, beginning with the I-th
+    #[arg(long, value_name = "I/N", default_value_t = Shard::ALL, conflicts_with = "merge")]
+    pub shard: Shard,
+    /// Compute on so many threads instead of on all processors
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), conflicts_with = "merge")]
+    pub threads: Option<u16>,
+    /// Compute nothing: put the tables of all shards together
+    #[arg(long, value_name = "SHARD.csv", num_args = 1..)]
+    pub merge: Vec<PathBuf>,
+    /// Let the sweep and the script read files from this folder, too
+    #[arg(long, value_name = "FOLDER")]
+    pub include_from: Vec<PathBuf>,
 }
 
 /// Reads a delimiter.

@@ -18,6 +18,7 @@ mod report;
 mod run;
 mod soak;
 mod suggest;
+mod sweep;
 mod table;
 mod test;
 
@@ -105,6 +106,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::ComparePlanners { cases } => {
             with_lines(cases, |lines, name| plan::compare(lines, name, out))
         }
+        Command::Sweep(arguments) => sweep::sweep(arguments, out),
         Command::Soak {
             what: Soak::Planner { seed, count, resume },
         } => soak::planner(*seed, *count, resume.as_deref(), out),
@@ -123,6 +125,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             let text = match of {
                 Schema::Script => standstill_script::schema(),
                 Schema::Map => standstill_script::map_schema(),
+                Schema::Sweep => standstill_script::sweep_schema(),
             };
             write!(out, "{text}")?;
             Ok(Exit::Passed)

@@ -14,13 +14,17 @@ mod read;
 pub mod run;
 mod schema;
 mod schema_map;
+mod schema_sweep;
 pub mod suite;
+pub mod sweep;
 
 pub use claims::{Failure, Verdict};
 pub use error::{Code, DIAGNOSTICS_SHOWN, Diagnostic, ScriptError};
 pub use format::format;
 pub use read::machine_map::read_map;
+pub use read::sweep::read_sweep;
 pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read, read_with};
 pub use run::{Outcome, RunError, run, run_with};
 pub use schema::schema;
 pub use schema_map::map_schema;
+pub use schema_sweep::sweep_schema;

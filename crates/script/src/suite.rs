@@ -3,9 +3,11 @@
 //! The command line and the repository's own tests call the same functions, so both give the same verdict.
 
 use crate::golden::{self, Mode, Standing};
+use crate::model::Script;
 use crate::run::{Outcome, RunError, run_with};
 use crate::{ScriptError, Verdict, read_with};
 use standstill_trace::golden::GoldenError;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
 use std::io;
@@ -129,13 +131,8 @@ pub fn run_file(
     allowed: &[PathBuf],
     progress: impl FnMut(u64),
 ) -> Result<Outcome, SuiteError> {
-    let bytes = fs::read(path).map_err(SuiteError::io(path))?;
-    let text = String::from_utf8(bytes).map_err(|error| SuiteError::Encoding {
-        path: path.to_owned(),
-        valid: error.utf8_error().valid_up_to(),
-    })?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let mut load = |inner: &str| included(folder, inner, allowed);
+    let text = read_text(path)?;
+    let mut load = |inner: &str| included(path, inner, allowed);
     let script = read_with(&text, &shown(path), parameters, &mut load)?;
     run_with(&script, progress).map_err(|source| SuiteError::Run {
         path: path.to_owned(),
@@ -143,13 +140,74 @@ pub fn run_file(
     })
 }
 
-/// The text of a file below `folder`, or below one of `allowed`; why not, in words that are the same everywhere.
-fn included(folder: &Path, inner: &str, allowed: &[PathBuf]) -> Result<String, String> {
-    let why = |error: io::Error| match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        io::ErrorKind::InvalidData => "it is not UTF-8".to_owned(),
-        _ => error.to_string(),
-    };
+/// A script with all it includes, read once to be run with many values of its parameters.
+#[derive(Clone, Debug)]
+pub struct Texts {
+    name: String,
+    text: String,
+    included: BTreeMap<String, String>,
+}
+
+impl Texts {
+    /// Reads the script at `path` and the files that it includes; `allowed` as for [`judge_file`]. The script as it
+    /// stands, too.
+    ///
+    /// # Errors
+    /// [`SuiteError::Io`], [`SuiteError::Encoding`], [`SuiteError::Script`].
+    pub fn read(path: &Path, allowed: &[PathBuf]) -> Result<(Self, Script), SuiteError> {
+        let (name, text) = (shown(path), read_text(path)?);
+        let mut files = BTreeMap::new();
+        let mut load = |inner: &str| {
+            let text = included(path, inner, allowed)?;
+            files.insert(inner.to_owned(), text.clone());
+            Ok(text)
+        };
+        let script = read_with(&text, &name, &[], &mut load)?;
+        let texts = Self {
+            name,
+            text,
+            included: files,
+        };
+        Ok((texts, script))
+    }
+
+    /// The script with these values in place of its own parameters.
+    ///
+    /// # Errors
+    /// [`ScriptError`] where it cannot be used with them.
+    pub fn script(&self, parameters: &[(String, f64)]) -> Result<Script, ScriptError> {
+        let mut load = |inner: &str| {
+            let text = self.included.get(inner).cloned();
+            text.ok_or_else(|| "it was not included before".to_owned())
+        };
+        read_with(&self.text, &self.name, parameters, &mut load)
+    }
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// [`SuiteError::Io`], [`SuiteError::Encoding`].
+pub fn read_text(path: &Path) -> Result<String, SuiteError> {
+    let bytes = fs::read(path).map_err(SuiteError::io(path))?;
+    String::from_utf8(bytes).map_err(|error| SuiteError::Encoding {
+        path: path.to_owned(),
+        valid: error.utf8_error().valid_up_to(),
+    })
+}
+
+/// The text of a file that the script at `outer` includes.
+fn included(outer: &Path, inner: &str, allowed: &[PathBuf]) -> Result<String, String> {
+    fs::read_to_string(beside(outer, inner, allowed, "script")?).map_err(why)
+}
+
+/// The system's own path of a file that is named relative to the folder of `outer`, and lies in this folder or below,
+/// or below one of `allowed`; `what` is what `outer` is called in a message.
+///
+/// # Errors
+/// Why it cannot or may not be read, in words that are the same everywhere.
+pub fn beside(outer: &Path, inner: &str, allowed: &[PathBuf], what: &str) -> Result<PathBuf, String> {
+    let folder = outer.parent().unwrap_or(Path::new(""));
     // The system's own view of both, so that no link leads outside.
     let real = |path: &Path| {
         fs::canonicalize(if path == Path::new("") {
@@ -161,9 +219,19 @@ fn included(folder: &Path, inner: &str, allowed: &[PathBuf]) -> Result<String, S
     let file = real(&folder.join(inner)).map_err(why)?;
     let below = |root: &Path| real(root).is_ok_and(|root| file.starts_with(root));
     if !below(folder) && !allowed.iter().any(|root| below(root)) {
-        return Err("it lies outside the script's folder; `--include-from` allows another one".to_owned());
+        return Err(format!(
+            "it lies outside the {what}'s folder; `--include-from` allows another one"
+        ));
     }
-    fs::read_to_string(&file).map_err(why)
+    Ok(file)
+}
+
+fn why(error: io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::InvalidData => "it is not UTF-8".to_owned(),
+        _ => error.to_string(),
+    }
 }
 
 /// All scan scripts and machine files in a folder, as [`find`].

@@ -11,5 +11,6 @@ mod run;
 mod soak;
 mod soak_blocks;
 mod support;
+mod sweep;
 mod test;
 mod traces;

@@ -17,6 +17,7 @@ pub(crate) mod machine_map;
 pub(crate) mod names;
 pub(crate) mod shape;
 pub(crate) mod step;
+pub(crate) mod sweep;
 mod table;
 mod task;
 pub(crate) mod time;

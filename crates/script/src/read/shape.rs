@@ -288,3 +288,29 @@ pub(crate) mod machine {
         &["column", "values", "time_tolerance", "note"],
     );
 }
+
+/// The objects of a sweep.
+pub(crate) mod sweep {
+    use super::{Shape, shape};
+
+    pub(crate) const SWEEP: Shape = shape(
+        "a sweep",
+        &[
+            "$schema",
+            "standstill_sweep",
+            "title",
+            "script",
+            "grid",
+            "sample",
+            "measure",
+            "note",
+        ],
+    );
+    pub(crate) const SAMPLE: Shape = shape("`sample`", &["seed", "count", "of", "note"]);
+    pub(crate) const STEPS: Shape = shape("a range of a grid", &["from", "to", "count", "scale", "note"]);
+    pub(crate) const RANGE: Shape = shape("a range of a sample", &["from", "to", "scale", "note"]);
+    pub(crate) const MEASURE: Shape = shape(
+        "a measure",
+        &["last", "max", "min", "abs_max", "first", "count", "note"],
+    );
+}

@@ -2,7 +2,7 @@
 
 use crate::cases::{By, GOOD, cases};
 use boon::{Compiler, SchemaIndex, Schemas};
-use standstill_script::{map_schema, read, schema};
+use standstill_script::{map_schema, read, schema, sweep_schema};
 use std::path::{Path, PathBuf};
 
 struct Validator {
@@ -37,6 +37,7 @@ fn the_committed_schema_is_fresh() {
     for (file, fresh, command) in [
         ("scan-script.schema.json", schema(), "schema"),
         ("compare-map.schema.json", map_schema(), "schema map"),
+        ("sweep.schema.json", sweep_schema(), "schema sweep"),
     ] {
         let path = docs().join(file);
         let committed = std::fs::read_to_string(&path).unwrap_or_default();
@@ -68,6 +69,35 @@ fn the_schema_of_maps_takes_good_ones_and_refuses_others() {
         ("\"ms\"", "\"minutes\""),
         ("\"tolerance\": 0.02", "\"tolerance\": -0.02"),
         ("\"signals\"", "\"signal\""),
+    ] {
+        assert!(good.contains(from), "{from}");
+        assert!(
+            validator.accepts(&good.replacen(from, to, 1)).is_err(),
+            "{from} as {to}"
+        );
+    }
+}
+
+#[test]
+fn the_schema_of_sweeps_takes_good_ones_and_refuses_others() {
+    let validator = Validator::of(&sweep_schema());
+    let good = std::fs::read_to_string(docs().join("sweeps/turn.sweep.json")).unwrap();
+    assert_eq!(validator.accepts(&good), Ok(()));
+    let sample = r#"{"standstill_sweep": 1, "script": "a.scan.json",
+        "sample": {"seed": 0, "count": 5, "of": {"v": {"from": 1, "to": 2}, "note": [1, "NaN"]}}}"#;
+    assert_eq!(validator.accepts(sample), Ok(()));
+    for (from, to) in [
+        ("\"script\"", "\"scripts\""),
+        ("[20, 40, 60]", "[]"),
+        ("[20, 40, 60]", "20"),
+        ("\"count\": 5", "\"count\": 1"),
+        ("\"scale\": \"log\"", "\"scale\": \"root\""),
+        ("\"first\"", "\"second\""),
+        ("\"grid\"", "\"sample\""),
+        (
+            "\"measure\"",
+            "\"sample\": {\"seed\": 1, \"count\": 1, \"of\": {\"v\": [1]}}, \"measure\"",
+        ),
     ] {
         assert!(good.contains(from), "{from}");
         assert!(

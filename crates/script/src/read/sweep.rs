@@ -1,0 +1,249 @@
+//! From text to a checked [`Sweep`]: which parameters of a script vary, and how.
+
+use super::shape::sweep as shape;
+use super::value::{Fields, WHOLE_MAX};
+use super::{Reader, is_note, json, without_mark};
+use crate::error::{Code, Diagnostic, ScriptError, quoted};
+use crate::read::json::{Json, Key, Node};
+use crate::sweep::{CASES_MAX, Draw, Measure, Scale, Sweep, TAKES, Values, Varied};
+
+/// The version of the format that is read.
+pub(crate) const SWEEP_VERSION: u32 = 1;
+
+/// How values may lie between two ends.
+pub(crate) const SCALES: [(&str, Scale); 2] = [("linear", Scale::Linear), ("log", Scale::Log)];
+
+/// Reads a sweep file.
+///
+/// `file_name` only goes into messages. The work is bounded by the length of the text.
+///
+/// # Errors
+/// [`ScriptError`] with everything that is wrong; after a syntax error only that.
+pub fn read_sweep(text: &str, file_name: &str) -> Result<Sweep, ScriptError> {
+    let plain = without_mark(text);
+    let error = |diagnostics| ScriptError::new(file_name, plain, diagnostics);
+    let root = json::parse(plain).map_err(|diagnostic| error(vec![diagnostic]))?;
+    let mut reader = Reader::default();
+    match reader.sweep(&root, (file_name.to_owned(), plain.to_owned())) {
+        Some(sweep) if reader.errors.is_empty() => Ok(sweep),
+        _ => {
+            debug_assert!(!reader.errors.is_empty(), "refused without a reason");
+            Err(error(reader.errors))
+        }
+    }
+}
+
+impl Reader {
+    fn sweep(&mut self, root: &Node, file: (String, String)) -> Option<Sweep> {
+        let fields = self.fields(root, &shape::SWEEP)?;
+        self.sweep_version(&fields)?;
+        for key in ["$schema", "title"] {
+            if let Some(node) = fields.get(key) {
+                self.text(node, &quoted(key))?;
+            }
+        }
+        let script = match self.require(&fields, "script", "a sweep") {
+            Some(node) => self.text(node, "`script`").map(|text| (text, node.span)),
+            None => None,
+        };
+        let measures = match fields.get("measure") {
+            Some(node) => self.measures(node),
+            None => Some(Vec::new()),
+        };
+        let varied = match (fields.get("grid"), fields.entry("sample")) {
+            (Some(_), Some((key, _))) => {
+                let message = "a sweep has a `grid` or a `sample`, not both";
+                self.report(Diagnostic::new(Code::BadValue, key.span, message));
+                None
+            }
+            (Some(node), None) => self
+                .varied(node, "`grid`", true)
+                .map(|varied| (varied, Draw::Grid)),
+            (None, Some((_, node))) => self.sample(node),
+            (None, None) => {
+                let message = "a sweep needs the key `grid` or the key `sample`";
+                let diagnostic = Diagnostic::new(Code::MissingKey, fields.brace(), message);
+                self.report(diagnostic.help("for example \"grid\": {\"v\": [10, 20, 50]}"));
+                None
+            }
+        };
+        let (varied, draw) = varied?;
+        self.check_cases(&varied, draw, root)?;
+        let (script, script_place) = script?;
+        Some(Sweep {
+            file,
+            script: script.to_owned(),
+            script_place,
+            varied,
+            draw,
+            measures: measures?,
+        })
+    }
+
+    fn sweep_version(&mut self, fields: &Fields<'_>) -> Option<()> {
+        let node = self.require(fields, "standstill_sweep", "a sweep")?;
+        let what = "`standstill_sweep`, the version of the format,";
+        let version = self.whole(node, what, 1..=i64::from(u32::MAX))?;
+        if version == i64::from(SWEEP_VERSION) {
+            return Some(());
+        }
+        let message = format!("version {version} of the sweep format is not supported");
+        let diagnostic = Diagnostic::new(Code::Unsupported, node.span, message);
+        self.report(diagnostic.help(format!("this runtime reads version {SWEEP_VERSION}")));
+        None
+    }
+
+    fn sample(&mut self, node: &Node) -> Option<(Vec<Varied>, Draw)> {
+        let fields = self.fields(node, &shape::SAMPLE)?;
+        let seed = self.require(&fields, "seed", "`sample`");
+        let seed = seed.and_then(|node| self.whole(node, "`seed`", 0..=WHOLE_MAX as i64));
+        let count = self.require(&fields, "count", "`sample`");
+        let count = count.and_then(|node| self.whole(node, "`count`", 1..=CASES_MAX as i64));
+        let of = self.require(&fields, "of", "`sample`");
+        let varied = of.and_then(|node| self.varied(node, "`of`", false));
+        let draw = Draw::Sample {
+            seed: seed?.unsigned_abs(),
+            count: count?.unsigned_abs(),
+        };
+        Some((varied?, draw))
+    }
+
+    /// The parameters and their values.
+    fn varied(&mut self, node: &Node, what: &str, grid: bool) -> Option<Vec<Varied>> {
+        let members = self.map(node, what)?;
+        let varied: Vec<_> = members
+            .iter()
+            .filter(|(key, node)| !is_note(key, node))
+            .map(|(key, node)| {
+                Some(Varied {
+                    name: key.text.clone(),
+                    place: key.span,
+                    values: self.values(key, node, grid)?,
+                })
+            })
+            .collect();
+        if varied.is_empty() {
+            let message = format!("{what} varies nothing");
+            let diagnostic = Diagnostic::new(Code::BadValue, node.span, message);
+            self.report(diagnostic.help("name a parameter of the script: {\"v\": [10, 20, 50]}"));
+            return None;
+        }
+        varied.into_iter().collect()
+    }
+
+    fn values(&mut self, key: &Key, node: &Node, grid: bool) -> Option<Values> {
+        let what = quoted(&key.text);
+        match &node.json {
+            Json::List(items) if items.is_empty() => {
+                let message = format!("{what} has no values");
+                self.report(Diagnostic::new(Code::BadValue, node.span, message));
+                None
+            }
+            Json::List(items) => self
+                .each(items, |reader, item| reader.number(item, &what))
+                .map(Values::List),
+            Json::Map(_) if grid => self.values_between(node, &shape::STEPS),
+            Json::Map(_) => self.values_between(node, &shape::RANGE),
+            _ => {
+                let diagnostic = self.wrong_type(node, &what, "a list of values or a range");
+                let range = if grid { ", \"count\": 9}" } else { "}" };
+                self.report(diagnostic.help(format!("[10, 20, 50] or {{\"from\": 10, \"to\": 50{range}")));
+                None
+            }
+        }
+    }
+
+    fn values_between(&mut self, node: &Node, shape: &super::shape::Shape) -> Option<Values> {
+        let fields = self.fields(node, shape)?;
+        let end = |reader: &mut Self, key: &str| {
+            let node = reader.require(&fields, key, shape.what)?;
+            let value = reader.finite(node, &quoted(key))?;
+            Some((value, node.span))
+        };
+        let (from, to) = (end(self, "from"), end(self, "to"));
+        let count = if shape.keys.contains(&"count") {
+            let node = self.require(&fields, "count", shape.what)?;
+            self.whole(node, "`count`", 2..=CASES_MAX as i64)?.unsigned_abs()
+        } else {
+            1
+        };
+        let scale = match fields.get("scale") {
+            Some(node) => self.choice(node, "`scale`", &SCALES)?,
+            None => Scale::Linear,
+        };
+        let ((from, from_place), (to, to_place)) = (from?, to?);
+        if scale == Scale::Log
+            && let Some((value, place)) = [(from, from_place), (to, to_place)]
+                .into_iter()
+                .find(|(value, _)| *value <= 0.0)
+        {
+            let message = format!("{value:?} is on no logarithmic scale: it must be more than 0");
+            self.report(Diagnostic::new(Code::BadValue, place, message));
+            return None;
+        }
+        if !(to - from).is_finite() || (scale == Scale::Log && !(to / from).is_normal()) {
+            let message = "the range is wider than a 64-bit float can step through";
+            self.report(Diagnostic::new(Code::BadValue, to_place, message));
+            return None;
+        }
+        Some(Values::Range {
+            from,
+            to,
+            count,
+            scale,
+        })
+    }
+
+    fn check_cases(&mut self, varied: &[Varied], draw: Draw, root: &Node) -> Option<()> {
+        let count = match draw {
+            Draw::Sample { count, .. } => Some(count),
+            Draw::Grid => varied.iter().try_fold(1_u64, |cases, varied| {
+                let count = match &varied.values {
+                    Values::List(list) => list.len() as u64,
+                    Values::Range { count, .. } => *count,
+                };
+                cases.checked_mul(count)
+            }),
+        };
+        if count.is_some_and(|count| count <= CASES_MAX) {
+            return Some(());
+        }
+        let message = format!("the grid has more than {CASES_MAX} cases");
+        let diagnostic = Diagnostic::new(Code::TooLarge, root.span, message);
+        self.report(diagnostic.help("a `sample` draws as many of them as you can afford"));
+        None
+    }
+
+    fn measures(&mut self, node: &Node) -> Option<Vec<Measure>> {
+        let members = self.map(node, "`measure`")?;
+        let measures: Vec<_> = members
+            .iter()
+            .filter(|(key, node)| !is_note(key, node))
+            .map(|(key, node)| self.measure(key, node))
+            .collect();
+        measures.into_iter().collect()
+    }
+
+    fn measure(&mut self, key: &Key, node: &Node) -> Option<Measure> {
+        let fields = self.fields(node, &shape::MEASURE)?;
+        let mut taken = TAKES
+            .iter()
+            .filter_map(|(name, take)| fields.get(name).map(|node| (*take, node)));
+        let (Some((take, signal)), None) = (taken.next(), taken.next()) else {
+            let message = format!("{} takes one thing of one signal", quoted(&key.text));
+            let diagnostic = Diagnostic::new(Code::BadValue, node.span, message);
+            self.report(
+                diagnostic
+                    .help("for example {\"abs_max\": \"X.FollowingError\"} or {\"first\": \"move.Done\"}"),
+            );
+            return None;
+        };
+        Some(Measure {
+            name: key.text.clone(),
+            place: key.span,
+            take,
+            signal: self.text(signal, "a measure")?.to_owned(),
+            signal_place: signal.span,
+        })
+    }
+}

@@ -1,0 +1,96 @@
+//! The JSON Schema of sweeps, made from the tables that the reader uses.
+
+use crate::read::shape::sweep as shape;
+use crate::read::sweep::{SCALES, SWEEP_VERSION};
+use crate::schema::{add, object, required};
+use crate::sweep::{CASES_MAX, TAKES};
+use serde_json::{Value, json};
+
+/// The JSON Schema (draft 2020-12) of sweeps, in the layout of [`format`](crate::format).
+pub fn sweep_schema() -> String {
+    let mut document = document();
+    document.sort_all_objects();
+    let text = document.to_string();
+    // A JSON writer made the text, so it can be laid out.
+    crate::format(&text, "sweep.schema.json").unwrap_or(text)
+}
+
+fn document() -> Value {
+    let mut root = required(
+        &["standstill_sweep", "script"],
+        object(&shape::SWEEP, |key| match key {
+            "standstill_sweep" => json!({"const": SWEEP_VERSION}),
+            "grid" => varied(required(
+                &["from", "to", "count"],
+                object(&shape::STEPS, range_key),
+            )),
+            "sample" => required(&["seed", "count", "of"], object(&shape::SAMPLE, sample_key)),
+            "measure" => json!({"type": "object", "additionalProperties": {"oneOf": measures()}}),
+            _ => json!({"type": "string"}),
+        }),
+    );
+    let description = "Says which parameters of a scan script vary, and what is taken of every run.";
+    add(
+        &mut root,
+        "$schema",
+        json!("https://json-schema.org/draft/2020-12/schema"),
+    );
+    add(
+        &mut root,
+        "title",
+        json!("Sweep over the parameters of a scan script"),
+    );
+    add(&mut root, "description", json!(description));
+    add(
+        &mut root,
+        "oneOf",
+        json!([{"required": ["grid"]}, {"required": ["sample"]}]),
+    );
+    root
+}
+
+/// Parameters with a list of values or a range each.
+fn varied(range: Value) -> Value {
+    let number = json!({"anyOf": [{"type": "number"}, {"enum": ["NaN", "Infinity", "-Infinity"]}]});
+    let list = json!({"type": "array", "minItems": 1, "items": number});
+    json!({
+        "type": "object",
+        "minProperties": 1,
+        "properties": {"note": {"anyOf": [{"type": "string"}, list, range]}},
+        "additionalProperties": {"anyOf": [list, range]},
+    })
+}
+
+fn sample_key(key: &str) -> Value {
+    match key {
+        "seed" => json!({"type": "integer", "minimum": 0}),
+        "count" => json!({"type": "integer", "minimum": 1, "maximum": CASES_MAX}),
+        "of" => varied(required(&["from", "to"], object(&shape::RANGE, range_key))),
+        _ => json!({"type": "string"}),
+    }
+}
+
+fn range_key(key: &str) -> Value {
+    match key {
+        "count" => json!({"type": "integer", "minimum": 2, "maximum": CASES_MAX}),
+        "scale" => json!({"enum": SCALES.map(|(word, _)| word)}),
+        "note" => json!({"type": "string"}),
+        _ => json!({"type": "number"}),
+    }
+}
+
+/// A measure for each thing that can be taken: exactly one of the keys.
+fn measures() -> Vec<Value> {
+    let text = json!({"type": "string"});
+    TAKES
+        .iter()
+        .map(|(take, _)| {
+            json!({
+                "type": "object",
+                "properties": {*take: text, "note": text},
+                "required": [*take],
+                "additionalProperties": false,
+            })
+        })
+        .collect()
+}

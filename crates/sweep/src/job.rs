@@ -1,0 +1,314 @@
+//! A sweep that is ready to run, and what comes of one of its cases.
+
+use standstill_script::suite::{self, SuiteError, Texts};
+use standstill_script::sweep::{Measure, Sweep, Take};
+use standstill_script::{Outcome, RunError, ScriptError, read_sweep, run};
+use standstill_trace::{Cell, Trace, cell_text, digest, extremes, shortest};
+use std::path::{Path, PathBuf};
+
+/// What is told of every axis: the magnitudes of [`extremes`] and how far they stay from their limits.
+const QUANTITIES: [&str; 5] = ["velocity", "acceleration", "deceleration", "jerk", "snap"];
+
+/// Columns before the parameters.
+const FIRST: [&str; 1] = ["case"];
+
+/// Columns behind them, before those of axes and measures.
+const JUDGEMENT: [&str; 4] = ["verdict", "scans", "claims", "held"];
+
+/// Columns behind all others.
+const LAST: [&str; 2] = ["digest", "why"];
+
+/// Why a sweep cannot be run.
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    /// The sweep file or the script is not usable, or could not be read.
+    #[error(transparent)]
+    Suite(#[from] SuiteError),
+    /// A table is none of this sweep.
+    #[error("{file}: {why}")]
+    Table {
+        /// The table.
+        file: String,
+        /// What is wrong with it, and what to do.
+        why: String,
+    },
+}
+
+impl From<ScriptError> for SweepError {
+    fn from(error: ScriptError) -> Self {
+        Self::Suite(error.into())
+    }
+}
+
+/// A sweep with its script, both read.
+#[derive(Clone, Debug)]
+pub struct Job {
+    sweep: Sweep,
+    texts: Texts,
+    script: PathBuf,
+    axes: Vec<String>,
+    columns: Vec<String>,
+    key: u64,
+}
+
+/// How a case ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Judged {
+    /// Every claim held.
+    Passed,
+    /// A claim failed.
+    Failed,
+    /// The script cannot be run with these values.
+    Refused,
+}
+
+impl Judged {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Passed, Self::Failed, Self::Refused];
+
+    /// The word in the table.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Failed => "failed",
+            Self::Refused => "refused",
+        }
+    }
+}
+
+/// What came of a case.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Its number.
+    pub case: u64,
+    /// A field for every column.
+    pub fields: Vec<String>,
+    /// Its verdict.
+    pub judged: Judged,
+    /// Scans times axes of its run.
+    pub axis_scans: u64,
+}
+
+impl Job {
+    /// Reads the sweep at `path` and its script, and runs the script as it stands to see what signals it has. The
+    /// script lies below the folder of the sweep or below one of `allowed`; so does what the script includes.
+    ///
+    /// # Errors
+    /// [`SweepError::Suite`].
+    pub fn load(path: &Path, allowed: &[PathBuf]) -> Result<Self, SweepError> {
+        let sweep = read_sweep(&suite::read_text(path)?, &suite::shown(path))?;
+        suite::beside(path, &sweep.script, allowed, "sweep").map_err(|why| sweep.no_script(&why))?;
+        let file = path.parent().unwrap_or(Path::new("")).join(&sweep.script);
+        let (texts, script) = Texts::read(&file, allowed)?;
+        let outcome = run(&script).map_err(|source| SuiteError::Run {
+            path: file.clone(),
+            source,
+        })?;
+        let axes: Vec<String> = script.axes.iter().map(|axis| axis.name.clone()).collect();
+        let own = columns(&sweep, &axes, false);
+        sweep.check(&script, &outcome.trace, &own)?;
+        let mut key = digest::Fnv1a::new();
+        key.write(env!("CARGO_PKG_VERSION").as_bytes());
+        key.write(sweep.text().as_bytes());
+        key.write(&script.hash.to_le_bytes());
+        // Whatever else a run depends on shows in this one.
+        key.write(&digest::whole(&outcome.trace).to_le_bytes());
+        Ok(Self {
+            columns: columns(&sweep, &axes, true),
+            sweep,
+            texts,
+            script: file,
+            axes,
+            key: key.finish(),
+        })
+    }
+
+    /// How many cases there are.
+    pub fn count(&self) -> u64 {
+        self.sweep.count()
+    }
+
+    /// The names of the columns.
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// A number that is another one for another sweep, script or version.
+    pub fn key(&self) -> u64 {
+        self.key
+    }
+
+    /// Runs a case.
+    ///
+    /// # Errors
+    /// A defect of this program; a script that cannot be run with these values is a row.
+    pub fn case(&self, case: u64) -> Result<Row, SweepError> {
+        let parameters = self.sweep.case(case);
+        let refused = |why: String| Row {
+            case,
+            fields: self.fields(case, &parameters, Judged::Refused, None, why),
+            judged: Judged::Refused,
+            axis_scans: 0,
+        };
+        let script = match self.texts.script(&parameters) {
+            Ok(script) => script,
+            Err(error) => return Ok(refused(first_of(&error))),
+        };
+        let outcome = match run(&script) {
+            Ok(outcome) => outcome,
+            Err(source @ RunError::Internal(_)) => {
+                let path = self.script.clone();
+                return Err(SuiteError::Run { path, source }.into());
+            }
+            Err(error) => return Ok(refused(error.to_string())),
+        };
+        let judged = if outcome.passed() {
+            Judged::Passed
+        } else {
+            Judged::Failed
+        };
+        let failure = outcome
+            .verdicts
+            .iter()
+            .flat_map(|verdict| &verdict.failures)
+            .next();
+        let why = failure.map(ToString::to_string).unwrap_or_default();
+        Ok(Row {
+            case,
+            fields: self.fields(case, &parameters, judged, Some(&outcome), why),
+            judged,
+            axis_scans: outcome.trace.scans() as u64 * self.axes.len() as u64,
+        })
+    }
+
+    /// Whether the row has a field for every column, and the parameters of this case.
+    pub(crate) fn is_row_of(&self, case: u64, row: &csv::StringRecord) -> bool {
+        let parameters = self.sweep.case(case);
+        let mut fields = parameters.iter().zip(row.iter().skip(FIRST.len()));
+        row.len() == self.columns.len() && fields.all(|((_, value), field)| shortest(*value) == field)
+    }
+
+    /// The verdict that stands in a row.
+    pub fn judged(&self, fields: &[String]) -> Option<Judged> {
+        let word = fields.get(FIRST.len() + self.sweep.parameters().count())?;
+        Judged::ALL.into_iter().find(|judged| judged.word() == word)
+    }
+
+    /// The fields of a row, in the order of [`columns`].
+    fn fields(
+        &self,
+        case: u64,
+        parameters: &[(String, f64)],
+        judged: Judged,
+        outcome: Option<&Outcome>,
+        why: String,
+    ) -> Vec<String> {
+        let mut fields = vec![case.to_string()];
+        fields.extend(parameters.iter().map(|(_, value)| shortest(*value)));
+        fields.push(judged.word().to_owned());
+        if let Some(Outcome { trace, verdicts }) = outcome {
+            let held = verdicts.iter().filter(|verdict| verdict.passed()).count();
+            fields.extend([trace.scans(), verdicts.len(), held].map(|count| count.to_string()));
+            let extremes = extremes(trace);
+            for (axis, quantity) in self
+                .axes
+                .iter()
+                .flat_map(|axis| QUANTITIES.map(|quantity| (axis, quantity)))
+            {
+                let found = extremes
+                    .iter()
+                    .find(|extreme| extreme.axis == *axis && extreme.quantity == quantity);
+                let peak = found.map(|extreme| shortest(extreme.value));
+                let margin = found.and_then(|extreme| Some(1.0 - extreme.value / extreme.limit?));
+                fields.push(peak.unwrap_or_default());
+                fields.push(margin.map(shortest).unwrap_or_default());
+            }
+            fields.extend(self.sweep.measures().iter().map(|measure| taken(measure, trace)));
+            fields.push(format!("{:016x}", digest::whole(trace)));
+        }
+        // A case that did not run has nothing to tell between its verdict and the reason.
+        fields.resize(self.columns.len() - 1, String::new());
+        fields.push(why.replace(['\n', '\r'], " "));
+        fields
+    }
+}
+
+/// The columns of a table; without those that the sweep file names itself, if so.
+fn columns(sweep: &Sweep, axes: &[String], all: bool) -> Vec<String> {
+    let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+    let mut columns = owned(&FIRST);
+    if all {
+        columns.extend(sweep.parameters().map(str::to_owned));
+    }
+    columns.extend(owned(&JUDGEMENT));
+    for (axis, quantity) in axes
+        .iter()
+        .flat_map(|axis| QUANTITIES.map(|quantity| (axis, quantity)))
+    {
+        columns.push(format!("{axis}.{quantity}"));
+        columns.push(format!("{axis}.{quantity}_margin"));
+    }
+    if all {
+        columns.extend(sweep.measures().iter().map(|measure| measure.name.clone()));
+    }
+    columns.extend(owned(&LAST));
+    columns
+}
+
+/// The first thing that is wrong, in one line.
+fn first_of(error: &ScriptError) -> String {
+    let Some(diagnostic) = error.diagnostics().first() else {
+        return String::new();
+    };
+    match diagnostic.span {
+        None => diagnostic.message.clone(),
+        Some(span) => {
+            let (line, column) = error.line_column(span);
+            format!("{}:{line}:{column}: {}", error.file_of(span), diagnostic.message)
+        }
+    }
+}
+
+/// The figure as it stands in a table; empty where a signal never was TRUE.
+fn taken(measure: &Measure, trace: &Trace) -> String {
+    let Some(column) = trace.column(&measure.signal) else {
+        return String::new();
+    };
+    let cells = || trace.cells(column);
+    let is_true = |cell: &Cell<'_>| matches!(cell, Cell::Bool(true));
+    match measure.take {
+        Take::Last => cells().last().map(cell_text).unwrap_or_default(),
+        Take::Max => foremost(cells(), |value| value),
+        Take::Min => foremost(cells(), |value| -value),
+        Take::AbsMax => foremost(cells().map(magnitude), |value| value),
+        Take::First => {
+            let first = cells().position(|cell| is_true(&cell));
+            first.map(|scan| scan.to_string()).unwrap_or_default()
+        }
+        Take::Count => cells().filter(is_true).count().to_string(),
+    }
+}
+
+/// The cell whose number ranks first, as text. A NaN ranks before all: it must not stay unseen.
+fn foremost<'t>(cells: impl Iterator<Item = Cell<'t>>, rank: impl Fn(f64) -> f64) -> String {
+    let mut best: Option<(f64, Cell<'_>)> = None;
+    for cell in cells {
+        let value = match cell {
+            Cell::Real(value) => rank(value),
+            Cell::Integer(value) => rank(value as f64),
+            Cell::Bool(_) | Cell::Name(_) => continue,
+        };
+        if best.is_none_or(|(best, _)| !best.is_nan() && (value.is_nan() || value > best)) {
+            best = Some((value, cell));
+        }
+    }
+    best.map(|(_, cell)| cell_text(cell)).unwrap_or_default()
+}
+
+fn magnitude(cell: Cell<'_>) -> Cell<'_> {
+    match cell {
+        Cell::Real(value) => Cell::Real(value.abs()),
+        Cell::Integer(value) => Cell::Integer(value.saturating_abs()),
+        other => other,
+    }
+}
