@@ -3,6 +3,7 @@
 //! The one place with unsafe code in this crate: an allocator has to be an unsafe trait.
 #![allow(unsafe_code)]
 
+use standstill::prelude::{BlockId, Blocks, Builder, Setup};
 use standstill_axis::{
     AxisConfig, AxisId, AxisState, DrivePosition, IdealDrive, InstanceId, Scaling, Standard, StartState,
 };
@@ -212,4 +213,67 @@ fn the_count_sees_an_allocation() {
     let before = ALLOCATIONS.get();
     drop(std::hint::black_box(Vec::<u8>::with_capacity(1)));
     assert_eq!(ALLOCATIONS.get() - before, 1);
+}
+
+/// A runtime that records: built with the heap, then scanned, tripped and armed again without it.
+#[test]
+fn a_runtime_with_a_recorder_scans_without_the_heap() {
+    struct Program(BlockId);
+
+    impl standstill::runtime::Program for Program {
+        fn run(
+            &mut self,
+            _: ProgramId,
+            blocks: &mut Blocks,
+            context: &mut Context<'_>,
+        ) -> Result<u64, ProgramFault> {
+            blocks.call(self.0, context);
+            Ok(0)
+        }
+    }
+
+    let config = AxisConfig {
+        start: StartState::Standstill,
+        ..AxisConfig::new(LIMITS)
+    };
+    let mut builder = Builder::new(1_000_000);
+    let drive = IdealDrive::new(DrivePosition::Units(0.0), 0, Some(0), true);
+    let x = builder.axis("X", "mm", config, drive).expect("a good axis");
+    let go = builder.block("go", "MC_MoveAbsolute").expect("a good block");
+    builder.record(Setup {
+        scans: 100,
+        after: 20,
+        ..Setup::default()
+    });
+    let mut runtime = builder.ready().expect("it fits").start(Program(go));
+    runtime
+        .blocks_mut()
+        .set(go, "Axis", Value::Axis(x))
+        .expect("a pin");
+    runtime
+        .blocks_mut()
+        .set(go, "Velocity", Value::Lreal(1.0))
+        .expect("a pin");
+    let before = ALLOCATIONS.get();
+    let (mut frozen, mut errors) = (0, 0);
+    for scan in 0..SCANS {
+        let blocks = runtime.blocks_mut();
+        let _set = blocks.set(go, "Position", Value::Lreal(scan as f64));
+        let _set = blocks.set(go, "Execute", Value::Bool(scan % 7 > 2));
+        if scan % 500 == 300 {
+            runtime.machine_mut().drives_mut()[0].fail(7);
+        }
+        runtime.scan(scan * 1_000_000).expect("time goes on");
+        errors += u64::from(runtime.blocks().is(go, "Error"));
+        let recorder = runtime.recorder_mut().expect("it records");
+        if recorder.state() == standstill::record::State::Frozen {
+            frozen += 1;
+            recorder.arm();
+        }
+    }
+    assert_eq!(ALLOCATIONS.get() - before, 0, "a scan used the heap");
+    assert!(
+        frozen > 0 && errors > 0,
+        "{frozen} times frozen, {errors} scans with an error"
+    );
 }

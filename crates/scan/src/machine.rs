@@ -192,7 +192,10 @@ impl<P: Planner, D: Drive> Machine<P, D> {
     }
 
     /// Whether every axis is Disabled, or in ErrorStop and at rest.
-    pub(crate) fn is_off(&self) -> Result<(), NotOff> {
+    ///
+    /// # Errors
+    /// [`NotOff`] with the first axis that is not.
+    pub fn is_off(&self) -> Result<(), NotOff> {
         let on = (0..).zip(&self.axes).find(|(_, axis)| match axis.state() {
             AxisState::Disabled => false,
             // After a fault an axis may still be on its ramp.

@@ -1,8 +1,9 @@
 //! standstill: a PLCopen motion runtime to embed in a soft-PLC.
 //!
-//! This crate adds no logic: it gives the five layers a host needs one name. [`planner`] is motion maths,
-//! [`axis`] the state machine with commands and drives, [`fb`] what blocks share, [`blocks`] the function
-//! blocks and their registry, [`scan`] tasks and the order of a scan.
+//! It gives the layers a host needs one name: [`planner`] is motion maths, [`axis`] the state machine with commands and
+//! drives, [`fb`] what blocks share, [`blocks`] the function blocks and their registry, [`scan`] tasks and the order of
+//! a scan, [`record`] the flight recorder. On top of them stands [`runtime`], which puts axes, drives, blocks and
+//! programs together; a host that wants to do this itself uses the layers, as here:
 //!
 //! ```
 //! use standstill::prelude::*;
@@ -42,17 +43,26 @@
 //! assert_eq!(machine.axes()[axis.index()].setpoint().position, 10.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! The examples of this crate are whole hosts: `single_axis` in forty lines, `own_drive` with blocks and a drive of its
+//! own, `recording` with a flight recorder.
 #![no_std]
 #![forbid(unsafe_code)]
+
+extern crate alloc;
+
+pub mod runtime;
 
 pub use standstill_axis as axis;
 pub use standstill_blocks as blocks;
 pub use standstill_fb as fb;
 pub use standstill_planner as planner;
+pub use standstill_record as record;
 pub use standstill_scan as scan;
 
 /// What nearly every host names.
 pub mod prelude {
+    pub use crate::runtime::{BlockId, Blocks, BuildError, Builder, Program, Ready, Running};
     pub use standstill_axis::{
         Axis, AxisConfig, AxisId, AxisState, BufferMode, Direction, Drive, DriveCommand, DriveFeedback,
         DrivePosition, DriveRequest, ErrorId, IdealDrive, InstanceId, Limits, Log, Planner, Raw, Setpoint,
@@ -71,13 +81,18 @@ pub mod prelude {
     };
     pub use standstill_blocks::{BlockInstance, REGISTRY};
     pub use standstill_fb::{AnyInstance, Block, Context, Instance, Value};
+    pub use standstill_record::{Pins, Recorder, Setup, Trigger};
     pub use standstill_scan::{
         Executor, Machine, ProgramConfig, ProgramFault, ProgramId, Programs, ScanTime, Start, TaskConfig,
         TaskId,
     };
 }
 
-// The README's examples are tests of this crate.
+// The examples of the README and of the guide are tests of this crate.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/embedding-rust.md")]
+mod guide {}
+
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 mod readme {}

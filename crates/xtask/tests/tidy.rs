@@ -136,7 +136,7 @@ fn the_top_level_holds_what_a_newcomer_expects() {
 #[test]
 fn layers_depend_only_downwards() {
     // Package and what it may depend on, from bottom to top (docs/architecture.md).
-    let layers: [(&str, &str, &[&str]); 14] = [
+    let layers: [(&str, &str, &[&str]); 15] = [
         ("crates/planner", "standstill-planner", &[]),
         ("crates/axis", "standstill-axis", &["standstill-planner"]),
         ("crates/fb", "standstill-fb", &["standstill-axis"]),
@@ -159,8 +159,14 @@ fn layers_depend_only_downwards() {
                 "standstill-blocks",
                 "standstill-fb",
                 "standstill-planner",
+                "standstill-record",
                 "standstill-scan",
             ],
+        ),
+        (
+            "crates/record",
+            "standstill-record",
+            &["standstill-axis", "standstill-fb", "standstill-trace"],
         ),
         ("crates/trace", "standstill-trace", &[]),
         ("crates/report", "standstill-report", &["standstill-trace"]),
@@ -173,6 +179,7 @@ fn layers_depend_only_downwards() {
                 "standstill-drives",
                 "standstill-fb",
                 "standstill-planner",
+                "standstill-record",
                 "standstill-scan",
                 "standstill-trace",
             ],

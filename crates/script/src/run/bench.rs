@@ -1,7 +1,7 @@
 //! The script's side of a scan: steps at the latch, blocks behind their wires, a row at the end.
 
 use super::RunError;
-use super::cells::{self, Undefined};
+use super::cells;
 use super::drive::ScriptDrive;
 use super::layout::Layout;
 use super::notes::Notes;
@@ -11,6 +11,7 @@ use super::values::Values;
 use crate::model::{Action, FaultKind, Point, Script, Wire};
 use standstill_axis::{AxisId, AxisState, ErrorId, InstanceId, Standard};
 use standstill_fb::{AnyInstance, Context, PinType, Value};
+use standstill_record::told::Cells;
 use standstill_scan::{Machine, ProgramFault, ProgramId, Programs, RUNTIME, ScanTime, TaskId};
 use standstill_trace::{Cell, Trace};
 
@@ -67,7 +68,7 @@ pub(crate) struct Bench<'a> {
     values: Values,
     /// Pin types of all instances, in trace order.
     types: Vec<PinType>,
-    undefined: Undefined,
+    cells: Cells,
     schedule: Schedule,
     /// Axis states after all blocks were called, before the motion step.
     states: Vec<AxisState>,
@@ -94,10 +95,10 @@ impl<'a> Bench<'a> {
                 .iter()
                 .flat_map(|instance| instance.block.pins().map(|pin| pin.ty))
                 .collect(),
-            undefined: Undefined::default(),
+            cells: cells::cells(script),
             schedule: Schedule::new(script),
             states: Vec::with_capacity(script.axes.len()),
-            notes: Notes::default(),
+            notes: Notes::new(script),
             trace,
             shifts: Vec::new(),
             last_scan: None,
@@ -181,7 +182,7 @@ impl<'a> Bench<'a> {
             .map(|(value, ty)| (*ty, value))
             .collect();
         for (ty, value) in &pins {
-            self.undefined.prepare(*ty, *value);
+            self.cells.prepare(*ty, *value);
         }
         let axes = machine.axes().iter().zip(&self.states).flat_map(|(axis, state)| {
             let setpoint = axis.setpoint();
@@ -195,13 +196,13 @@ impl<'a> Bench<'a> {
                 Cell::Real(axis.actual_position()),
             ]
         });
-        let (script, undefined) = (self.script, &self.undefined);
+        let cells = &self.cells;
         let variables = self
             .values
             .variables
             .iter()
-            .map(|value| undefined.cell(script, PinType::Lreal, *value));
-        let pins = pins.iter().map(|(ty, value)| undefined.cell(script, *ty, *value));
+            .map(|value| cells.cell(PinType::Lreal, *value));
+        let pins = pins.iter().map(|(ty, value)| cells.cell(*ty, *value));
         let row: Vec<_> = axes.chain(variables).chain(pins).collect();
         if let Err(error) = self.trace.push_row(&row) {
             self.stop(RunError::Internal(error.to_string()));
@@ -248,8 +249,7 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
 
     fn published(&mut self, time: ScanTime, machine: &ScriptMachine) {
         self.push_row(machine);
-        self.notes
-            .take(self.script, machine, &mut self.trace, &mut self.shifts);
+        self.notes.take(machine, &mut self.trace, &mut self.shifts);
         let rows = Rows {
             script: self.script,
             layout: self.layout,

@@ -1,79 +1,21 @@
 //! Values at pins as cells of a trace.
 
 use crate::model::{Point, Script};
-use standstill_axis::AxisId;
-use standstill_fb::{EnumInfo, PinType, TableRef, Value};
-use standstill_trace::{Cell, cell_text};
-use std::collections::BTreeMap;
+use standstill_fb::{PinType, Value};
+use standstill_record::told::Cells;
+use standstill_trace::cell_text;
 
-/// Texts for enum numbers that have no name, and for tables; a cell only borrows its text.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Undefined {
-    numbers: BTreeMap<i32, String>,
-    tables: BTreeMap<u16, String>,
-}
-
-impl Undefined {
-    /// Makes the text of a value that will need one.
-    pub(crate) fn prepare(&mut self, ty: PinType, value: Value) {
-        match (ty, value) {
-            (PinType::Enum(info), Value::Enum(number)) if info.name_of(number).is_none() => {
-                self.number(number);
-            }
-            (_, Value::Table(TableRef { records, .. })) => {
-                let text = || format!("{records} record{}", if records == 1 { "" } else { "s" });
-                self.tables.entry(records).or_insert_with(text);
-            }
-            _ => {}
-        }
-    }
-
-    fn number(&mut self, number: i32) {
-        self.numbers.entry(number).or_insert_with(|| number.to_string());
-    }
-
-    /// The cell of a value at a pin of type `ty`, once it has been prepared.
-    pub(crate) fn cell<'a>(&'a self, script: &'a Script, ty: PinType, value: Value) -> Cell<'a> {
-        match value {
-            Value::Bool(value) => Cell::Bool(value),
-            Value::Int(value) => Cell::Integer(value.into()),
-            Value::Lreal(value) => Cell::Real(value),
-            Value::Word(value) => Cell::Integer(value.into()),
-            Value::Dword(value) => Cell::Integer(value.into()),
-            Value::Table(table) => Cell::Name(self.tables.get(&table.records).map_or("", String::as_str)),
-            Value::Time(ns) => Cell::Integer(ns),
-            Value::Axis(id) => Cell::Name(axis_name(script, id)),
-            Value::Enum(number) => Cell::Name(
-                enum_name(ty, number).unwrap_or_else(|| self.numbers.get(&number).map_or("", String::as_str)),
-            ),
-        }
-    }
-}
-
-fn axis_name(script: &Script, id: AxisId) -> &str {
-    script.axes.get(id.index()).map_or("", |axis| axis.name.as_str())
-}
-
-fn enum_name(ty: PinType, number: i32) -> Option<&'static str> {
-    match ty {
-        PinType::Enum(info) => info.name_of(number),
-        _ => None,
-    }
-}
-
-/// The number behind the text of an enum cell.
-pub(crate) fn enum_number(info: &EnumInfo, text: &str) -> Option<i32> {
-    info.number_of(text).or_else(|| text.parse().ok())
+/// The cells of a script's trace.
+pub(crate) fn cells(script: &Script) -> Cells {
+    Cells::new(script.axes.iter().map(|axis| axis.name.clone()))
 }
 
 /// A value as its cell reads in text; `ty` names the elements of an enum.
 pub(crate) fn value_text(script: &Script, ty: Option<PinType>, value: Value) -> String {
-    let mut undefined = Undefined::default();
+    let mut cells = cells(script);
     let ty = ty.unwrap_or(PinType::Lreal);
-    if let Value::Enum(number) = value {
-        undefined.number(number);
-    }
-    cell_text(undefined.cell(script, ty, value))
+    cells.prepare(ty, value);
+    cell_text(cells.cell(ty, value))
 }
 
 /// A variable or pin as scripts name it.

@@ -1,8 +1,8 @@
 //! Where the signals of a script stand in a row of its trace, and the trace's header.
 
 use crate::model::{AxisNumber, Point, Script};
-use standstill_axis::{AxisConfig, Order};
-use standstill_fb::{Direction, PinType, Value};
+use standstill_fb::{PinType, Value};
+use standstill_record::told;
 use standstill_trace as trace;
 
 /// Column numbers of a script's signals: the axes, the input variables, the pins in call order.
@@ -64,23 +64,7 @@ pub(crate) fn header(script: &Script) -> trace::Header {
         axes: script
             .axes
             .iter()
-            .map(|axis| trace::Axis {
-                name: axis.name.clone(),
-                unit: axis.unit.clone(),
-                order: match axis.config.limits.order() {
-                    Order::Two => 2,
-                    Order::Three => 3,
-                    Order::Four => 4,
-                },
-                limits: limits(&axis.config),
-                modulo: axis.config.modulo,
-                scaling: axis.config.scaling.map(|scaling| trace::Scaling {
-                    increments: scaling.increments().into(),
-                    units: scaling.units().into(),
-                    invert: scaling.invert(),
-                    offset: scaling.offset(),
-                }),
-            })
+            .map(|axis| told::axis(&axis.name, &axis.unit, &axis.config))
             .collect(),
         inputs: script
             .inputs
@@ -93,23 +77,7 @@ pub(crate) fn header(script: &Script) -> trace::Header {
         instances: script
             .blocks
             .iter()
-            .map(|instance| trace::Instance {
-                name: instance.name.clone(),
-                block: instance.block.name.to_owned(),
-                pins: instance
-                    .block
-                    .pins()
-                    .map(|pin| trace::Pin {
-                        name: pin.name.to_owned(),
-                        iec_type: pin.ty.iec_name().to_owned(),
-                        direction: match pin.direction {
-                            Direction::InOut => trace::Direction::InOut,
-                            Direction::Input => trace::Direction::Input,
-                            Direction::Output => trace::Direction::Output,
-                        },
-                    })
-                    .collect(),
-            })
+            .map(|instance| told::instance(instance.name.clone(), instance.block))
             .collect(),
         claims: Vec::new(),
     }
@@ -120,18 +88,5 @@ fn type_of(value: Value) -> &'static str {
     match value {
         Value::Bool(_) => PinType::Bool.iec_name(),
         _ => PinType::Lreal.iec_name(),
-    }
-}
-
-fn limits(config: &AxisConfig) -> trace::Limits {
-    let finite = |limit: f64| limit.is_finite().then_some(limit);
-    trace::Limits {
-        position_min: config.software_limits.and_then(|(min, _)| finite(min)),
-        position_max: config.software_limits.and_then(|(_, max)| finite(max)),
-        velocity: finite(config.limits.velocity),
-        acceleration: finite(config.limits.acceleration),
-        deceleration: finite(config.limits.deceleration),
-        jerk: finite(config.limits.jerk),
-        snap: finite(config.limits.snap),
     }
 }

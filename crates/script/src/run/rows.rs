@@ -4,6 +4,7 @@ use super::cells;
 use super::layout::Layout;
 use crate::model::{AxisNumber, Comparison, Condition, Point, Script, Signal, Test};
 use standstill_fb::PinType;
+use standstill_record::told::enum_number;
 use standstill_trace::{Cell, Trace};
 
 /// The rows of a run so far, reached by a script's signals.
@@ -146,7 +147,7 @@ impl<'a> Rows<'a> {
             Test::State(wanted) => cell == Cell::Name(wanted.name()),
             Test::Exactly(wanted) => match (cell, self.pin_type(signal)) {
                 (Cell::Name(name), Some(PinType::Enum(info))) => {
-                    cells::enum_number(&info, name).is_some_and(|number| f64::from(number) == *wanted)
+                    enum_number(&info, name).is_some_and(|number| f64::from(number) == *wanted)
                 }
                 _ => number(cell).is_some_and(|value| same(value, *wanted)),
             },

@@ -1,0 +1,110 @@
+//! A recorder's rows as a trace.
+
+use crate::recorder::{AXIS_WORDS, Recorder};
+use crate::told::{self, Cells, Names, note};
+use crate::word;
+use standstill_axis::AxisState;
+use standstill_fb::PinType;
+use standstill_trace::{Cell, Header, Note, RowError, Trace};
+use std::format;
+use std::string::ToString;
+use std::vec::Vec;
+
+impl Recorder {
+    /// What is there as a trace, which everything that reads traces reads. Its rows count from 0; the first note says
+    /// which scans of the machine they are and what tripped the recorder. `cycle_ns` is the time between two scans (ns).
+    ///
+    /// Cost: as the number of scans times that of signals, on the heap; not for the scan.
+    ///
+    /// # Errors
+    /// [`RowError`] where a name of [`crate::Signals`] holds a control character.
+    pub fn trace(&self, title: &str, cycle_ns: u64) -> Result<Trace, RowError> {
+        let signals = self.signals();
+        let header = Header {
+            runtime: env!("CARGO_PKG_VERSION").to_string(),
+            title: title.to_string(),
+            cycle_ns,
+            axes: signals
+                .axes()
+                .map(|(name, unit, config)| told::axis(name, unit, config))
+                .collect(),
+            instances: signals
+                .instances()
+                .map(|(name, _, block)| told::instance(name.to_string(), block))
+                .collect(),
+            ..Header::default()
+        };
+        let types: Vec<PinType> = signals
+            .instances()
+            .flat_map(|(_, _, block)| block.pins().map(|pin| pin.ty))
+            .collect();
+        let mut cells = Cells::new(signals.axes().map(|(name, ..)| name.to_string()));
+        let mut trace = Trace::new(header);
+        for row in self.rows() {
+            let (axes, pins) = row.split_at(signals.axes().count() * AXIS_WORDS);
+            let pins: Vec<_> = types
+                .iter()
+                .zip(pins)
+                .map(|(ty, word)| (*ty, word::value(*ty, *word)))
+                .collect();
+            for (ty, value) in &pins {
+                cells.prepare(*ty, *value);
+            }
+            let axes = axes.chunks_exact(AXIS_WORDS).flat_map(axis_cells);
+            let pins = pins.iter().map(|(ty, value)| cells.cell(*ty, *value));
+            trace.push_row(&axes.chain(pins).collect::<Vec<_>>())?;
+        }
+        trace.push_note(self.standing());
+        let (first, kept) = self.scans();
+        let names = Names {
+            axes: signals.axes().map(|(name, ..)| name.to_string()).collect(),
+            instances: signals
+                .instances()
+                .map(|(name, number, _)| (number, name.to_string()))
+                .collect(),
+        };
+        for record in self.records() {
+            let row = record.scan.checked_sub(first).filter(|row| *row < kept as u64);
+            if let Some(row) = row.and_then(|row| usize::try_from(row).ok()) {
+                trace.push_note(note(&names, record, row, None));
+            }
+        }
+        Ok(trace)
+    }
+
+    /// Which scans these are, and why there are no more.
+    fn standing(&self) -> Note {
+        let (first, kept) = self.scans();
+        let last = first + (kept as u64).saturating_sub(1);
+        let name = |place: usize| self.signals().axes().nth(place).map_or("", |(name, ..)| name);
+        let why = self.tripped().map(|(scan, axis)| {
+            let row = scan.saturating_sub(first);
+            let cause = axis.map_or("the host".to_string(), |axis| {
+                format!("ErrorStop of {}", name(axis))
+            });
+            format!("; tripped by {cause} in scan {scan}, here {row}")
+        });
+        Note {
+            scan: 0,
+            subject: "recorder".to_string(),
+            text: format!(
+                "scans {first} to {last} of the machine{}",
+                why.unwrap_or_default()
+            ),
+        }
+    }
+}
+
+/// The cells of an axis: its state, then its numbers.
+fn axis_cells<'c>(words: &[u64]) -> impl Iterator<Item = Cell<'c>> + use<'c> {
+    let (state, numbers) = words.split_first().unwrap_or((&0, &[]));
+    let name = AxisState::ALL
+        .iter()
+        .find(|known| **known as u64 == *state)
+        .map_or("", |known| known.name());
+    let numbers: Vec<_> = numbers
+        .iter()
+        .map(|word| Cell::Real(f64::from_bits(*word)))
+        .collect();
+    core::iter::once(Cell::Name(name)).chain(numbers)
+}
