@@ -30,6 +30,16 @@ pub enum Command {
         /// Take the runs as they are for goldens, where all claims hold
         #[arg(long)]
         accept: bool,
+        /// How exactly a run must be as its golden: to the bit, or its events to the scan and its set-points within
+        /// --abs and --rel
+        #[arg(long, value_enum, value_name = "HOW", default_value_t = Golden::Exact)]
+        golden: Golden,
+        /// With --golden events: how far a set-point may be off, in its own unit [default: 1e-6]
+        #[arg(long, value_name = "X", value_parser = tolerance)]
+        abs: Option<f64>,
+        /// With --golden events: how far it may be off besides, as a share of the expected value [default: 1e-9]
+        #[arg(long, value_name = "Y", value_parser = tolerance)]
+        rel: Option<f64>,
         /// Write the outcome to this file, as JUnit XML
         #[arg(long, value_name = "FILE.xml")]
         junit: Option<PathBuf>,
@@ -114,6 +124,15 @@ pub enum Command {
         #[arg(long)]
         check: bool,
     },
+}
+
+/// How exactly `test` holds runs against goldens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Golden {
+    /// To the bit
+    Exact,
+    /// Events to the scan, set-points within tolerances
+    Events,
 }
 
 /// What `schema` describes.
@@ -213,6 +232,14 @@ fn delimiter(text: &str) -> Result<char, String> {
     }
 }
 
+/// Reads a tolerance.
+fn tolerance(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = serde_json::from_str(text).ok();
+    number
+        .filter(|number| *number >= 0.0)
+        .ok_or_else(|| "write a number that is not negative, such as 1e-6".to_owned())
+}
+
 /// Reads `NAME=VALUE`; the value is a number as in scripts and traces.
 fn parameter(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, such as v=60")?;
@@ -237,6 +264,15 @@ mod tests {
     #[test]
     fn the_arguments_are_consistent() {
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn tolerances_are_finite_and_not_negative() {
+        assert_eq!(tolerance("1e-6"), Ok(1e-6));
+        assert_eq!(tolerance("0"), Ok(0.0));
+        for wrong in ["-1e-9", "NaN", "Infinity", "1e999", "", "1,5", "small"] {
+            assert!(tolerance(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

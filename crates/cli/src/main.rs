@@ -64,6 +64,9 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Test {
             paths,
             accept,
+            golden,
+            abs,
+            rel,
             junit,
             report,
             include_from,
@@ -71,6 +74,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             let wish = test::Wish {
                 paths,
                 accept: *accept,
+                yardstick: test::yardstick(*golden, *abs, *rel)?,
                 junit: junit.as_deref(),
                 report: report.as_deref(),
                 include_from,

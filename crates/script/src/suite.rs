@@ -5,6 +5,7 @@
 use crate::golden::{self, Mode, Standing};
 use crate::run::{Outcome, RunError, run_with};
 use crate::{ScriptError, Verdict, read_with};
+use standstill_trace::compare::Yardstick;
 use standstill_trace::golden::GoldenError;
 use std::fmt;
 use std::fs;
@@ -43,7 +44,7 @@ impl fmt::Display for Report {
             writeln!(out, "{failure}")?;
         }
         match &self.golden {
-            Standing::Same | Standing::Accepted => Ok(()),
+            Standing::Same | Standing::Close(_) | Standing::Accepted => Ok(()),
             Standing::Failed(why) => writeln!(out, "golden: {}", why.trim_end()),
         }
     }
@@ -102,7 +103,7 @@ pub fn shown(path: &Path) -> String {
     path.display().to_string().replace(std::path::MAIN_SEPARATOR, "/")
 }
 
-/// Reads and runs the script at `path`, and holds it against its claims and its golden. `progress` is told
+/// Reads and runs the script at `path`, and holds it against its claims and, by this yardstick, its golden. `progress` is told
 /// from time to time how many scans are done. Files that it includes lie below its folder or below one of `allowed`.
 ///
 /// # Errors
@@ -110,11 +111,12 @@ pub fn shown(path: &Path) -> String {
 pub fn judge_file(
     path: &Path,
     mode: Mode,
+    yardstick: Yardstick,
     allowed: &[PathBuf],
     progress: impl FnMut(u64),
 ) -> Result<Report, SuiteError> {
     let outcome = run_file(path, &[], allowed, progress)?;
-    let golden = golden::judge(path, &outcome, mode)?;
+    let golden = golden::judge(path, &outcome, mode, yardstick)?;
     Ok(Report { outcome, golden })
 }
 
