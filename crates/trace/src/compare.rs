@@ -12,6 +12,9 @@ use crate::trace::Trace;
 /// Signals that the text of a difference names at most.
 const SIGNALS_SHOWN: usize = 20;
 
+/// More representable numbers than this between two values are told by the values.
+const ULPS_TOLD: u64 = 1_000_000;
+
 /// Events shown before the first difference, and after it on either side.
 const EVENTS_SHOWN: usize = 4;
 
@@ -143,7 +146,7 @@ pub fn compare_by(expected: &Trace, actual: &Trace, yardstick: Yardstick) -> Opt
 }
 
 /// Columns that both traces have, by name.
-fn pairs(expected: &Trace, actual: &Trace) -> Vec<(usize, usize)> {
+pub(crate) fn pairs(expected: &Trace, actual: &Trace) -> Vec<(usize, usize)> {
     let columns = expected.columns().iter().enumerate();
     columns
         .filter_map(|(at, column)| Some((at, actual.column(&column.name)?)))
@@ -298,7 +301,7 @@ fn differs(
 }
 
 /// A trace read without its header may hold a column under another kind: then the meaning counts.
-fn equal(a: Cell<'_>, b: Cell<'_>) -> bool {
+pub(crate) fn equal(a: Cell<'_>, b: Cell<'_>) -> bool {
     match (a, b) {
         (Cell::Integer(whole), Cell::Real(real)) | (Cell::Real(real), Cell::Integer(whole)) => {
             whole as f64 == real
@@ -366,8 +369,8 @@ impl fmt::Display for ScanDifference {
             )?;
             match (ulps, allowed) {
                 (_, Some(allowed)) => writeln!(out, "  (may be {allowed:.1e} apart)")?,
-                (Some(ulps), None) => writeln!(out, "  ({ulps} ULP)")?,
-                (None, None) => writeln!(out)?,
+                (Some(ulps), None) if *ulps <= ULPS_TOLD => writeln!(out, "  ({ulps} ULP)")?,
+                (_, None) => writeln!(out)?,
             }
         }
         if signals.len() > shown.len() {

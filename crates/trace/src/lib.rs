@@ -43,6 +43,7 @@ mod number;
 mod panels;
 pub mod plot;
 mod read;
+pub mod story;
 pub mod svg;
 mod trace;
 pub mod vcd;
