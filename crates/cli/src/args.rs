@@ -22,6 +22,8 @@ const EXIT_STATUSES: &str = "Exit status: 0 passed, 1 a claim, golden or plan fa
 pub enum Command {
     /// Run scripts and show their events, curves and extremes
     Run(RunArguments),
+    /// Run a script in the terminal: step it, stop at events and claims, change its inputs
+    Watch(WatchArguments),
     /// Hold scripts against their claims and goldens
     Test {
         /// Scripts, and folders of them
@@ -220,6 +222,20 @@ pub struct RunArguments {
     /// Print failing claims and one line a script
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+/// What `watch` takes.
+#[derive(Args, Debug)]
+pub struct WatchArguments {
+    /// The script
+    #[arg(value_name = "SCRIPT")]
+    pub script: PathBuf,
+    /// Replace the value of a parameter of the script
+    #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
+    pub set: Vec<(String, f64)>,
+    /// Let the script include files from this folder, too
+    #[arg(long, value_name = "FOLDER")]
+    pub include_from: Vec<PathBuf>,
 }
 
 /// Reads a delimiter.

@@ -20,6 +20,7 @@ mod soak;
 mod suggest;
 mod table;
 mod test;
+mod watch;
 
 use args::{Arguments, Command, Schema, Soak};
 use clap::Parser;
@@ -61,6 +62,7 @@ fn explained(error: &clap::Error) -> Exit {
 fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
     match command {
         Command::Run(arguments) => run::run(arguments, out),
+        Command::Watch(arguments) => watch::watch(arguments, out),
         Command::Test {
             paths,
             accept,

@@ -3,6 +3,7 @@
 //! The command line and the repository's own tests call the same functions, so both give the same verdict.
 
 use crate::golden::{self, Mode, Standing};
+use crate::model::Script;
 use crate::run::{Outcome, RunError, run_with};
 use crate::{ScriptError, Verdict, read_with};
 use standstill_trace::compare::Yardstick;
@@ -131,6 +132,22 @@ pub fn run_file(
     allowed: &[PathBuf],
     progress: impl FnMut(u64),
 ) -> Result<Outcome, SuiteError> {
+    let (script, _) = read_file(path, parameters, allowed)?;
+    run_with(&script, progress).map_err(|source| SuiteError::Run {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+/// Reads the script at `path`; the script and its text. Arguments as for [`run_file`].
+///
+/// # Errors
+/// [`SuiteError::Io`], [`SuiteError::Encoding`] or [`SuiteError::Script`].
+pub fn read_file(
+    path: &Path,
+    parameters: &[(String, f64)],
+    allowed: &[PathBuf],
+) -> Result<(Script, String), SuiteError> {
     let bytes = fs::read(path).map_err(SuiteError::io(path))?;
     let text = String::from_utf8(bytes).map_err(|error| SuiteError::Encoding {
         path: path.to_owned(),
@@ -139,10 +156,7 @@ pub fn run_file(
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut load = |inner: &str| included(folder, inner, allowed);
     let script = read_with(&text, &shown(path), parameters, &mut load)?;
-    run_with(&script, progress).map_err(|source| SuiteError::Run {
-        path: path.to_owned(),
-        source,
-    })
+    Ok((script, text))
 }
 
 /// The text of a file below `folder`, or below one of `allowed`; why not, in words that are the same everywhere.

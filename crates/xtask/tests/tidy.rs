@@ -136,7 +136,7 @@ fn the_top_level_holds_what_a_newcomer_expects() {
 #[test]
 fn layers_depend_only_downwards() {
     // Package and what it may depend on, from bottom to top (docs/architecture.md).
-    let layers: [(&str, &str, &[&str]); 13] = [
+    let layers: [(&str, &str, &[&str]); 14] = [
         ("crates/planner", "standstill-planner", &[]),
         ("crates/axis", "standstill-axis", &["standstill-planner"]),
         ("crates/fb", "standstill-fb", &["standstill-axis"]),
@@ -189,6 +189,16 @@ fn layers_depend_only_downwards() {
             ],
         ),
         (
+            "crates/watch",
+            "standstill-watch",
+            &[
+                "standstill-axis",
+                "standstill-fb",
+                "standstill-script",
+                "standstill-trace",
+            ],
+        ),
+        (
             "crates/cli",
             "standstill-cli",
             &[
@@ -199,6 +209,7 @@ fn layers_depend_only_downwards() {
                 "standstill-script",
                 "standstill-soak",
                 "standstill-trace",
+                "standstill-watch",
             ],
         ),
         (

@@ -13,3 +13,4 @@ mod soak_blocks;
 mod support;
 mod test;
 mod traces;
+mod watch;
