@@ -23,6 +23,8 @@ const EXIT_STATUSES: &str = "Exit status: 0 passed, 1 a claim, golden or plan fa
 pub enum Command {
     /// Run scripts and show their events, curves and extremes
     Run(RunArguments),
+    /// Run a script in the terminal: step it, stop at events and claims, change its inputs
+    Watch(WatchArguments),
     /// Hold scripts against their claims and goldens
     Test {
         /// Scripts, and folders of them
@@ -31,6 +33,16 @@ pub enum Command {
         /// Take the runs as they are for goldens, where all claims hold
         #[arg(long)]
         accept: bool,
+        /// How exactly a run must be as its golden: to the bit, or its events to the scan and its set-points within
+        /// --abs and --rel
+        #[arg(long, value_enum, value_name = "HOW", default_value_t = Golden::Exact)]
+        golden: Golden,
+        /// With --golden events: how far a set-point may be off, in its own unit [default: 1e-6]
+        #[arg(long, value_name = "X", value_parser = tolerance)]
+        abs: Option<f64>,
+        /// With --golden events: how far it may be off besides, as a share of the expected value [default: 1e-9]
+        #[arg(long, value_name = "Y", value_parser = tolerance)]
+        rel: Option<f64>,
         /// Write the outcome to this file, as JUnit XML
         #[arg(long, value_name = "FILE.xml")]
         junit: Option<PathBuf>,
@@ -117,6 +129,15 @@ pub enum Command {
         #[arg(long)]
         check: bool,
     },
+}
+
+/// How exactly `test` holds runs against goldens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Golden {
+    /// To the bit
+    Exact,
+    /// Events to the scan, set-points within tolerances
+    Events,
 }
 
 /// What `schema` describes.
@@ -231,6 +252,20 @@ pub struct SweepArguments {
     pub include_from: Vec<PathBuf>,
 }
 
+/// What `watch` takes.
+#[derive(Args, Debug)]
+pub struct WatchArguments {
+    /// The script
+    #[arg(value_name = "SCRIPT")]
+    pub script: PathBuf,
+    /// Replace the value of a parameter of the script
+    #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
+    pub set: Vec<(String, f64)>,
+    /// Let the script include files from this folder, too
+    #[arg(long, value_name = "FOLDER")]
+    pub include_from: Vec<PathBuf>,
+}
+
 /// Reads a delimiter.
 fn delimiter(text: &str) -> Result<char, String> {
     let text = if matches!(text, "tab" | "\\t") { "\t" } else { text };
@@ -239,6 +274,14 @@ fn delimiter(text: &str) -> Result<char, String> {
         (Some(one), None) if csv::DELIMITERS.contains(&one) => Ok(one),
         _ => Err("write `,`, `;`, `|` or `tab`".to_owned()),
     }
+}
+
+/// Reads a tolerance.
+fn tolerance(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = serde_json::from_str(text).ok();
+    number
+        .filter(|number| *number >= 0.0)
+        .ok_or_else(|| "write a number that is not negative, such as 1e-6".to_owned())
 }
 
 /// Reads `NAME=VALUE`; the value is a number as in scripts and traces.
@@ -265,6 +308,15 @@ mod tests {
     #[test]
     fn the_arguments_are_consistent() {
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn tolerances_are_finite_and_not_negative() {
+        assert_eq!(tolerance("1e-6"), Ok(1e-6));
+        assert_eq!(tolerance("0"), Ok(0.0));
+        for wrong in ["-1e-9", "NaN", "Infinity", "1e999", "", "1,5", "small"] {
+            assert!(tolerance(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

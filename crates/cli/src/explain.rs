@@ -2,22 +2,22 @@
 
 use crate::exit::{Exit, Failure, complain};
 use standstill_script::suite::shown;
-use standstill_trace::compare::compare;
+use standstill_trace::story::story;
 use standstill_trace::{Trace, file};
 use std::io::Write;
 use std::path::Path;
 
-/// Shows the first scan and signals in which `found` differs from `expected`.
+/// Tells how `found` differs from `expected`, from the first scan and signals on, and what may be behind it.
 pub fn explain(expected: &Path, found: &Path, out: &mut dyn Write) -> Result<Exit, Failure> {
-    let difference = compare(&load(expected)?, &load(found)?);
+    let story = story(&load(expected)?, &load(found)?);
     let (expected, found) = (shown(expected), shown(found));
-    match difference {
+    match story {
         None => {
             writeln!(out, "{expected} and {found} are equal to the bit")?;
             Ok(Exit::Passed)
         }
-        Some(difference) => {
-            write!(out, "expected: {expected}\nfound:    {found}\n{difference}")?;
+        Some(story) => {
+            write!(out, "expected: {expected}\nfound:    {found}\n{story}")?;
             Ok(Exit::Failed)
         }
     }

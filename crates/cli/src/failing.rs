@@ -5,7 +5,7 @@ use crate::report::page_failure;
 use standstill_report::{Mark, Source, check, html_marked};
 use standstill_script::golden;
 use standstill_script::suite::{Report, SuiteError, shown};
-use standstill_trace::compare::{Difference, compare};
+use standstill_trace::compare::{Difference, Yardstick, compare_by};
 use standstill_trace::file::replace;
 use standstill_trace::{Trace, time_literal};
 use std::collections::BTreeSet;
@@ -29,11 +29,11 @@ impl<'a> Pages<'a> {
         })
     }
 
-    /// Writes the page of a script that failed; its path.
-    pub fn write(&mut self, script: &Path, report: &Report) -> Result<String, Failure> {
+    /// Writes the page of a script that failed by this yardstick; its path.
+    pub fn write(&mut self, script: &Path, report: &Report, yardstick: Yardstick) -> Result<String, Failure> {
         let path = self.place(script);
         make(path.parent().unwrap_or(self.root))?;
-        let page = page(script, report)?;
+        let page = page(script, report, yardstick)?;
         replace(&path, |out| out.write_all(page.as_bytes()))?;
         Ok(shown(&path))
     }
@@ -61,14 +61,16 @@ fn make(folder: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder).map_err(|error| Failure::io(&shown(folder), &error))
 }
 
-fn page(script: &Path, report: &Report) -> Result<String, Failure> {
+fn page(script: &Path, report: &Report, yardstick: Yardstick) -> Result<String, Failure> {
     let run = &report.outcome.trace;
     let mut golden = golden::expected(script).map_err(SuiteError::from)?;
     if let Some(expected) = &mut golden {
         expected.describe_as(run.header());
     }
     // A run that differs in nothing is not shown twice.
-    let difference = golden.as_ref().and_then(|expected| compare(expected, run));
+    let difference = golden
+        .as_ref()
+        .and_then(|expected| compare_by(expected, run, yardstick));
     let name = shown(script);
     let names = [format!("expected: golden of {name}"), format!("found: {name}")];
     let lacks = ["the notes of its run".to_owned()];

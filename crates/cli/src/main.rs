@@ -21,6 +21,7 @@ mod suggest;
 mod sweep;
 mod table;
 mod test;
+mod watch;
 
 use args::{Arguments, Command, Schema, Soak};
 use clap::Parser;
@@ -62,9 +63,13 @@ fn explained(error: &clap::Error) -> Exit {
 fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
     match command {
         Command::Run(arguments) => run::run(arguments, out),
+        Command::Watch(arguments) => watch::watch(arguments, out),
         Command::Test {
             paths,
             accept,
+            golden,
+            abs,
+            rel,
             junit,
             report,
             include_from,
@@ -72,6 +77,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             let wish = test::Wish {
                 paths,
                 accept: *accept,
+                yardstick: test::yardstick(*golden, *abs, *rel)?,
                 junit: junit.as_deref(),
                 report: report.as_deref(),
                 include_from,

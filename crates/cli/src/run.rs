@@ -118,7 +118,7 @@ fn run_one(
 }
 
 /// A name after `--set` that no script parameter has is a mistake of the command line, not of the script.
-fn failure(error: SuiteError) -> Failure {
+pub fn failure(error: SuiteError) -> Failure {
     let is_argument = |script: &ScriptError| {
         let mut diagnostics = script.diagnostics().iter();
         diagnostics.all(|diagnostic| diagnostic.code == Code::UnknownParameter && diagnostic.span.is_none())

@@ -1,11 +1,13 @@
 //! `standstill test`: scripts as tests, held against their claims and goldens.
 
+use crate::args::Golden;
 use crate::exit::{Exit, Failure, go_on};
 use crate::failing::Pages;
 use crate::junit::{self, Case, Ending};
 use crate::progress::Progress;
 use standstill_script::golden::{Mode, Standing};
 use standstill_script::suite::{self, Report};
+use standstill_trace::compare::{Tolerance, Yardstick};
 use std::fmt;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -18,12 +20,29 @@ pub struct Wish<'a> {
     pub paths: &'a [PathBuf],
     /// Goldens become what the runs are.
     pub accept: bool,
+    /// How exactly a run must be as its golden.
+    pub yardstick: Yardstick,
     /// Where to write the outcome as JUnit XML.
     pub junit: Option<&'a Path>,
     /// The folder for pages of scripts that fail.
     pub report: Option<&'a Path>,
     /// Folders that scripts may include files from.
     pub include_from: &'a [PathBuf],
+}
+
+/// How exactly a run must be as its golden, from the arguments.
+pub fn yardstick(golden: Golden, abs: Option<f64>, rel: Option<f64>) -> Result<Yardstick, Failure> {
+    let tolerance = Tolerance::default();
+    match (golden, abs.or(rel)) {
+        (Golden::Events, _) => Ok(Yardstick::Events(Tolerance {
+            absolute: abs.unwrap_or(tolerance.absolute),
+            relative: rel.unwrap_or(tolerance.relative),
+        })),
+        (Golden::Exact, None) => Ok(Yardstick::Exact),
+        (Golden::Exact, Some(_)) => Err(Failure::usage(
+            "--abs and --rel are for --golden events: to the bit there is no tolerance",
+        )),
+    }
 }
 
 /// Judges all scripts at the paths, in sorted order, and reports goldens that have no script any more.
@@ -39,13 +58,17 @@ pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
         progress.show(|| place.clone());
         let begin = Instant::now();
         let told = |scans| progress.show(|| format!("{place}, {scans} scans"));
-        let judged = suite::judge_file(script, mode, wish.include_from, told);
+        let judged = suite::judge_file(script, mode, wish.yardstick, wish.include_from, told);
         progress.clear();
         let (ending, text) = match judged {
             Ok(report) => {
                 let judged = tally.judged(&name, &report, out)?;
                 if let (Ending::Failed, Some(pages)) = (judged.0, &mut pages) {
-                    writeln!(out, "    report: {}", pages.write(script, &report)?)?;
+                    writeln!(
+                        out,
+                        "    report: {}",
+                        pages.write(script, &report, wish.yardstick)?
+                    )?;
                 }
                 judged
             }
@@ -109,10 +132,13 @@ impl Tally {
         let (count, word) = match (&report.golden, report.passed()) {
             (_, false) | (Standing::Failed(_), _) => (&mut self.failed, "FAILED"),
             (Standing::Accepted, true) => (&mut self.accepted, "accepted"),
-            (Standing::Same, true) => (&mut self.passed, "ok"),
+            (Standing::Same | Standing::Close(_), true) => (&mut self.passed, "ok"),
         };
         *count += 1;
         writeln!(out, "{word:<8}  {name}")?;
+        if let (Standing::Close(Some(how)), true) = (&report.golden, report.passed()) {
+            writeln!(out, "    {how}")?;
+        }
         let text = report.to_string();
         for line in text.lines() {
             writeln!(out, "    {line}")?;

@@ -5,6 +5,7 @@
 
 use crate::run::Outcome;
 use standstill_trace::Trace;
+use standstill_trace::compare::{Closeness, Yardstick};
 use standstill_trace::golden::{self, GoldenError, Verdict};
 use std::path::{Path, PathBuf};
 
@@ -52,6 +53,8 @@ impl Mode {
 pub enum Standing {
     /// Every bit is as reviewed.
     Same,
+    /// Events are as reviewed, and set-points within the tolerance asked for: how far they are.
+    Close(Option<Closeness>),
     /// It was written in this run.
     Accepted,
     /// It is not as reviewed: what differs, and what can be done.
@@ -72,13 +75,29 @@ pub fn expected(script: &Path) -> Result<Option<Trace>, GoldenError> {
     golden::expected(&snap_path(script))
 }
 
-/// Holds a run against the golden of its script, and does to the golden what `mode` permits.
+/// Holds a run against the golden of its script by this yardstick, and does to the golden what `mode` permits. A golden
+/// that the run passes for is left as it is.
 ///
 /// # Errors
 /// A file that cannot be read or written, or a snapshot in another form than insta's.
-pub fn judge(script: &Path, outcome: &Outcome, mode: Mode) -> Result<Standing, GoldenError> {
+pub fn judge(
+    script: &Path,
+    outcome: &Outcome,
+    mode: Mode,
+    yardstick: Yardstick,
+) -> Result<Standing, GoldenError> {
     let snap = snap_path(script);
     let trace = &outcome.trace;
+    if let (Mode::Accept, Yardstick::Events(_)) = (mode, yardstick)
+        && outcome.passed()
+    {
+        match golden::judge_by(&snap, trace, yardstick) {
+            Ok(Verdict::Close(how)) => return Ok(Standing::Close(how)),
+            // Accepting is the way out of a snapshot in another form.
+            Ok(_) | Err(GoldenError::Form { .. }) => {}
+            Err(error) => return Err(error),
+        }
+    }
     if mode == Mode::Accept {
         if !outcome.passed() {
             return Ok(Standing::Failed(
@@ -90,13 +109,14 @@ pub fn judge(script: &Path, outcome: &Outcome, mode: Mode) -> Result<Standing, G
         return Ok(if wrote { Standing::Accepted } else { Standing::Same });
     }
     let proposing = mode == Mode::Propose;
-    let what = match golden::judge(&snap, trace)? {
+    let what = match golden::judge_by(&snap, trace, yardstick)? {
         Verdict::Same => {
             if proposing {
                 golden::withdraw(&snap)?;
             }
             return Ok(Standing::Same);
         }
+        Verdict::Close(how) => return Ok(Standing::Close(how)),
         Verdict::Companion(_) if proposing => {
             // The snapshot was accepted elsewhere, and its text holds the digest of every bit of this run.
             golden::accept(&snap, trace)?;

@@ -5,6 +5,7 @@
 //! not: arguments and printing (the command line), motion, block behaviour.
 #![forbid(unsafe_code)]
 
+mod changes;
 pub mod claims;
 mod error;
 mod format;
@@ -18,13 +19,14 @@ mod schema_sweep;
 pub mod suite;
 pub mod sweep;
 
-pub use claims::{Failure, Verdict};
+pub use changes::with_changes;
+pub use claims::{Failure, Standing, Verdict};
 pub use error::{Code, DIAGNOSTICS_SHOWN, Diagnostic, ScriptError};
 pub use format::format;
 pub use read::machine_map::read_map;
 pub use read::sweep::read_sweep;
 pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read, read_with};
-pub use run::{Outcome, RunError, run, run_with};
+pub use run::{Change, Outcome, RunError, Session, run, run_with};
 pub use schema::schema;
 pub use schema_map::map_schema;
 pub use schema_sweep::sweep_schema;

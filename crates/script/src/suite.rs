@@ -6,6 +6,7 @@ use crate::golden::{self, Mode, Standing};
 use crate::model::Script;
 use crate::run::{Outcome, RunError, run_with};
 use crate::{ScriptError, Verdict, read_with};
+use standstill_trace::compare::Yardstick;
 use standstill_trace::golden::GoldenError;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -45,7 +46,7 @@ impl fmt::Display for Report {
             writeln!(out, "{failure}")?;
         }
         match &self.golden {
-            Standing::Same | Standing::Accepted => Ok(()),
+            Standing::Same | Standing::Close(_) | Standing::Accepted => Ok(()),
             Standing::Failed(why) => writeln!(out, "golden: {}", why.trim_end()),
         }
     }
@@ -104,7 +105,7 @@ pub fn shown(path: &Path) -> String {
     path.display().to_string().replace(std::path::MAIN_SEPARATOR, "/")
 }
 
-/// Reads and runs the script at `path`, and holds it against its claims and its golden. `progress` is told
+/// Reads and runs the script at `path`, and holds it against its claims and, by this yardstick, its golden. `progress` is told
 /// from time to time how many scans are done. Files that it includes lie below its folder or below one of `allowed`.
 ///
 /// # Errors
@@ -112,11 +113,12 @@ pub fn shown(path: &Path) -> String {
 pub fn judge_file(
     path: &Path,
     mode: Mode,
+    yardstick: Yardstick,
     allowed: &[PathBuf],
     progress: impl FnMut(u64),
 ) -> Result<Report, SuiteError> {
     let outcome = run_file(path, &[], allowed, progress)?;
-    let golden = golden::judge(path, &outcome, mode)?;
+    let golden = golden::judge(path, &outcome, mode, yardstick)?;
     Ok(Report { outcome, golden })
 }
 
@@ -131,13 +133,26 @@ pub fn run_file(
     allowed: &[PathBuf],
     progress: impl FnMut(u64),
 ) -> Result<Outcome, SuiteError> {
-    let text = read_text(path)?;
-    let mut load = |inner: &str| included(path, inner, allowed);
-    let script = read_with(&text, &shown(path), parameters, &mut load)?;
+    let (script, _) = read_file(path, parameters, allowed)?;
     run_with(&script, progress).map_err(|source| SuiteError::Run {
         path: path.to_owned(),
         source,
     })
+}
+
+/// Reads the script at `path`; the script and its text. Arguments as for [`run_file`].
+///
+/// # Errors
+/// [`SuiteError::Io`], [`SuiteError::Encoding`] or [`SuiteError::Script`].
+pub fn read_file(
+    path: &Path,
+    parameters: &[(String, f64)],
+    allowed: &[PathBuf],
+) -> Result<(Script, String), SuiteError> {
+    let text = read_text(path)?;
+    let mut load = |inner: &str| included(path, inner, allowed);
+    let script = read_with(&text, &shown(path), parameters, &mut load)?;
+    Ok((script, text))
 }
 
 /// A script with all it includes, read once to be run with many values of its parameters.

@@ -2,6 +2,7 @@
 
 use standstill_script::golden::{Mode, Standing};
 use standstill_script::suite::{Report, SuiteError, find, judge_file, name, orphans};
+use standstill_trace::compare::{Tolerance, Yardstick};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -57,7 +58,11 @@ fn script(position: f64) -> String {
 }
 
 fn judged(path: &Path, mode: Mode) -> Report {
-    judge_file(path, mode, &[], |_| {}).unwrap_or_else(|error| panic!("{error}"))
+    judged_by(path, mode, Yardstick::Exact)
+}
+
+fn judged_by(path: &Path, mode: Mode, yardstick: Yardstick) -> Report {
+    judge_file(path, mode, yardstick, &[], |_| {}).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn failed(report: &Report) -> &str {
@@ -101,6 +106,75 @@ fn a_run_that_differs_names_scan_signal_and_values() {
     assert!(why.contains("10.000000000000002"), "{why}");
     assert!(why.contains("ULP"), "{why}");
     assert_eq!(folder.files(), ["x.exact", "x.scan.json", "x.snap"]);
+}
+
+/// What an upgrade may change without a machine noticing: an ULP of a set-point passes, a scan of an edge does not.
+#[test]
+fn by_events_a_golden_admits_close_set_points_and_nothing_else() {
+    let folder = Folder::new("by_events");
+    let close = Yardstick::Events(Tolerance::default());
+    let path = folder.write("x.scan.json", &script(10.0));
+    judged(&path, Mode::Accept);
+    let golden = fs::read(folder.0.join("x.snap")).expect("accepted");
+    assert_eq!(judged_by(&path, Mode::Check, close).golden, Standing::Same);
+    folder.write("x.scan.json", &script(10.000000000000002));
+    for mode in [Mode::Check, Mode::Propose, Mode::Accept] {
+        let report = judged_by(&path, mode, close);
+        assert!(report.passed());
+        let Standing::Close(Some(how)) = &report.golden else {
+            panic!("{:?}", report.golden)
+        };
+        assert!(how.values > 0 && how.apart > 0.0 && how.apart < 1e-6, "{how}");
+        assert_eq!(
+            fs::read(folder.0.join("x.snap")).expect("there"),
+            golden,
+            "{mode:?}"
+        );
+        assert_eq!(folder.files(), ["x.exact", "x.scan.json", "x.snap"], "{mode:?}");
+    }
+    folder.write("x.scan.json", &script(9.99999));
+    let report = judged_by(&path, Mode::Check, close);
+    let why = failed(&report);
+    assert!(why.contains("first difference in scan 0"), "{why}");
+    assert!(why.contains("found 9.99999  (may be 1.0e-6 apart)"), "{why}");
+    let wide = Yardstick::Events(Tolerance {
+        absolute: 0.0,
+        relative: 1e-7,
+    });
+    assert!(
+        !judged_by(&path, Mode::Check, wide).passed(),
+        "seven digits are not the same"
+    );
+    let wider = Yardstick::Events(Tolerance {
+        absolute: 10.0,
+        relative: 1e-5,
+    });
+    assert!(judged_by(&path, Mode::Check, wider).passed());
+    // A scan later is another behaviour, however wide the tolerance.
+    let late = script(10.0)
+        .replace("\"pins\"", "\"task\": \"main\", \"pins\"")
+        .replace(
+            "\"blocks\"",
+            "\"tasks\": {\"main\": {\"interval\": 2}}, \"blocks\"",
+        );
+    folder.write("x.scan.json", &late.replace("\"at\": 11", "\"at\": 12"));
+    let report = judged_by(&path, Mode::Check, wider);
+    assert!(report.outcome.passed(), "{report}");
+    let why = failed(&report);
+    assert!(why.contains("first difference in scan 11"), "{why}");
+    assert!(why.contains("m.Done    expected TRUE   found FALSE"), "{why}");
+    assert!(why.contains("events: - golden, + this run\n"), "{why}");
+    assert!(!why.contains("digest"), "only events are told: {why}");
+    // Accepting writes what a machine would notice.
+    assert_eq!(judged_by(&path, Mode::Accept, wider).golden, Standing::Accepted);
+    // Without its companion a golden has no set-points to compare with.
+    fs::remove_file(folder.0.join("x.exact")).expect("it was written");
+    folder.write("x.scan.json", &script(10.000000000000002));
+    let report = judged_by(&path, Mode::Check, close);
+    assert!(
+        failed(&report).contains("set-points cannot be compared: there is no exact trace"),
+        "{report}"
+    );
 }
 
 #[test]
@@ -164,7 +238,7 @@ fn scripts_are_found_in_sorted_order_and_orphans_reported() {
 #[test]
 fn what_is_no_script_is_told_apart_from_what_cannot_be_read() {
     let folder = Folder::new("broken");
-    let judge = |file: &str| judge_file(&folder.0.join(file), Mode::Check, &[], |_| {});
+    let judge = |file: &str| judge_file(&folder.0.join(file), Mode::Check, Yardstick::Exact, &[], |_| {});
     assert!(matches!(judge("nowhere.scan.json"), Err(SuiteError::Io { .. })));
     folder.write("broken.scan.json", "{,}");
     assert!(matches!(judge("broken.scan.json"), Err(SuiteError::Script(_))));

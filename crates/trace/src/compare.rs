@@ -12,8 +12,61 @@ use crate::trace::Trace;
 /// Signals that the text of a difference names at most.
 const SIGNALS_SHOWN: usize = 20;
 
+/// More representable numbers than this between two values are told by the values.
+const ULPS_TOLD: u64 = 1_000_000;
+
 /// Events shown before the first difference, and after it on either side.
 const EVENTS_SHOWN: usize = 4;
+
+/// How far a real number may be from the expected one and still pass: by `absolute` plus `relative` times the magnitude
+/// of the expected one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// In the unit of the signal; finite and not negative.
+    pub absolute: f64,
+    /// Of the expected value; finite and not negative.
+    pub relative: f64,
+}
+
+impl Default for Tolerance {
+    /// 1e-6 and 1e-9: what no machine notices where the unit is the millimetre or the degree. Reordered arithmetic
+    /// stays far below, another plan does not.
+    fn default() -> Self {
+        Self {
+            absolute: 1e-6,
+            relative: 1e-9,
+        }
+    }
+}
+
+impl Tolerance {
+    /// How far from `expected` a value may be.
+    #[must_use]
+    pub fn allowed(self, expected: f64) -> f64 {
+        self.absolute + self.relative * expected.abs()
+    }
+
+    /// Whether `found` passes for `expected`. Infinities and NaN pass only for themselves.
+    #[must_use]
+    pub fn passes(self, expected: f64, found: f64) -> bool {
+        let apart = (expected - found).abs();
+        let finite = expected.is_finite() && found.is_finite();
+        (finite && apart <= self.allowed(expected))
+            || expected == found
+            || (expected.is_nan() && found.is_nan())
+    }
+}
+
+/// How exactly a trace must be as another one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Yardstick {
+    /// To the bit, and with the same columns.
+    #[default]
+    Exact,
+    /// Booleans, states, names and whole numbers in every scan, hence all events; real numbers within a tolerance.
+    /// Columns that only the actual trace has, as a later version may, do not count.
+    Events(Tolerance),
+}
 
 /// How two traces differ.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +101,7 @@ pub struct ScanDifference {
 }
 
 /// One signal that differs.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SignalDifference {
     /// Name of the column.
     pub name: String,
@@ -58,24 +111,31 @@ pub struct SignalDifference {
     pub actual: String,
     /// How many representable numbers lie between the two, for finite numbers.
     pub ulps: Option<u64>,
+    /// How far apart they were allowed to be, where a tolerance was given and both are finite numbers.
+    pub allowed: Option<f64>,
 }
 
 /// Compares two traces scan by scan, to the bit; `None` if they do not differ. Columns are matched by
 /// name; headers other than the cycle, and notes, do not count.
 #[must_use]
 pub fn compare(expected: &Trace, actual: &Trace) -> Option<Difference> {
-    let pairs: Vec<(usize, usize)> = expected
-        .columns()
-        .iter()
-        .enumerate()
-        .filter_map(|(at, column)| Some((at, actual.column(&column.name)?)))
-        .collect();
+    compare_by(expected, actual, Yardstick::Exact)
+}
+
+/// As [`compare`], by a yardstick.
+#[must_use]
+pub fn compare_by(expected: &Trace, actual: &Trace, yardstick: Yardstick) -> Option<Difference> {
+    let pairs = pairs(expected, actual);
+    let only_actual = match yardstick {
+        Yardstick::Exact => missing(actual, expected),
+        Yardstick::Events(_) => Vec::new(),
+    };
     let difference = Difference {
         scans: (expected.scans(), actual.scans()),
         cycles_ns: (expected.header().cycle_ns, actual.header().cycle_ns),
         only_expected: missing(expected, actual),
-        only_actual: missing(actual, expected),
-        first: first_difference(expected, actual, &pairs),
+        only_actual,
+        first: first_difference(expected, actual, &pairs, yardstick),
     };
     let equal = difference.first.is_none()
         && difference.scans.0 == difference.scans.1
@@ -83,6 +143,71 @@ pub fn compare(expected: &Trace, actual: &Trace) -> Option<Difference> {
         && difference.only_expected.is_empty()
         && difference.only_actual.is_empty();
     (!equal).then_some(difference)
+}
+
+/// Columns that both traces have, by name.
+pub(crate) fn pairs(expected: &Trace, actual: &Trace) -> Vec<(usize, usize)> {
+    let columns = expected.columns().iter().enumerate();
+    columns
+        .filter_map(|(at, column)| Some((at, actual.column(&column.name)?)))
+        .collect()
+}
+
+/// How far a trace is from one that it passes for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Closeness {
+    /// So many values are not equal to the bit.
+    pub values: usize,
+    /// The signal that is furthest from what was expected, measured by what it may be.
+    pub signal: String,
+    /// The scan in which it is.
+    pub scan: usize,
+    /// How far (unit of the signal).
+    pub apart: f64,
+}
+
+impl fmt::Display for Closeness {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            values,
+            signal,
+            scan,
+            apart,
+        } = self;
+        let plural = if *values == 1 { "" } else { "s" };
+        write!(
+            out,
+            "{values} value{plural} within tolerance, the furthest {signal} in scan {scan} by {apart:.1e}"
+        )
+    }
+}
+
+/// How far the real numbers of a trace are from the expected ones; `None` if none differs.
+#[must_use]
+pub fn closeness(expected: &Trace, actual: &Trace, tolerance: Tolerance) -> Option<Closeness> {
+    let mut values = 0;
+    let mut worst: Option<(f64, Closeness)> = None;
+    for (at, other) in pairs(expected, actual) {
+        for (scan, (a, b)) in expected.reals(at).zip(actual.reals(other)).enumerate() {
+            if a.to_bits() == b.to_bits() {
+                continue;
+            }
+            values += 1;
+            let apart = (a - b).abs();
+            let share = apart / tolerance.allowed(a);
+            if worst.as_ref().is_none_or(|(most, _)| share > *most) {
+                let signal = expected.columns().get(at)?.name.clone();
+                let found = Closeness {
+                    values,
+                    signal,
+                    scan,
+                    apart,
+                };
+                worst = Some((share, found));
+            }
+        }
+    }
+    worst.map(|(_, found)| Closeness { values, ..found })
 }
 
 fn missing(from: &Trace, in_other: &Trace) -> Vec<String> {
@@ -93,12 +218,17 @@ fn missing(from: &Trace, in_other: &Trace) -> Vec<String> {
         .collect()
 }
 
-fn first_difference(expected: &Trace, actual: &Trace, pairs: &[(usize, usize)]) -> Option<ScanDifference> {
+fn first_difference(
+    expected: &Trace,
+    actual: &Trace,
+    pairs: &[(usize, usize)],
+    yardstick: Yardstick,
+) -> Option<ScanDifference> {
     let common = expected.scans().min(actual.scans());
     let (scan, signals) = (0..common).find_map(|scan| {
         let signals: Vec<_> = pairs
             .iter()
-            .filter_map(|&pair| differs(expected, actual, pair, scan))
+            .filter_map(|&pair| differs(expected, actual, pair, scan, yardstick))
             .collect();
         (!signals.is_empty()).then_some((scan, signals))
     })?;
@@ -131,10 +261,24 @@ fn first_difference(expected: &Trace, actual: &Trace, pairs: &[(usize, usize)]) 
     })
 }
 
-fn differs(expected: &Trace, actual: &Trace, pair: (usize, usize), scan: usize) -> Option<SignalDifference> {
+fn differs(
+    expected: &Trace,
+    actual: &Trace,
+    pair: (usize, usize),
+    scan: usize,
+    yardstick: Yardstick,
+) -> Option<SignalDifference> {
     let a = expected.cell(scan, pair.0)?;
     let b = actual.cell(scan, pair.1)?;
-    if equal(a, b) {
+    let tolerance = match yardstick {
+        Yardstick::Exact => None,
+        Yardstick::Events(tolerance) => Some(tolerance),
+    };
+    let passes = match (a, b, tolerance) {
+        (Cell::Real(a), Cell::Real(b), Some(tolerance)) => tolerance.passes(a, b),
+        _ => equal(a, b),
+    };
+    if passes {
         return None;
     }
     let ulps = match (a, b) {
@@ -149,11 +293,15 @@ fn differs(expected: &Trace, actual: &Trace, pair: (usize, usize), scan: usize) 
         expected: cell_text(a),
         actual: cell_text(b),
         ulps,
+        allowed: tolerance.and_then(|tolerance| match a {
+            Cell::Real(a) if ulps.is_some() => Some(tolerance.allowed(a)),
+            _ => None,
+        }),
     })
 }
 
 /// A trace read without its header may hold a column under another kind: then the meaning counts.
-fn equal(a: Cell<'_>, b: Cell<'_>) -> bool {
+pub(crate) fn equal(a: Cell<'_>, b: Cell<'_>) -> bool {
     match (a, b) {
         (Cell::Integer(whole), Cell::Real(real)) | (Cell::Real(real), Cell::Integer(whole)) => {
             whole as f64 == real
@@ -212,15 +360,17 @@ impl fmt::Display for ScanDifference {
             expected,
             actual,
             ulps,
+            allowed,
         } in shown
         {
             write!(
                 out,
                 "  {name:<name_width$}  expected {expected:<expected_width$}  found {actual}"
             )?;
-            match ulps {
-                Some(ulps) => writeln!(out, "  ({ulps} ULP)")?,
-                None => writeln!(out)?,
+            match (ulps, allowed) {
+                (_, Some(allowed)) => writeln!(out, "  (may be {allowed:.1e} apart)")?,
+                (Some(ulps), None) if *ulps <= ULPS_TOLD => writeln!(out, "  ({ulps} ULP)")?,
+                (_, None) => writeln!(out)?,
             }
         }
         if signals.len() > shown.len() {

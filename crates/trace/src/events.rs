@@ -38,17 +38,50 @@ pub(crate) fn row_events(trace: &Trace) -> Vec<Event> {
 }
 
 fn with_notes(trace: &Trace, of_trace: &[Note]) -> Vec<Event> {
-    let groups = groups(trace.columns());
     let mut notes: BTreeMap<usize, Vec<&Note>> = BTreeMap::new();
     for note in of_trace {
         notes.entry(note.scan).or_default().push(note);
     }
-    let mut told = vec![None; trace.columns().len()];
+    let mut log = EventLog::default();
     let mut events = Vec::new();
     for scan in 0..trace.scans() {
-        let mut of_scan = notes.remove(&scan).unwrap_or_default();
-        for group in &groups {
-            let text = changes(trace, group, scan, &mut told);
+        log.scan(trace, scan, notes.remove(&scan).unwrap_or_default(), &mut events);
+    }
+    // Notes of scans that the trace does not hold: better late than lost.
+    events.extend(notes.into_values().flatten().map(note_event));
+    events
+}
+
+/// The events of a trace that grows.
+#[derive(Clone, Debug, Default)]
+pub struct EventLog {
+    /// Scans and notes whose events were taken.
+    scans: usize,
+    notes: usize,
+    /// Per column the scan whose value was told last.
+    told: Vec<Option<usize>>,
+}
+
+impl EventLog {
+    /// The events of the rows and notes that the trace has got since the last call. Cost: proportional to these rows
+    /// times columns.
+    pub fn take(&mut self, trace: &Trace) -> Vec<Event> {
+        let mut events = Vec::new();
+        let mut notes = trace.notes().get(self.notes..).unwrap_or_default();
+        while self.scans < trace.scans() {
+            let scan = self.scans;
+            // Notes come in the order of scans; one that comes late is told with the next row.
+            let (now, later) = notes.split_at(notes.partition_point(|note| note.scan <= scan));
+            self.scan(trace, scan, now.iter().collect(), &mut events);
+            (self.scans, self.notes, notes) = (scan + 1, self.notes + now.len(), later);
+        }
+        events
+    }
+
+    fn scan(&mut self, trace: &Trace, scan: usize, mut notes: Vec<&Note>, events: &mut Vec<Event>) {
+        self.told.resize(trace.columns().len(), None);
+        for group in &groups(trace.columns()) {
+            let text = changes(trace, group, scan, &mut self.told);
             if !text.is_empty() {
                 events.push(Event {
                     scan,
@@ -56,17 +89,14 @@ fn with_notes(trace: &Trace, of_trace: &[Note]) -> Vec<Event> {
                     text,
                 });
             }
-            of_scan.retain(|note| {
+            notes.retain(|note| {
                 let own = note.subject == group.subject;
                 events.extend(own.then(|| note_event(note)));
                 !own
             });
         }
-        events.extend(of_scan.into_iter().map(note_event));
+        events.extend(notes.into_iter().map(note_event));
     }
-    // Notes of scans that the trace does not hold: better late than lost.
-    events.extend(notes.into_values().flatten().map(note_event));
-    events
 }
 
 /// The events as aligned lines: scan, subject, what happened.
@@ -140,9 +170,9 @@ fn groups(columns: &[Column]) -> Vec<Group<'_>> {
     groups.into_iter().map(|(_, group)| group).collect()
 }
 
-/// What changed in a group in a scan: Booleans first, then values in column order. `told` holds per column
-/// the value that was told last.
-fn changes<'t>(trace: &'t Trace, group: &Group<'_>, scan: usize, told: &mut [Option<Cell<'t>>]) -> String {
+/// What changed in a group in a scan: Booleans first, then values in column order. `told` holds per column the scan
+/// whose value was told last.
+fn changes(trace: &Trace, group: &Group<'_>, scan: usize, told: &mut [Option<usize>]) -> String {
     let mut words = Vec::new();
     let mut takes_inputs = false;
     for &(at, column) in &group.columns {
@@ -171,10 +201,11 @@ fn changes<'t>(trace: &'t Trace, group: &Group<'_>, scan: usize, told: &mut [Opt
         }
         let taken = takes_inputs && column.role == Role::Input;
         let known = told.get(at).copied().flatten();
+        let known = known.and_then(|scan| trace.cell(scan, at));
         if (taken && is_news(column, now, known)) || is_change(trace, at, column, scan) {
             words.push(assignment(column, now));
             if let Some(told) = told.get_mut(at) {
-                *told = Some(now);
+                *told = Some(scan);
             }
         }
     }

@@ -43,12 +43,13 @@ mod number;
 mod panels;
 pub mod plot;
 mod read;
+pub mod story;
 pub mod svg;
 mod trace;
 pub mod vcd;
 
 pub use column::{Cell, Column, Kind, Role};
-pub use events::{Event, events, events_text};
+pub use events::{Event, EventLog, events, events_text};
 pub use extremes::{Extreme, extremes, extremes_text};
 pub use header::{
     AXIS_SIGNALS, Axis, Claim, ClaimFailure, ClaimVerdict, Direction, Header, Input, Instance, Limits, Pin,

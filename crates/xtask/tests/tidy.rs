@@ -136,7 +136,7 @@ fn the_top_level_holds_what_a_newcomer_expects() {
 #[test]
 fn layers_depend_only_downwards() {
     // Package and what it may depend on, from bottom to top (docs/architecture.md).
-    let layers: [(&str, &str, &[&str]); 15] = [
+    let layers: &[(&str, &str, &[&str])] = &[
         ("crates/planner", "standstill-planner", &[]),
         ("crates/axis", "standstill-axis", &["standstill-planner"]),
         ("crates/fb", "standstill-fb", &["standstill-axis"]),
@@ -201,6 +201,16 @@ fn layers_depend_only_downwards() {
             &["standstill-script", "standstill-trace"],
         ),
         (
+            "crates/watch",
+            "standstill-watch",
+            &[
+                "standstill-axis",
+                "standstill-fb",
+                "standstill-script",
+                "standstill-trace",
+            ],
+        ),
+        (
             "crates/cli",
             "standstill-cli",
             &[
@@ -212,6 +222,7 @@ fn layers_depend_only_downwards() {
                 "standstill-soak",
                 "standstill-sweep",
                 "standstill-trace",
+                "standstill-watch",
             ],
         ),
         (
@@ -228,7 +239,7 @@ fn layers_depend_only_downwards() {
             ],
         ),
     ];
-    for (folder, name, allowed) in layers {
+    for &(folder, name, allowed) in layers {
         let manifest = fs::read_to_string(root().join(folder).join("Cargo.toml")).unwrap();
         assert!(manifest.contains(&format!("name = \"{name}\"")), "{folder}");
         // Dev-dependencies may look upwards; only what ships is layered.

@@ -14,3 +14,4 @@ mod support;
 mod sweep;
 mod test;
 mod traces;
+mod watch;

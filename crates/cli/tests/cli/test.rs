@@ -250,6 +250,77 @@ fn a_page_of_one_run_where_there_is_nothing_to_lay_it_over() {
     );
 }
 
+/// As [`SCRIPT`], to another target.
+fn moved_to(position: &str) -> String {
+    SCRIPT
+        .replace("\"Position\": 1,", &format!("\"Position\": {position},"))
+        .replace(
+            "\"X.Position\": 1}",
+            "\"X.Position\": {\"near\": 1, \"within\": 0.1}}",
+        )
+}
+
+#[test]
+fn by_events_a_golden_admits_what_no_machine_notices() {
+    let folder = scratch("test_events");
+    write(&folder, "move.scan.json", &moved_to("1"));
+    assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
+    let test = |more: &[&str]| standstill(&folder, &[&["test", "."], more].concat());
+    let events = ["--golden", "events"];
+    assert_eq!(
+        test(&events).out,
+        "ok        ./move.scan.json\n1 script: 1 passed\n"
+    );
+    write(&folder, "move.scan.json", &moved_to("0.999999999999"));
+    assert_eq!(test(&[]).status, 1);
+    let close = test(&[&events[..], &["--junit", "out.xml", "--report", "pages"]].concat());
+    assert_eq!((close.status, close.err.as_str()), (0, ""));
+    assert!(
+        close.out.starts_with("ok        ./move.scan.json\n    "),
+        "{}",
+        close.out
+    );
+    assert!(
+        close.out.contains(" values within tolerance, the furthest "),
+        "{}",
+        close.out
+    );
+    assert!(close.out.ends_with("1 script: 1 passed\n"), "{}", close.out);
+    assert!(read(&folder, "out.xml").contains("failures=\"0\""));
+    assert!(!folder.join("pages/move.html").exists());
+    // A closer look finds it, names what it is about, and marks it in the report and for JUnit.
+    let strict = [
+        "--abs", "0", "--rel", "1e-13", "--junit", "out.xml", "--report", "pages",
+    ];
+    let found = test(&[&events[..], &strict].concat());
+    assert_eq!(found.status, 1);
+    assert!(
+        found.out.contains("first difference in scan 0 (T#0s)"),
+        "{}",
+        found.out
+    );
+    let line = "move.Position  expected 1.0  found 0.999999999999  (may be 1.0e-13 apart)";
+    assert!(found.out.contains(line), "{}", found.out);
+    assert!(read(&folder, "pages/move.html").contains("\"marks\":[0]"));
+    assert!(read(&folder, "out.xml").contains("move.Position  expected 1.0  found 0.999999999999"));
+}
+
+#[test]
+fn tolerances_belong_to_events_and_are_numbers() {
+    let folder = with_script("test_tolerances");
+    for arguments in [
+        &["--abs", "1e-3"][..],
+        &["--golden", "exact", "--rel", "1e-3"],
+        &["--golden", "events", "--abs", "-1"],
+        &["--golden", "events", "--rel", "NaN"],
+        &["--golden", "roughly"],
+    ] {
+        let ended = standstill(&folder, &[&["test", "."], arguments].concat());
+        assert_eq!((ended.status, ended.out.as_str()), (2, ""), "{arguments:?}");
+        assert!(ended.err.starts_with("error: "), "{}", ended.err);
+    }
+}
+
 #[test]
 fn a_folder_that_cannot_be_made_is_told_before_the_tests_run() {
     let folder = with_script("test_report_refused");

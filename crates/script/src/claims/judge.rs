@@ -148,14 +148,7 @@ pub(super) fn exclusive(
         Ok(scans) => scans,
         Err(failure) => return vec![failure],
     };
-    let raised = |scan| {
-        let is_true = |point: &Point| rows.cell(&Signal::Point(*point), scan) == Some(Cell::Bool(true));
-        points
-            .iter()
-            .filter(move |(_, point)| is_true(point))
-            .map(|(name, _)| name.as_str())
-            .collect::<Vec<_>>()
-    };
+    let raised = |scan| raised(rows, points, scan);
     let broken = || scans.clone().filter(|&scan| raised(scan).len() > 1);
     let Some(first) = broken().next() else {
         return Vec::new();
@@ -166,6 +159,16 @@ pub(super) fn exclusive(
         listed(broken())
     );
     vec![failure(&format!("{path}.exclusive"), Some(first), text)]
+}
+
+/// The names of those points that are TRUE in a scan.
+pub(super) fn raised<'p>(rows: &Rows<'_>, points: &'p [(String, Point)], scan: u64) -> Vec<&'p str> {
+    let is_true = |point: &Point| rows.cell(&Signal::Point(*point), scan) == Some(Cell::Bool(true));
+    points
+        .iter()
+        .filter(move |(_, point)| is_true(point))
+        .map(|(name, _)| name.as_str())
+        .collect()
 }
 
 /// The scans of a range, or the failure of a range that is not all within the run.

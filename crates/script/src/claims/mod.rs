@@ -3,10 +3,13 @@
 mod describe;
 mod judge;
 mod limits;
+mod live;
 
-use crate::model::{ClaimKind, Script, Span};
-use crate::run::{Layout, Rows, Shift};
-use standstill_trace::Trace;
+pub use live::Standing;
+pub(crate) use live::Standings;
+
+use crate::model::{ClaimKind, Span};
+use crate::run::Rows;
 
 /// A claim, judged.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,35 +52,34 @@ impl std::fmt::Display for Failure {
     }
 }
 
-/// Judges every claim of a script on the trace of its run, in file order.
+/// Judges every claim of a script on the rows of its run, in file order.
 ///
 /// Cost: a claim looks at each scan a constant number of times.
-pub(crate) fn judge(script: &Script, trace: &Trace, shifts: &[Shift]) -> Vec<Verdict> {
-    let layout = Layout::new(script);
-    let rows = Rows {
-        script,
-        layout: &layout,
-        trace,
-        shifts,
-    };
-    script
+pub(crate) fn judge(rows: &Rows<'_>) -> Vec<Verdict> {
+    rows.script
         .claims
         .iter()
         .map(|claim| {
-            let failures = failures(&rows, &claim.path, &claim.kind);
-            let scans = scans(&rows, &claim.kind);
+            let failures = failures(rows, &claim.path, &claim.kind);
+            let scans = scans(rows, &claim.kind);
             Verdict {
                 path: claim.path.clone(),
                 span: claim.span,
-                says: describe::claim(&rows, &claim.kind),
+                says: describe::claim(rows, &claim.kind),
                 scans,
                 held: scans
                     .filter(|_| failures.is_empty())
-                    .and_then(|scans| held(&rows, &claim.kind, scans)),
+                    .and_then(|scans| held(rows, &claim.kind, scans)),
                 failures,
             }
         })
         .collect()
+}
+
+/// What every claim says, in one line each.
+pub(crate) fn say(rows: &Rows<'_>) -> Vec<String> {
+    let claims = rows.script.claims.iter();
+    claims.map(|claim| describe::claim(rows, &claim.kind)).collect()
 }
 
 /// The scans of the run that a claim speaks of.

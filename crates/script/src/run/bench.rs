@@ -64,7 +64,7 @@ fn fail(axis: usize, kind: FaultKind, code: u16, time: ScanTime, machine: &mut S
 /// A script at work.
 pub(crate) struct Bench<'a> {
     script: &'a Script,
-    layout: &'a Layout,
+    layout: Layout,
     values: Values,
     /// Pin types of all instances, in trace order.
     types: Vec<PinType>,
@@ -76,6 +76,8 @@ pub(crate) struct Bench<'a> {
     trace: Trace,
     /// Where coordinates moved, for differences of positions.
     shifts: Vec<Shift>,
+    /// What the next latch writes after its steps.
+    changes: Vec<(Point, Value)>,
     /// Last scan of the run, once `stop_when` has held.
     last_scan: Option<u64>,
     /// What ended the run early. The executor's hooks return nothing, so it waits here.
@@ -83,7 +85,7 @@ pub(crate) struct Bench<'a> {
 }
 
 impl<'a> Bench<'a> {
-    pub(crate) fn new(script: &'a Script, layout: &'a Layout, trace: Trace) -> Result<Self, RunError> {
+    pub(crate) fn new(script: &'a Script, layout: Layout, trace: Trace) -> Result<Self, RunError> {
         let values = Values::new(script)
             .ok_or_else(|| RunError::Internal("the script was not checked before its run".to_owned()))?;
         Ok(Self {
@@ -101,6 +103,7 @@ impl<'a> Bench<'a> {
             notes: Notes::new(script),
             trace,
             shifts: Vec::new(),
+            changes: Vec::new(),
             last_scan: None,
             error: None,
         })
@@ -114,6 +117,26 @@ impl<'a> Bench<'a> {
     /// Whether `scan` is the last one.
     pub(crate) fn is_over(&self, scan: u64) -> bool {
         self.last_scan.is_some_and(|last| scan >= last)
+    }
+
+    /// The rows so far.
+    pub(crate) fn rows(&self) -> Rows<'_> {
+        Rows {
+            script: self.script,
+            layout: &self.layout,
+            trace: &self.trace,
+            shifts: &self.shifts,
+        }
+    }
+
+    /// The value at a point.
+    pub(crate) fn value(&self, point: Point) -> Option<Value> {
+        self.values.read(point)
+    }
+
+    /// Has the next latch write a value, after its steps.
+    pub(crate) fn change(&mut self, point: Point, value: Value) {
+        self.changes.push((point, value));
     }
 
     pub(crate) fn into_trace(self) -> (Trace, Vec<Shift>) {
@@ -219,6 +242,9 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
                 self.apply(index, action, time, machine);
             }
         }
+        for (point, value) in std::mem::take(&mut self.changes) {
+            self.write(point, Some(value), time.scan);
+        }
     }
 
     fn single(&mut self, task: TaskId) -> bool {
@@ -252,7 +278,7 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
         self.notes.take(machine, &mut self.trace, &mut self.shifts);
         let rows = Rows {
             script: self.script,
-            layout: self.layout,
+            layout: &self.layout,
             trace: &self.trace,
             shifts: &self.shifts,
         };

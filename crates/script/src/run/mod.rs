@@ -7,15 +7,15 @@ mod layout;
 mod notes;
 mod rows;
 mod schedule;
+mod session;
 mod values;
 
-pub(crate) use layout::Layout;
-pub(crate) use rows::{Derivatives, Rows, Shift};
+pub(crate) use rows::{Derivatives, Rows};
+pub use session::{Change, Session};
 
 use crate::CELLS_MAX;
-use crate::claims::{self, Failure, Verdict};
+use crate::claims::{Failure, Verdict};
 use crate::model::Script;
-use bench::Bench;
 use standstill_scan::{Executor, ProgramConfig, TaskConfig, Watchdog};
 use standstill_trace::{Claim, ClaimFailure, ClaimVerdict, Trace};
 
@@ -103,19 +103,14 @@ pub fn run(script: &Script) -> Result<Outcome, RunError> {
 /// # Errors
 /// As [`run`].
 pub fn run_with(script: &Script, mut progress: impl FnMut(u64)) -> Result<Outcome, RunError> {
-    let layout = Layout::new(script);
-    let header = layout::header(script);
-    let columns = header.columns().len();
-    if script.scans.saturating_mul(columns as u64) > CELLS_MAX {
-        return Err(RunError::TooLarge {
-            scans: script.scans,
-            columns,
-        });
+    let mut session = Session::new(script)?;
+    while session.advance()? {
+        let scans = session.scans();
+        if scans % PROGRESS_EVERY == 0 {
+            progress(scans);
+        }
     }
-    let (mut trace, shifts) = record(script, &layout, Trace::new(header), &mut progress)?;
-    let verdicts = claims::judge(script, &trace, &shifts);
-    trace.set_claims(verdicts.iter().map(told).collect());
-    Ok(Outcome { trace, verdicts })
+    Ok(session.finish())
 }
 
 fn told(verdict: &Verdict) -> Claim {
@@ -143,35 +138,6 @@ fn told_failure(failure: &Failure) -> ClaimFailure {
 /// A scan as the number of its row; a run has no more rows than memory.
 fn row(scan: u64) -> usize {
     usize::try_from(scan).unwrap_or(usize::MAX)
-}
-
-/// Scans until the script's end.
-fn record(
-    script: &Script,
-    layout: &Layout,
-    trace: Trace,
-    progress: &mut impl FnMut(u64),
-) -> Result<(Trace, Vec<Shift>), RunError> {
-    let mut machine = bench::machine(script)?;
-    let mut executor = executor(script)?;
-    let mut bench = Bench::new(script, layout, trace)?;
-    for scan in 0..script.scans {
-        let now_ns = script.cycle_ns.saturating_mul(scan.cast_signed());
-        let report = executor
-            .scan(now_ns, &mut bench, &mut machine)
-            .map_err(|error| RunError::Internal(error.to_string()))?;
-        bench.check()?;
-        if let Some(&fault) = report.mode.fault() {
-            return Err(RunError::Internal(executor.describe(fault).to_string()));
-        }
-        if bench.is_over(scan) {
-            break;
-        }
-        if scan % PROGRESS_EVERY == PROGRESS_EVERY - 1 {
-            progress(scan + 1);
-        }
-    }
-    Ok(bench.into_trace())
 }
 
 /// One program per task, in the order of the tasks: it calls the task's instances in file order.

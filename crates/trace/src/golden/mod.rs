@@ -4,6 +4,7 @@
 //! judges every bit by its digest. `x.exact` is its companion ([`crate::exact`]): it is not reviewed, and is
 //! there to name the first scan and signal in which a run differs.
 
+mod near;
 mod snap;
 mod text;
 
@@ -14,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use similar::TextDiff;
 
-use crate::compare::{Difference, compare};
+use crate::compare::{Closeness, Difference, Tolerance, Yardstick, closeness, compare, compare_by};
 use crate::digest;
 use crate::exact::{self, ExactError};
 use crate::trace::Trace;
@@ -29,6 +30,8 @@ const DIFF_LINES_SHOWN: usize = 60;
 pub enum Verdict {
     /// Every bit is as reviewed.
     Same,
+    /// Events are as reviewed, and set-points within the tolerance asked for.
+    Close(Option<Closeness>),
     /// There is no golden yet.
     Missing,
     /// The text is as reviewed, but the companion is not that of this run: missing, damaged or of another
@@ -41,11 +44,13 @@ pub enum Verdict {
 /// How a run differs from its golden; `Display` tells it all.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
+    /// What was asked of the run.
+    pub yardstick: Yardstick,
     /// The first scan and signals that differ; `None` if the rows are equal or the companion is no help.
     pub difference: Option<Difference>,
     /// Why the companion is no help; empty if it is.
     pub companion: String,
-    /// The difference of the texts, in unified form, golden first.
+    /// The difference of the texts, of their events only where no more was asked for, in unified form, golden first.
     pub text: String,
 }
 
@@ -83,11 +88,19 @@ pub fn exact_path(snap: &Path) -> PathBuf {
     snap.with_extension("exact")
 }
 
-/// Holds a run against the golden of this path (`x.snap`). Writes nothing.
+/// Holds a run against the golden of this path (`x.snap`), to the bit. Writes nothing.
 ///
 /// # Errors
 /// A file that is there but cannot be read, or a snapshot in another form.
 pub fn judge(snap: &Path, trace: &Trace) -> Result<Verdict, GoldenError> {
+    judge_by(snap, trace, Yardstick::Exact)
+}
+
+/// As [`judge`], by a yardstick: what is equal to the bit is [`Verdict::Same`] by all of them.
+///
+/// # Errors
+/// As [`judge`].
+pub fn judge_by(snap: &Path, trace: &Trace, yardstick: Yardstick) -> Result<Verdict, GoldenError> {
     let Some(reviewed) = reviewed(snap)? else {
         return Ok(Verdict::Missing);
     };
@@ -101,12 +114,23 @@ pub fn judge(snap: &Path, trace: &Trace) -> Result<Verdict, GoldenError> {
             None => Verdict::Companion("there is no exact trace".to_owned()),
         });
     }
-    let (difference, companion) = match expected_trace(&reviewed, companion.as_deref()) {
-        Ok(expected) => (compare(&expected, trace), String::new()),
+    let expected = expected_trace(&reviewed, companion.as_deref());
+    if let (Yardstick::Events(tolerance), Ok(expected)) = (yardstick, &expected)
+        && near::same_events(&reviewed, &found, tolerance)
+        && compare_by(expected, trace, yardstick).is_none()
+    {
+        return Ok(Verdict::Close(closeness(expected, trace, tolerance)));
+    }
+    let (difference, companion) = match expected {
+        Ok(expected) => (compare_by(&expected, trace, yardstick), String::new()),
         Err(why) => (None, why),
     };
-    let text = text_difference(&reviewed, &found);
+    let text = match yardstick {
+        Yardstick::Exact => text_difference(&reviewed, &found),
+        Yardstick::Events(tolerance) => events_difference(&reviewed, &found, tolerance),
+    };
     Ok(Verdict::Different(Box::new(Mismatch {
+        yardstick,
         difference,
         companion,
         text,
@@ -215,6 +239,14 @@ fn expected_trace(reviewed: &str, companion: Option<&[u8]>) -> Result<Trace, Str
     exact::decode(file).map_err(|error| error.to_string())
 }
 
+/// The difference of the events of two texts; empty if they are the same within the tolerance.
+fn events_difference(reviewed: &str, found: &str, tolerance: Tolerance) -> String {
+    if near::same_events(reviewed, found, tolerance) {
+        return String::new();
+    }
+    text_difference(near::events(reviewed), near::events(found))
+}
+
 fn text_difference(reviewed: &str, found: &str) -> String {
     let [old, new] = [reviewed, found].map(|text| format!("{}\n", text.trim_end()));
     let all = TextDiff::from_lines(&old, &new)
@@ -238,12 +270,22 @@ impl fmt::Display for Mismatch {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (&self.difference, self.companion.as_str()) {
             (Some(difference), _) => write!(out, "{difference}")?,
-            (None, "") => writeln!(
-                out,
-                "every bit of the rows is equal; what is told beside them differs"
-            )?,
-            (None, why) => writeln!(out, "the first differing scan cannot be named: {why}")?,
+            (None, "") => {
+                let equal = match self.yardstick {
+                    Yardstick::Exact => "every bit of the rows is equal",
+                    Yardstick::Events(_) => "the rows are equal within the tolerances",
+                };
+                writeln!(out, "{equal}; what is told beside them differs")?;
+            }
+            (None, why) if self.yardstick == Yardstick::Exact => {
+                writeln!(out, "the first differing scan cannot be named: {why}")?;
+            }
+            (None, why) => writeln!(out, "set-points cannot be compared: {why}")?,
         }
-        write!(out, "text: - golden, + this run\n{}", self.text)
+        match (self.yardstick, self.text.as_str()) {
+            (_, "") => Ok(()),
+            (Yardstick::Exact, text) => write!(out, "text: - golden, + this run\n{text}"),
+            (Yardstick::Events(_), text) => write!(out, "events: - golden, + this run\n{text}"),
+        }
     }
 }

@@ -1,0 +1,245 @@
+//! `watch` takes a terminal over and gives it back as it was, on every way out.
+
+use crate::support::{SCRIPT, command, read, standstill, with_script, write};
+
+#[test]
+fn without_a_terminal_it_says_so_and_a_broken_script_comes_first() {
+    let folder = with_script("watch_no_terminal");
+    let ended = standstill(&folder, &["watch", "move.scan.json"]);
+    assert_eq!((ended.status, ended.out.as_str()), (2, ""));
+    assert!(
+        ended
+            .err
+            .contains("watch needs a terminal, and standard input is none"),
+        "{}",
+        ended.err
+    );
+    write(&folder, "broken.scan.json", "{");
+    let ended = standstill(&folder, &["watch", "broken.scan.json"]);
+    assert_eq!((ended.status, ended.out.as_str()), (3, ""));
+    assert!(ended.err.contains("broken.scan.json:1:2"), "{}", ended.err);
+    assert_eq!(standstill(&folder, &["watch", "absent.scan.json"]).status, 4);
+    assert_eq!(
+        standstill(&folder, &["watch", "move.scan.json", "--set", "w=1"]).status,
+        2
+    );
+}
+
+#[cfg(unix)]
+mod terminal {
+    use super::*;
+    use rustix::process::{Pid, Signal, kill_process};
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    use rustix::termios::{LocalModes, Termios, Winsize, tcgetattr, tcsetwinsize};
+    use std::fs::{File, OpenOptions};
+    use std::io::{Read, Write};
+    use std::os::unix::process::ExitStatusExt;
+    use std::path::Path;
+    use std::process::{Child, ExitStatus, Stdio};
+    use std::sync::{Arc, Mutex};
+    use std::thread;
+    use std::time::{Duration, Instant};
+
+    /// Longer than a busy machine takes for anything here.
+    const PATIENCE: Duration = Duration::from_secs(30);
+
+    /// A terminal with the program in it.
+    struct Watched {
+        ours: File,
+        theirs: File,
+        before: Termios,
+        child: Child,
+        shown: Arc<Mutex<Vec<u8>>>,
+    }
+
+    impl Watched {
+        fn new(folder: &Path, arguments: &[&str]) -> Self {
+            let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a terminal");
+            grantpt(&ours).expect("ours");
+            unlockpt(&ours).expect("ours");
+            let name = ptsname(&ours, Vec::new()).expect("it has a name");
+            let path = name.to_str().expect("ASCII");
+            let theirs = OpenOptions::new()
+                .read(true)
+                .write(true)
+                .open(path)
+                .expect("its other end");
+            let size = Winsize {
+                ws_row: 24,
+                ws_col: 80,
+                ws_xpixel: 0,
+                ws_ypixel: 0,
+            };
+            tcsetwinsize(&theirs, size).expect("a terminal has a size");
+            let before = tcgetattr(&theirs).expect("a terminal");
+            assert!(before.local_modes.contains(LocalModes::ICANON | LocalModes::ECHO));
+            let end = || Stdio::from(theirs.try_clone().expect("a handle"));
+            let child = command(&[&["watch"], arguments].concat())
+                .current_dir(folder)
+                .env("NO_COLOR", "1")
+                .env("TERM", "xterm")
+                .stdin(end())
+                .stdout(end())
+                .stderr(end())
+                .spawn()
+                .expect("the program starts");
+            let ours = File::from(ours);
+            let shown = Arc::new(Mutex::new(Vec::new()));
+            let (mut source, target) = (ours.try_clone().expect("a handle"), Arc::clone(&shown));
+            thread::spawn(move || {
+                let mut buffer = [0; 4096];
+                while let Ok(count @ 1..) = source.read(&mut buffer) {
+                    target
+                        .lock()
+                        .expect("nobody panicked")
+                        .extend_from_slice(&buffer[..count]);
+                }
+            });
+            Self {
+                ours,
+                theirs,
+                before,
+                child,
+                shown,
+            }
+        }
+
+        /// What was written to the terminal so far.
+        fn text(&self) -> String {
+            String::from_utf8_lossy(&self.shown.lock().expect("nobody panicked")).into_owned()
+        }
+
+        /// Waits until a piece of text was written. Of a new screen only what changed is.
+        fn expect(&self, text: &str) {
+            let begin = Instant::now();
+            while !self.text().contains(text) {
+                assert!(begin.elapsed() < PATIENCE, "no `{text}` in {:?}", self.text());
+                thread::sleep(Duration::from_millis(10));
+            }
+        }
+
+        fn press(&mut self, keys: &str) {
+            self.ours
+                .write_all(keys.as_bytes())
+                .expect("a terminal takes keys");
+        }
+
+        /// Waits for the end; the terminal must be as it was.
+        fn ended(mut self) -> (ExitStatus, String) {
+            let begin = Instant::now();
+            let status = loop {
+                if let Some(status) = self.child.try_wait().expect("it is our child") {
+                    break status;
+                }
+                if begin.elapsed() > PATIENCE {
+                    let _ = self.child.kill();
+                    panic!("it does not end: {:?}", self.text());
+                }
+                thread::sleep(Duration::from_millis(10));
+            };
+            let after = tcgetattr(&self.theirs).expect("a terminal");
+            assert_eq!(after.local_modes, self.before.local_modes);
+            assert_eq!(after.input_modes, self.before.input_modes);
+            assert_eq!(after.output_modes, self.before.output_modes);
+            // The other screen was left, and the cursor is there again.
+            self.expect("\u{1b}[?1049l");
+            self.expect("\u{1b}[?25h");
+            (status, self.text())
+        }
+    }
+
+    #[test]
+    fn q_ends_it_and_the_terminal_is_as_before() {
+        let folder = with_script("watch_q");
+        let mut watched = Watched::new(&folder, &["move.scan.json"]);
+        watched.expect("\u{1b}[?1049h");
+        watched.expect("One short move");
+        let raw = tcgetattr(&watched.theirs).expect("a terminal").local_modes;
+        assert!(
+            !raw.intersects(LocalModes::ICANON | LocalModes::ECHO),
+            "keys come one by one"
+        );
+        watched.press("c");
+        watched.expect("holds 21");
+        watched.press("q");
+        let (status, text) = watched.ended();
+        assert_eq!(status.code(), Some(0), "{text:?}");
+        let told = "move.scan.json: 22 of 30 scans, 1 claims hold, 0 fail, 1 open";
+        assert!(text.trim_end().ends_with(told), "{text:?}");
+        let colors = ["\u{1b}[31", "\u{1b}[32", "\u{1b}[38", "\u{1b}[48"];
+        assert!(
+            !colors.iter().any(|color| text.contains(color)),
+            "no colour was wanted: {text:?}"
+        );
+    }
+
+    #[test]
+    fn what_was_changed_is_written_as_a_script_that_runs() {
+        let folder = with_script("watch_write");
+        let mut watched = Watched::new(&folder, &["move.scan.json"]);
+        watched.expect("One short move");
+        watched.press("\rw");
+        watched.expect("written: move.watched.scan.json");
+        watched.press("q");
+        assert_eq!(watched.ended().0.code(), Some(0));
+        let text = read(&folder, "move.watched.scan.json");
+        assert!(text.contains("{\"at\": 0, \"set\": {\"GO\": true}}"), "{text}");
+        // GO is TRUE a scan earlier, so Done is there, too.
+        let ended = standstill(&folder, &["run", "-q", "move.watched.scan.json"]);
+        assert!(ended.out.contains("move.watched.scan.json: "), "{}", ended.out);
+        assert_ne!(ended.status, 3, "{}", ended.err);
+    }
+
+    #[test]
+    fn a_claim_that_failed_is_the_status() {
+        let folder = with_script("watch_failed");
+        write(
+            &folder,
+            "late.scan.json",
+            &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
+        );
+        let mut watched = Watched::new(&folder, &["late.scan.json"]);
+        watched.expect("One short move");
+        watched.press("c");
+        watched.expect("FAILS 19");
+        watched.press("q");
+        assert_eq!(watched.ended().0.code(), Some(1));
+    }
+
+    #[test]
+    fn signals_end_it_and_give_the_terminal_back_first() {
+        let folder = with_script("watch_signals");
+        for (signal, number) in [(Signal::TERM, 15), (Signal::INT, 2), (Signal::HUP, 1)] {
+            let watched = Watched::new(&folder, &["move.scan.json"]);
+            watched.expect("One short move");
+            let id = i32::try_from(watched.child.id()).expect("a process id");
+            kill_process(Pid::from_raw(id).expect("not zero"), signal).expect("it runs");
+            let (status, text) = watched.ended();
+            assert_eq!(status.signal(), Some(number), "{text:?}");
+        }
+        // As a key, as terminals give it that were taken over.
+        let mut watched = Watched::new(&folder, &["move.scan.json"]);
+        watched.expect("One short move");
+        watched.press("\u{3}");
+        assert_eq!(watched.ended().0.signal(), Some(2));
+    }
+
+    #[test]
+    fn a_terminal_too_small_is_told_and_can_be_left() {
+        let folder = with_script("watch_small");
+        let mut watched = Watched::new(&folder, &["move.scan.json"]);
+        watched.expect("One short move");
+        let size = Winsize {
+            ws_row: 10,
+            ws_col: 40,
+            ws_xpixel: 0,
+            ws_ypixel: 0,
+        };
+        tcsetwinsize(&watched.theirs, size).expect("a terminal has a size");
+        watched.press("s");
+        // Words are written one by one, blanks are there already.
+        watched.expect("40x10,");
+        watched.press("q");
+        assert_eq!(watched.ended().0.code(), Some(0));
+    }
+}

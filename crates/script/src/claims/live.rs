@@ -1,0 +1,116 @@
+//! Claims while the run goes on: which are decided already, and how.
+//!
+//! A claim is decided in the scan after which no other can change its verdict. The verdicts themselves come from
+//! [`judge`](super::judge) alone, at the end; this only says earlier what they will be.
+
+use super::judge::raised;
+use crate::model::{Claim, ClaimKind, Range, Script};
+use crate::run::Rows;
+
+/// How a claim stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// What is to come decides.
+    Open,
+    /// It holds, since this scan.
+    Held(u64),
+    /// It fails, since this scan.
+    Failed(u64),
+}
+
+/// How the claims of a script stand after some scans.
+#[derive(Clone, Debug)]
+pub(crate) struct Standings {
+    /// Scans looked at.
+    scans: u64,
+    /// Per claim.
+    all: Vec<Standing>,
+    /// Per claim how often its conditions held, for those that count.
+    times: Vec<u32>,
+    ended: bool,
+}
+
+impl Standings {
+    pub(crate) fn new(script: &Script) -> Self {
+        Self {
+            scans: 0,
+            all: vec![Standing::Open; script.claims.len()],
+            times: vec![0; script.claims.len()],
+            ended: false,
+        }
+    }
+
+    /// Looks at the rows that have come; `over` says that no more will.
+    pub(crate) fn look(&mut self, rows: &Rows<'_>, over: bool) -> &[Standing] {
+        while self.scans < rows.count() {
+            let scan = self.scans;
+            let each = rows.script.claims.iter().zip(&mut self.all).zip(&mut self.times);
+            for ((claim, standing), times) in each {
+                if *standing == Standing::Open {
+                    *standing = after(rows, claim, scan, times);
+                }
+            }
+            self.scans = scan + 1;
+        }
+        if over && !self.ended {
+            self.ended = true;
+            let last = rows.count().saturating_sub(1);
+            for (verdict, standing) in super::judge(rows).iter().zip(&mut self.all) {
+                if *standing == Standing::Open {
+                    *standing = if verdict.passed() {
+                        Standing::Held(last)
+                    } else {
+                        Standing::Failed(last)
+                    };
+                }
+            }
+        }
+        &self.all
+    }
+}
+
+/// How a claim that was open before stands after `scan`.
+fn after(rows: &Rows<'_>, claim: &Claim, scan: u64, times: &mut u32) -> Standing {
+    let inside = |range: &Range| range.from <= scan && range.to.is_none_or(|to| scan <= to);
+    // A range that ends before it begins is judged at the end.
+    let ends = |range: &Range| range.to == Some(scan) && range.from <= scan;
+    // What may fail in every scan of its range, and holds when that is through.
+    let unless = |range: &Range, fails: bool| match (fails, ends(range)) {
+        (true, _) => Standing::Failed(scan),
+        (false, true) => Standing::Held(scan),
+        (false, false) => Standing::Open,
+    };
+    match &claim.kind {
+        ClaimKind::At(at, that) if *at == scan => match rows.hold(that, scan) {
+            true => Standing::Held(scan),
+            false => Standing::Failed(scan),
+        },
+        ClaimKind::At(..) => Standing::Open,
+        ClaimKind::By(range, that) => match (inside(range) && rows.hold(that, scan), ends(range)) {
+            (true, _) => Standing::Held(scan),
+            (false, true) => Standing::Failed(scan),
+            (false, false) => Standing::Open,
+        },
+        ClaimKind::Always { range, during, that } => {
+            let asked = inside(range) && rows.hold(during, scan);
+            unless(range, asked && !rows.hold(that, scan))
+        }
+        ClaimKind::Never { range, during, that } => {
+            let asked = inside(range) && rows.hold(during, scan);
+            unless(range, asked && rows.hold(that, scan))
+        }
+        ClaimKind::Once(range, that) => {
+            *times += u32::from(inside(range) && rows.hold(that, scan));
+            match (*times, ends(range)) {
+                (2.., _) | (0, true) => Standing::Failed(scan),
+                (1, true) => Standing::Held(scan),
+                (0 | 1, false) => Standing::Open,
+            }
+        }
+        ClaimKind::Exclusive(range, points) => {
+            unless(range, inside(range) && raised(rows, points, scan).len() > 1)
+        }
+        // What positions resolve depends on the largest one, which may be still to come.
+        ClaimKind::WithinLimits { .. } => Standing::Open,
+    }
+}

@@ -1,0 +1,282 @@
+//! A run that is taken scan by scan, and whose inputs may be changed on the way.
+
+use super::bench::{self, Bench, ScriptMachine};
+use super::cells;
+use super::layout::{self, Layout};
+use super::{Outcome, RunError, executor, told};
+use crate::CELLS_MAX;
+use crate::claims::{self, Standing, Standings};
+use crate::model::{Point, Script};
+use crate::read::time;
+use standstill_fb::{Direction, PinType, Value};
+use standstill_scan::Executor;
+use standstill_trace::{Trace, shortest};
+
+/// A run of a script that goes on when it is asked to.
+pub struct Session<'a> {
+    script: &'a Script,
+    machine: ScriptMachine,
+    executor: Executor,
+    bench: Bench<'a>,
+    /// Scans done.
+    scans: u64,
+    over: bool,
+    changes: Vec<Change>,
+    standings: Standings,
+}
+
+/// A value that was written from outside, as a step of the script would.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// The scan whose latch wrote it.
+    pub scan: u64,
+    /// The variable or pin.
+    pub point: Point,
+    /// Its name in scripts.
+    pub name: String,
+    /// The value as a script has it, in JSON.
+    pub json: String,
+}
+
+impl<'a> Session<'a> {
+    /// A run before its first scan.
+    ///
+    /// # Errors
+    /// [`RunError`]: what the script asks for cannot be set up.
+    pub fn new(script: &'a Script) -> Result<Self, RunError> {
+        let layout = Layout::new(script);
+        let header = layout::header(script);
+        let columns = header.columns().len();
+        if script.scans.saturating_mul(columns as u64) > CELLS_MAX {
+            return Err(RunError::TooLarge {
+                scans: script.scans,
+                columns,
+            });
+        }
+        Ok(Self {
+            script,
+            machine: bench::machine(script)?,
+            executor: executor(script)?,
+            bench: Bench::new(script, layout, Trace::new(header))?,
+            scans: 0,
+            over: script.scans == 0,
+            changes: Vec::new(),
+            standings: Standings::new(script),
+        })
+    }
+
+    /// Does the next scan; FALSE if the run was over before.
+    ///
+    /// # Errors
+    /// [`RunError`]; the run is over then.
+    pub fn advance(&mut self) -> Result<bool, RunError> {
+        if self.over {
+            return Ok(false);
+        }
+        // Whatever ends this scan early ends the run.
+        self.over = true;
+        let scan = self.scans;
+        let now_ns = self.script.cycle_ns.saturating_mul(scan.cast_signed());
+        let report = self
+            .executor
+            .scan(now_ns, &mut self.bench, &mut self.machine)
+            .map_err(|error| RunError::Internal(error.to_string()))?;
+        self.bench.check()?;
+        if let Some(&fault) = report.mode.fault() {
+            return Err(RunError::Internal(self.executor.describe(fault).to_string()));
+        }
+        self.scans = scan + 1;
+        self.over = self.bench.is_over(scan) || self.scans >= self.script.scans;
+        Ok(true)
+    }
+
+    /// Scans done so far.
+    #[must_use]
+    pub const fn scans(&self) -> u64 {
+        self.scans
+    }
+
+    /// Whether the run has come to its end.
+    #[must_use]
+    pub const fn is_over(&self) -> bool {
+        self.over
+    }
+
+    /// The script.
+    #[must_use]
+    pub const fn script(&self) -> &'a Script {
+        self.script
+    }
+
+    /// The rows so far; the verdicts of claims come with [`Session::finish`].
+    #[must_use]
+    pub fn trace(&self) -> &Trace {
+        self.bench.rows().trace
+    }
+
+    /// How every claim stands, in file order. Cost: proportional to the scans since the last call; at the end of the run
+    /// that of judging.
+    pub fn standings(&mut self) -> &[Standing] {
+        self.standings.look(&self.bench.rows(), self.over)
+    }
+
+    /// The value at a point.
+    #[must_use]
+    pub fn value(&self, point: Point) -> Option<Value> {
+        self.bench.value(point)
+    }
+
+    /// The value at a point as a trace tells it; a TIME as a literal.
+    #[must_use]
+    pub fn text(&self, point: Point) -> Option<String> {
+        let value = self.value(point)?;
+        let ty = match point {
+            Point::Input(_) => None,
+            Point::Pin(instance, pin) => {
+                let instance = self.script.blocks.get(instance)?;
+                instance.block.pins().nth(pin).map(|pin| pin.ty)
+            }
+        };
+        match value {
+            Value::Time(ns) => Some(time::literal(ns)),
+            value => Some(cells::value_text(self.script, ty, value)),
+        }
+    }
+
+    /// What every claim says, in file order.
+    #[must_use]
+    pub fn claims(&self) -> Vec<String> {
+        claims::say(&self.bench.rows())
+    }
+
+    /// Writes a value, given as text, at the latch of the next scan, after the steps of the script. Values are those of
+    /// scripts: `TRUE`, numbers, `T#5ms`, names of enums.
+    ///
+    /// # Errors
+    /// Why it cannot be written there, for people.
+    pub fn change(&mut self, point: Point, text: &str) -> Result<(), String> {
+        let name = cells::point_name(self.script, point);
+        if self.over {
+            return Err("the run is over".to_owned());
+        }
+        let (value, json) = self
+            .parse(point, text.trim())
+            .map_err(|why| format!("{name}: {why}"))?;
+        self.bench.change(point, value);
+        self.changes.push(Change {
+            scan: self.scans,
+            point,
+            name,
+            json,
+        });
+        Ok(())
+    }
+
+    /// Why a point cannot be written; `None` if it can.
+    #[must_use]
+    pub fn obstacle(&self, point: Point) -> Option<&'static str> {
+        let Point::Pin(instance, pin) = point else {
+            return None;
+        };
+        let instance = self.script.blocks.get(instance)?;
+        let info = instance.block.pins().nth(pin)?;
+        if instance.wires.iter().any(|(wired, _)| *wired == pin) {
+            return Some("it is wired: change what the wire comes from");
+        }
+        match (info.direction, info.ty) {
+            (Direction::Output, _) => Some("it is an output"),
+            (Direction::InOut, _) | (_, PinType::Axis(_) | PinType::Table(_)) => {
+                Some("it is set once and for all")
+            }
+            (Direction::Input, _) => None,
+        }
+    }
+
+    /// The value that a text stands for at a point, and as JSON.
+    fn parse(&self, point: Point, text: &str) -> Result<(Value, String), String> {
+        if let Some(obstacle) = self.obstacle(point) {
+            return Err(obstacle.to_owned());
+        }
+        let ty = match point {
+            Point::Input(_) => None,
+            Point::Pin(instance, pin) => self
+                .script
+                .blocks
+                .get(instance)
+                .and_then(|instance| instance.block.pins().nth(pin))
+                .map(|pin| pin.ty),
+        };
+        let now = self.value(point).ok_or("there is no such pin")?;
+        let number = || -> Result<f64, String> {
+            let word = matches!(text, "NaN" | "Infinity" | "-Infinity");
+            let known = text
+                .parse()
+                .ok()
+                .filter(|number: &f64| word || number.is_finite());
+            known.ok_or_else(|| format!("`{text}` is no number"))
+        };
+        let whole = |least: i64, most: i64| {
+            let known = text.parse().ok().filter(|number| (least..=most).contains(number));
+            known.ok_or_else(|| format!("`{text}` is no whole number from {least} to {most}"))
+        };
+        match (now, ty) {
+            (Value::Bool(_), _) => match text.to_ascii_uppercase().as_str() {
+                "TRUE" | "1" => Ok((Value::Bool(true), "true".to_owned())),
+                "FALSE" | "0" => Ok((Value::Bool(false), "false".to_owned())),
+                _ => Err(format!("`{text}` is neither TRUE nor FALSE")),
+            },
+            (Value::Lreal(_), _) => {
+                let number = number()?;
+                let json = match number.is_finite() {
+                    true => shortest(number),
+                    false => format!("\"{text}\""),
+                };
+                Ok((Value::Lreal(number), json))
+            }
+            (Value::Int(_), _) => {
+                let number = whole(i16::MIN.into(), i16::MAX.into())?;
+                let value = i16::try_from(number).map_err(|error| error.to_string())?;
+                Ok((Value::Int(value), number.to_string()))
+            }
+            (Value::Word(_), _) => {
+                let number = whole(0, u16::MAX.into())?;
+                let value = u16::try_from(number).map_err(|error| error.to_string())?;
+                Ok((Value::Word(value), number.to_string()))
+            }
+            (Value::Dword(_), _) => {
+                let number = whole(0, u32::MAX.into())?;
+                let value = u32::try_from(number).map_err(|error| error.to_string())?;
+                Ok((Value::Dword(value), number.to_string()))
+            }
+            (Value::Time(_), _) => {
+                let ns = time::parse(text)
+                    .map_err(|why| format!("`{text}` is no time such as T#1s500ms: {why}"))?;
+                Ok((Value::Time(ns), format!("\"{}\"", time::literal(ns))))
+            }
+            (Value::Enum(_), Some(PinType::Enum(info))) => {
+                let known = info.number_of(text).or_else(|| text.parse().ok());
+                let number = known.ok_or_else(|| format!("`{text}` is no element of {}", info.name))?;
+                let json = info.name_of(number).map(|name| format!("\"{name}\""));
+                Ok((Value::Enum(number), json.unwrap_or_else(|| number.to_string())))
+            }
+            (Value::Enum(_) | Value::Axis(_) | Value::Table(_), _) => {
+                Err("it is set once and for all".to_owned())
+            }
+        }
+    }
+
+    /// What was changed from outside so far.
+    #[must_use]
+    pub fn changes(&self) -> &[Change] {
+        &self.changes
+    }
+
+    /// Judges the claims on the rows so far.
+    #[must_use]
+    pub fn finish(self) -> Outcome {
+        let verdicts = claims::judge(&self.bench.rows());
+        let (mut trace, _) = self.bench.into_trace();
+        trace.set_claims(verdicts.iter().map(told).collect());
+        Outcome { trace, verdicts }
+    }
+}

@@ -1,0 +1,246 @@
+//! A story must name the change that was made to a run, from the traces of both alone. Each test runs a script and a
+//! changed one, through files as `standstill explain` does.
+
+use standstill_script::{read, run};
+use standstill_trace::story::{Cause, Story, story};
+use standstill_trace::{Cell, Trace, jsonl};
+
+const SCRIPT: &str = r#"{"standstill": 1, "title": "There and back", "cycle": "T#1ms", "scans": 600,
+  "axes": {"X": {"unit": "mm", "limits": {"velocity": 50, "acceleration": 1000, "jerk": 50000}, "drive": {"ideal": {"delay": 0, "power_on": 1}}}},
+  "inputs": {"GO": false},
+  "blocks": [
+    {"name": "power", "type": "MC_Power", "pins": {"Axis": "X", "Enable": true}},
+    {"name": "there", "type": "MC_MoveAbsolute", "pins": {"Axis": "X", "Execute": {"all": ["power.Status", "GO"]}, "Position": 4, "Velocity": 50}},
+    {"name": "back", "type": "MC_MoveAbsolute", "pins": {"Axis": "X", "Execute": {"from": "there.Done"}, "Position": 0, "Velocity": 25}},
+    {"name": "read", "type": "MC_ReadActualPosition", "pins": {"Axis": "X", "Enable": true}}
+  ],
+  "steps": [{"at": 1, "set": {"GO": true}}],
+  "expect": []}"#;
+
+/// The trace of a script as a file has it.
+fn trace(script: &str) -> Trace {
+    let script = read(script, "t.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
+    let trace = run(&script).unwrap_or_else(|error| panic!("{error}")).trace;
+    let mut file = Vec::new();
+    jsonl::write(&trace, &mut file).expect("a vector takes all");
+    let text = String::from_utf8(file).expect("UTF-8");
+    jsonl::read(&text).expect("our own").trace
+}
+
+/// The story of the script and of what it is with `from` replaced.
+fn changed(from: &str, to: &str) -> Story {
+    assert!(SCRIPT.contains(from), "{from}");
+    told(&trace(SCRIPT), &trace(&SCRIPT.replace(from, to)))
+}
+
+fn told(expected: &Trace, found: &Trace) -> Story {
+    story(expected, found).expect("they differ")
+}
+
+/// The likeliest cause.
+fn first(story: &Story) -> &Cause {
+    story.causes.first().expect("a story has a cause")
+}
+
+/// A trace with one column changed: `change` gets the scan and the value.
+fn with(trace: &Trace, name: &str, change: impl Fn(usize, f64) -> f64) -> Trace {
+    let column = trace.column(name).expect("there is one");
+    let mut other = Trace::new(trace.header().clone());
+    for scan in 0..trace.scans() {
+        let mut row: Vec<_> = trace.row(scan).collect();
+        if let Some(Cell::Real(value)) = row.get_mut(column) {
+            *value = change(scan, *value);
+        }
+        other.push_row(&row).expect("the same columns");
+    }
+    other
+}
+
+#[test]
+fn a_parameter() {
+    let story = changed("\"Velocity\": 50}", "\"Velocity\": 40}");
+    assert!(matches!(first(&story), Cause::Parameter(_)));
+    insta::assert_snapshot!(story);
+}
+
+#[test]
+fn a_step_that_comes_later_or_earlier() {
+    let story = changed("\"at\": 1", "\"at\": 4");
+    assert!(matches!(first(&story), Cause::Variable { later: Some(3), .. }));
+    insta::assert_snapshot!(story);
+    let story = told(&trace(&SCRIPT.replace("\"at\": 1", "\"at\": 4")), &trace(SCRIPT));
+    assert!(
+        matches!(first(&story), Cause::Variable { later: Some(-3), .. }),
+        "{story}"
+    );
+    let story = changed("[{\"at\": 1, \"set\": {\"GO\": true}}]", "[]");
+    assert!(
+        matches!(first(&story), Cause::Variable { later: None, .. }),
+        "{story}"
+    );
+}
+
+#[test]
+fn a_limit() {
+    let story = changed("\"acceleration\": 1000", "\"acceleration\": 800");
+    assert!(matches!(first(&story), Cause::Limits(axis, settings) if axis == "X" && settings.len() == 2));
+    insta::assert_snapshot!(story);
+}
+
+#[test]
+fn an_order_of_blocks() {
+    let back = "{\"name\": \"back\"";
+    let read = "{\"name\": \"read\"";
+    let (start, middle) = (
+        SCRIPT.find(back).expect("there"),
+        SCRIPT.find(read).expect("there"),
+    );
+    let end = SCRIPT.find("\n  ],\n  \"steps\"").expect("there");
+    let text = SCRIPT
+        .get(start..middle)
+        .expect("in it")
+        .trim_end()
+        .trim_end_matches(',');
+    let there = SCRIPT.find("{\"name\": \"there\"").expect("there");
+    let moved = format!(
+        "{}{text},\n    {}{}{}",
+        &SCRIPT[..there],
+        &SCRIPT[there..start],
+        &SCRIPT[middle..end],
+        &SCRIPT[end..]
+    );
+    let story = told(&trace(SCRIPT), &trace(&moved));
+    assert!(matches!(first(&story), Cause::Order { .. }), "{story}");
+    insta::assert_snapshot!(story);
+}
+
+#[test]
+fn a_fault_of_the_drive() {
+    let story = changed(
+        "{\"GO\": true}}]",
+        "{\"GO\": true}}, {\"at\": 50, \"fault\": {\"axis\": \"X\", \"kind\": \"drive\", \"code\": 7}}]",
+    );
+    assert!(matches!(first(&story), Cause::Fault { in_found: true, .. }));
+    insta::assert_snapshot!(story);
+}
+
+#[test]
+fn a_shift_in_time() {
+    let story = changed("\"power_on\": 1", "\"power_on\": 7");
+    assert_eq!(first(&story), &Cause::Shift(6), "{story}");
+    insta::assert_snapshot!(story);
+    let story = told(
+        &trace(&SCRIPT.replace("\"power_on\": 1", "\"power_on\": 7")),
+        &trace(SCRIPT),
+    );
+    assert_eq!(first(&story), &Cause::Shift(-6), "{story}");
+}
+
+#[test]
+fn other_durations() {
+    // Limits say so themselves; without headers only the events do.
+    let bare = |script: &str| {
+        let mut trace = trace(script);
+        let header = standstill_trace::Header::default();
+        trace.describe_as(&standstill_trace::Header {
+            axes: vec![standstill_trace::Axis {
+                name: "X".to_owned(),
+                ..Default::default()
+            }],
+            ..header
+        });
+        trace
+    };
+    let story = told(
+        &bare(SCRIPT),
+        &bare(&SCRIPT.replace("\"acceleration\": 1000", "\"acceleration\": 500")),
+    );
+    assert!(
+        matches!(first(&story), Cause::Drift(first, last) if 0 < *first && first < last),
+        "{story}"
+    );
+}
+
+#[test]
+fn another_path_to_the_same_events() {
+    let before = trace(SCRIPT);
+    let bent = with(&before, "X.Velocity", |scan, value| {
+        if scan == 60 { value + 1.0 } else { value }
+    });
+    let story = told(&before, &bent);
+    assert_eq!(first(&story), &Cause::Path);
+    insta::assert_snapshot!(story);
+}
+
+#[test]
+fn rounding() {
+    let before = trace(SCRIPT);
+    let rounded = with(&before, "X.Velocity", |scan, value| {
+        if scan % 10 == 5 {
+            value * (1.0 + f64::EPSILON)
+        } else {
+            value
+        }
+    });
+    let story = told(&before, &rounded);
+    assert!(
+        matches!(first(&story), Cause::Rounding { share, .. } if *share < 1e-15),
+        "{story}"
+    );
+    insta::assert_snapshot!(story);
+}
+
+#[test]
+fn the_feedback_of_the_drive() {
+    let story = changed("\"delay\": 0", "\"delay\": 1");
+    assert!(
+        matches!(first(&story), Cause::Feedback(signal) if signal == "X.ActualPosition"),
+        "{story}"
+    );
+    insta::assert_snapshot!(story);
+}
+
+#[test]
+fn blocks_that_are_not_there() {
+    let story = changed("\"name\": \"read\"", "\"name\": \"look\"");
+    let gone = Cause::Subjects(vec!["read".to_owned()], vec!["look".to_owned()]);
+    assert_eq!(story.causes, [gone]);
+    insta::assert_snapshot!(story);
+}
+
+#[test]
+fn a_cycle_and_a_length() {
+    let story = changed("T#1ms", "T#2ms");
+    assert_eq!(first(&story), &Cause::Cycle(1_000_000, 2_000_000));
+    let story = changed("\"scans\": 600", "\"scans\": 590");
+    assert_eq!(story.causes, [Cause::Length(600, 590)]);
+    insta::assert_snapshot!(story);
+}
+
+#[test]
+fn an_event_that_never_comes() {
+    // An output that one run does not raise, with nothing else to tell why.
+    let before = trace(SCRIPT);
+    let done = before.column("back.Done").expect("there");
+    let mut after = Trace::new(before.header().clone());
+    for scan in 0..before.scans() {
+        let mut row: Vec<_> = before.row(scan).collect();
+        if let Some(cell) = row.get_mut(done) {
+            *cell = Cell::Bool(false);
+        }
+        after.push_row(&row).expect("the same columns");
+    }
+    let story = told(&before, &after);
+    let Cause::Events {
+        missing: Some(missing),
+        new: Some(new),
+    } = first(&story)
+    else {
+        panic!("{story}")
+    };
+    assert_eq!(
+        (missing.text.as_str(), new.text.as_str()),
+        ("+Done -Busy -Active", "-Busy -Active")
+    );
+    insta::assert_snapshot!(story);
+}

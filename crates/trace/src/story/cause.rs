@@ -1,0 +1,551 @@
+//! What kind of change leaves the marks that two traces show.
+//!
+//! Read off the traces alone: what their headers say, what differs first and in what order it was computed, and how the
+//! events from there on relate. A cause that comes before the others in a scan is told before them.
+
+use std::fmt;
+
+use crate::column::{Column, Kind, Role};
+use crate::compare::{Difference, ScanDifference, SignalDifference};
+use crate::events::{Event, VARIABLES, row_events};
+use crate::header::{Axis, Limits};
+use crate::number::{shortest, time_literal};
+use crate::story::Extent;
+use crate::trace::Trace;
+
+/// Share of the largest value of a column below which a difference is that of rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Names that a sentence lists at most.
+const NAMED: usize = 4;
+
+/// What may be behind a difference.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cause {
+    /// The runs have other cycles (ns): expected and found.
+    Cycle(u64, u64),
+    /// The rows that both have are equal; these are their numbers.
+    Length(usize, usize),
+    /// The headers have other limits for an axis.
+    Limits(String, Vec<Setting>),
+    /// Blocks, axes or variables that only one of the runs has: expected and found.
+    Subjects(Vec<String>, Vec<String>),
+    /// The same blocks are called in another order.
+    Order {
+        /// The first block that is called in another place.
+        expected: String,
+        /// What is called there instead.
+        found: String,
+    },
+    /// An input variable gets another value, or gets it in another scan.
+    Variable {
+        /// What differs first.
+        signal: SignalDifference,
+        /// By so many scans later the found run has the expected value, if it has it at all.
+        later: Option<i64>,
+    },
+    /// An input pin is given another value.
+    Parameter(Vec<SignalDifference>),
+    /// A fault or a refusal in one run only.
+    Fault {
+        /// Where and what.
+        event: Event,
+        /// It is in the found run.
+        in_found: bool,
+    },
+    /// The drive answers otherwise to the same set-points.
+    Feedback(String),
+    /// The same events in the same scans, and numbers that differ as rounding does: relative, and in ULPs at first.
+    Rounding {
+        /// Largest difference as a share of the largest value of its column.
+        share: f64,
+        /// ULPs between the first values that differ, the most of its scan.
+        ulps: Option<u64>,
+    },
+    /// The same events in the same scans, but other set-points between them.
+    Path,
+    /// The same events so many scans later (earlier if negative).
+    Shift(i64),
+    /// The same events in the same order, at distances that change: the first and the last, in scans.
+    Drift(i64, i64),
+    /// Other events: the first that is missing, and the first that is new.
+    Events {
+        /// Expected, and not found from there on.
+        missing: Option<Event>,
+        /// Found, and not expected from there on.
+        new: Option<Event>,
+    },
+}
+
+/// A setting with its expected and its found value; `None` is no limit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// Its key in a script.
+    pub name: &'static str,
+    /// As it should be.
+    pub expected: Option<f64>,
+    /// As it is.
+    pub found: Option<f64>,
+}
+
+/// All causes that the traces speak for, the likeliest first.
+pub fn causes(
+    expected: &Trace,
+    found: &Trace,
+    difference: &Difference,
+    extent: Option<&Extent>,
+) -> Vec<Cause> {
+    let mut causes = Vec::new();
+    let (before, after) = difference.cycles_ns;
+    if before != after {
+        causes.push(Cause::Cycle(before, after));
+    }
+    causes.extend(limits(expected, found));
+    if !difference.only_expected.is_empty() || !difference.only_actual.is_empty() {
+        let subjects = |names: &[String]| {
+            let mut subjects: Vec<String> = names
+                .iter()
+                .map(|name| {
+                    name.split_once('.')
+                        .map_or(name.as_str(), |(subject, _)| subject)
+                        .to_owned()
+                })
+                .collect();
+            subjects.dedup();
+            subjects
+        };
+        causes.push(Cause::Subjects(
+            subjects(&difference.only_expected),
+            subjects(&difference.only_actual),
+        ));
+    }
+    let order = order(expected, found);
+    let ordered = order.is_none();
+    causes.extend(order);
+    match (&difference.first, extent) {
+        (Some(first), Some(extent)) => causes.push(of_rows(expected, found, first, extent, ordered)),
+        _ if difference.scans.0 != difference.scans.1 => {
+            causes.push(Cause::Length(difference.scans.0, difference.scans.1));
+        }
+        _ => {}
+    }
+    causes
+}
+
+fn limits(expected: &Trace, found: &Trace) -> Vec<Cause> {
+    let mut causes = Vec::new();
+    for axis in &expected.header().axes {
+        let Some(other) = found.header().axes.iter().find(|other| other.name == axis.name) else {
+            continue;
+        };
+        // A trace without its header has no limits to compare.
+        let known = |axis: &Axis| axis.limits != Limits::default();
+        let settings = settings(&axis.limits, &other.limits);
+        if known(axis) && known(other) && !settings.is_empty() {
+            causes.push(Cause::Limits(axis.name.clone(), settings));
+        }
+    }
+    causes
+}
+
+fn settings(expected: &Limits, found: &Limits) -> Vec<Setting> {
+    let all = [
+        ("software_limits.min", expected.position_min, found.position_min),
+        ("software_limits.max", expected.position_max, found.position_max),
+        ("limits.velocity", expected.velocity, found.velocity),
+        ("limits.acceleration", expected.acceleration, found.acceleration),
+        ("limits.deceleration", expected.deceleration, found.deceleration),
+        ("limits.jerk", expected.jerk, found.jerk),
+        ("limits.snap", expected.snap, found.snap),
+    ];
+    all.into_iter()
+        .filter(|(_, expected, found)| expected != found)
+        .map(|(name, expected, found)| Setting {
+            name,
+            expected,
+            found,
+        })
+        .collect()
+}
+
+/// The instances that both have, in call order, if that differs.
+fn order(expected: &Trace, found: &Trace) -> Option<Cause> {
+    let instances = |of: &Trace, other: &Trace| {
+        let columns = of.columns().iter();
+        let pins = columns.filter(|column| matches!(column.role, Role::InOut | Role::Input | Role::Output));
+        let shared = pins.filter(|column| other.column(&column.name).is_some());
+        let mut names: Vec<String> = shared.map(|column| column.subject().to_owned()).collect();
+        names.dedup();
+        names
+    };
+    let (expected, found) = (instances(expected, found), instances(found, expected));
+    let (expected, found) = expected.into_iter().zip(found).find(|(a, b)| a != b)?;
+    Some(Cause::Order { expected, found })
+}
+
+/// What the rows speak for, from the first scan that differs on; `ordered` says that both call blocks in the same order.
+fn of_rows(expected: &Trace, found: &Trace, first: &ScanDifference, extent: &Extent, ordered: bool) -> Cause {
+    let of = |signal: &SignalDifference| {
+        let column = expected.column(&signal.name);
+        column.and_then(|column| expected.columns().get(column))
+    };
+    let has_role =
+        |signal: &&SignalDifference, role: Role| of(signal).is_some_and(|column| column.role == role);
+    if let Some(signal) = first
+        .signals
+        .iter()
+        .find(|signal| has_role(signal, Role::Variable))
+    {
+        return Cause::Variable {
+            signal: signal.clone(),
+            later: later(expected, found, &signal.name, first.scan),
+        };
+    }
+    // Columns of pins stand in the order of their computation. An input that differs before any output was given so, if
+    // both runs compute in the same order.
+    let pins = first
+        .signals
+        .iter()
+        .filter(|signal| of(signal).is_some_and(is_pin));
+    let given: Vec<SignalDifference> = pins
+        .take_while(|signal| has_role(signal, Role::Input) || has_role(signal, Role::InOut))
+        .cloned()
+        .collect();
+    if ordered && !given.is_empty() {
+        return Cause::Parameter(given);
+    }
+    let shared = |events: Vec<Event>, other: &Trace| -> Vec<Event> {
+        let known = |event: &Event| {
+            event.subject == VARIABLES
+                || other
+                    .columns()
+                    .iter()
+                    .any(|column| column.subject() == event.subject)
+        };
+        events
+            .into_iter()
+            .filter(|event| event.scan >= first.scan && known(event))
+            .collect()
+    };
+    let (before, after) = (
+        shared(row_events(expected), found),
+        shared(row_events(found), expected),
+    );
+    if let Some(fault) = fault(&before, &after, first.scan) {
+        return fault;
+    }
+    if let Some(feedback) = first
+        .signals
+        .iter()
+        .find(|signal| of(signal).is_some_and(is_actual))
+        && first
+            .signals
+            .iter()
+            .all(|signal| of(signal).is_some_and(|column| is_actual(column) || reads(column)))
+    {
+        return Cause::Feedback(feedback.name.clone());
+    }
+    if before == after {
+        let share = extent.furthest.as_ref().map_or(0.0, |furthest| furthest.share);
+        if share <= ROUNDING {
+            let ulps = first.signals.iter().filter_map(|signal| signal.ulps).max();
+            return Cause::Rounding { share, ulps };
+        }
+        return Cause::Path;
+    }
+    shifted(&before, &after, (expected.scans(), found.scans())).unwrap_or_else(|| Cause::Events {
+        missing: only(&before, &after),
+        new: only(&after, &before),
+    })
+}
+
+fn is_pin(column: &Column) -> bool {
+    matches!(column.role, Role::InOut | Role::Input | Role::Output)
+}
+
+/// Whether it is what a drive reported.
+fn is_actual(column: &Column) -> bool {
+    column.role == Role::AxisValue
+        && (column.signal().starts_with("Actual") || column.signal() == "FollowingError")
+}
+
+/// Whether it is a number at an output, which may follow the feedback.
+fn reads(column: &Column) -> bool {
+    column.role == Role::Output && column.kind == Kind::Real
+}
+
+/// By how many scans later `found` first has the value that `expected` has in `scan`; negative if earlier.
+fn later(expected: &Trace, found: &Trace, name: &str, scan: usize) -> Option<i64> {
+    let (at, other) = (expected.column(name)?, found.column(name)?);
+    let distance = |from: usize, to: usize| i64::try_from(to.checked_sub(from)?).ok();
+    let (wanted, got) = (expected.cell(scan, at)?, found.cell(scan, other)?);
+    let before = scan.checked_sub(1).and_then(|scan| expected.cell(scan, at));
+    if before == Some(got) {
+        // Nothing has happened yet where something was expected.
+        let come = found.cells(other).skip(scan).position(|cell| cell == wanted)?;
+        return distance(scan, scan + come);
+    }
+    let come = expected.cells(at).skip(scan).position(|cell| cell == got)?;
+    distance(scan, scan + come).map(|scans| -scans)
+}
+
+/// A fault or refusal in the first scan that differs, if only one of the runs has it.
+fn fault(before: &[Event], after: &[Event], scan: usize) -> Option<Cause> {
+    let tells = |event: &&Event| {
+        let mut words = event.text.split_whitespace();
+        event.scan == scan && words.any(|word| matches!(word, "ErrorStop" | "+Error"))
+    };
+    // An axis tells more of it than a block that it made fail.
+    let find = |events: &[Event], other: &[Event]| {
+        let mut own: Vec<&Event> = events
+            .iter()
+            .filter(tells)
+            .filter(|event| !other.contains(event))
+            .collect();
+        own.sort_by_key(|event| !event.text.contains("ErrorStop"));
+        own.first().map(|event| (*event).clone())
+    };
+    let (event, in_found) = match (find(after, before), find(before, after)) {
+        (Some(event), _) => (event, true),
+        (None, Some(event)) => (event, false),
+        (None, None) => return None,
+    };
+    Some(Cause::Fault { event, in_found })
+}
+
+/// The same events at other scans; those that fell off the end of a run are not missed.
+fn shifted(before: &[Event], after: &[Event], scans: (usize, usize)) -> Option<Cause> {
+    let away = |a: &Event, b: &Event| Some(i64::try_from(b.scan).ok()? - i64::try_from(a.scan).ok()?);
+    let first = away(before.first()?, after.first()?)?;
+    let same = before
+        .iter()
+        .zip(after)
+        .all(|(a, b)| (&a.subject, &a.text) == (&b.subject, &b.text));
+    let distances: Vec<i64> = before.iter().zip(after).filter_map(|(a, b)| away(a, b)).collect();
+    let last = *distances.last()?;
+    let common = distances.len();
+    let beyond = |event: &Event, by: i64, end: usize| {
+        let scan = i64::try_from(event.scan).unwrap_or(i64::MAX).saturating_add(by);
+        scan >= i64::try_from(end).unwrap_or(i64::MAX)
+    };
+    let fell_off = before
+        .iter()
+        .skip(common)
+        .all(|event| beyond(event, last, scans.1))
+        && after
+            .iter()
+            .skip(common)
+            .all(|event| beyond(event, -last, scans.0));
+    if !same || !fell_off {
+        return None;
+    }
+    if distances.iter().all(|distance| *distance == first) {
+        return (first != 0).then_some(Cause::Shift(first));
+    }
+    let first = distances.into_iter().find(|distance| *distance != 0)?;
+    Some(Cause::Drift(first, last))
+}
+
+/// The first event that the other run does not have from there on, in whatever scan.
+fn only(events: &[Event], other: &[Event]) -> Option<Event> {
+    let known = |event: &Event| {
+        other
+            .iter()
+            .any(|other| (&other.subject, &other.text) == (&event.subject, &event.text))
+    };
+    events.iter().find(|event| !known(event)).cloned()
+}
+
+impl Cause {
+    /// Where to look for it.
+    #[must_use]
+    pub const fn look_at(&self) -> &'static str {
+        match self {
+            Self::Cycle(..) => "`cycle` of the scripts; with another cycle every scan has another time",
+            Self::Length(..) => "`scans` and `stop_when` of the scripts",
+            Self::Limits(..) => {
+                "the axis in the script, in a machine file that it includes, and what overrides it"
+            }
+            Self::Subjects(..) => {
+                "`axes`, `inputs` and `blocks` of the scripts; what they share may follow from that"
+            }
+            Self::Order { .. } => {
+                "the order of `blocks`: a wire reads an output of a block called later one scan late"
+            }
+            Self::Variable { .. } => "the steps that set it, and the conditions of their `when`",
+            Self::Parameter(_) => {
+                "the constant at the pin, the parameter behind it (`--set`), and the steps that write it"
+            }
+            Self::Fault { .. } => "the axis and its drive before that scan; docs/faults.md has every ErrorID",
+            Self::Feedback(_) => {
+                "`drive` of the axis: its delay, its scaling, its mechanism, a step that pushes it"
+            }
+            Self::Rounding { .. } => {
+                "formulas that were written anew; `test --golden events` lets such differences pass"
+            }
+            Self::Path => "limits, `profile` and defaults of the axis, and the planner's version",
+            Self::Shift(_) | Self::Drift(..) => {
+                "what the first of these events waits for: power, a timer, the length of a move, the order of blocks"
+            }
+            Self::Events { .. } => "the block of the first of these events, and what gives it its inputs",
+        }
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cycle(expected, found) => write!(
+                out,
+                "another cycle: expected {}, found {}",
+                time_literal(*expected),
+                time_literal(*found)
+            ),
+            Self::Length(expected, found) => {
+                write!(
+                    out,
+                    "one run is longer: expected {expected} scans, found {found}; all before is equal"
+                )
+            }
+            Self::Limits(axis, settings) => {
+                write!(out, "changed limits of {axis}:")?;
+                for (index, setting) in settings.iter().enumerate() {
+                    let comma = if index == 0 { "" } else { "," };
+                    let text = |limit: Option<f64>| limit.map_or_else(|| "none".to_owned(), shortest);
+                    let (expected, found) = (text(setting.expected), text(setting.found));
+                    write!(out, "{comma} {} expected {expected}, found {found}", setting.name)?;
+                }
+                Ok(())
+            }
+            Self::Subjects(expected, found) => {
+                let listed = |names: &[String]| match names.len() {
+                    0 => "nothing".to_owned(),
+                    count if count > NAMED => {
+                        format!("{} and {} more", names[..NAMED].join(", "), count - NAMED)
+                    }
+                    _ => names.join(", "),
+                };
+                write!(
+                    out,
+                    "another program: only what was expected has {}, only what was found has {}",
+                    listed(expected),
+                    listed(found)
+                )
+            }
+            Self::Order { expected, found } => {
+                write!(
+                    out,
+                    "another order of blocks: {found} is called where {expected} was"
+                )
+            }
+            Self::Variable { signal, later } => {
+                let SignalDifference {
+                    name,
+                    expected,
+                    actual,
+                    ..
+                } = signal;
+                write!(out, "another input: {name} is {actual} instead of {expected}")?;
+                match later {
+                    Some(scans) => write!(out, ", the step comes {}", away(*scans)),
+                    None => Ok(()),
+                }
+            }
+            Self::Parameter(signals) => {
+                write!(out, "a changed parameter:")?;
+                for (index, signal) in signals.iter().take(NAMED).enumerate() {
+                    let comma = if index == 0 { "" } else { "," };
+                    write!(
+                        out,
+                        "{comma} {} is given {} instead of {}",
+                        signal.name, signal.actual, signal.expected
+                    )?;
+                }
+                match signals.len().checked_sub(NAMED + 1) {
+                    Some(more) => write!(out, ", and {} more", more + 1),
+                    None => Ok(()),
+                }
+            }
+            Self::Fault { event, in_found } => {
+                let which = if *in_found { "was found" } else { "was expected" };
+                let what = if event.text.contains("ErrorStop") {
+                    "a fault of an axis or its drive"
+                } else {
+                    "an error of a block"
+                };
+                write!(
+                    out,
+                    "{what}, only in what {which}: {} {} in scan {}",
+                    event.subject, event.text, event.scan
+                )
+            }
+            Self::Feedback(signal) => write!(
+                out,
+                "the drive answers otherwise: {signal} differs first, with equal set-points before"
+            ),
+            Self::Rounding { share, ulps } => {
+                write!(
+                    out,
+                    "reordered arithmetic: every event is in its scan, and no number is off by more than "
+                )?;
+                write!(out, "{share:.1e} of the largest in its column")?;
+                match ulps {
+                    Some(1) => write!(out, ", at first 1 ULP"),
+                    Some(ulps) => write!(out, ", at first {ulps} ULPs"),
+                    None => Ok(()),
+                }
+            }
+            Self::Path => write!(
+                out,
+                "another way to the same events: every event is in its scan, set-points are not the same"
+            ),
+            Self::Shift(scans) => write!(
+                out,
+                "a shift in time: from there on every event comes {}",
+                away(*scans)
+            ),
+            Self::Drift(first, last) => write!(
+                out,
+                "other durations: the same events in the same order, the first comes {}, the last {}",
+                away(*first),
+                away(*last)
+            ),
+            Self::Events { missing, new } => {
+                write!(out, "another course of events:")?;
+                if let Some(event) = missing {
+                    write!(
+                        out,
+                        " {} {} of scan {} never comes",
+                        event.subject, event.text, event.scan
+                    )?;
+                }
+                let and = if missing.is_some() && new.is_some() {
+                    ","
+                } else {
+                    ""
+                };
+                match new {
+                    Some(event) => {
+                        write!(
+                            out,
+                            "{and} {} {} in scan {} is new",
+                            event.subject, event.text, event.scan
+                        )
+                    }
+                    None if missing.is_none() => write!(out, " the same ones in another order"),
+                    None => Ok(()),
+                }
+            }
+        }
+    }
+}
+
+/// `2 scans later`
+fn away(scans: i64) -> String {
+    let plural = if scans.abs() == 1 { "" } else { "s" };
+    let way = if scans < 0 { "earlier" } else { "later" };
+    match scans {
+        0 => "in its scan".to_owned(),
+        _ => format!("{} scan{plural} {way}", scans.abs()),
+    }
+}

@@ -1,0 +1,350 @@
+//! The state of the watching, and what keys do to it. It reads no clock and no terminal, so tests drive it.
+
+use crate::points::{Line, lines};
+use standstill_script::model::{Point, Script};
+use standstill_script::{Outcome, RunError, Session, Standing};
+use standstill_trace::{Event, EventLog};
+
+/// Events that the list remembers.
+const EVENTS_KEPT: usize = 1000;
+
+/// How fast a run may go, in cycles of the script per cycle of the clock; the last is as fast as it can.
+pub const SPEEDS: [f64; 6] = [0.01, 0.1, 1.0, 10.0, 100.0, f64::INFINITY];
+
+/// A key that means something, whatever terminal it comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// A character.
+    Char(char),
+    /// Enter.
+    Enter,
+    /// Escape.
+    Escape,
+    /// Backspace.
+    Backspace,
+    /// Tab.
+    Tab,
+    /// An arrow or page key: so many lines down.
+    Down(i32),
+}
+
+/// What the run is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Nothing, until a key says so.
+    Paused,
+    /// Scans at its speed.
+    Running,
+    /// Scans as fast as it can until something happens.
+    ToEvent,
+    /// Scans as fast as it can until a claim is decided.
+    ToClaim,
+}
+
+/// What lies over the screen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Over {
+    Nothing,
+    Help,
+    /// The text for a point so far.
+    Edit(Point, String),
+}
+
+/// Saves the changed script; what to tell of it.
+pub type Save<'a> = Box<dyn FnMut(&[standstill_script::Change]) -> Result<String, String> + 'a>;
+
+/// A script being watched.
+pub struct App<'a> {
+    pub(crate) script: &'a Script,
+    pub(crate) name: String,
+    pub(crate) session: Session<'a>,
+    log: EventLog,
+    pub(crate) events: Vec<Event>,
+    pub(crate) standings: Vec<Standing>,
+    /// What every claim says.
+    pub(crate) says: Vec<String>,
+    pub(crate) mode: Mode,
+    speed: usize,
+    /// Scans that the clock has earned and that were not done yet.
+    owed: f64,
+    pub(crate) axis: usize,
+    pub(crate) lines: Vec<Line>,
+    pub(crate) selected: usize,
+    pub(crate) over: Over,
+    pub(crate) message: String,
+    pub(crate) broken: bool,
+    quit: bool,
+    save: Save<'a>,
+}
+
+impl<'a> App<'a> {
+    /// A script before its first scan, under the name it is shown by.
+    ///
+    /// # Errors
+    /// [`RunError`]: what the script asks for cannot be set up.
+    pub fn new(script: &'a Script, name: &str, save: Save<'a>) -> Result<Self, RunError> {
+        let lines = lines(script);
+        let session = Session::new(script)?;
+        Ok(Self {
+            script,
+            name: name.to_owned(),
+            says: session.claims(),
+            session,
+            log: EventLog::default(),
+            events: Vec::new(),
+            standings: vec![Standing::Open; script.claims.len()],
+            mode: Mode::Paused,
+            speed: 2,
+            owed: 0.0,
+            axis: 0,
+            selected: lines.iter().position(|line| line.point.is_some()).unwrap_or(0),
+            lines,
+            over: Over::Nothing,
+            message: "? for help".to_owned(),
+            broken: false,
+            quit: false,
+            save,
+        })
+    }
+
+    /// Whether the watching is to end.
+    #[must_use]
+    pub const fn is_done(&self) -> bool {
+        self.quit
+    }
+
+    /// What the run is doing.
+    #[must_use]
+    pub const fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// Scans done.
+    #[must_use]
+    pub const fn scans(&self) -> u64 {
+        self.session.scans()
+    }
+
+    pub(crate) fn speed(&self) -> f64 {
+        SPEEDS.get(self.speed).copied().unwrap_or(1.0)
+    }
+
+    /// The claims that hold, fail and are open.
+    #[must_use]
+    pub fn tally(&self) -> (usize, usize, usize) {
+        let count = |is: fn(&Standing) -> bool| self.standings.iter().filter(|standing| is(standing)).count();
+        (
+            count(|standing| matches!(standing, Standing::Held(_))),
+            count(|standing| matches!(standing, Standing::Failed(_))),
+            count(|standing| matches!(standing, Standing::Open)),
+        )
+    }
+
+    /// Why the run ended early, if it did.
+    #[must_use]
+    pub fn broken(&self) -> Option<&str> {
+        self.broken.then_some(self.message.as_str())
+    }
+
+    /// Judges the run as far as it went.
+    #[must_use]
+    pub fn finish(self) -> Outcome {
+        self.session.finish()
+    }
+
+    /// Tells that so much of the clock went by (s). The scans it earned are done by [`App::work`].
+    pub fn elapsed(&mut self, seconds: f64) {
+        self.owed = match self.mode {
+            Mode::Paused => 0.0,
+            Mode::ToEvent | Mode::ToClaim => f64::INFINITY,
+            Mode::Running => {
+                let cycle = self.script.cycle_ns as f64 / 1e9;
+                // What a slow terminal held up is not made up for.
+                self.owed.min(1.0) + seconds * self.speed() / cycle
+            }
+        };
+    }
+
+    /// Does one scan if the clock has earned one; FALSE if there is nothing to do.
+    pub fn work(&mut self) -> bool {
+        if self.mode == Mode::Paused || self.owed < 1.0 {
+            return false;
+        }
+        self.owed -= 1.0;
+        let open = self.tally().2;
+        let events = self.scan();
+        let is_there = match self.mode {
+            Mode::ToEvent => events,
+            Mode::ToClaim => self.tally().2 != open,
+            Mode::Paused | Mode::Running => false,
+        };
+        if is_there || self.session.is_over() {
+            self.mode = Mode::Paused;
+        }
+        self.mode != Mode::Paused
+    }
+
+    /// One scan; whether it had an event.
+    fn scan(&mut self) -> bool {
+        match self.session.advance() {
+            Ok(true) => {}
+            Ok(false) => return false,
+            Err(error) => {
+                self.message = format!("the run ended: {error}");
+                self.broken = true;
+                return false;
+            }
+        }
+        let events = self.log.take(self.session.trace());
+        let some = !events.is_empty();
+        self.events.extend(events);
+        let surplus = self.events.len().saturating_sub(EVENTS_KEPT);
+        self.events.drain(..surplus);
+        self.standings = self.session.standings().to_vec();
+        if self.session.is_over() {
+            let (held, failed, _) = self.tally();
+            self.message = format!("the run is over: {held} claims hold, {failed} fail; r starts again");
+        }
+        some
+    }
+
+    /// Takes a key.
+    pub fn key(&mut self, key: Key) {
+        match std::mem::replace(&mut self.over, Over::Nothing) {
+            Over::Nothing => self.command(key),
+            // Any key takes the help away.
+            Over::Help => {}
+            Over::Edit(point, text) => self.edit(point, text, key),
+        }
+    }
+
+    fn command(&mut self, key: Key) {
+        if !self.broken {
+            self.message.clear();
+        }
+        match key {
+            Key::Char('q') | Key::Escape => self.quit = true,
+            Key::Char('?' | 'h') => self.over = Over::Help,
+            Key::Char(' ') => self.go(if self.mode == Mode::Paused {
+                Mode::Running
+            } else {
+                Mode::Paused
+            }),
+            Key::Char('s') => self.steps(1),
+            Key::Char('S') => self.steps(10),
+            Key::Char('e') => self.go(Mode::ToEvent),
+            Key::Char('c') => self.go(Mode::ToClaim),
+            Key::Char('+') => self.speed = (self.speed + 1).min(SPEEDS.len() - 1),
+            Key::Char('-') => self.speed = self.speed.saturating_sub(1),
+            Key::Char('r') => self.restart(),
+            Key::Char('w') => self.write(),
+            Key::Tab => self.axis = (self.axis + 1) % self.script.axes.len().max(1),
+            Key::Down(lines) => self.select(lines),
+            Key::Char('j') => self.select(1),
+            Key::Char('k') => self.select(-1),
+            Key::Enter => self.begin_edit(),
+            Key::Char(_) | Key::Backspace => "no such key; ? for help".clone_into(&mut self.message),
+        }
+    }
+
+    fn go(&mut self, mode: Mode) {
+        if self.session.is_over() {
+            if !self.broken {
+                "the run is over; r starts again".clone_into(&mut self.message);
+            }
+            return;
+        }
+        (self.mode, self.owed) = (mode, 0.0);
+    }
+
+    fn steps(&mut self, scans: u32) {
+        self.go(Mode::Paused);
+        for _ in 0..scans {
+            self.scan();
+        }
+    }
+
+    fn restart(&mut self) {
+        match Session::new(self.script) {
+            Ok(session) => self.session = session,
+            // It was possible before.
+            Err(error) => {
+                self.message = error.to_string();
+                return;
+            }
+        }
+        self.log = EventLog::default();
+        self.events.clear();
+        self.standings.fill(Standing::Open);
+        (self.mode, self.owed, self.broken) = (Mode::Paused, 0.0, false);
+        "from the start, without the changes".clone_into(&mut self.message);
+    }
+
+    fn write(&mut self) {
+        self.message = match self.session.changes() {
+            [] => "nothing was changed, so there is nothing to write".to_owned(),
+            changes => (self.save)(changes).unwrap_or_else(|why| format!("not written: {why}")),
+        };
+    }
+
+    /// Moves the selection over points only.
+    fn select(&mut self, lines: i32) {
+        for _ in 0..lines.unsigned_abs() {
+            let points = |index: &usize| self.lines.get(*index).is_some_and(|line| line.point.is_some());
+            let next = if lines > 0 {
+                (self.selected + 1..self.lines.len()).find(points)
+            } else {
+                (0..self.selected).rev().find(points)
+            };
+            self.selected = next.unwrap_or(self.selected);
+        }
+    }
+
+    /// Turns a BOOL over, asks for every other value.
+    fn begin_edit(&mut self) {
+        let Some(line) = self.lines.get(self.selected) else {
+            return;
+        };
+        let Some(point) = line.point else { return };
+        if let Some(obstacle) = self.session.obstacle(point) {
+            self.message = format!("{}: {obstacle}", line.full);
+            return;
+        }
+        match self.value(point).as_deref() {
+            Some("TRUE") => self.change(point, "FALSE"),
+            Some("FALSE") => self.change(point, "TRUE"),
+            _ => self.over = Over::Edit(point, String::new()),
+        }
+    }
+
+    fn edit(&mut self, point: Point, mut text: String, key: Key) {
+        match key {
+            Key::Enter => return self.change(point, &text),
+            Key::Escape => return,
+            Key::Backspace => {
+                text.pop();
+            }
+            Key::Char(character) if !character.is_control() => text.push(character),
+            Key::Char(_) | Key::Tab | Key::Down(_) => {}
+        }
+        self.over = Over::Edit(point, text);
+    }
+
+    fn change(&mut self, point: Point, text: &str) {
+        self.message = match self.session.change(point, text) {
+            Ok(()) => match self.session.changes().last() {
+                Some(change) => format!(
+                    "{} = {} from scan {} on; w writes a script",
+                    change.name, change.json, change.scan
+                ),
+                None => String::new(),
+            },
+            Err(why) => why,
+        };
+    }
+
+    /// The value at a point as text, as it was in the last row or will be in the first.
+    pub(crate) fn value(&self, point: Point) -> Option<String> {
+        self.session.text(point)
+    }
+}

@@ -1,0 +1,18 @@
+//! The keys, as the help shows them.
+
+/// Key and what it does.
+pub const KEYS: [(&str, &str); 13] = [
+    ("space", "run, pause"),
+    ("s  S", "a scan, ten scans"),
+    ("e", "to the next event"),
+    ("c", "until a claim is decided"),
+    ("+  -", "faster, slower"),
+    ("tab", "the next axis"),
+    ("up down", "select a pin (also k j, page keys)"),
+    ("enter", "change it: a BOOL turns over"),
+    ("w", "write the changed run as a script"),
+    ("r", "start again"),
+    ("?", "this help; any key closes it"),
+    ("q esc", "end"),
+    ("", "Changes apply in the next scan."),
+];
