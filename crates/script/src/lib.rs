@@ -19,6 +19,7 @@ pub mod suite;
 pub use claims::{Failure, Verdict};
 pub use error::{Code, DIAGNOSTICS_SHOWN, Diagnostic, ScriptError};
 pub use format::format;
+pub use read::block::NOT_BUILT;
 pub use read::machine_map::read_map;
 pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read, read_with};
 pub use run::{Outcome, RunError, run, run_with};
