@@ -81,3 +81,8 @@ pub mod prelude {
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 mod readme {}
+
+// So are those of the guide for hosts.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/how-to/embed.md")]
+mod embed {}
