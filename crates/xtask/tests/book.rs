@@ -103,6 +103,29 @@ fn every_page_stands_in_the_book_once() {
 }
 
 #[test]
+fn scripts_that_pages_name_exist() {
+    let mut count = 0;
+    for path in files()
+        .iter()
+        .filter(|path| path.extension().is_some_and(|found| found == "md"))
+    {
+        let text = fs::read_to_string(path).unwrap();
+        for named in text
+            .split_whitespace()
+            .filter(|word| word.starts_with("scan-tests/") && word.ends_with(".json"))
+        {
+            assert!(
+                root().join(named).exists(),
+                "{}: {named} is not there",
+                path.display()
+            );
+            count += 1;
+        }
+    }
+    assert!(count > 50, "only {count} found");
+}
+
+#[test]
 fn every_script_of_the_gallery_has_its_page_and_its_picture() {
     let gallery = root().join("docs/gallery");
     let index = fs::read_to_string(gallery.join("README.md")).unwrap();
