@@ -42,7 +42,7 @@ codes! {
     UnknownKey = "unknown_key",
     /// A key that must be given is not.
     MissingKey = "missing_key",
-    /// A key or version whose feature this version of the runtime does not have.
+    /// A key, block or version whose feature this version of the runtime does not have.
     Unsupported = "unsupported",
     /// A value of another type than the key or pin takes.
     WrongType = "wrong_type",

@@ -96,3 +96,8 @@ mod guide {}
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 mod readme {}
+
+// So are those of the guide for hosts.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/how-to/embed.md")]
+mod embed {}

@@ -6,9 +6,11 @@
 
 mod bad_input;
 mod blocks;
+pub mod book;
 mod compliance;
 mod error_ids;
 mod faults;
+mod packages;
 mod pictures;
 mod requirements;
 mod states;
@@ -16,7 +18,9 @@ mod vibration;
 
 pub use compliance::Compliance;
 pub use faults::Faults;
+pub use packages::Package;
 pub use requirements::Requirements;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A generated file: its path below the repository root and its text.
@@ -34,6 +38,7 @@ pub fn generated() -> Vec<Generated> {
     let pictures = pictures::pictures();
     let mut files = blocks::pages(&requirements, &pictures);
     files.extend(pictures.values().map(pictures::Picture::drawn));
+    files.extend(packages::readmes());
     files.push(error_ids::page());
     files.push(Faults::read().page());
     files.push(bad_input::page());
@@ -47,6 +52,25 @@ pub fn generated() -> Vec<Generated> {
 /// The repository root.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Every file of the repository that people read or write, without build products, sorted.
+pub fn files() -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    let mut folders = vec![root()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).expect("a folder of the repository") {
+            let path = entry.expect("an entry of it").path();
+            let name = path.file_name().unwrap_or_default();
+            if !path.is_dir() {
+                files.push(path);
+            } else if name != "target" && name != ".git" && name != "node_modules" {
+                folders.push(path);
+            }
+        }
+    }
+    files.sort();
+    files
 }
 
 /// The line that heads every generated page.

@@ -8,10 +8,10 @@ use standstill_trace::svg::{report, svg};
 use std::collections::BTreeMap;
 use std::fs;
 
-/// What the pictures show of an axis, beside its states and the Booleans.
-const SIGNALS: [&str; 2] = ["Position", "Velocity"];
+/// What the pictures show of an axis, beside its states and the Booleans, where their line does not say.
+const SIGNALS: &str = "Position,Velocity";
 
-/// The picture that shows what a report shows.
+/// The signals of a picture that shows what a report shows: all of them, and the claims.
 const REPORT: &str = "report";
 
 /// A line of the list.
@@ -19,6 +19,8 @@ const REPORT: &str = "report";
 pub struct Picture {
     /// A block, or a name.
     pub name: String,
+    /// What it shows of each axis.
+    signals: Vec<String>,
     /// The script, relative to the repository root.
     pub script: String,
     /// Title of the script.
@@ -29,20 +31,23 @@ pub struct Picture {
 impl Picture {
     /// Where the picture is, relative to the repository root.
     pub fn path(&self) -> String {
-        let folder = match REGISTRY.iter().any(|info| info.name == self.name) {
-            true => "blocks",
-            false => "pictures",
-        };
-        format!("docs/{folder}/{}.svg", self.name.to_lowercase())
+        let name = self.name.to_lowercase();
+        if name.contains('/') {
+            format!("docs/{name}.svg")
+        } else if REGISTRY.iter().any(|info| info.name == self.name) {
+            format!("docs/blocks/{name}.svg")
+        } else {
+            format!("docs/pictures/{name}.svg")
+        }
     }
 
     /// The drawn picture.
     pub fn drawn(&self) -> Generated {
         Generated {
             path: self.path(),
-            text: match self.name.as_str() {
-                REPORT => report(&self.trace),
-                _ => svg(&self.trace, &SIGNALS),
+            text: match &self.signals.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+                [REPORT] => report(&self.trace),
+                signals => svg(&self.trace, signals),
             },
         }
     }
@@ -55,11 +60,14 @@ pub fn pictures() -> BTreeMap<String, Picture> {
     list.lines()
         .filter(|line| !line.starts_with('#'))
         .filter_map(|line| line.split_once(' '))
-        .map(|(name, script)| (name.to_owned(), picture(name, script)))
+        .map(|(name, rest)| {
+            let (script, signals) = rest.split_once(' ').unwrap_or((rest, SIGNALS));
+            (name.to_owned(), picture(name, script, signals))
+        })
         .collect()
 }
 
-fn picture(name: &str, script: &str) -> Picture {
+fn picture(name: &str, script: &str, signals: &str) -> Picture {
     let path = format!("scan-tests/{script}.scan.json");
     let text = fs::read_to_string(root().join(&path)).unwrap_or_else(|error| panic!("{path}: {error}"));
     let script = read(&text, &path, &[]).unwrap_or_else(|error| panic!("{error}"));
@@ -68,6 +76,7 @@ fn picture(name: &str, script: &str) -> Picture {
         .trace;
     Picture {
         name: name.into(),
+        signals: signals.split(',').map(str::to_owned).collect(),
         script: path,
         title: trace.header().title.clone(),
         trace,

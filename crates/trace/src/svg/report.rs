@@ -21,6 +21,9 @@ const ACTUAL: [(&str, &str); 2] = [("Position", "ActualPosition"), ("Velocity", 
 /// A number that changes in more than one of so many scans is a curve, not a row of boxes.
 const BUSY: usize = 8;
 
+/// Letters of a title that fit on a line.
+const TITLE: usize = 88;
+
 /// Half of the width of a claim's mark.
 const MARK: f64 = 3.5;
 
@@ -65,11 +68,26 @@ pub fn report(trace: &Trace) -> String {
     picture.finish(&header.title)
 }
 
+/// A title as lines that fit the width; a word that does not stands on a line of its own.
+fn lines(title: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in title.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= TITLE => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
 fn heading(picture: &mut Picture, trace: &Trace) {
     let header = trace.header();
     picture.y += GAP / 2.0;
-    if !header.title.is_empty() {
-        picture.text("title", "start", [GAP, picture.y + 4.0], &header.title);
+    for line in lines(&header.title) {
+        picture.text("title", "start", [GAP, picture.y + 4.0], &line);
         picture.y += ROW;
     }
     let mut facts = format!("cycle {}, {} scans", time_literal(header.cycle_ns), trace.scans());
@@ -161,7 +179,7 @@ fn row(picture: &mut Picture, column: &Column, cells: &[Cell<'_>], changes: usiz
         return;
     }
     picture.label("", picture.y + 0.8 * ROW - 1.0, &column.name);
-    if column.kind == Kind::Real && changes > 2 + cells.len() / BUSY {
+    if matches!(column.kind, Kind::Real | Kind::Integer) && changes > 2 + cells.len() / BUSY {
         let values: Vec<f64> = cells.iter().filter_map(real).collect();
         let finite = values.iter().copied().filter(|value| value.is_finite());
         let range = Range::of(finite.clone().fold(0.0, f64::min), finite.fold(0.0, f64::max));
@@ -187,6 +205,8 @@ fn row(picture: &mut Picture, column: &Column, cells: &[Cell<'_>], changes: usiz
 fn real(cell: &Cell<'_>) -> Option<f64> {
     match cell {
         Cell::Real(value) => Some(*value),
-        Cell::Bool(_) | Cell::Integer(_) | Cell::Name(_) => None,
+        // The time of a timer, a count: what a picture resolves is less than a float does.
+        Cell::Integer(value) => Some(*value as f64),
+        Cell::Bool(_) | Cell::Name(_) => None,
     }
 }

@@ -104,6 +104,14 @@ impl Compliance {
                 self.problems_of_block(&mut found, block, info, known);
             }
         }
+        for block in &self.blocks {
+            if block.info.is_none() != standstill_script::NOT_BUILT.contains(&block.name.as_str()) {
+                found.push(format!(
+                    "{}: what scripts that ask for it are told (NOT_BUILT) is not true",
+                    block.name
+                ));
+            }
+        }
         for remark in &self.standard.remarks {
             if !self.standard.knows(&remark.subject) {
                 found.push(format!("remarks.txt: {} is not in the catalogue", remark.subject));
