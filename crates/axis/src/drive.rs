@@ -151,8 +151,8 @@ pub enum DriveHoming {
     Attained(DrivePosition),
     /// It stands, and the reference is here. It stays so until it is asked no longer.
     Done(DrivePosition),
-    /// It gave up. It stays so until it is asked no longer.
-    Failed,
+    /// It gave up, with its own error code, 0 if it has none. It stays so until it is asked no longer.
+    Failed(u16),
 }
 
 /// What a drive tells beside its motion. What it does not know stays as in the default.

@@ -126,7 +126,7 @@ error_ids! {
     TableUnknown = 135, "The table at a pin does not stand among the tables of this runtime, or has too many records.",
         "Take the reference from Machine::add_table; the page of the block says how many records it takes.";
     ParameterNumberInvalid = 140, "ParameterNumber is not the number of a parameter.",
-        "Give a number from 1 to 17.";
+        "Give a number from 1 to 17, or 1000 or 1001 to read.";
     ParameterKindInvalid = 141, "The parameter is a BOOL and the block one for REAL, or the other way round.",
         "Use MC_ReadBoolParameter and MC_WriteBoolParameter for the numbers 4 to 6, MC_ReadParameter and MC_WriteParameter for all others.";
     ParameterReadOnly = 142, "The parameter can only be read.",
@@ -205,13 +205,13 @@ error_ids! {
         "Check the home switch, its wiring and the edge in the homing of the axis.";
 
     DriveFault = 501, "The drive reported a fault.",
-        "Read the drive's error code, remove the cause, then call MC_Reset.";
+        "Read the drive's own code, parameter 1000, remove the cause, then call MC_Reset.";
     PowerLost = 502, "The power stage went off without being asked to.",
         "Restore the power, then call MC_Reset.";
     HomingSignalMissing = 510, "The homing of the axis needs a switch, a reference pulse or a mode that its drive does not have.",
         "Choose a homing the drive has the signals for, or give the drive what is missing.";
     DriveHomingFailed = 511, "The drive gave up its homing.",
-        "Read the drive's own error and check its homing method and switches, then call MC_Reset.";
+        "Read the drive's own code, parameter 1000, and check its homing method and switches, then call MC_Reset.";
     TorqueUnknown = 520, "The drive of the axis does not tell its torque.",
         "Use a drive that measures it.";
     TorqueNotHeld = 521, "The drive of the axis cannot hold a torque.",

@@ -15,6 +15,7 @@ pub mod cia402;
 pub mod mechanism;
 pub mod peripherals;
 pub mod switches;
+mod wire;
 
 /// The whole number nearest to `value`, half away from zero.
 fn nearest(value: f64) -> i64 {

@@ -1,16 +1,15 @@
 //! Digital inputs, outputs and probes of a simulated drive.
 
 use crate::nearest;
+use crate::wire::Wire;
 use standstill_axis::{DriveOrder, DrivePosition, DriveReport, Edge, PROBES, ProbeReport};
 
 /// A probe's input and what it has seen.
 #[derive(Clone, Copy, Debug, Default)]
 struct Probe {
-    level: bool,
+    wire: Wire,
     ordered: Option<Edge>,
     latched: Option<DrivePosition>,
-    /// The level changes at this part of the interval that ends with the next feedback.
-    change: Option<(f64, bool)>,
 }
 
 /// What a simulated drive has beside its motion.
@@ -56,10 +55,10 @@ impl Peripherals {
     }
 
     /// The input of probe `number`, from 0, is at `level` from the part `at` (0 to 1) of the interval on that ends
-    /// with the next feedback. A second call for that interval replaces the first.
+    /// with the next feedback. Up to four changes in one interval are kept.
     pub fn set_probe(&mut self, number: usize, at: f64, level: bool) {
         if let Some(probe) = self.probes.get_mut(number) {
-            probe.change = Some((at.clamp(0.0, 1.0), level));
+            probe.wire.set(at, level);
         }
     }
 
@@ -67,17 +66,12 @@ impl Peripherals {
     pub fn report(&mut self, position: DrivePosition, report: &mut DriveReport) {
         let before = self.before.replace(position).unwrap_or(position);
         for (probe, told) in self.probes.iter_mut().zip(&mut report.probes) {
-            if let Some((at, level)) = probe.change.take() {
-                let edge = match (probe.level, level) {
-                    (false, true) => Some(Edge::Rising),
-                    (true, false) => Some(Edge::Falling),
-                    _ => None,
-                };
-                probe.level = level;
-                if edge.is_some() && edge == probe.ordered && probe.latched.is_none() {
-                    probe.latched = Some(between(before, position, at, self.turn));
+            let (ordered, latched) = (probe.ordered, &mut probe.latched);
+            probe.wire.take(|at, edge| {
+                if Some(edge) == ordered && latched.is_none() {
+                    *latched = Some(between(before, position, at, self.turn));
                 }
-            }
+            });
             *told = ProbeReport {
                 armed: probe.ordered.is_some(),
                 latched: probe.latched,

@@ -17,6 +17,7 @@ fn scan_to(node: &mut SimulatedNode, controlword: u16, target_position: i32) -> 
             controlword,
             mode: 8,
             target_position,
+            ..Outputs::default()
         },
     );
     node.inputs(0).expect("connected")

@@ -119,8 +119,25 @@ pub struct Cia402Setup {
     pub on_fault: Reaction,
     /// What it does in homing mode: whether it goes upwards, and the velocity (u/s).
     pub homing: Option<(bool, f64)>,
+    /// What it turns in torque mode; none if it does not know the mode.
+    pub motor: Option<MotorSetup>,
     /// Along its travel.
     pub switches: Switches,
+}
+
+/// The motor of a simulated CiA 402 drive, in a unit of torque of the script's choice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotorSetup {
+    /// Object 6076h, above 0.
+    pub rated_torque: f64,
+    /// Object 6072h, above 0 and within what the bus can say.
+    pub max_torque: f64,
+    /// Torque for an acceleration (torque s^2/u), above 0.
+    pub inertia: f64,
+    /// Friction that grows with velocity (torque s/u), from 0.
+    pub viscous: f64,
+    /// Friction that does not (torque), from 0.
+    pub coulomb: f64,
 }
 
 /// Parameters of the ideal drive.

@@ -316,6 +316,13 @@ fn drive() -> Value {
                     _ => of("positive"),
                 }),
             ),
+            "motor" => required(
+                &["rated_torque", "inertia"],
+                object(&shape::MOTOR, |key| match key {
+                    "viscous" | "coulomb" => of("finite"),
+                    _ => of("positive"),
+                }),
+            ),
             _ => switches(key).unwrap_or_else(|| of("finite")),
         }),
     })

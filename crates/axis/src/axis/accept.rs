@@ -472,6 +472,7 @@ impl<P: Planner> Axis<P> {
             Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
             Work::Torque { .. } => {
                 let velocity = self.torque_goal(entry) * entry.limits.velocity;
+                self.not_outward(start.position, velocity)?;
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
             // Its times have passed.

@@ -13,7 +13,7 @@ use super::{Axis, Source};
 use crate::{AxisConfig, CommandId, ErrorId, ExecutionMode, Fate, Log, Raw};
 use standstill_planner::{Limits, Planner};
 
-/// A parameter of an axis, by its number in the standard.
+/// A parameter of an axis, by its number: below 1000 in the standard, from there on ours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
     /// 1: the set position last published (u).
@@ -50,10 +50,14 @@ pub enum Parameter {
     MaxJerkSystem,
     /// 17: jerk limit of the application (u/s^3).
     MaxJerkAppl,
+    /// 1000: the drive's own code of the axis error; 0 without one.
+    DriveErrorCode = 1000,
+    /// 1001: the set position published in the scan before less the actual position (u).
+    PositionLag,
 }
 
 impl Parameter {
-    /// Every parameter, in the order of the numbers from 1 on.
+    /// Those of the standard, in the order of the numbers from 1 on.
     pub const ALL: [Self; 17] = [
         Self::CommandedPosition,
         Self::SwLimitPos,
@@ -74,12 +78,14 @@ impl Parameter {
         Self::MaxJerkAppl,
     ];
 
+    /// Ours, in the order of the numbers from 1000 on.
+    pub const OURS: [Self; 2] = [Self::DriveErrorCode, Self::PositionLag];
+
     fn of(number: i16) -> Result<Self, ErrorId> {
-        let index = usize::try_from(number)
-            .ok()
-            .and_then(|number| number.checked_sub(1));
-        let parameter = index.and_then(|index| Self::ALL.get(index).copied());
-        parameter.ok_or(ErrorId::ParameterNumberInvalid)
+        let place = |first: i16| usize::try_from(number.checked_sub(first)?).ok();
+        let of_the_standard = place(1).and_then(|place| Self::ALL.get(place));
+        let parameter = of_the_standard.or_else(|| place(1000).and_then(|place| Self::OURS.get(place)));
+        parameter.copied().ok_or(ErrorId::ParameterNumberInvalid)
     }
 }
 
@@ -287,6 +293,11 @@ impl<P: Planner> Axis<P> {
             Parameter::MaxDecelerationAppl => ParameterValue::Real(own.limits.deceleration),
             Parameter::MaxJerkSystem => ParameterValue::Real(system.jerk),
             Parameter::MaxJerkAppl => ParameterValue::Real(own.limits.jerk),
+            Parameter::DriveErrorCode => ParameterValue::Real(self.error_code.into()),
+            Parameter::PositionLag => {
+                self.fresh_position()?;
+                ParameterValue::Real(self.following_error())
+            }
         })
     }
 
@@ -349,7 +360,7 @@ impl<P: Planner> Axis<P> {
         let shown = if why.pin == "Value" {
             value.shown()
         } else {
-            f64::from(parameter as u8)
+            f64::from(parameter as u16)
         };
         self.refuse(why.pin, shown, why.limit, why.error, source, log)
     }
@@ -420,7 +431,9 @@ impl<P: Planner> Axis<P> {
             | Parameter::CommandedVelocity
             | Parameter::MaxAccelerationSystem
             | Parameter::MaxDecelerationSystem
-            | Parameter::MaxJerkSystem => {
+            | Parameter::MaxJerkSystem
+            | Parameter::DriveErrorCode
+            | Parameter::PositionLag => {
                 value.real()?;
                 Err(Unwritten::number(ErrorId::ParameterReadOnly))
             }

@@ -78,7 +78,8 @@ impl<P: Planner> Axis<P> {
             && comms == Comms::Ok
             && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         let is_pending = self.reset.is_some() || self.shift_due || self.rename.is_some();
-        let is_torque = matches!(self.motion, Motion::Torque { .. });
+        // The order of one that has handed over is taken back in the scan after.
+        let is_torque = matches!(self.motion, Motion::Torque { .. }) || self.beside.order.torque.is_some();
         let is_watched = self.parameters.lag.on || self.is_homing() || is_torque;
         if !(is_powered && is_well && !is_pending && self.past.is_whole() && !is_watched) {
             Calm::No

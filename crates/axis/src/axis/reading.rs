@@ -218,6 +218,11 @@ impl<P: Planner> Axis<P> {
         Ok((self.fresh_position()? - self.past.before) / self.planner.cycle())
     }
 
+    /// The actual velocity of the scan before (u/s).
+    pub(super) fn velocity_before(&self) -> f64 {
+        (self.past.before - self.past.earlier) / self.planner.cycle()
+    }
+
     /// What the motion is doing, by the values `source` names.
     ///
     /// - Commanded values are those the active command asks for. They change in jumps only, so the pace is

@@ -167,6 +167,10 @@ impl<P: Planner> Axis<P> {
             self.record_plan(&entry, plan, scan, log);
         }
         self.in_force = Self::limits_of(&entry.limits, &motion);
+        if matches!(motion, Motion::Torque { .. }) {
+            // A torque that may go on again, or was given new values, needs care in every scan.
+            self.stir();
+        }
         self.motion = motion;
         self.inside_for = 0;
         if self.modulo.is_some() {

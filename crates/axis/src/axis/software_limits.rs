@@ -64,7 +64,7 @@ impl<P: Planner> Axis<P> {
                 outside(self.end_of_plan())
                     || (!self.setpoint.is_at_rest() && outside(self.rest(&self.setpoint, &entry.limits)))
             }
-            // Supervision of the travel is up to the application.
+            // A torque has no plan to look at: it is watched after every latch.
             Work::Torque { .. } | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
         }
     }
@@ -108,7 +108,10 @@ impl<P: Planner> Axis<P> {
                     false => leaves(self.end_of_plan()),
                 },
                 Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
-                Work::Halt | Work::Stop => leaves(self.end_of_plan() + self.superimposed_left()),
+                // A torque has a plan only while it is barred, and that leads to rest.
+                Work::Halt | Work::Stop | Work::Torque { .. } => {
+                    leaves(self.end_of_plan() + self.superimposed_left())
+                }
                 // Where one that goes on leads to with something superimposed was not checked.
                 Work::Through { .. } if self.layer.is_some() => {
                     leaves(self.end_of_plan() + self.superimposed_left())
@@ -124,13 +127,34 @@ impl<P: Planner> Axis<P> {
                             .owner
                             .is_some_and(|owner| leaves(self.rest(next, &owner.limits)))
                 }
-                // Supervision of the travel is up to the application.
-                Work::Torque { .. } | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => {
-                    return false;
-                }
+                Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return false,
             },
         };
         comes_out || (leaving && leaves(self.rest(next, &self.stop_limits())))
+    }
+
+    /// Whether, under a torque, a stop that began a scan later would end outside and further out than the axis is. What a scan
+    /// brings is taken from the last two: the same way, and if it grew outward once more as much. Cost: at most one ramp.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn torque_would_leave(&self) -> bool {
+        let (Some((min, max)), Ok(velocity)) = (self.parameters.software_limits, self.actual_velocity())
+        else {
+            return false;
+        };
+        let gained = velocity - self.velocity_before();
+        let velocity = if gained * velocity > 0.0 {
+            velocity + gained
+        } else {
+            velocity
+        };
+        let position = self.actual + velocity * self.planner.cycle();
+        let next = Setpoint {
+            velocity,
+            ..Setpoint::at_rest(position)
+        };
+        let rest = self.rest(&next, &self.stop_limits());
+        (rest > max && velocity > 0.0) || (rest < min && velocity < 0.0)
     }
 
     /// Where a ramp to rest from `state` within `limits` ends (u).

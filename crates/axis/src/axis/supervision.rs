@@ -46,10 +46,12 @@ impl<P: Planner> Axis<P> {
         lag.on && is_led && self.following_error().abs() > lag.most
     }
 
-    /// After the latch: ErrorStop if the axis lags.
+    /// After the latch: ErrorStop if the axis lags, or is about to leave the software limits under a torque.
     pub(super) fn supervise(&mut self, scan: u64, log: &mut Log) {
         if self.lags() {
             self.trip(ErrorId::FollowingErrorTooLarge, 0, Reaction::Ramp, scan, log);
+        } else if matches!(self.motion, Motion::Torque { .. }) && self.torque_would_leave() {
+            self.trip(ErrorId::SoftwareLimitReached, 0, Reaction::Ramp, scan, log);
         }
     }
 

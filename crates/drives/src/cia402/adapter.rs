@@ -1,20 +1,27 @@
 //! A drive of any CiA 402 node.
 
 use super::homing::Link;
-use super::node::{Inputs, MODE_CSP, Node, Outputs};
+use super::node::{Inputs, MODE_CSP, MODE_CST, Node, Outputs};
+use super::probe;
 use super::sequencer::{Memory, controlword};
+use super::torque::{self, TorqueScale};
 use super::words::{State, Statusword};
 use standstill_axis::{
     Comms, Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, DriveRequest,
     DriveSignals, Fault,
 };
 
-/// Makes a [`Drive`] of a [`Node`], in cyclic synchronous position mode, and in homing mode while the axis asks for it.
+/// Makes a [`Drive`] of a [`Node`], in cyclic synchronous position mode, and in homing mode or cyclic synchronous torque
+/// mode while the axis asks for it.
 ///
 /// - The node's position, modulo 2^32, is extended: it may wrap as often as it likes, as long as it moves less
 ///   than 2^31 increments between two scans (DR-2).
 /// - Operation counts as enabled when the state says so and the mode is acknowledged (CI-7). Until then the
 ///   target is the actual position, so that enabling never makes a step (CI-3).
+/// - While the change to torque mode is not acknowledged the node goes on with the velocity it has; on the way back it
+///   has no torque until position mode is. Both take no time where the node answers in the same scan.
+/// - The velocity bounds of a torque are held here, by taking torque away near them: the profile has but one bound
+///   (6080h), of both directions, which is left to the node.
 /// - Inputs that do not arrive make the communication lost in the same scan (CI-8); the outputs are sent on.
 /// - A node that is not under remote control counts as one without supply: not ready, no error (CI-6).
 ///
@@ -24,9 +31,13 @@ pub struct Adapter<N> {
     node: N,
     memory: Memory,
     homing: Link,
+    torque: torque::Link,
+    probes: probe::Link,
     last: Inputs,
     /// The node's position, extended.
     position: i64,
+    /// The last target, and how far it was from the one before.
+    target: (i64, i64),
     /// Nothing has arrived yet.
     fresh: bool,
     simulated: bool,
@@ -39,11 +50,20 @@ impl<N: Node> Adapter<N> {
             node,
             memory: Memory::default(),
             homing: Link::default(),
+            torque: torque::Link::default(),
+            probes: probe::Link::default(),
             last: Inputs::default(),
             position: 0,
+            target: (0, 0),
             fresh: true,
             simulated: false,
         }
+    }
+
+    /// The same for a node that measures torques and, if its 6072h says so, holds them.
+    pub fn with_torque(mut self, scale: TorqueScale) -> Self {
+        self.torque.set_scale(scale);
+        self
     }
 
     /// The node.
@@ -68,24 +88,43 @@ impl<N: Node> Adapter<N> {
     }
 
     fn take(&mut self, inputs: Inputs) {
-        self.position = if self.fresh {
-            i64::from(inputs.position)
+        if self.fresh {
+            self.position = i64::from(inputs.position);
+            self.target = (self.position, 0);
         } else {
-            extended(self.position, inputs.position)
-        };
+            self.position = extended(self.position, inputs.position);
+        }
         self.fresh = false;
         self.last = inputs;
         let reference = extended(self.position, self.node.home_offset());
         self.homing.take(&inputs, DrivePosition::Increments(reference));
+        self.torque.take(&inputs);
     }
 
     fn is_enabled(&self) -> bool {
-        self.state() == State::OperationEnabled && (self.last.mode == MODE_CSP || self.homing.leads())
+        let is_in_mode = self.last.mode == MODE_CSP || self.homing.leads() || self.torque.leads();
+        self.state() == State::OperationEnabled && is_in_mode
+    }
+
+    /// 607Ah, extended.
+    fn target(&self, command: &DriveCommand) -> i64 {
+        let (before, step) = self.target;
+        let is_in_mode = self.last.mode == MODE_CSP;
+        match command.position {
+            _ if !self.is_enabled() => self.position,
+            DrivePosition::Increments(_) if is_in_mode && self.torque.is_wanted() => {
+                before.saturating_add(step)
+            }
+            // On the way back from a torque it has to be good in the scan in which position mode begins.
+            DrivePosition::Increments(increments) if is_in_mode || self.torque.is_on_way_back() => increments,
+            // An axis without a scaling cannot be told what an increment is: it stays where it is.
+            DrivePosition::Increments(_) | DrivePosition::Units(_) => self.position,
+        }
     }
 }
 
 /// The position nearest to `before` whose low 32 bits are those of `raw`.
-fn extended(before: i64, raw: i32) -> i64 {
+pub(super) fn extended(before: i64, raw: i32) -> i64 {
     let low = before as i32;
     before.saturating_add(i64::from(raw.wrapping_sub(low)))
 }
@@ -127,19 +166,22 @@ impl<N: Node> Drive for Adapter<N> {
         };
         let (word, memory) = controlword(request, Statusword(self.last.statusword), self.memory);
         self.memory = memory;
-        let target = match command.position {
-            DrivePosition::Increments(increments) if self.is_enabled() && self.last.mode == MODE_CSP => {
-                increments
-            }
-            // An axis without a scaling cannot be told what an increment is: it stays where it is.
-            DrivePosition::Increments(_) | DrivePosition::Units(_) => self.position,
-        };
-        let (mode, bits) = self.homing.give(&self.last, request == DriveRequest::Enable);
+        let target = self.target(command);
+        self.target = (target, target.saturating_sub(self.target.0));
+        let enable = request == DriveRequest::Enable;
+        let (mode, bits) = self.homing.give(&self.last, enable);
         let outputs = Outputs {
             controlword: word | bits,
-            mode,
+            mode: if self.torque.is_wanted() && enable {
+                MODE_CST
+            } else {
+                mode
+            },
             // Modulo 2^32, as the node counts.
             target_position: target as i32,
+            target_velocity: 0,
+            target_torque: self.torque.give(&self.last, self.node.max_torque()),
+            probe_function: self.probes.give(&self.last),
         };
         self.node.outputs(now_ns, &outputs);
     }
@@ -147,10 +189,14 @@ impl<N: Node> Drive for Adapter<N> {
     fn report(&mut self, report: &mut DriveReport) {
         report.homing = self.homing.told();
         report.equipment = self.node.equipment();
+        report.torque = self.torque.report(&self.last, self.node.max_torque());
+        self.probes.report(&self.last, self.position, report);
     }
 
     fn order(&mut self, order: &DriveOrder) {
         self.homing.order(order.homing);
+        self.torque.order(order.torque);
+        self.probes.order(order.probes);
     }
 }
 

@@ -44,7 +44,7 @@ impl Link {
             };
             return;
         }
-        if matches!(self.told, DriveHoming::Done(_) | DriveHoming::Failed) || !is_in_mode(inputs) {
+        if matches!(self.told, DriveHoming::Done(_) | DriveHoming::Failed(_)) || !is_in_mode(inputs) {
             return;
         }
         let status = Statusword(inputs.statusword).homing();
@@ -54,7 +54,9 @@ impl Link {
                 HomingStatus::InProgress | HomingStatus::Stopped => DriveHoming::Busy,
                 HomingStatus::Attained => DriveHoming::Attained(reference),
                 HomingStatus::Done => DriveHoming::Done(reference),
-                HomingStatus::ErrorMoving | HomingStatus::ErrorStopped => DriveHoming::Failed,
+                HomingStatus::ErrorMoving | HomingStatus::ErrorStopped => {
+                    DriveHoming::Failed(inputs.error_code)
+                }
             };
         }
     }
@@ -90,6 +92,9 @@ impl Link {
 fn is_in_mode(inputs: &Inputs) -> bool {
     inputs.mode == MODE_HM && Statusword(inputs.statusword).state() == State::OperationEnabled
 }
+
+/// 603Fh of a simulated node whose homing met a limit switch: the profile's "reference limit".
+pub(super) const REFERENCE_LIMIT: u16 = 0x8612;
 
 /// What a simulated node does in mode 6: it goes to the home switch, calls the place where it goes on 0, and comes to
 /// rest. A limit switch in the way is an error.

@@ -6,35 +6,81 @@ use standstill_axis::DELAY_MAX;
 /// Positions of a ramp stay within the increments a 64-bit float knows apart.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// Follows every target `delay` scans late, and comes to rest by itself when it has to.
+/// What a simulated node turns when it holds a torque, all of it in thousandths of the rated torque.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotorLoad {
+    /// For an acceleration of 1 increment/scan^2, above 0.
+    pub inertia: f64,
+    /// Friction for a velocity of 1 increment/scan, from 0.
+    pub viscous: f64,
+    /// Friction against any motion, from 0.
+    pub coulomb: f64,
+    /// 6072h, the largest torque it holds, above 0.
+    pub most: u16,
+}
+
+impl MotorLoad {
+    /// Torque that gets from one velocity (increments/scan) to another within a scan.
+    fn needed(&self, before: f64, after: f64) -> f64 {
+        let coulomb = if after == 0.0 {
+            0.0
+        } else {
+            self.coulomb.copysign(after)
+        };
+        self.inertia * (after - before) + self.viscous * after + coulomb
+    }
+
+    /// The velocity (increments/scan) after a scan under `torque`.
+    fn velocity(&self, before: f64, torque: f64) -> f64 {
+        // Implicit in the friction that grows with velocity, so that no amount of it swings.
+        let free = (self.inertia * before + torque) / (self.inertia + self.viscous);
+        let held = self.coulomb / (self.inertia + self.viscous);
+        if free.abs() <= held {
+            0.0
+        } else {
+            free - held.copysign(free)
+        }
+    }
+}
+
+/// Follows every target `delay` scans late, and comes to rest by itself when it has to. Under a torque and at a velocity
+/// there is no target to be late for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motor {
     /// Positions on their way, a ring; the oldest is the actual one.
     line: [i64; DELAY_MAX + 1],
     head: usize,
     delay: usize,
+    /// The one in force.
+    late: usize,
     /// The newest position, between increments.
     place: f64,
     /// Increments a scan.
     velocity: f64,
+    /// Thousandths of the rated torque, of the last scan.
+    torque: f64,
+    load: Option<MotorLoad>,
 }
 
 impl Motor {
     /// At rest.
-    pub fn new(position: i64, delay: usize) -> Self {
+    pub fn new(position: i64, delay: usize, load: Option<MotorLoad>) -> Self {
         Self {
             line: [position; DELAY_MAX + 1],
             head: 0,
             delay: delay.min(DELAY_MAX),
+            late: delay.min(DELAY_MAX),
             place: position as f64,
             velocity: 0.0,
+            torque: 0.0,
+            load,
         }
     }
 
     /// Where it is.
     pub fn actual(&self) -> i64 {
         self.line
-            .get((self.head + DELAY_MAX + 1 - self.delay) % (DELAY_MAX + 1))
+            .get((self.head + DELAY_MAX + 1 - self.late) % (DELAY_MAX + 1))
             .copied()
             .unwrap_or_default()
     }
@@ -44,11 +90,56 @@ impl Motor {
         self.line.get(self.head).copied().unwrap_or_default()
     }
 
+    /// Velocity (increments/scan).
+    pub fn velocity(&self) -> f64 {
+        self.velocity
+    }
+
+    /// Torque of the last scan (thousandths of the rated one).
+    pub fn torque(&self) -> f64 {
+        self.torque
+    }
+
     /// Goes to `target` within this scan.
     pub fn follow(&mut self, target: i64) {
+        self.be_late(self.delay);
+        let before = self.velocity;
         self.velocity = target.saturating_sub(self.newest()) as f64;
         self.place = target as f64;
         self.push(target);
+        self.feel(before);
+    }
+
+    /// One scan at `velocity` (increments/scan).
+    pub fn run(&mut self, velocity: f64) {
+        self.be_late(0);
+        self.ramp(velocity, f64::INFINITY);
+    }
+
+    /// One scan under `torque` (thousandths of the rated one), as far as it goes.
+    pub fn turn(&mut self, torque: f64) {
+        self.be_late(0);
+        let Some(load) = self.load else { return };
+        let most = f64::from(load.most);
+        let torque = torque.max(-most).min(most);
+        let velocity = load.velocity(self.velocity, torque);
+        self.ramp(velocity, f64::INFINITY);
+        self.torque = torque;
+    }
+
+    /// From now on it is so late; what was on its way is dropped.
+    fn be_late(&mut self, late: usize) {
+        if self.late != late {
+            let actual = self.actual();
+            self.line = [actual; DELAY_MAX + 1];
+            self.place = actual as f64;
+            self.late = late;
+        }
+    }
+
+    /// The torque of a scan that began with velocity `before`.
+    fn feel(&mut self, before: f64) {
+        self.torque = self.load.map_or(0.0, |load| load.needed(before, self.velocity));
     }
 
     /// One scan of a ramp to rest with `deceleration` (increments/scan^2).
@@ -67,6 +158,7 @@ impl Motor {
         };
         self.place = (self.place + 0.5 * (before + self.velocity)).clamp(-EXACT, EXACT);
         self.push(nearest(self.place));
+        self.feel(before);
     }
 
     /// From now on every position counts `by` increments more.
@@ -89,7 +181,7 @@ impl Motor {
 
     /// Someone moved it.
     pub fn stand_at(&mut self, position: i64) {
-        *self = Self::new(position, self.delay);
+        *self = Self::new(position, self.delay, self.load);
     }
 
     fn push(&mut self, position: i64) {

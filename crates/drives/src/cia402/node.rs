@@ -1,12 +1,18 @@
 //! Process data of a node: what a bus carries in every scan.
 
-use standstill_axis::Equipment;
+use standstill_axis::{Equipment, PROBES};
 
 /// Mode of operation 8: cyclic synchronous position.
 pub const MODE_CSP: i8 = 8;
 
 /// Mode of operation 6: homing.
 pub const MODE_HM: i8 = 6;
+
+/// Mode of operation 9: cyclic synchronous velocity.
+pub const MODE_CSV: i8 = 9;
+
+/// Mode of operation 10: cyclic synchronous torque.
+pub const MODE_CST: i8 = 10;
 
 /// What a node sends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,10 +23,18 @@ pub struct Inputs {
     pub mode: i8,
     /// 6064h (increments), modulo 2^32.
     pub position: i32,
+    /// 606Ch (increments/s)
+    pub velocity: i32,
+    /// 6077h (thousandths of the rated torque), positive in counting direction.
+    pub torque: i16,
     /// 603Fh
     pub error_code: u16,
     /// 60FDh: bit 0 negative limit switch, 1 positive limit switch, 2 home switch.
     pub digital_inputs: u32,
+    /// 60B9h
+    pub probe_status: u16,
+    /// 60BAh to 60BDh (increments), modulo 2^32: at the rising and the falling edge of each probe.
+    pub probe_positions: [[i32; 2]; PROBES],
 }
 
 /// What a node receives.
@@ -32,6 +46,12 @@ pub struct Outputs {
     pub mode: i8,
     /// 607Ah (increments), modulo 2^32.
     pub target_position: i32,
+    /// 60FFh (increments/s), of mode 9. The adapter never asks for that mode.
+    pub target_velocity: i32,
+    /// 6071h (thousandths of the rated torque), of mode 10.
+    pub target_torque: i16,
+    /// 60B8h
+    pub probe_function: u16,
 }
 
 /// A CiA 402 node on whatever bus, exchanging process data once a scan.
@@ -50,6 +70,12 @@ pub trait Node {
             marker: false,
             homing: true,
         }
+    }
+
+    /// 6072h: the largest torque it holds in mode 10 (thousandths of the rated torque); 0, as by default, if it does not
+    /// know the mode.
+    fn max_torque(&self) -> u16 {
+        0
     }
 
     /// 607Ch: the position its own homing gives to the reference (increments).

@@ -1,11 +1,13 @@
 //! A node that only exists in memory, with every state and transition of the profile.
 
 use super::adapter::Adapter;
-use super::homing::{NodeHoming, Progress};
-use super::motor::Motor;
-use super::node::{Inputs, MODE_CSP, MODE_HM, Node, Outputs};
+use super::homing::{NodeHoming, Progress, REFERENCE_LIMIT};
+use super::motor::{Motor, MotorLoad};
+use super::node::{Inputs, MODE_CSP, MODE_CST, MODE_CSV, MODE_HM, Node, Outputs};
+use super::probe::NodeProbes;
 use super::state::{Transition, command_transition};
 use super::words::{Command, State};
+use crate::nearest;
 use standstill_axis::{Equipment, Powered};
 
 /// A simulated node behind the adapter: a drive for tests without hardware.
@@ -51,6 +53,12 @@ pub struct Settings {
     pub home: Option<(i64, i64)>,
     /// What it does in homing mode; `None`: it does not know the mode.
     pub homing: Option<NodeHoming>,
+    /// What it turns in torque mode; `None`: it does not know the mode, and measures no torque.
+    pub load: Option<MotorLoad>,
+    /// Scans a second, above 0: velocities on the bus are by second.
+    pub rate: f64,
+    /// Scans from a mode asked for to the mode in force, beyond the one of the bus.
+    pub mode_change: u32,
 }
 
 impl Default for Settings {
@@ -68,11 +76,14 @@ impl Default for Settings {
             ends: None,
             home: None,
             homing: None,
+            load: None,
+            rate: 1000.0,
+            mode_change: 0,
         }
     }
 }
 
-/// A CiA 402 node in cyclic synchronous position mode or homing mode.
+/// A CiA 402 node in a cyclic synchronous mode (position, velocity, torque) or homing mode, with two touch probes.
 #[derive(Clone, Copy, Debug)]
 pub struct SimulatedNode {
     settings: Settings,
@@ -83,7 +94,10 @@ pub struct SimulatedNode {
     leaving: Option<State>,
     controlword: u16,
     mode: i8,
+    /// Scans another mode has been asked for.
+    changing: u32,
     motor: Motor,
+    probes: NodeProbes,
     homing: Progress,
     /// Increments its own homing has taken off its count.
     origin: i64,
@@ -111,7 +125,9 @@ impl SimulatedNode {
             leaving: None,
             controlword: 0,
             mode: MODE_CSP,
-            motor: Motor::new(settings.position, settings.delay),
+            changing: 0,
+            motor: Motor::new(settings.position, settings.delay, settings.load),
+            probes: NodeProbes::default(),
             homing: Progress::Idle,
             origin: 0,
             error_code: 0,
@@ -181,6 +197,12 @@ impl SimulatedNode {
         self.cause_present = false;
         self.voltage = true;
         self.connected = true;
+    }
+
+    /// The input of touch probe `number`, 0 or 1, is at `level` from the part `at` (0 to 1) of the interval on that ends with
+    /// the next inputs. Up to four changes in one interval are kept.
+    pub fn set_probe(&mut self, number: usize, at: f64, level: bool) {
+        self.probes.set(number, at, level);
     }
 
     /// Whether it obeys the control word.
@@ -297,27 +319,43 @@ impl SimulatedNode {
         }
     }
 
-    fn turn(&mut self, target: i32) {
+    fn turn(&mut self, outputs: &Outputs) {
         let brakes = matches!(self.state, State::QuickStopActive | State::FaultReactionActive)
             || self.leaving.is_some();
         if brakes {
             self.motor.brake(self.settings.deceleration);
-        } else if self.state == State::OperationEnabled && self.mode == MODE_HM {
-            self.home();
         } else if self.state == State::OperationEnabled {
-            // The target comes modulo 2^32: the one nearest to the last is meant.
-            let newest = self.motor.newest();
-            let step = i64::from(target.wrapping_sub(newest as i32));
-            self.motor.follow(newest.saturating_add(step));
+            match self.mode {
+                MODE_HM => self.home(),
+                MODE_CSV => self
+                    .motor
+                    .run(f64::from(outputs.target_velocity) / self.settings.rate),
+                MODE_CST => self.motor.turn(f64::from(outputs.target_torque)),
+                _ => {
+                    // The target comes modulo 2^32: the one nearest to the last is meant.
+                    let newest = self.motor.newest();
+                    let step = i64::from(outputs.target_position.wrapping_sub(newest as i32));
+                    self.motor.follow(newest.saturating_add(step));
+                }
+            }
         }
     }
 
     /// A mode it does not know stays without an answer.
     fn take_mode(&mut self, mode: i8) {
-        if mode == MODE_CSP || (mode == MODE_HM && self.settings.homing.is_some()) {
-            if mode != self.mode {
-                self.homing = Progress::Idle;
-            }
+        let is_known = match mode {
+            MODE_CSP | MODE_CSV => true,
+            MODE_CST => self.settings.load.is_some(),
+            MODE_HM => self.settings.homing.is_some(),
+            _ => false,
+        };
+        if !is_known || mode == self.mode {
+            self.changing = 0;
+        } else if self.changing < self.settings.mode_change {
+            self.changing += 1;
+        } else {
+            self.changing = 0;
+            self.homing = Progress::Idle;
             self.mode = mode;
         }
     }
@@ -327,7 +365,10 @@ impl SimulatedNode {
         let asked = self.controlword & (Command::HOMING | Command::HALT) == Command::HOMING;
         let at_rest = self.motor.is_at_rest();
         self.homing = match (self.homing, asked) {
-            (Progress::Idle, true) if at_rest => Progress::Searching,
+            (Progress::Idle, true) if at_rest => {
+                self.error_code = 0;
+                Progress::Searching
+            }
             (Progress::Idle | Progress::Searching, false) => Progress::Idle,
             (progress, _) => progress,
         };
@@ -343,10 +384,12 @@ impl SimulatedNode {
             let reference = self.position();
             self.origin = self.origin.saturating_add(reference);
             self.motor.count_from(reference.saturating_neg());
+            self.probes.count_from(reference.saturating_neg());
             self.homing = Progress::Attained;
             self.motor.brake(rate);
         } else if self.switches() & end != 0 {
             self.homing = Progress::Failed;
+            self.error_code = REFERENCE_LIMIT;
             self.motor.brake(rate);
         } else {
             self.motor.ramp(if up { velocity } else { -velocity }, rate);
@@ -382,13 +425,22 @@ impl SimulatedNode {
 
 impl Node for SimulatedNode {
     fn inputs(&mut self, _now_ns: i64) -> Option<Inputs> {
+        // Edges are latched whether or not somebody is told.
+        self.probes.latch(self.position());
+        let (probe_status, probe_positions) = self.probes.told();
+        let bounded = |value: f64, most: i32| nearest(value).clamp(-i64::from(most), i64::from(most));
+        let velocity = bounded(self.motor.velocity() * self.settings.rate, i32::MAX);
         self.connected.then(|| Inputs {
             statusword: self.statusword(),
             mode: self.mode,
             // Modulo 2^32, as real counters are.
             position: self.position() as i32,
+            velocity: velocity as i32,
+            torque: bounded(self.motor.torque(), i32::from(i16::MAX)) as i16,
             error_code: self.error_code,
             digital_inputs: self.switches(),
+            probe_status,
+            probe_positions,
         })
     }
 
@@ -397,7 +449,8 @@ impl Node for SimulatedNode {
         self.by_itself();
         self.obey(outputs.controlword);
         self.take_mode(outputs.mode);
-        self.turn(outputs.target_position);
+        self.probes.obey(outputs.probe_function);
+        self.turn(outputs);
     }
 
     fn equipment(&self) -> Equipment {
@@ -407,6 +460,10 @@ impl Node for SimulatedNode {
             marker: false,
             homing: self.settings.homing.is_some(),
         }
+    }
+
+    fn max_torque(&self) -> u16 {
+        self.settings.load.map_or(0, |load| load.most)
     }
 }
 

@@ -4,7 +4,7 @@ use super::json::{Json, Node};
 use super::value::Fields;
 use super::{Reader, shape};
 use crate::error::{Code, Diagnostic};
-use crate::model::{Cia402Setup, DriveSetup, IdealDriveSetup, PlantSetup};
+use crate::model::{Cia402Setup, DriveSetup, IdealDriveSetup, MotorSetup, PlantSetup};
 use standstill_axis::DELAY_MAX;
 use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, Servo, Stops};
@@ -16,6 +16,9 @@ pub(crate) const REACTIONS: [(&str, Reaction); 3] = [
     ("ramp", Reaction::Ramp),
     ("stay", Reaction::RampAndStay),
 ];
+
+/// Largest torque by the rated one where none is given.
+const MAX_TORQUE: f64 = 3.0;
 
 pub(crate) const NODE_DIRECTIONS: [(&str, bool); 2] = [("positive", true), ("negative", false)];
 
@@ -181,6 +184,9 @@ impl Reader {
         let homing = fields
             .get("homing")
             .map_or(Some(None), |node| self.node_homing(node).map(Some));
+        let motor = fields
+            .get("motor")
+            .map_or(Some(None), |node| self.motor(node).map(Some));
         let switches = self.switches(&fields);
         Some(Cia402Setup {
             delay: delay?,
@@ -191,8 +197,53 @@ impl Reader {
             on_disable: on_disable?,
             on_fault: on_fault?,
             homing: homing?,
+            motor: motor?,
             switches: switches?,
         })
+    }
+
+    fn motor(&mut self, node: &Node) -> Option<MotorSetup> {
+        let fields = self.fields(node, &shape::MOTOR)?;
+        let mut needed = |key: &str| {
+            let node = self.require(&fields, key, "the motor of a drive")?;
+            self.finite(node, &format!("`motor.{key}`"))
+        };
+        let (rated, inertia) = (needed("rated_torque"), needed("inertia"));
+        let mut optional = |key: &str| self.optional(&fields, key, &format!("`motor.{key}`"));
+        let (most, viscous, coulomb) = (optional("max_torque"), optional("viscous"), optional("coulomb"));
+        let rated_torque = rated?;
+        let motor = MotorSetup {
+            rated_torque,
+            max_torque: most?.unwrap_or(MAX_TORQUE * rated_torque),
+            inertia: inertia?,
+            viscous: viscous?.unwrap_or(0.0),
+            coulomb: coulomb?.unwrap_or(0.0),
+        };
+        // A thousandth of the rated torque is the smallest the bus can say, 32767 the most.
+        let range = 0.001 * rated_torque..=f64::from(i16::MAX) / 1000.0 * rated_torque;
+        let rows = [
+            (
+                "rated_torque",
+                motor.rated_torque,
+                motor.rated_torque > 0.0,
+                "above 0",
+            ),
+            ("inertia", motor.inertia, motor.inertia > 0.0, "above 0"),
+            ("viscous", motor.viscous, motor.viscous >= 0.0, "from 0"),
+            ("coulomb", motor.coulomb, motor.coulomb >= 0.0, "from 0"),
+            (
+                "max_torque",
+                motor.max_torque,
+                range.contains(&motor.max_torque),
+                "from a thousandth of `rated_torque` to 32.767 times as much",
+            ),
+        ];
+        if let Some((key, value, _, wanted)) = rows.into_iter().find(|(_, _, good, _)| !good) {
+            let message = format!("`motor.{key}` is {value:?}: it must be {wanted}");
+            self.report(Diagnostic::new(Code::BadValue, fields.brace(), message));
+            return None;
+        }
+        Some(motor)
     }
 
     fn node_homing(&mut self, node: &Node) -> Option<(bool, f64)> {

@@ -142,6 +142,7 @@ pub(crate) const CIA402: Shape = shape(
         "on_disable",
         "on_fault",
         "homing",
+        "motor",
         "limit_switches",
         "home_switch",
         "marker",
@@ -187,6 +188,17 @@ pub(crate) const GAINS: Shape = shape(
 pub(crate) const LIMIT_SWITCHES: Shape = shape("`limit_switches`", &["negative", "positive", "note"]);
 pub(crate) const HOME_SWITCH: Shape = shape("`home_switch`", &["from", "to", "note"]);
 pub(crate) const NODE_HOMING: Shape = shape("`homing` of a drive", &["direction", "velocity", "note"]);
+pub(crate) const MOTOR: Shape = shape(
+    "the motor of a drive",
+    &[
+        "rated_torque",
+        "max_torque",
+        "inertia",
+        "viscous",
+        "coulomb",
+        "note",
+    ],
+);
 pub(crate) const MARKER: Shape = shape("`marker`", &["at", "every", "note"]);
 
 pub(crate) const BLOCK: Shape = shape("a block", &["name", "type", "task", "pins", "note"]);

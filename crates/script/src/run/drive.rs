@@ -1,11 +1,11 @@
 //! The drives a script can have.
 
-use crate::model::{Axis, Cia402Setup, DriveChange, DriveSetup, IdealDriveSetup, PlantSetup};
+use crate::model::{Axis, Cia402Setup, DriveChange, DriveSetup, IdealDriveSetup, MotorSetup, PlantSetup};
 use standstill_axis::{
     Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, IdealDrive, Powered,
     StartState,
 };
-use standstill_drives::cia402::{Cia402Drive, NodeHoming, Settings};
+use standstill_drives::cia402::{Cia402Drive, MotorLoad, NodeHoming, Settings, TorqueScale};
 use standstill_drives::mechanism::{Mechanism, MechanismError, PlantDrive, Servo};
 use standstill_drives::peripherals::Peripherals;
 use standstill_drives::switches::{Switches, Travel};
@@ -51,7 +51,9 @@ impl ScriptDrive {
                     // The drive may count the other way.
                     Some((one.min(other), one.max(other)))
                 };
-                Kind::Cia402(Box::new(Cia402Drive::simulated_node(Settings {
+                let per_unit = increments_per_unit(axis);
+                let rate = 1e9 / cycle_ns as f64;
+                let mut drive = Cia402Drive::simulated_node(Settings {
                     position: position.unwrap_or_default(),
                     enabled,
                     deceleration: deceleration(axis, &setup, cycle_ns),
@@ -64,10 +66,22 @@ impl ScriptDrive {
                     ends: setup.switches.limits.and_then(ordered),
                     home: setup.switches.home.and_then(ordered),
                     homing: setup.homing.map(|(up, velocity)| NodeHoming {
-                        up: up != axis.config.scaling.is_some_and(|scaling| scaling.invert()),
-                        velocity: velocity * increments_per_unit(axis) * (cycle_ns as f64 / 1e9),
+                        up: up != counts_down(axis),
+                        velocity: velocity * per_unit / rate,
                     }),
-                })))
+                    load: setup.motor.map(|motor| load(&motor, per_unit, rate)),
+                    rate,
+                    ..Settings::default()
+                });
+                if let Some(motor) = setup.motor {
+                    drive = drive.with_torque(TorqueScale {
+                        rated: motor.rated_torque,
+                        increments: if counts_down(axis) { -per_unit } else { per_unit },
+                        // Four scans from any distance to the bound: no swing, and little left of it.
+                        gain: 0.25 * motor.inertia * rate,
+                    });
+                }
+                Kind::Cia402(Box::new(drive))
             }
             DriveSetup::Plant(PlantSetup {
                 power_on,
@@ -166,11 +180,31 @@ impl ScriptDrive {
                 self.peripherals.set_input(number, level);
                 Ok(())
             }
+            (Kind::Cia402(drive), DriveChange::Probe { number, at, level }) => {
+                drive.node_mut().set_probe(number, at, level);
+                Ok(())
+            }
             (_, DriveChange::Probe { number, at, level }) => {
                 self.peripherals.set_probe(number, at, level);
                 Ok(())
             }
         }
+    }
+}
+
+fn counts_down(axis: &Axis) -> bool {
+    axis.config.scaling.is_some_and(|scaling| scaling.invert())
+}
+
+/// In thousandths of the rated torque, increments and scans, `per_unit` increments a unit and `rate` scans a second.
+fn load(motor: &MotorSetup, per_unit: f64, rate: f64) -> MotorLoad {
+    let thousandths = 1000.0 / motor.rated_torque;
+    MotorLoad {
+        inertia: motor.inertia * thousandths * (rate * rate) / per_unit,
+        viscous: motor.viscous * thousandths * rate / per_unit,
+        coulomb: motor.coulomb * thousandths,
+        // Within 16 bits since it was read.
+        most: (motor.max_torque * thousandths + 0.5) as u16,
     }
 }
 
@@ -218,12 +252,13 @@ impl Drive for ScriptDrive {
     }
 
     fn report(&mut self, report: &mut DriveReport) {
+        // A CiA 402 node has probes of its own, which take the place of these.
+        self.peripherals.report(self.position, report);
         match &mut self.kind {
             Kind::Ideal(drive) => drive.report(report),
             Kind::Cia402(drive) => drive.report(report),
             Kind::Plant(drive) => drive.report(report),
         }
-        self.peripherals.report(self.position, report);
         self.travel.report(report);
     }
 

@@ -10,7 +10,7 @@ use standstill_drives::switches::{Marker, Switches};
 use standstill_fb::Value;
 use standstill_script::model::{
     Action, Cia402Setup, ClaimKind, Comparison, DriveChange, DriveSetup, FaultKind, IdealDriveSetup,
-    PlantSetup, Point, Range, Script, Test, When, Wire,
+    MotorSetup, PlantSetup, Point, Range, Script, Test, When, Wire,
 };
 use standstill_script::{format, read};
 
@@ -98,6 +98,13 @@ fn axes_take_their_configuration() {
             on_disable: Reaction::Ramp,
             on_fault: Reaction::Coast,
             homing: Some((false, 0.5)),
+            motor: Some(MotorSetup {
+                rated_torque: 2.0,
+                max_torque: 5.0,
+                inertia: 0.02,
+                viscous: 0.01,
+                coulomb: 0.1,
+            }),
             switches: Switches {
                 limits: Some((-10.0, 10.0)),
                 home: Some((-1.0, 0.5)),

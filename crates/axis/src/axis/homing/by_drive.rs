@@ -46,15 +46,15 @@ impl<P: Planner> Axis<P> {
                 }
             }
             DriveHoming::Off => {}
-            DriveHoming::Failed if homes => {
-                self.trip(ErrorId::DriveHomingFailed, 0, Reaction::Follow, scan, log);
+            DriveHoming::Failed(code) if homes => {
+                self.trip(ErrorId::DriveHomingFailed, code, Reaction::Follow, scan, log);
             }
             DriveHoming::Done(_) if homes => {
                 self.motion = Motion::Follow;
                 self.homing.phase = Phase::Return;
                 self.beside.order.homing = false;
             }
-            DriveHoming::Busy | DriveHoming::Attained(_) | DriveHoming::Done(_) | DriveHoming::Failed => {
+            DriveHoming::Busy | DriveHoming::Attained(_) | DriveHoming::Done(_) | DriveHoming::Failed(_) => {
                 self.motion = Motion::Follow;
             }
         }
