@@ -75,6 +75,8 @@ fn links_lead_to_a_file_and_a_heading() {
                 target => path.parent().unwrap().join(target),
             };
             assert!(target.exists(), "{}: dead link {link}", path.display());
+            // It is the book's list of pages, and no page of it.
+            assert!(!target.ends_with("SUMMARY.md"), "{}: {link}", path.display());
             let page = pages.get(&target.canonicalize().unwrap());
             if let (false, Some(page)) = (anchor.is_empty(), page) {
                 let anchors = anchors(page);
@@ -100,6 +102,29 @@ fn every_page_stands_in_the_book_once() {
     }
     let gone: Vec<_> = listed.iter().filter(|path| !path.exists()).collect();
     assert!(gone.is_empty(), "docs/SUMMARY.md lists {gone:?}");
+}
+
+#[test]
+fn scripts_that_pages_name_exist() {
+    let mut count = 0;
+    for path in files()
+        .iter()
+        .filter(|path| path.extension().is_some_and(|found| found == "md"))
+    {
+        let text = fs::read_to_string(path).unwrap();
+        for named in text
+            .split_whitespace()
+            .filter(|word| word.starts_with("scan-tests/") && word.ends_with(".json"))
+        {
+            assert!(
+                root().join(named).exists(),
+                "{}: {named} is not there",
+                path.display()
+            );
+            count += 1;
+        }
+    }
+    assert!(count > 50, "only {count} found");
 }
 
 #[test]
