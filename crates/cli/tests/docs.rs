@@ -164,7 +164,6 @@ fn every_console_block_and_every_table_of_plans_is_true() {
         ("how-to/ci.md", 2, 0),
         ("planner-lines.md", 1, 0),
         ("reports.md", 3, 0),
-        ("sweeps.md", 1, 0),
         ("traces.md", 1, 0),
     ];
     let pages = pages("");

@@ -75,6 +75,8 @@ fn links_lead_to_a_file_and_a_heading() {
                 target => path.parent().unwrap().join(target),
             };
             assert!(target.exists(), "{}: dead link {link}", path.display());
+            // It is the book's list of pages, and no page of it.
+            assert!(!target.ends_with("SUMMARY.md"), "{}: {link}", path.display());
             let page = pages.get(&target.canonicalize().unwrap());
             if let (false, Some(page)) = (anchor.is_empty(), page) {
                 let anchors = anchors(page);
