@@ -40,7 +40,7 @@ unsafe fn call<B: Block + Described>(
         let flat = unsafe { slice::from_raw_parts(inputs, inputs_size) };
         if const { B::INFO.has_tables() } {
             // SAFETY: the contract says that arrays are as long as their counts.
-            unsafe { load_tables::<B>(inner, flat)? };
+            unsafe { load_tables::<B>(inner, inputs, flat)? };
         }
         // SAFETY: not null; its place may be odd.
         let mut number = unsafe { key.read_unaligned() };
@@ -84,19 +84,29 @@ unsafe fn call<B: Block + Described>(
 /// Copies the records of a block's arrays into the numbers of the runtime, one array behind the other.
 ///
 /// # Safety
-/// Every address in `flat` leads to as many records as its count says.
-unsafe fn load_tables<B: Block + Described>(inner: &mut Inner, flat: &[u8]) -> Result<(), Code> {
+/// `flat` are the bytes at `inputs`, and every address in there leads to as many records as its count says.
+unsafe fn load_tables<B: Block + Described>(
+    inner: &mut Inner,
+    inputs: *const u8,
+    flat: &[u8],
+) -> Result<(), Code> {
     let layout = B::INFO.flat_inputs(Pointer::NATIVE);
     let mut cells = &mut inner.cells[..];
     for (index, pin) in B::INFO.tables() {
         let PinType::Table(table) = pin.ty else { continue };
-        let (address, count) = read_table(flat, layout.offset(index), Pointer::NATIVE);
+        let (_, count) = read_table(flat, layout.offset(index), Pointer::NATIVE);
         let count = count as usize;
-        if count > table.most || (count > 0 && address == 0) {
+        // SAFETY: the layout puts an address there. Read as one, and not as a number, it keeps what it leads to.
+        let first = unsafe {
+            inputs
+                .add(layout.offset(index))
+                .cast::<*const u8>()
+                .read_unaligned()
+        };
+        if count > table.most || (count > 0 && first.is_null()) {
             return Err(Code::Table);
         }
         let record = Layout::of_record(table.fields);
-        let first = core::ptr::with_exposed_provenance::<u8>(address as usize);
         for row in 0..count {
             // SAFETY: the caller says that so many records are there.
             let bytes = unsafe { slice::from_raw_parts(first.add(row * record.size), record.size) };

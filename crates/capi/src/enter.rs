@@ -56,8 +56,7 @@ impl Drop for Busy<'_> {
 /// Does `work` on the runtime at `runtime`, if it may be done now.
 ///
 /// # Safety
-/// `runtime` is null, or memory that can be read there is as long as a [`Runtime`]; if one was made there it is still in
-/// place.
+/// `runtime` is null, or four bytes can be read there; if a [`Runtime`] was made there it is still in place.
 #[inline(always)]
 pub(crate) unsafe fn enter(
     runtime: *mut Runtime,
@@ -83,12 +82,13 @@ unsafe fn try_enter(
     if !runtime.is_aligned() {
         return Err(Code::NoRuntime);
     }
-    // SAFETY: aligned and readable; all that is touched through this shared reference before the magic has been seen
-    // is an atomic number, for which any bits are a value.
-    let runtime = unsafe { &*runtime };
-    if runtime.magic.load(Acquire) != MAGIC {
+    // SAFETY: aligned, and readable for as long as the magic is, which comes first; any bits are an atomic number.
+    if unsafe { &(*runtime).magic }.load(Acquire) != MAGIC {
         return Err(Code::NoRuntime);
     }
+    // SAFETY: a runtime was made here and not closed, so all of it is there; what threads share of it is atomic, the rest
+    // in a cell.
+    let runtime = unsafe { &*runtime };
     #[cfg(not(feature = "std"))]
     let _busy = Busy::new(runtime)?;
     let me = me();

@@ -42,7 +42,8 @@ const CELLS: usize = {
     most
 };
 
-/// What a handle points to.
+/// What a handle points to. The magic comes first: it is looked at before the rest is known to be there.
+#[repr(C)]
 pub struct Runtime {
     /// [`MAGIC`] from init to close.
     pub(crate) magic: AtomicU32,
@@ -62,7 +63,8 @@ pub(crate) const MAGIC: u32 = 0x5453_5453;
 pub(crate) enum Mode {
     Running,
     Stopped,
-    /// A panic was caught.
+    /// A panic was caught; without `std` none can be.
+    #[cfg_attr(not(feature = "std"), allow(dead_code))]
     Broken,
 }
 

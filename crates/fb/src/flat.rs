@@ -25,7 +25,7 @@ pub const SIZE_FIELD: usize = 4;
 /// What every size is rounded up to.
 pub const ALIGN: usize = 8;
 
-/// Most pins of one kind a block, or most fields a record, may have.
+/// Most inputs or outputs of a block, and most fields of a record; the macros that declare them hold it.
 pub const PINS_MOST: usize = 32;
 
 /// A number in the flat form of a pin.
@@ -134,14 +134,13 @@ impl Layout {
                 None => (pointer.size() + 4, pointer.size()),
             };
             let offset = layout.size.next_multiple_of(align);
-            if let Some(slot) = layout.offsets.split_at_mut(index).1.first_mut() {
-                *slot = offset;
+            if index < PINS_MOST {
+                layout.offsets[index] = offset;
             }
             layout.size = offset + size;
             index += 1;
             rest = others;
         }
-        assert!(index <= PINS_MOST, "more pins than a layout holds");
         layout.size = layout.size.next_multiple_of(ALIGN);
         layout
     }

@@ -479,6 +479,7 @@ macro_rules! pins {
             #[inline(always)]
             fn set_flat(&mut self, flat: &[u8], pointer: $crate::flat::Pointer) {
                 use $crate::flat::{Flat as _, Layout, Pointer};
+                const { assert!(<$name as $crate::Pins>::PINS.len() <= $crate::flat::PINS_MOST) };
                 const NARROW: Layout = Layout::of_pins(<$name as $crate::Pins>::PINS, Pointer::Bits32);
                 const WIDE: Layout = Layout::of_pins(<$name as $crate::Pins>::PINS, Pointer::Bits64);
                 let layout = match pointer {

@@ -117,6 +117,7 @@ fn the_top_level_holds_what_a_newcomer_expects() {
         "LICENSE-APACHE",
         "LICENSE-MIT",
         "README.md",
+        "SECURITY.md",
         "blocks",
         "crates",
         "docs",
@@ -136,7 +137,7 @@ fn the_top_level_holds_what_a_newcomer_expects() {
 #[test]
 fn layers_depend_only_downwards() {
     // Package and what it may depend on, from bottom to top (docs/architecture.md).
-    let layers: [(&str, &str, &[&str]); 13] = [
+    let layers: [(&str, &str, &[&str]); 15] = [
         ("crates/planner", "standstill-planner", &[]),
         ("crates/axis", "standstill-axis", &["standstill-planner"]),
         ("crates/fb", "standstill-fb", &["standstill-axis"]),
@@ -161,6 +162,21 @@ fn layers_depend_only_downwards() {
                 "standstill-planner",
                 "standstill-scan",
             ],
+        ),
+        (
+            "crates/capi",
+            "standstill-capi",
+            &[
+                "standstill-axis",
+                "standstill-blocks",
+                "standstill-drives",
+                "standstill-fb",
+            ],
+        ),
+        (
+            "crates/export",
+            "standstill-export",
+            &["standstill-blocks", "standstill-fb"],
         ),
         ("crates/trace", "standstill-trace", &[]),
         ("crates/report", "standstill-report", &["standstill-trace"]),
@@ -193,6 +209,7 @@ fn layers_depend_only_downwards() {
             "standstill-cli",
             &[
                 "standstill-blocks",
+                "standstill-export",
                 "standstill-fb",
                 "standstill-planner",
                 "standstill-report",
