@@ -1,35 +1,70 @@
 //! Every block the runtime knows, by its IEC name.
 
-use crate::administrative::{
-    mc_abort_trigger::McAbortTrigger, mc_digital_cam_switch::McDigitalCamSwitch, mc_power::McPower,
-    mc_read_actual_position::McReadActualPosition, mc_read_actual_torque::McReadActualTorque,
-    mc_read_actual_velocity::McReadActualVelocity, mc_read_axis_error::McReadAxisError,
-    mc_read_axis_info::McReadAxisInfo, mc_read_bool_parameter::McReadBoolParameter,
-    mc_read_digital_input::McReadDigitalInput, mc_read_digital_output::McReadDigitalOutput,
-    mc_read_motion_state::McReadMotionState, mc_read_parameter::McReadParameter,
-    mc_read_status::McReadStatus, mc_reset::McReset, mc_set_override::McSetOverride,
-    mc_set_position::McSetPosition, mc_touch_probe::McTouchProbe,
-    mc_write_bool_parameter::McWriteBoolParameter, mc_write_digital_output::McWriteDigitalOutput,
-    mc_write_parameter::McWriteParameter,
-};
-use crate::homing::mc_home::McHome;
-use crate::single_axis::{
-    mc_acceleration_profile::McAccelerationProfile, mc_halt::McHalt,
-    mc_halt_superimposed::McHaltSuperimposed, mc_jog::McJog, mc_move_absolute::McMoveAbsolute,
-    mc_move_additive::McMoveAdditive, mc_move_continuous_absolute::McMoveContinuousAbsolute,
-    mc_move_continuous_relative::McMoveContinuousRelative, mc_move_relative::McMoveRelative,
-    mc_move_superimposed::McMoveSuperimposed, mc_move_velocity::McMoveVelocity,
-    mc_position_profile::McPositionProfile, mc_stop::McStop, mc_torque_control::McTorqueControl,
-    mc_velocity_profile::McVelocityProfile,
-};
-use crate::standard::{
-    ctd::Ctd, ctu::Ctu, ctud::Ctud, f_trig::FTrig, r_trig::RTrig, rs::Rs, sr::Sr, tof::Tof, ton::Ton, tp::Tp,
-};
 use standstill_axis::Planner;
+use standstill_fb::flat::Pointer;
 use standstill_fb::{AnyInstance, BlockInfo, Context, Described, Instance, PinError, Value};
 
+/// Calls the macro `$then` with every block of the registry: its type, and its place in this crate, whose last name is
+/// the block's name in C.
+#[macro_export]
+macro_rules! for_every_block {
+    ($then:ident) => {
+        $then! {
+            administrative::mc_power::McPower
+            administrative::mc_reset::McReset
+            administrative::mc_read_status::McReadStatus
+            administrative::mc_read_motion_state::McReadMotionState
+            administrative::mc_read_axis_info::McReadAxisInfo
+            administrative::mc_read_axis_error::McReadAxisError
+            administrative::mc_read_actual_position::McReadActualPosition
+            administrative::mc_read_actual_velocity::McReadActualVelocity
+            administrative::mc_read_actual_torque::McReadActualTorque
+            administrative::mc_set_position::McSetPosition
+            administrative::mc_set_override::McSetOverride
+            administrative::mc_read_parameter::McReadParameter
+            administrative::mc_read_bool_parameter::McReadBoolParameter
+            administrative::mc_write_parameter::McWriteParameter
+            administrative::mc_write_bool_parameter::McWriteBoolParameter
+            administrative::mc_read_digital_input::McReadDigitalInput
+            administrative::mc_read_digital_output::McReadDigitalOutput
+            administrative::mc_write_digital_output::McWriteDigitalOutput
+            administrative::mc_touch_probe::McTouchProbe
+            administrative::mc_abort_trigger::McAbortTrigger
+            administrative::mc_digital_cam_switch::McDigitalCamSwitch
+            homing::mc_home::McHome
+            single_axis::mc_stop::McStop
+            single_axis::mc_halt::McHalt
+            single_axis::mc_move_absolute::McMoveAbsolute
+            single_axis::mc_move_relative::McMoveRelative
+            single_axis::mc_move_additive::McMoveAdditive
+            single_axis::mc_move_velocity::McMoveVelocity
+            single_axis::mc_move_continuous_absolute::McMoveContinuousAbsolute
+            single_axis::mc_move_continuous_relative::McMoveContinuousRelative
+            single_axis::mc_torque_control::McTorqueControl
+            single_axis::mc_position_profile::McPositionProfile
+            single_axis::mc_velocity_profile::McVelocityProfile
+            single_axis::mc_acceleration_profile::McAccelerationProfile
+            single_axis::mc_move_superimposed::McMoveSuperimposed
+            single_axis::mc_halt_superimposed::McHaltSuperimposed
+            single_axis::mc_jog::McJog
+            standard::r_trig::RTrig
+            standard::f_trig::FTrig
+            standard::sr::Sr
+            standard::rs::Rs
+            standard::ctu::Ctu
+            standard::ctd::Ctd
+            standard::ctud::Ctud
+            standard::ton::Ton
+            standard::tof::Tof
+            standard::tp::Tp
+        }
+    };
+}
+
 macro_rules! registry {
-    ($($block:ident)*) => {
+    ($($group:ident :: $module:ident :: $block:ident)*) => {
+        $(use crate::$group::$module::$block;)*
+
         /// An instance of any block of the registry.
         // The variants differ in size, and a box would need a heap.
         #[allow(clippy::large_enum_variant)]
@@ -68,19 +103,7 @@ macro_rules! registry {
     };
 }
 
-registry! {
-    McPower McReset McReadStatus McReadMotionState McReadAxisInfo McReadAxisError
-    McReadActualPosition McReadActualVelocity McReadActualTorque McSetPosition McSetOverride
-    McReadParameter McReadBoolParameter McWriteParameter McWriteBoolParameter
-    McReadDigitalInput McReadDigitalOutput McWriteDigitalOutput
-    McTouchProbe McAbortTrigger McDigitalCamSwitch
-    McHome
-    McStop McHalt McMoveAbsolute McMoveRelative McMoveAdditive McMoveVelocity
-    McMoveContinuousAbsolute McMoveContinuousRelative McTorqueControl
-    McPositionProfile McVelocityProfile McAccelerationProfile
-    McMoveSuperimposed McHaltSuperimposed McJog
-    RTrig FTrig Sr Rs Ctu Ctd Ctud Ton Tof Tp
-}
+for_every_block!(registry);
 
 // A host has many of them in a row: what is large stands elsewhere (tables, the memory of outputs).
 const _: () = assert!(size_of::<BlockInstance>() <= 256);
@@ -96,6 +119,14 @@ impl AnyInstance for BlockInstance {
 
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError> {
         self.any_mut().set(index, value)
+    }
+
+    fn set_flat(&mut self, flat: &[u8], pointer: Pointer) {
+        self.any_mut().set_flat(flat, pointer);
+    }
+
+    fn put_flat(&self, flat: &mut [u8]) {
+        self.any().put_flat(flat);
     }
 }
 

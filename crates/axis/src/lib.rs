@@ -21,6 +21,7 @@ mod ideal_drive;
 mod log;
 mod scaling;
 mod state;
+pub mod steps;
 
 pub use axis::{
     Axis, Beside, CamTrack, Factors, MotionState, Outlook, Pace, Parameter, ParameterValue, Permission,

@@ -114,6 +114,21 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Write what a host needs to call the blocks: headers, shims, imports, a library
+    Export {
+        /// For whom
+        #[arg(value_enum)]
+        target: ExportTarget,
+        /// Write the files into this folder
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// What all names in C begin with
+        #[arg(long, value_name = "P", default_value = "standstill")]
+        prefix: String,
+        /// Call pins and number enumerations in shims as another system does
+        #[arg(long, value_name = "NAME")]
+        dialect: Option<String>,
+    },
     /// Print the JSON Schema of scripts, of the maps of `compare`, or of sweeps
     Schema {
         /// Of what
@@ -138,6 +153,23 @@ pub enum Golden {
     Exact,
     /// Events to the scan, set-points within tolerances
     Events,
+}
+
+/// For whom `export` writes.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum ExportTarget {
+    /// Headers for hosts in C and C++
+    C,
+    /// Structured Text for matiec and Beremiz
+    StMatiec,
+    /// Structured Text for STruC++ and OpenPLC
+    StStrucpp,
+    /// Structured Text and C for rusty
+    StRusty,
+    /// Imports of guests in WebAssembly, and a header for those in C
+    Wasm,
+    /// A library of interfaces for IDEs
+    PlcopenXml,
 }
 
 /// What `schema` describes.

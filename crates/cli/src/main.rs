@@ -8,6 +8,7 @@ mod blocks;
 mod compare;
 mod exit;
 mod explain;
+mod export;
 mod failing;
 mod fmt;
 mod json;
@@ -127,6 +128,12 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         } => soak::blocks(*seed, *count, resume.as_deref(), failures, out),
         Command::Blocks { json: true } => blocks::json(out),
         Command::Blocks { json: false } => blocks::table(out),
+        Command::Export {
+            target,
+            out: folder,
+            prefix,
+            dialect,
+        } => export::export(*target, folder, prefix, dialect.as_deref(), out),
         Command::Schema { of } => {
             let text = match of {
                 Schema::Script => standstill_script::schema(),

@@ -159,11 +159,13 @@ fn every_console_block_and_every_table_of_plans_is_true() {
         ("command-line.md", 8, 0),
         ("compare.md", 4, 0),
         ("exit-statuses.md", 1, 0),
+        ("export.md", 1, 0),
         ("from-your-vendor.md", 1, 10),
         ("gallery/README.md", 1, 0),
         ("how-to/ci.md", 2, 0),
         ("planner-lines.md", 1, 0),
         ("reports.md", 3, 0),
+        ("sweeps.md", 1, 0),
         ("traces.md", 1, 0),
     ];
     let pages = pages("");

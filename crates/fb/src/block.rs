@@ -1,5 +1,6 @@
 //! A block as a type, an instance of it, and what a call may touch.
 
+use crate::flat::Pointer;
 use crate::{Direction, Pin, PinError, Pins, Value};
 use standstill_axis::{Axis, AxisId, ErrorId, InstanceId, Log, Planner, Source, Standard};
 
@@ -155,6 +156,12 @@ pub trait AnyInstance {
     /// # Errors
     /// [`PinError`] if it is an output, does not exist, or has another type.
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError>;
+
+    /// [`Pins::set_flat`] of the in_outs and inputs.
+    fn set_flat(&mut self, flat: &[u8], pointer: Pointer);
+
+    /// [`Pins::put_flat`] of the outputs.
+    fn put_flat(&self, flat: &mut [u8]);
 }
 
 impl<B: Block + Described> AnyInstance for Instance<B> {
@@ -173,6 +180,16 @@ impl<B: Block + Described> AnyInstance for Instance<B> {
 
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError> {
         self.inputs.set(index, value)
+    }
+
+    #[inline]
+    fn set_flat(&mut self, flat: &[u8], pointer: Pointer) {
+        self.inputs.set_flat(flat, pointer);
+    }
+
+    #[inline]
+    fn put_flat(&self, flat: &mut [u8]) {
+        self.outputs.put_flat(flat);
     }
 }
 
@@ -214,6 +231,16 @@ impl BlockInfo {
     /// Pins of one kind.
     pub fn pins_of(&self, direction: Direction) -> impl Iterator<Item = &'static Pin> {
         self.pins().filter(move |pin| pin.direction == direction)
+    }
+
+    /// In_outs and inputs.
+    pub const fn inputs(&self) -> &'static [Pin] {
+        self.inputs
+    }
+
+    /// Outputs.
+    pub const fn outputs(&self) -> &'static [Pin] {
+        self.outputs
     }
 
     /// Number of in_outs and inputs; pins from here on are outputs.

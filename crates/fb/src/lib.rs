@@ -11,6 +11,7 @@ extern crate std;
 mod block;
 mod enable;
 mod execute;
+pub mod flat;
 mod pins;
 mod table;
 mod update;
@@ -20,6 +21,7 @@ pub use enable::{EnableCore, Reading};
 pub use execute::{ExecuteCore, Phase};
 pub use pins::{
     Direction, EnumInfo, InputRef, Int, OutputRef, Pin, PinError, PinType, PinValue, Pins, Time, Value,
+    axis_number, numbered_axis,
 };
 pub use table::{Record, Table, TableInfo, TableOf, TableRef};
 pub use update::{Move, UpdateCore, Values};

@@ -1,5 +1,6 @@
 //! Pins as data: one table per block, from which structs, docs, script names and traces come.
 
+use crate::flat::{Flat, Pointer};
 use crate::{TableInfo, TableRef};
 use core::fmt;
 use standstill_axis::{AxisId, ErrorId, IecEnum, Raw};
@@ -120,12 +121,30 @@ pub trait PinValue: Copy {
     fn into_value(self) -> Value;
     /// From data, if the type fits.
     fn from_value(value: Value) -> Option<Self>;
+    /// The number that stands for it in bytes; [`PinType::scalar`] says the same as data.
+    type Flat: Flat;
+    /// As that number.
+    fn into_flat(self) -> Self::Flat;
+    /// From that number.
+    fn from_flat(flat: Self::Flat) -> Self;
 }
 
 macro_rules! pin_value {
-    ($rust:ty, $ty:ident, $variant:ident) => {
+    ($rust:ty, $ty:ident, $variant:ident, $flat:ty, $value:ident => $into:expr, $back:ident => $from:expr) => {
         impl PinValue for $rust {
             const TYPE: PinType = PinType::$ty;
+            type Flat = $flat;
+
+            #[inline(always)]
+            fn into_flat(self) -> $flat {
+                let $value = self;
+                $into
+            }
+
+            #[inline(always)]
+            fn from_flat($back: $flat) -> Self {
+                $from
+            }
 
             fn into_value(self) -> Value {
                 Value::$variant(self)
@@ -142,15 +161,27 @@ macro_rules! pin_value {
     };
 }
 
-pin_value!(bool, Bool, Bool);
-pin_value!(i16, Int, Int);
-pin_value!(u32, Dword, Dword);
-pin_value!(f64, Lreal, Lreal);
+pin_value!(bool, Bool, Bool, u8, value => u8::from(value), flat => flat != 0);
+pin_value!(i16, Int, Int, i16, value => value, flat => flat);
+pin_value!(u32, Dword, Dword, u32, value => value, flat => flat);
+pin_value!(f64, Lreal, Lreal, f64, value => value, flat => flat);
 
 macro_rules! axis_value {
     ($rust:ty, $name:literal, $id:ident => $made:expr) => {
         impl PinValue for $rust {
             const TYPE: PinType = PinType::Axis($name);
+            type Flat = i32;
+
+            #[inline(always)]
+            fn into_flat(self) -> i32 {
+                axis_number(self.into())
+            }
+
+            #[inline(always)]
+            fn from_flat(flat: i32) -> Self {
+                let $id = numbered_axis(flat);
+                $made
+            }
 
             fn into_value(self) -> Value {
                 Value::Axis(self.into())
@@ -165,6 +196,21 @@ macro_rules! axis_value {
             }
         }
     };
+}
+
+/// How hosts in other languages number axes: from 1, and 0 is no axis, so that zeroed memory commands nothing.
+pub const fn axis_number(id: AxisId) -> i32 {
+    // `AxisId::NONE` comes round to 0.
+    (id.index() as i32 + 1) % 65_536
+}
+
+/// The axis of that number; [`AxisId::NONE`] for any number that no axis can have.
+pub const fn numbered_axis(number: i32) -> AxisId {
+    if 0 < number && number < 65_536 {
+        AxisId::new((number - 1) as u16)
+    } else {
+        AxisId::NONE
+    }
 }
 
 /// MC_INPUT_REF: the axis whose drive has the inputs.
@@ -193,6 +239,17 @@ axis_value!(OutputRef, "MC_OUTPUT_REF", id => Self(id));
 
 impl PinValue for Time {
     const TYPE: PinType = PinType::Time;
+    type Flat = i64;
+
+    #[inline(always)]
+    fn into_flat(self) -> i64 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn from_flat(flat: i64) -> Self {
+        Self(flat)
+    }
 
     fn into_value(self) -> Value {
         Value::Time(self.0)
@@ -209,6 +266,16 @@ impl PinValue for Time {
 
 impl PinValue for ErrorId {
     const TYPE: PinType = PinType::Word;
+    type Flat = u16;
+
+    #[inline(always)]
+    fn into_flat(self) -> u16 {
+        self.number()
+    }
+
+    fn from_flat(flat: u16) -> Self {
+        Self::from_number(flat).unwrap_or_default()
+    }
 
     fn into_value(self) -> Value {
         Value::Word(self.number())
@@ -228,6 +295,17 @@ impl<E: IecEnum> PinValue for Raw<E> {
         name: E::TYPE,
         elements: E::ELEMENTS,
     });
+    type Flat = i32;
+
+    #[inline(always)]
+    fn into_flat(self) -> i32 {
+        self.number()
+    }
+
+    #[inline(always)]
+    fn from_flat(flat: i32) -> Self {
+        Self::new(flat)
+    }
 
     fn into_value(self) -> Value {
         Value::Enum(self.number())
@@ -247,6 +325,8 @@ impl<E: IecEnum> PinValue for Raw<E> {
 pub struct Pin {
     /// IEC name.
     pub name: &'static str,
+    /// Name in Rust and C.
+    pub field: &'static str,
     /// Type.
     pub ty: PinType,
     /// Unit, empty if none; `u` is the axis's unit.
@@ -292,6 +372,13 @@ pub trait Pins: Copy + Default {
     /// # Errors
     /// [`PinError`] if there is no such pin or the type differs.
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError>;
+
+    /// Takes all pins but arrays from bytes laid out as [`crate::flat`] says, from a place with addresses of that
+    /// width. Missing bytes are zero.
+    fn set_flat(&mut self, flat: &[u8], pointer: Pointer);
+
+    /// Writes all pins but arrays to bytes for this processor; the size in front and what lies between them stays.
+    fn put_flat(&self, flat: &mut [u8]);
 }
 
 /// Declares the `Inputs` and `Outputs` structs of a block and their tables.
@@ -362,6 +449,7 @@ macro_rules! pins {
         impl $crate::Pins for $name {
             const PINS: &'static [$crate::Pin] = &[$($crate::Pin {
                 name: stringify!($pin),
+                field: stringify!($field),
                 ty: <$ty as $crate::PinValue>::TYPE,
                 unit: $unit,
                 extension: $extension,
@@ -386,6 +474,40 @@ macro_rules! pins {
                 )*
                 let _ = (place, value);
                 Err($crate::PinError::NotWritable)
+            }
+
+            #[inline(always)]
+            fn set_flat(&mut self, flat: &[u8], pointer: $crate::flat::Pointer) {
+                use $crate::flat::{Flat as _, Layout, Pointer};
+                const { assert!(<$name as $crate::Pins>::PINS.len() <= $crate::flat::PINS_MOST) };
+                const NARROW: Layout = Layout::of_pins(<$name as $crate::Pins>::PINS, Pointer::Bits32);
+                const WIDE: Layout = Layout::of_pins(<$name as $crate::Pins>::PINS, Pointer::Bits64);
+                let layout = match pointer {
+                    Pointer::Bits32 => &NARROW,
+                    Pointer::Bits64 => &WIDE,
+                };
+                let mut place = 0_usize;
+                $(
+                    // Of an array only the records count, and who read them sets the pin.
+                    if <$ty as $crate::PinValue>::TYPE.scalar().is_some() {
+                        let number = <$ty as $crate::PinValue>::Flat::read(flat, layout.offset(place));
+                        self.$field = <$ty as $crate::PinValue>::from_flat(number);
+                    }
+                    place += 1;
+                )*
+                let _ = (place, flat, layout);
+            }
+
+            #[inline(always)]
+            fn put_flat(&self, flat: &mut [u8]) {
+                use $crate::flat::{Flat as _, Layout, Pointer};
+                const LAYOUT: Layout = Layout::of_pins(<$name as $crate::Pins>::PINS, Pointer::NATIVE);
+                let mut place = 0_usize;
+                $(
+                    <$ty as $crate::PinValue>::into_flat(self.$field).write(flat, LAYOUT.offset(place));
+                    place += 1;
+                )*
+                let _ = (place, flat);
             }
         }
     };

@@ -112,6 +112,13 @@ impl<R: Record, const N: usize> PinValue for TableOf<R, N> {
         fields: R::PINS,
         most: N,
     });
+    type Flat = ();
+
+    fn into_flat(self) {}
+
+    fn from_flat((): ()) -> Self {
+        Self::default()
+    }
 
     fn into_value(self) -> Value {
         Value::Table(self.place)

@@ -4,8 +4,8 @@ use crate::{NotOff, ScanTime};
 use alloc::vec::Vec;
 use core::fmt;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, ConfigError, Drive, DriveFeedback, InstanceId, Log, Planner, Source,
-    Standard,
+    Axis, AxisConfig, AxisId, ConfigError, Drive, DriveFeedback, InstanceId, Log, Planner, Source, Standard,
+    steps,
 };
 use standstill_fb::{Context, Record, TableRef, Value};
 
@@ -154,13 +154,13 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         self.feedback.clear();
         self.feedback
             .extend(self.drives.iter_mut().map(|drive| drive.read(time.now_ns)));
-        for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
-            drive.report(axis.report_mut());
-            axis.follow_report();
-        }
-        for (axis, feedback) in self.axes.iter_mut().zip(&self.feedback) {
-            axis.follow_feedback(feedback, time.scan, &mut self.log);
-        }
+        steps::follow(
+            &mut self.axes,
+            &mut self.drives,
+            &self.feedback,
+            time.scan,
+            &mut self.log,
+        );
     }
 
     /// Advances every axis by one nominal tick, in advance order; a late scan does not stretch a motion.
@@ -174,10 +174,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
 
     /// Writes every drive once, in axis order.
     pub(crate) fn publish(&mut self, time: ScanTime) {
-        for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
-            drive.order(axis.order());
-            drive.write(time.now_ns, &axis.drive_command());
-        }
+        steps::publish(&mut self.axes, &mut self.drives, time.now_ns);
     }
 
     /// Asks every axis to stop and switch off, each as its configuration says.
@@ -186,9 +183,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
             scan,
             instance: RUNTIME,
         };
-        for axis in &mut self.axes {
-            axis.switch_off(source, &mut self.log);
-        }
+        steps::switch_off(&mut self.axes, source, &mut self.log);
     }
 
     /// Whether every axis is Disabled, or in ErrorStop and at rest.
@@ -196,23 +191,8 @@ impl<P: Planner, D: Drive> Machine<P, D> {
     /// # Errors
     /// [`NotOff`] with the first axis that is not.
     pub fn is_off(&self) -> Result<(), NotOff> {
-        let on = (0..).zip(&self.axes).find(|(_, axis)| match axis.state() {
-            AxisState::Disabled => false,
-            // After a fault an axis may still be on its ramp.
-            AxisState::ErrorStop => !axis.setpoint().is_at_rest(),
-            AxisState::Standstill
-            | AxisState::Homing
-            | AxisState::DiscreteMotion
-            | AxisState::ContinuousMotion
-            | AxisState::SynchronizedMotion
-            | AxisState::Stopping => true,
-        });
-        on.map_or(Ok(()), |(index, axis)| {
-            Err(NotOff {
-                axis: AxisId::new(index),
-                state: axis.state(),
-            })
-        })
+        let on = steps::first_not_off(&self.axes);
+        on.map_or(Ok(()), |(axis, state)| Err(NotOff { axis, state }))
     }
 }
 

@@ -117,6 +117,7 @@ fn the_top_level_holds_what_a_newcomer_expects() {
         "LICENSE-APACHE",
         "LICENSE-MIT",
         "README.md",
+        "SECURITY.md",
         "blocks",
         "crates",
         "docs",
@@ -168,6 +169,21 @@ fn layers_depend_only_downwards() {
             "standstill-record",
             &["standstill-axis", "standstill-fb", "standstill-trace"],
         ),
+        (
+            "crates/capi",
+            "standstill-capi",
+            &[
+                "standstill-axis",
+                "standstill-blocks",
+                "standstill-drives",
+                "standstill-fb",
+            ],
+        ),
+        (
+            "crates/export",
+            "standstill-export",
+            &["standstill-blocks", "standstill-fb"],
+        ),
         ("crates/trace", "standstill-trace", &[]),
         ("crates/report", "standstill-report", &["standstill-trace"]),
         (
@@ -215,6 +231,7 @@ fn layers_depend_only_downwards() {
             "standstill-cli",
             &[
                 "standstill-blocks",
+                "standstill-export",
                 "standstill-fb",
                 "standstill-planner",
                 "standstill-report",

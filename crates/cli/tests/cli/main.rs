@@ -3,6 +3,7 @@
 mod blocks;
 mod compare;
 mod ends;
+mod export;
 mod fmt;
 mod machine;
 mod plan;

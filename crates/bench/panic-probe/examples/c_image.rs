@@ -1,0 +1,54 @@
+//! The C library without `std` as a bare-metal image: every function of it, called with what the compiler knows nothing
+//! of. Its panic handler calls what no one defines, so the image links if, and only if, no panic is reachable.
+#![cfg_attr(target_os = "none", no_std)]
+#![cfg_attr(target_os = "none", no_main)]
+
+#[cfg(target_os = "none")]
+mod bare_metal {
+    #![allow(unsafe_code)]
+
+    use core::hint::black_box;
+    use standstill_capi as c;
+
+    /// Keeps a function of any kind, as a host that may call it would.
+    fn keep<F>(function: F) {
+        black_box(function);
+    }
+
+    macro_rules! keep_blocks {
+        ($($group:ident :: $name:ident :: $block:ident)*) => {
+            $(keep::<unsafe extern "C" fn(*mut c::Runtime, *mut u64, *const u8, *mut u8) -> i32>(c::$name);)*
+        };
+    }
+
+    // SAFETY: nothing else in the image has this name, and nothing calls it: the image is linked and looked at, never run.
+    #[unsafe(no_mangle)]
+    extern "C" fn _start() -> ! {
+        keep::<extern "C" fn() -> u32>(c::standstill_abi_version);
+        keep::<extern "C" fn(i32) -> *const core::ffi::c_char>(c::standstill_result_text);
+        keep::<unsafe extern "C" fn(_, _) -> _>(c::standstill_runtime_size);
+        keep::<unsafe extern "C" fn(_, _, _, _, _) -> _>(c::standstill_runtime_init);
+        keep::<unsafe extern "C" fn(_) -> _>(c::standstill_runtime_close);
+        keep::<unsafe extern "C" fn(_) -> _>(c::standstill_axis_defaults);
+        keep::<unsafe extern "C" fn(_) -> _>(c::standstill_drive_defaults);
+        keep::<unsafe extern "C" fn(_, _, _, _) -> _>(c::standstill_axis_add);
+        keep::<unsafe extern "C" fn(_, _) -> _>(c::standstill_config_error);
+        keep::<unsafe extern "C" fn(_, _) -> _>(c::standstill_tick_begin);
+        keep::<unsafe extern "C" fn(_) -> _>(c::standstill_tick_end);
+        keep::<unsafe extern "C" fn(_) -> _>(c::standstill_stop);
+        keep::<unsafe extern "C" fn(_) -> _>(c::standstill_start);
+        keep::<unsafe extern "C" fn(_, _) -> _>(c::standstill_instance_release);
+        keep::<unsafe extern "C" fn(_, _, _) -> _>(c::standstill_axis_read);
+        keep::<unsafe extern "C" fn(_, _, _) -> _>(c::standstill_feedback_write);
+        keep::<unsafe extern "C" fn(_, _, _) -> _>(c::standstill_command_read);
+        keep::<unsafe extern "C" fn(_, _, _, _) -> _>(c::standstill_simulate);
+        keep::<unsafe extern "C" fn(_, _, _, _, _, _) -> _>(c::standstill_log_read);
+        standstill_blocks::for_every_block!(keep_blocks);
+        #[cfg(feature = "reachable-panic")]
+        assert!(black_box(true), "on purpose");
+        loop {}
+    }
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {}

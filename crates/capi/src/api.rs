@@ -1,0 +1,431 @@
+//! The functions of `standstill.h`. What each says in its comment is what C programmers read.
+//!
+//! All of them: a pointer that is neither null nor what its type says cannot be told from a good one.
+
+use crate::drive::AnyDrive;
+use crate::enter::{When, enter};
+use crate::runtime::{MAGIC, Runtime};
+use crate::{
+    ABI_VERSION, AxisSetup, AxisStatus, Code, Command, ConfigFault, DriveSetup, Feedback, Mishap, Record,
+    RuntimeConfig, events, raw, storage,
+};
+use core::ffi::{c_char, c_void};
+use core::sync::atomic::Ordering::Release;
+
+/// The code of a result.
+fn code(result: Result<(), Code>) -> i32 {
+    result.map_or_else(|code| code as i32, |()| Code::Ok as i32)
+}
+
+/// The ABI version of the library. A host compares it with STANDSTILL_ABI_VERSION, its header's.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_abi_version"))]
+pub extern "C" fn standstill_abi_version() -> u32 {
+    ABI_VERSION
+}
+
+/// A code of a function as one sentence in English; never null, and not to be freed.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_result_text"))]
+pub extern "C" fn standstill_result_text(result: i32) -> *const c_char {
+    let text = match result {
+        0 => c"done",
+        -1 => c"a pointer is null",
+        -2 => c"the size in front of a structure is smaller than the structure of this version",
+        -3 => c"the host was compiled with the header of another ABI version",
+        -4 => c"the storage is too small, or not aligned to 16 bytes",
+        -5 => c"there is no runtime at this address",
+        -6 => c"another thread is in the runtime, or has a tick open",
+        -7 => c"only between tick_begin and tick_end",
+        -8 => c"not between tick_begin and tick_end",
+        -9 => c"the instant is before that of the tick before",
+        -10 => c"no instance has this key",
+        -11 => c"the key is of an instance of another block",
+        -12 => c"the runtime was set up for fewer axes or instances",
+        -13 => c"no axis has this number; the first is 1",
+        -14 => c"a value of the configuration cannot be used; config_error says which",
+        -15 => c"the drive under the axis is of another kind",
+        -16 => c"a number stands for nothing",
+        -17 => c"an array has more records than its block takes, or stands at address null",
+        -18 => c"an axis is switched on or moving",
+        -19 => c"the resource was stopped",
+        -20 => c"a defect of the library was caught; the resource was stopped",
+        _ => c"not a result of this library",
+    };
+    text.as_ptr()
+}
+
+/// The bytes of storage a runtime needs.
+///
+/// Codes: NULL_POINTER, STRUCT_SIZE, BAD_VALUE (a size of the configuration is 0 or too large).
+///
+/// # Safety
+/// Pointers are null or lead to what their types say.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_runtime_size"))]
+pub unsafe extern "C" fn standstill_runtime_size(config: *const RuntimeConfig, bytes: *mut usize) -> i32 {
+    // SAFETY: the caller's contract.
+    let size = unsafe { raw::read(config) }.and_then(|config| storage::size(&config));
+    code(size.and_then(|size| {
+        if bytes.is_null() {
+            return Err(Code::NullPointer);
+        }
+        // SAFETY: not null, so by contract it can be written.
+        unsafe { bytes.write_unaligned(size) };
+        Ok(())
+    }))
+}
+
+/// Makes a runtime without axes in `storage`, which is aligned to 16 bytes, has what runtime_size tells, and belongs to
+/// the runtime until it is closed. `abi_version` is STANDSTILL_ABI_VERSION. Nothing has to be freed.
+///
+/// Codes: ABI_MISMATCH, NULL_POINTER, STRUCT_SIZE, BAD_VALUE, STORAGE.
+///
+/// # Safety
+/// Pointers are null or lead to what their types say, `storage` to so many bytes.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_runtime_init"))]
+pub unsafe extern "C" fn standstill_runtime_init(
+    abi_version: u32,
+    storage: *mut c_void,
+    bytes: usize,
+    config: *const RuntimeConfig,
+    runtime: *mut *mut Runtime,
+) -> i32 {
+    if abi_version != ABI_VERSION {
+        return Code::AbiMismatch as i32;
+    }
+    if storage.is_null() || runtime.is_null() {
+        return Code::NullPointer as i32;
+    }
+    // SAFETY: the caller's contract; the storage is not null.
+    let made = unsafe { raw::read(config) }
+        .and_then(|config| unsafe { storage::init(storage.cast(), bytes, &config) });
+    code(made.map(|made| {
+        // SAFETY: not null, so by contract it can be written.
+        unsafe { runtime.write_unaligned(made) }
+    }))
+}
+
+/// Ends a runtime whose axes are all off; its storage belongs to the host again, its handle and keys mean nothing.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, NOT_OFF.
+///
+/// # Safety
+/// `runtime` is null or a handle whose storage is still there.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_runtime_close"))]
+pub unsafe extern "C" fn standstill_runtime_close(runtime: *mut Runtime) -> i32 {
+    // SAFETY: the caller's contract.
+    let closed = unsafe { enter(runtime, When::Outside, |inner| inner.check_off()) };
+    if closed == Code::Ok as i32 {
+        // SAFETY: there was a runtime a moment ago. Nothing it holds has to be dropped.
+        unsafe { (*runtime).magic.store(!MAGIC, Release) };
+    }
+    closed
+}
+
+/// Fills in everything but the five limits. `size` must be set before.
+///
+/// Codes: NULL_POINTER, STRUCT_SIZE.
+///
+/// # Safety
+/// The pointer is null or leads to as many bytes as the size in front says.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_axis_defaults"))]
+pub unsafe extern "C" fn standstill_axis_defaults(setup: *mut AxisSetup) -> i32 {
+    // SAFETY: the caller's contract.
+    code(unsafe { raw::read(setup) }.map(|given| {
+        // SAFETY: it was read.
+        unsafe { setup.write_unaligned(AxisSetup::defaults(given.size)) }
+    }))
+}
+
+/// Describes an ideal drive: it follows every set-point in the next tick. `size` must be set before.
+///
+/// Codes: NULL_POINTER, STRUCT_SIZE.
+///
+/// # Safety
+/// The pointer is null or leads to as many bytes as the size in front says.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_drive_defaults"))]
+pub unsafe extern "C" fn standstill_drive_defaults(setup: *mut DriveSetup) -> i32 {
+    // SAFETY: the caller's contract.
+    code(unsafe { raw::read(setup) }.map(|given| {
+        // SAFETY: it was read.
+        unsafe { setup.write_unaligned(DriveSetup::defaults(given.size)) }
+    }))
+}
+
+/// Adds an axis with its drive; `axis` gets its number, from 1 in the order of the calls.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, NO_ROOM, BAD_CONFIG.
+///
+/// # Safety
+/// Pointers are null or lead to what their types say.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_axis_add"))]
+pub unsafe extern "C" fn standstill_axis_add(
+    runtime: *mut Runtime,
+    setup: *const AxisSetup,
+    drive: *const DriveSetup,
+    axis: *mut i32,
+) -> i32 {
+    // SAFETY: the caller's contract, here and in all that follows.
+    unsafe {
+        enter(runtime, When::Outside, |inner| {
+            let (setup, drive) = (raw::read(setup)?, raw::read(drive)?);
+            if axis.is_null() {
+                return Err(Code::NullPointer);
+            }
+            let number = inner.add_axis(&setup, &drive)?;
+            axis.write_unaligned(number);
+            Ok(())
+        })
+    }
+}
+
+/// What the last BAD_CONFIG of this runtime was about.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE.
+///
+/// # Safety
+/// Pointers are null or lead to what their types say.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_config_error"))]
+pub unsafe extern "C" fn standstill_config_error(runtime: *mut Runtime, fault: *mut ConfigFault) -> i32 {
+    // SAFETY: the caller's contract, here and in all that follows.
+    unsafe {
+        enter(runtime, When::Any, |inner| {
+            raw::check(fault)?;
+            fault.write_unaligned(inner.fault);
+            Ok(())
+        })
+    }
+}
+
+/// Begins a tick at the instant `now_ns` of a monotonic clock: drives are read, axis states follow. Blocks may be called
+/// then, by this thread, until tick_end.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, TIME_BACKWARDS, INTERNAL.
+///
+/// # Safety
+/// `runtime` is null or a handle whose storage is still there.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_tick_begin"))]
+pub unsafe extern "C" fn standstill_tick_begin(runtime: *mut Runtime, now_ns: i64) -> i32 {
+    // SAFETY: the caller's contract.
+    unsafe { enter(runtime, When::Outside, |inner| inner.begin(now_ns)) }
+}
+
+/// Ends a tick: every axis advances by one cycle of the configuration, drives are written.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, NOT_IN_TICK, INTERNAL.
+///
+/// # Safety
+/// `runtime` is null or a handle whose storage is still there.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_tick_end"))]
+pub unsafe extern "C" fn standstill_tick_end(runtime: *mut Runtime) -> i32 {
+    // SAFETY: the caller's contract.
+    unsafe {
+        enter(runtime, When::InTick, |inner| {
+            inner.end();
+            Ok(())
+        })
+    }
+}
+
+/// Stops the resource, in a tick or between two: blocks are not called any more, every axis stops and switches off as
+/// it is set up to. That takes further ticks, so go on with them.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD.
+///
+/// # Safety
+/// `runtime` is null or a handle whose storage is still there.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_stop"))]
+pub unsafe extern "C" fn standstill_stop(runtime: *mut Runtime) -> i32 {
+    // SAFETY: the caller's contract.
+    unsafe {
+        enter(runtime, When::Any, |inner| {
+            inner.stop();
+            Ok(())
+        })
+    }
+}
+
+/// Lets blocks be called again after stop, once every axis is off.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, NOT_OFF, INTERNAL.
+///
+/// # Safety
+/// `runtime` is null or a handle whose storage is still there.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_start"))]
+pub unsafe extern "C" fn standstill_start(runtime: *mut Runtime) -> i32 {
+    // SAFETY: the caller's contract.
+    unsafe { enter(runtime, When::Outside, |inner| inner.start()) }
+}
+
+/// Gives the place of a block instance back and sets its key to 0. What the instance commanded goes on.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, UNKNOWN_KEY.
+///
+/// # Safety
+/// Pointers are null or lead to what their types say.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_instance_release"))]
+pub unsafe extern "C" fn standstill_instance_release(runtime: *mut Runtime, key: *mut u64) -> i32 {
+    // SAFETY: the caller's contract, here and in all that follows.
+    unsafe {
+        enter(runtime, When::Any, |inner| {
+            if key.is_null() {
+                return Err(Code::NullPointer);
+            }
+            inner.release(key.read_unaligned())?;
+            key.write_unaligned(0);
+            Ok(())
+        })
+    }
+}
+
+/// An axis as it stands: its state, set-point, actual position and error. After tick_end the set-point is the one of
+/// this tick.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE, UNKNOWN_AXIS.
+///
+/// # Safety
+/// Pointers are null or lead to what their types say.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_axis_read"))]
+pub unsafe extern "C" fn standstill_axis_read(
+    runtime: *mut Runtime,
+    axis: i32,
+    status: *mut AxisStatus,
+) -> i32 {
+    // SAFETY: the caller's contract, here and in all that follows.
+    unsafe {
+        enter(runtime, When::Any, |inner| {
+            raw::check(status)?;
+            status.write_unaligned(inner.status(axis)?);
+            Ok(())
+        })
+    }
+}
+
+/// Tells what the host's own drive under `axis` says; before every tick_begin.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, UNKNOWN_AXIS, WRONG_DRIVE, BAD_VALUE.
+///
+/// # Safety
+/// Pointers are null or lead to what their types say.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_feedback_write"))]
+pub unsafe extern "C" fn standstill_feedback_write(
+    runtime: *mut Runtime,
+    axis: i32,
+    feedback: *const Feedback,
+) -> i32 {
+    // SAFETY: the caller's contract, here and in all that follows.
+    unsafe {
+        enter(runtime, When::Outside, |inner| {
+            let feedback = raw::read(feedback)?;
+            let place = inner.place(axis)?;
+            match inner.drives.slice_mut().get_mut(place) {
+                Some(AnyDrive::Host(drive)) => drive.tell(&feedback),
+                _ => Err(Code::WrongDrive),
+            }
+        })
+    }
+}
+
+/// Asks what the host's own drive under `axis` is told; after every tick_end.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, UNKNOWN_AXIS, WRONG_DRIVE.
+///
+/// # Safety
+/// Pointers are null or lead to what their types say.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_command_read"))]
+pub unsafe extern "C" fn standstill_command_read(
+    runtime: *mut Runtime,
+    axis: i32,
+    command: *mut Command,
+) -> i32 {
+    // SAFETY: the caller's contract, here and in all that follows.
+    unsafe {
+        enter(runtime, When::Outside, |inner| {
+            raw::check(command)?;
+            let place = inner.place(axis)?;
+            match inner.drives.slice().get(place) {
+                Some(AnyDrive::Host(drive)) => {
+                    command.write_unaligned(drive.told(size_of::<Command>() as u32));
+                    Ok(())
+                }
+                _ => Err(Code::WrongDrive),
+            }
+        })
+    }
+}
+
+/// Lets something befall the simulated drive under `axis`, or clears the cause of it; `mishap` is one of
+/// standstill_mishap, `code` what the drive calls its fault.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
+///
+/// # Safety
+/// `runtime` is null or a handle whose storage is still there.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_simulate"))]
+pub unsafe extern "C" fn standstill_simulate(
+    runtime: *mut Runtime,
+    axis: i32,
+    mishap: i32,
+    code: u16,
+) -> i32 {
+    // SAFETY: the caller's contract.
+    unsafe {
+        enter(runtime, When::Outside, |inner| {
+            let mishap = match mishap {
+                0 => Mishap::Clear,
+                1 => Mishap::Fault,
+                2 => Mishap::Power,
+                3 => Mishap::Communication,
+                _ => return Err(Code::BadValue),
+            };
+            let place = inner.place(axis)?;
+            let drive = inner.drives.slice_mut().get_mut(place);
+            drive.map_or(Err(Code::UnknownAxis), |drive| drive.suffer(mishap, code))
+        })
+    }
+}
+
+/// Copies records of the diagnostic ring, oldest first, from number `*next` on; `*next` becomes the number to go on
+/// from, and `*copied` how many there are. Records that were overwritten meanwhile are left out: their numbers are.
+/// `record_size` is sizeof(standstill_record), `room` how many records fit.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE.
+///
+/// # Safety
+/// Pointers are null or lead to what their types say, `records` to `room` of them.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_log_read"))]
+pub unsafe extern "C" fn standstill_log_read(
+    runtime: *mut Runtime,
+    next: *mut u64,
+    records: *mut Record,
+    record_size: u32,
+    room: u32,
+    copied: *mut u32,
+) -> i32 {
+    // SAFETY: the caller's contract, here and in all that follows.
+    unsafe {
+        enter(runtime, When::Any, |inner| {
+            if next.is_null() || copied.is_null() || (records.is_null() && room > 0) {
+                return Err(Code::NullPointer);
+            }
+            let stride = record_size as usize;
+            if stride < size_of::<Record>() {
+                return Err(Code::StructSize);
+            }
+            let from = next.read_unaligned();
+            let total = inner.log.total();
+            let held = inner.log.since(from);
+            // What is not held any more is skipped.
+            let first = total - held.count().min(total as usize) as u64;
+            let (mut number, mut count) = (first, 0_usize);
+            for record in inner.log.since(from).take(room as usize) {
+                let to = records.cast::<u8>().add(count * stride);
+                to.cast::<Record>()
+                    .write_unaligned(events::record(number, record));
+                number += 1;
+                count += 1;
+            }
+            next.write_unaligned(number);
+            copied.write_unaligned(count as u32);
+            Ok(())
+        })
+    }
+}

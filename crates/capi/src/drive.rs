@@ -1,0 +1,361 @@
+//! The drives an axis may have here: the host's own, and simulated ones.
+
+use crate::{Code, Command, DriveSetup, Feedback, Mishap};
+use standstill_axis::{
+    AxisConfig, Comms, Drive, DriveCommand, DriveFeedback, DriveHoming, DriveOrder, DrivePosition,
+    DriveReport, DriveRequest, DriveSignals, Edge, Equipment, Fault, IdealDrive, ProbeReport, StartState,
+    TorqueReport,
+};
+use standstill_drives::cia402::{Cia402Drive, Reaction, Settings};
+use standstill_drives::mechanism::{Gains, Load, Mechanism, MechanismError, Plant, PlantDrive, Servo};
+
+/// A drive. They stand in the storage of the runtime beside each other, so the largest sets the size of all.
+#[allow(clippy::large_enum_variant)]
+pub(crate) enum AnyDrive {
+    Host(HostDrive),
+    Ideal(IdealDrive),
+    Cia402(Cia402Drive),
+    Plant(PlantDrive),
+}
+
+/// What a drive cannot be made of.
+pub(crate) struct DriveFault {
+    pub key: &'static str,
+    pub value: f64,
+}
+
+impl From<MechanismError> for DriveFault {
+    fn from(error: MechanismError) -> Self {
+        Self {
+            key: error.key,
+            value: error.value,
+        }
+    }
+}
+
+/// Both sides of a drive the host carries: what it told, and what it is told.
+pub(crate) struct HostDrive {
+    feedback: DriveFeedback,
+    report: DriveReport,
+    /// Told since the last tick began.
+    fresh: bool,
+    command: DriveCommand,
+    order: DriveOrder,
+}
+
+impl HostDrive {
+    fn new(position: DrivePosition) -> Self {
+        Self {
+            feedback: DriveFeedback {
+                enabled: false,
+                voltage: false,
+                fault: None,
+                position,
+                comms: Comms::Lost,
+                signals: DriveSignals::default(),
+            },
+            report: DriveReport::default(),
+            fresh: false,
+            command: DriveCommand {
+                request: DriveRequest::Off,
+                position,
+                velocity: 0.0,
+                rename: None,
+            },
+            order: DriveOrder::default(),
+        }
+    }
+
+    /// Takes what the host tells; refused if a choice in it is none, or a position is no number.
+    pub fn tell(&mut self, told: &Feedback) -> Result<(), Code> {
+        let counts = matches!(self.feedback.position, DrivePosition::Increments(_));
+        let at = |units: f64, increments: i64| {
+            if counts {
+                Ok(DrivePosition::Increments(increments))
+            } else if units.is_finite() {
+                Ok(DrivePosition::Units(units))
+            } else {
+                Err(Code::BadValue)
+            }
+        };
+        let probe = |armed: u8, latched: u8, units: f64, increments: i64| -> Result<_, Code> {
+            Ok(ProbeReport {
+                armed: armed != 0,
+                latched: (latched != 0).then(|| at(units, increments)).transpose()?,
+            })
+        };
+        let reference = at(told.home_position, told.home_increments);
+        let homing = match told.homing {
+            0 => DriveHoming::Off,
+            1 => DriveHoming::Busy,
+            2 => DriveHoming::Attained(reference?),
+            3 => DriveHoming::Done(reference?),
+            4 => DriveHoming::Failed(told.fault_code),
+            _ => return Err(Code::BadValue),
+        };
+        let torque = (told.torque_known != 0).then_some(TorqueReport {
+            actual: told.torque,
+            most: told.torque_max,
+            limited: told.torque_limited != 0,
+        });
+        if torque.is_some_and(|torque| !torque.actual.is_finite() || torque.most.is_nan()) {
+            return Err(Code::BadValue);
+        }
+        let [armed, other_armed] = told.probe_armed;
+        let [latched, other_latched] = told.probe_latched;
+        let [units, other_units] = told.probe_position;
+        let [increments, other_increments] = told.probe_increments;
+        let report = DriveReport {
+            torque,
+            inputs: told.inputs,
+            outputs: told.outputs,
+            probes: [
+                probe(armed, latched, units, increments)?,
+                probe(other_armed, other_latched, other_units, other_increments)?,
+            ],
+            marker: probe(
+                told.marker_armed,
+                told.marker_latched,
+                told.marker_position,
+                told.marker_increments,
+            )?,
+            homing,
+            equipment: Equipment {
+                home_switch: told.has_home_switch != 0,
+                limit_switches: told.has_limit_switches != 0,
+                marker: told.has_marker != 0,
+                homing: told.has_homing != 0,
+            },
+        };
+        self.feedback = DriveFeedback {
+            enabled: told.enabled != 0,
+            voltage: told.voltage != 0,
+            fault: (told.fault != 0).then_some(Fault {
+                code: told.fault_code,
+                cause_present: told.cause_present != 0,
+            }),
+            position: at(told.position, told.increments)?,
+            comms: if told.lost != 0 { Comms::Lost } else { Comms::Ok },
+            signals: DriveSignals {
+                simulated: told.simulated != 0,
+                home_switch: told.home_switch != 0,
+                limit_switch_positive: told.limit_switch_positive != 0,
+                limit_switch_negative: told.limit_switch_negative != 0,
+                warning: told.warning != 0,
+            },
+        };
+        self.report = report;
+        self.fresh = true;
+        Ok(())
+    }
+
+    /// What the drive is told.
+    pub fn told(&self, size: u32) -> Command {
+        let (position, increments) = match self.command.position {
+            DrivePosition::Units(units) => (units, 0),
+            DrivePosition::Increments(increments) => (0.0, increments),
+        };
+        let (least, most) = self.order.torque.map_or((0.0, 0.0), |order| order.velocity);
+        Command {
+            size,
+            request: match self.command.request {
+                DriveRequest::Off => 0,
+                DriveRequest::Enable => 1,
+                DriveRequest::QuickStop => 2,
+                DriveRequest::FaultReset => 3,
+            },
+            position,
+            increments,
+            velocity: self.command.velocity,
+            rename: self.command.rename.unwrap_or_default(),
+            torque: self.order.torque.map_or(0.0, |order| order.torque),
+            velocity_min: least,
+            velocity_max: most,
+            outputs: self.order.outputs,
+            renamed: self.command.rename.is_some().into(),
+            has_torque: self.order.torque.is_some().into(),
+            marker: self.order.marker.into(),
+            homing: self.order.homing.into(),
+            probe_edge: self.order.probes.map(|edge| match edge {
+                None => 0,
+                Some(Edge::Rising) => 1,
+                Some(Edge::Falling) => 2,
+            }),
+            reserved: [0; 6],
+        }
+    }
+}
+
+impl AnyDrive {
+    /// The drive of this setup under an axis of this configuration, in cycles of so many seconds.
+    pub fn new(setup: &DriveSetup, axis: &AxisConfig, cycle: f64) -> Result<Self, DriveFault> {
+        let position = match &axis.scaling {
+            Some(scaling) => DrivePosition::Increments(scaling.to_increments(axis.position)),
+            None => DrivePosition::Units(axis.position),
+        };
+        let enabled = axis.start == StartState::Standstill;
+        let power_on = u32::try_from(setup.power_on).ok();
+        Ok(match setup.kind {
+            0 => Self::Host(HostDrive::new(position)),
+            1 => Self::Ideal(IdealDrive::new(position, setup.delay as usize, power_on, enabled)),
+            2 => Self::Cia402(node(setup, axis, cycle, power_on)?),
+            3 => {
+                let plant = Plant {
+                    inertia: setup.inertia,
+                    viscous: setup.viscous,
+                    coulomb: setup.coulomb,
+                    load: (setup.load_inertia != 0.0).then_some(Load {
+                        inertia: setup.load_inertia,
+                        stiffness: setup.load_stiffness,
+                        damping: setup.load_damping,
+                    }),
+                };
+                let mut gains = Gains::of(&plant, cycle);
+                if setup.torque_max != 0.0 {
+                    gains.torque = setup.torque_max;
+                }
+                let mechanism = Mechanism::new(plant, axis.position, cycle)?;
+                let servo = Servo::new(mechanism, gains, cycle)?;
+                Self::Plant(PlantDrive::new(servo, axis.scaling, power_on, enabled))
+            }
+            other => {
+                return Err(DriveFault {
+                    key: "drive.kind",
+                    value: other.into(),
+                });
+            }
+        })
+    }
+
+    /// Lets something befall a simulated drive.
+    pub fn suffer(&mut self, mishap: Mishap, code: u16) -> Result<(), Code> {
+        macro_rules! each {
+            ($ideal:ident => $do:expr, $node:ident => $node_do:expr) => {
+                match self {
+                    Self::Host(_) => return Err(Code::WrongDrive),
+                    Self::Ideal($ideal) => $do,
+                    Self::Plant($ideal) => $do,
+                    Self::Cia402(drive) => {
+                        let $node = drive.node_mut();
+                        $node_do
+                    }
+                }
+            };
+        }
+        match mishap {
+            Mishap::Clear => each!(drive => drive.clear_cause(), node => node.clear_cause()),
+            Mishap::Fault => each!(drive => drive.fail(code), node => node.fail(code)),
+            Mishap::Power => each!(drive => drive.cut_power(), node => node.cut_power()),
+            Mishap::Communication => {
+                each!(drive => drive.cut_communication(), node => node.cut_communication());
+            }
+        }
+        Ok(())
+    }
+}
+
+fn node(
+    setup: &DriveSetup,
+    axis: &AxisConfig,
+    cycle: f64,
+    power_on: Option<u32>,
+) -> Result<Cia402Drive, DriveFault> {
+    let scaling = axis.scaling.ok_or(DriveFault {
+        key: "scaling_increments",
+        value: 0.0,
+    })?;
+    let reaction = |key, number: i32, most| match number {
+        0 => Ok(Reaction::Coast),
+        1 => Ok(Reaction::Ramp),
+        2 if most == 2 => Ok(Reaction::RampAndStay),
+        other => Err(DriveFault {
+            key,
+            value: other.into(),
+        }),
+    };
+    let rate = if setup.deceleration == 0.0 {
+        axis.limits.deceleration
+    } else {
+        setup.deceleration
+    };
+    let scale = f64::from(scaling.increments()) / f64::from(scaling.units());
+    let deceleration = rate * scale * cycle * cycle;
+    if !(deceleration > 0.0 && deceleration.is_finite()) {
+        return Err(DriveFault {
+            key: "drive.deceleration",
+            value: rate,
+        });
+    }
+    Ok(Cia402Drive::simulated_node(Settings {
+        position: scaling.to_increments(axis.position),
+        enabled: axis.start == StartState::Standstill,
+        deceleration,
+        delay: setup.delay as usize,
+        start_up: setup.start_up,
+        power_on,
+        quick_stop: reaction("drive.quick_stop", setup.quick_stop, 2)?,
+        leaving: reaction("drive.on_disable", setup.on_disable, 1)?,
+        fault: reaction("drive.on_fault", setup.on_fault, 1)?,
+        ..Settings::default()
+    }))
+}
+
+impl Drive for HostDrive {
+    fn read(&mut self, _now_ns: i64) -> DriveFeedback {
+        let fresh = core::mem::replace(&mut self.fresh, false);
+        if !fresh {
+            self.feedback.comms = Comms::Lost;
+        }
+        self.feedback
+    }
+
+    fn write(&mut self, _now_ns: i64, command: &DriveCommand) {
+        self.command = *command;
+    }
+
+    fn report(&mut self, report: &mut DriveReport) {
+        *report = self.report;
+    }
+
+    fn order(&mut self, order: &DriveOrder) {
+        self.order = *order;
+    }
+}
+
+impl Drive for AnyDrive {
+    fn read(&mut self, now_ns: i64) -> DriveFeedback {
+        match self {
+            Self::Host(drive) => drive.read(now_ns),
+            Self::Ideal(drive) => drive.read(now_ns),
+            Self::Cia402(drive) => drive.read(now_ns),
+            Self::Plant(drive) => drive.read(now_ns),
+        }
+    }
+
+    fn write(&mut self, now_ns: i64, command: &DriveCommand) {
+        match self {
+            Self::Host(drive) => drive.write(now_ns, command),
+            Self::Ideal(drive) => drive.write(now_ns, command),
+            Self::Cia402(drive) => drive.write(now_ns, command),
+            Self::Plant(drive) => drive.write(now_ns, command),
+        }
+    }
+
+    fn report(&mut self, report: &mut DriveReport) {
+        match self {
+            Self::Host(drive) => drive.report(report),
+            Self::Ideal(drive) => drive.report(report),
+            Self::Cia402(drive) => drive.report(report),
+            Self::Plant(drive) => drive.report(report),
+        }
+    }
+
+    fn order(&mut self, order: &DriveOrder) {
+        match self {
+            Self::Host(drive) => drive.order(order),
+            Self::Ideal(drive) => drive.order(order),
+            Self::Cia402(drive) => drive.order(order),
+            Self::Plant(drive) => drive.order(order),
+        }
+    }
+}

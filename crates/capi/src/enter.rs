@@ -1,0 +1,150 @@
+//! The door to a runtime: one thread at a time, in a tick or outside of it, and no panic goes through it.
+
+use crate::Code;
+use crate::runtime::{Inner, MAGIC, Mode, Runtime};
+use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
+
+/// When a function may be called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum When {
+    /// Between begin and end, by the thread that began.
+    InTick,
+    /// Not then.
+    Outside,
+    /// At any time.
+    Any,
+}
+
+/// A number for the calling thread, not 0.
+#[cfg(feature = "std")]
+#[inline(always)]
+fn me() -> usize {
+    std::thread_local! {
+        static ME: u8 = const { 0 };
+    }
+    ME.with(|me| core::ptr::from_ref(me).addr())
+}
+
+/// Without `std` threads cannot be told apart; that two are inside at a time can, see [`Busy`].
+#[cfg(not(feature = "std"))]
+#[inline(always)]
+fn me() -> usize {
+    1
+}
+
+/// Marks a call as under way.
+#[cfg(not(feature = "std"))]
+struct Busy<'a>(&'a Runtime);
+
+#[cfg(not(feature = "std"))]
+impl<'a> Busy<'a> {
+    fn new(runtime: &'a Runtime) -> Result<Self, Code> {
+        if runtime.busy.swap(true, Acquire) {
+            return Err(Code::OtherThread);
+        }
+        Ok(Self(runtime))
+    }
+}
+
+#[cfg(not(feature = "std"))]
+impl Drop for Busy<'_> {
+    fn drop(&mut self) {
+        self.0.busy.store(false, Release);
+    }
+}
+
+/// Does `work` on the runtime at `runtime`, if it may be done now.
+///
+/// # Safety
+/// `runtime` is null, or four bytes can be read there; if a [`Runtime`] was made there it is still in place.
+#[inline(always)]
+pub(crate) unsafe fn enter(
+    runtime: *mut Runtime,
+    when: When,
+    work: impl FnOnce(&mut Inner) -> Result<(), Code>,
+) -> i32 {
+    // SAFETY: passed on.
+    let result = unsafe { try_enter(runtime, when, work) };
+    result.map_or_else(|code| code as i32, |()| Code::Ok as i32)
+}
+
+/// # Safety
+/// As [`enter`].
+#[inline(always)]
+unsafe fn try_enter(
+    runtime: *mut Runtime,
+    when: When,
+    work: impl FnOnce(&mut Inner) -> Result<(), Code>,
+) -> Result<(), Code> {
+    if runtime.is_null() {
+        return Err(Code::NullPointer);
+    }
+    if !runtime.is_aligned() {
+        return Err(Code::NoRuntime);
+    }
+    // SAFETY: aligned, and readable for as long as the magic is, which comes first; any bits are an atomic number.
+    if unsafe { &(*runtime).magic }.load(Acquire) != MAGIC {
+        return Err(Code::NoRuntime);
+    }
+    // SAFETY: a runtime was made here and not closed, so all of it is there; what threads share of it is atomic, the rest
+    // in a cell.
+    let runtime = unsafe { &*runtime };
+    #[cfg(not(feature = "std"))]
+    let _busy = Busy::new(runtime)?;
+    let me = me();
+    // Equal to `me` only if this thread wrote it, so nothing has to be ordered before it.
+    let owner = runtime.owner.load(Relaxed);
+    match (owner == me, when) {
+        (true, When::Outside) => return Err(Code::InTick),
+        (true, When::InTick | When::Any) => {}
+        (false, When::InTick) if owner == 0 => return Err(Code::NotInTick),
+        (false, When::InTick) => return Err(Code::OtherThread),
+        (false, When::Outside | When::Any) => {
+            if runtime.owner.compare_exchange(0, me, Acquire, Relaxed).is_err() {
+                return Err(Code::OtherThread);
+            }
+        }
+    }
+    // SAFETY: the owner is this thread, set here or when its tick began, and no other thread comes past the check above
+    // until it is 0 again. In this thread nothing is under way: no function calls back into the host.
+    let inner = unsafe { &mut *runtime.inner.get() };
+    let result = caught(inner, work);
+    if !inner.ticking {
+        runtime.owner.store(0, Release);
+    }
+    result
+}
+
+/// Does `work`; a panic ends the tick, and the resource is stopped.
+#[cfg(feature = "std")]
+#[inline(always)]
+fn caught(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<(), Code>) -> Result<(), Code> {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    // What it leaves behind is asked for nothing but to ramp down.
+    catch_unwind(AssertUnwindSafe(|| work(inner))).unwrap_or_else(|_| broken(inner))
+}
+
+#[cfg(feature = "std")]
+#[cold]
+fn broken(inner: &mut Inner) -> Result<(), Code> {
+    inner.ticking = false;
+    inner.mode = Mode::Broken;
+    inner.off_pending = true;
+    Err(Code::Internal)
+}
+
+#[cfg(not(feature = "std"))]
+#[inline(always)]
+fn caught(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<(), Code>) -> Result<(), Code> {
+    work(inner)
+}
+
+/// Refuses to call a block in a resource that was stopped.
+#[inline(always)]
+pub(crate) fn running(inner: &Inner) -> Result<(), Code> {
+    match inner.mode {
+        Mode::Running => Ok(()),
+        Mode::Stopped => Err(Code::Stopped),
+        Mode::Broken => Err(Code::Internal),
+    }
+}

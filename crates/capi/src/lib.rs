@@ -1,0 +1,45 @@
+//! The C library: a runtime behind an opaque handle, blocks as functions on flat structures.
+//!
+//! What stands here: the border. It checks what comes over it and gives a result code instead of undefined behaviour
+//! wherever C lets it; `docs/embedding-c.md` says what it cannot see. What does not: motion, states, blocks. There is no
+//! global state, no heap and no clock: a runtime lives in memory its host gives it.
+//!
+//! The two headers in `include/` are generated: `standstill.h` from this crate, `standstill_blocks.h` from the table of
+//! blocks.
+#![cfg_attr(not(feature = "std"), no_std)]
+// The one crate of the repository that may: it is the border to C. Each use says why it is sound.
+#![allow(unsafe_code)]
+#![deny(unsafe_op_in_unsafe_fn, clippy::undocumented_unsafe_blocks)]
+
+mod api;
+mod blocks;
+mod config;
+mod drive;
+mod enter;
+mod events;
+mod raw;
+mod runtime;
+mod storage;
+mod types;
+
+pub use api::*;
+pub use blocks::*;
+pub use runtime::Runtime;
+pub use types::*;
+
+/// Of the functions and structures below. It is raised by a change that a host compiled before would misread.
+pub const ABI_VERSION: u32 = 1;
+
+// Hosts without `std` bring what is to happen; `.ci/no-panic` shows that nothing calls it.
+#[cfg(all(not(feature = "std"), not(test)))]
+mod panic {
+    unsafe extern "C" {
+        fn standstill_panicked() -> !;
+    }
+
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+        // SAFETY: the host defines it without arguments and without a return, or links nothing that calls it.
+        unsafe { standstill_panicked() }
+    }
+}

@@ -1,0 +1,84 @@
+//! The pointers that come from C: checked as far as they can be, read and written without asking for alignment.
+
+use crate::Code;
+use core::ffi::c_char;
+use core::slice;
+
+/// A structure of the border: its size is the `u32` it begins with.
+///
+/// # Safety
+/// The type is `repr(C)`, begins with a `u32`, has no gaps, and every pattern of bits is a value of it.
+pub(crate) unsafe trait Sized32: Copy {}
+
+macro_rules! sized {
+    ($($ty:ident),*) => {$(
+        // SAFETY: made of integers, floats and arrays of them behind a `u32`; its size is asserted in `types`.
+        unsafe impl Sized32 for crate::$ty {}
+    )*};
+}
+
+sized!(
+    RuntimeConfig,
+    AxisSetup,
+    DriveSetup,
+    Feedback,
+    Command,
+    AxisStatus,
+    ConfigFault
+);
+
+/// Checks the size in front of a structure of at least `needed` bytes.
+///
+/// # Safety
+/// `at` is null, or a `u32` can be read there.
+#[inline(always)]
+pub(crate) unsafe fn check_size(at: *const u8, needed: usize) -> Result<(), Code> {
+    if at.is_null() {
+        return Err(Code::NullPointer);
+    }
+    // SAFETY: not null, so by contract a `u32` is there; its place may be odd.
+    let size = unsafe { at.cast::<u32>().read_unaligned() };
+    if (size as usize) < needed {
+        return Err(Code::StructSize);
+    }
+    Ok(())
+}
+
+/// The structure at `at`.
+///
+/// # Safety
+/// `at` is null, or points to as many bytes as the `u32` there says, at least four.
+pub(crate) unsafe fn read<T: Sized32>(at: *const T) -> Result<T, Code> {
+    // SAFETY: the caller's contract.
+    unsafe { check_size(at.cast(), size_of::<T>())? };
+    // SAFETY: not null, and long enough, or the size would have been refused.
+    Ok(unsafe { at.read_unaligned() })
+}
+
+/// Checks that a structure can be written to `at`.
+///
+/// # Safety
+/// As [`read`].
+pub(crate) unsafe fn check<T: Sized32>(at: *mut T) -> Result<(), Code> {
+    // SAFETY: the caller's contract.
+    unsafe { check_size(at.cast_const().cast(), size_of::<T>()) }
+}
+
+/// The bytes at `at`, to be written.
+///
+/// # Safety
+/// `at` is not null, `len` bytes can be written there, and nothing else uses them meanwhile.
+#[inline(always)]
+pub(crate) unsafe fn bytes_mut<'a>(at: *mut u8, len: usize) -> &'a mut [u8] {
+    // SAFETY: the caller's contract.
+    unsafe { slice::from_raw_parts_mut(at, len) }
+}
+
+/// A name as C has it: cut to what fits, ended by 0.
+pub(crate) fn name<const N: usize>(text: &str) -> [c_char; N] {
+    let mut name = [0; N];
+    for (to, from) in name.iter_mut().zip(text.bytes().take(N.saturating_sub(1))) {
+        *to = from as c_char;
+    }
+    name
+}

@@ -1,0 +1,316 @@
+//! A runtime: axes with their drives, block instances under keys, and where it stands in its tick.
+
+use crate::config::refused;
+use crate::drive::AnyDrive;
+use crate::storage::List;
+use crate::{AxisSetup, AxisStatus, Code, ConfigFault, DriveSetup, raw};
+use core::cell::UnsafeCell;
+use core::sync::atomic::{AtomicU32, AtomicUsize};
+use standstill_axis::{
+    Axis, AxisId, AxisState, Drive, DriveFeedback, InstanceId, Log, Source, Standard, steps,
+};
+use standstill_blocks::{BlockInstance, REGISTRY};
+use standstill_fb::{PinType, axis_number, numbered_axis};
+
+/// The instance in records of what no block caused; `standstill-scan` has the same.
+pub(crate) const NOBODY: InstanceId = InstanceId(u16::MAX);
+
+/// Most axes of a runtime.
+pub(crate) const AXES: u32 = 1024;
+
+/// Most instances of a runtime: their numbers in records have 16 bits, and one of them means nobody.
+pub(crate) const INSTANCES: u32 = 65_534;
+
+/// Numbers that the arrays of one block take.
+const CELLS: usize = {
+    let mut most = 0;
+    let mut blocks = REGISTRY;
+    while let [block, others @ ..] = blocks {
+        let mut cells = 0;
+        let mut pins = block.inputs();
+        while let [pin, rest @ ..] = pins {
+            if let PinType::Table(table) = pin.ty {
+                cells += table.most * table.fields.len();
+            }
+            pins = rest;
+        }
+        if cells > most {
+            most = cells;
+        }
+        blocks = others;
+    }
+    most
+};
+
+/// What a handle points to. The magic comes first: it is looked at before the rest is known to be there.
+#[repr(C)]
+pub struct Runtime {
+    /// [`MAGIC`] from init to close.
+    pub(crate) magic: AtomicU32,
+    /// The thread inside, or with a tick open; 0 for none.
+    pub(crate) owner: AtomicUsize,
+    /// Without threads to tell apart: a call is under way.
+    #[cfg(not(feature = "std"))]
+    pub(crate) busy: core::sync::atomic::AtomicBool,
+    pub(crate) inner: UnsafeCell<Inner>,
+}
+
+/// "STST", which zeroed or foreign memory hardly begins with.
+pub(crate) const MAGIC: u32 = 0x5453_5453;
+
+/// Whether blocks are called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Mode {
+    Running,
+    Stopped,
+    /// A panic was caught; without `std` none can be.
+    #[cfg_attr(not(feature = "std"), allow(dead_code))]
+    Broken,
+}
+
+/// The place of an instance.
+pub(crate) struct Slot {
+    /// Rises whenever the place is given to another instance.
+    pub generation: u32,
+    pub block: Option<BlockInstance>,
+}
+
+/// The part of a runtime that one thread at a time has.
+pub(crate) struct Inner {
+    pub axes: List<Axis>,
+    pub drives: List<AnyDrive>,
+    feedback: List<DriveFeedback>,
+    pub slots: List<Slot>,
+    pub log: Log,
+    /// The records of the arrays of the block being called.
+    pub cells: [f64; CELLS],
+    cycle: f64,
+    pub scan: u64,
+    pub now_ns: i64,
+    /// The first tick has begun.
+    started: bool,
+    /// Between begin and end.
+    pub ticking: bool,
+    pub mode: Mode,
+    /// Axes are to be switched off in the next tick.
+    pub off_pending: bool,
+    pub fault: ConfigFault,
+}
+
+impl Inner {
+    pub fn new(
+        axes: List<Axis>,
+        drives: List<AnyDrive>,
+        feedback: List<DriveFeedback>,
+        slots: List<Slot>,
+        cycle_ns: i64,
+    ) -> Self {
+        Self {
+            axes,
+            drives,
+            feedback,
+            slots,
+            log: Log::default(),
+            cells: [0.0; CELLS],
+            cycle: cycle_ns as f64 / 1e9,
+            scan: 0,
+            now_ns: 0,
+            started: false,
+            ticking: false,
+            mode: Mode::Running,
+            off_pending: false,
+            fault: ConfigFault {
+                size: size_of::<ConfigFault>() as u32,
+                reserved: 0,
+                value: 0.0,
+                key: [0; crate::NAME],
+            },
+        }
+    }
+
+    /// The axis of a number.
+    pub fn place(&self, axis: i32) -> Result<usize, Code> {
+        let id = numbered_axis(axis);
+        if id.index() < self.axes.len() {
+            Ok(id.index())
+        } else {
+            Err(Code::UnknownAxis)
+        }
+    }
+
+    /// Adds an axis; its number.
+    pub fn add_axis(&mut self, setup: &AxisSetup, drive: &DriveSetup) -> Result<i32, Code> {
+        let id = u16::try_from(self.axes.len()).map_or(AxisId::NONE, AxisId::new);
+        if self.axes.is_full() || id == AxisId::NONE {
+            return Err(Code::NoRoom);
+        }
+        let config = setup
+            .config()
+            .map_err(|fault| self.refuse(fault.key, fault.value))?;
+        let axis = Axis::new(id, config, Standard::new(self.cycle)).map_err(|error| {
+            let fault = refused(&error);
+            self.refuse(fault.key, fault.value)
+        })?;
+        let mut drive = AnyDrive::new(drive, axis.config(), self.cycle)
+            .map_err(|fault| self.refuse(fault.key, fault.value))?;
+        // Only to have a value there: the first tick reads the drive before anybody looks.
+        let feedback = match &drive {
+            AnyDrive::Host(_) | AnyDrive::Ideal(_) => drive.read(0),
+            AnyDrive::Cia402(_) | AnyDrive::Plant(_) => DriveFeedback {
+                enabled: false,
+                voltage: false,
+                fault: None,
+                position: standstill_axis::DrivePosition::Units(0.0),
+                comms: standstill_axis::Comms::Lost,
+                signals: standstill_axis::DriveSignals::default(),
+            },
+        };
+        // Of equal capacity, so all of them take it.
+        self.axes.push(axis);
+        self.drives.push(drive);
+        self.feedback.push(feedback);
+        Ok(axis_number(id))
+    }
+
+    fn refuse(&mut self, key: &'static str, value: f64) -> Code {
+        self.fault.key = raw::name(key);
+        self.fault.value = value;
+        Code::BadConfig
+    }
+
+    /// Begins a tick: drives are read, axis states follow.
+    pub fn begin(&mut self, now_ns: i64) -> Result<(), Code> {
+        if self.started && now_ns < self.now_ns {
+            return Err(Code::TimeBackwards);
+        }
+        self.started = true;
+        self.now_ns = now_ns;
+        self.ticking = true;
+        for (feedback, drive) in self.feedback.slice_mut().iter_mut().zip(self.drives.slice_mut()) {
+            *feedback = drive.read(now_ns);
+        }
+        steps::follow(
+            self.axes.slice_mut(),
+            self.drives.slice_mut(),
+            self.feedback.slice(),
+            self.scan,
+            &mut self.log,
+        );
+        if core::mem::replace(&mut self.off_pending, false) {
+            self.switch_off();
+        }
+        Ok(())
+    }
+
+    /// Ends a tick: motion advances by one cycle, drives are written.
+    pub fn end(&mut self) {
+        for axis in self.axes.slice_mut() {
+            axis.advance(self.scan, &mut self.log);
+        }
+        steps::publish(self.axes.slice_mut(), self.drives.slice_mut(), self.now_ns);
+        self.scan = self.scan.wrapping_add(1);
+        self.ticking = false;
+    }
+
+    /// Calls no block any more, and switches axes off.
+    pub fn stop(&mut self) {
+        if self.mode == Mode::Running {
+            self.mode = Mode::Stopped;
+            self.switch_off();
+        }
+    }
+
+    fn switch_off(&mut self) {
+        let source = Source {
+            scan: self.scan,
+            instance: NOBODY,
+        };
+        steps::switch_off(self.axes.slice_mut(), source, &mut self.log);
+    }
+
+    /// Whether every axis is off.
+    pub fn check_off(&self) -> Result<(), Code> {
+        match steps::first_not_off(self.axes.slice()) {
+            None => Ok(()),
+            Some(_) => Err(Code::NotOff),
+        }
+    }
+
+    /// Lets blocks be called again.
+    pub fn start(&mut self) -> Result<(), Code> {
+        match self.mode {
+            Mode::Running => Ok(()),
+            Mode::Broken => Err(Code::Internal),
+            Mode::Stopped => {
+                self.check_off()?;
+                self.mode = Mode::Running;
+                Ok(())
+            }
+        }
+    }
+
+    /// An axis as it stands.
+    pub fn status(&self, axis: i32) -> Result<AxisStatus, Code> {
+        let place = self.place(axis)?;
+        let axis = self.axes.slice().get(place).ok_or(Code::UnknownAxis)?;
+        let setpoint = axis.setpoint();
+        Ok(AxisStatus {
+            size: size_of::<AxisStatus>() as u32,
+            state: match axis.state() {
+                AxisState::Disabled => 0,
+                AxisState::Standstill => 1,
+                AxisState::Homing => 2,
+                AxisState::DiscreteMotion => 3,
+                AxisState::ContinuousMotion => 4,
+                AxisState::SynchronizedMotion => 5,
+                AxisState::Stopping => 6,
+                AxisState::ErrorStop => 7,
+            },
+            position: setpoint.position,
+            velocity: setpoint.velocity,
+            acceleration: setpoint.acceleration,
+            jerk: setpoint.jerk,
+            snap: setpoint.snap,
+            actual_position: axis.actual_position(),
+            error_id: axis.error_id().number().into(),
+            error_code: axis.error_code().into(),
+            powered: axis.is_powered().into(),
+            homed: axis.is_homed().into(),
+        })
+    }
+
+    /// The instance of a key.
+    #[inline(always)]
+    pub fn slot(&mut self, key: u64) -> Result<(u32, &mut BlockInstance), Code> {
+        let (number, generation) = (key as u32, (key >> 32) as u32);
+        let place = (number as usize).wrapping_sub(1);
+        match self.slots.slice_mut().get_mut(place) {
+            Some(Slot {
+                generation: found,
+                block: Some(block),
+            }) if *found == generation => Ok((number, block)),
+            _ => Err(Code::UnknownKey),
+        }
+    }
+
+    /// A place for a new instance; its key. Cost: a look at every place, at most 65534.
+    #[inline(never)]
+    pub fn create(&mut self, block: BlockInstance) -> Result<u64, Code> {
+        let slots = self.slots.slice_mut().iter_mut();
+        let free = (1_u64..).zip(slots).find(|(_, slot)| slot.block.is_none());
+        let (number, slot) = free.ok_or(Code::NoRoom)?;
+        slot.block = Some(block);
+        Ok(u64::from(slot.generation) << 32 | number)
+    }
+
+    /// Gives the place of an instance back.
+    pub fn release(&mut self, key: u64) -> Result<(), Code> {
+        self.slot(key)?;
+        let place = (key as u32 as usize).wrapping_sub(1);
+        if let Some(slot) = self.slots.slice_mut().get_mut(place) {
+            slot.block = None;
+            slot.generation = slot.generation.wrapping_add(1);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,154 @@
+//! The memory of a runtime: one piece from the host, cut into a head and four lists.
+
+use crate::drive::AnyDrive;
+use crate::runtime::{AXES, INSTANCES, Inner, MAGIC, Runtime, Slot};
+use crate::{Code, RuntimeConfig};
+use core::alloc::Layout;
+use core::cell::UnsafeCell;
+use core::sync::atomic::{AtomicU32, AtomicUsize};
+use core::{ptr, slice};
+use standstill_axis::{Axis, DriveFeedback};
+
+/// What storage must be aligned to.
+pub(crate) const ALIGN: usize = 16;
+
+/// A list of fixed capacity in the storage.
+pub(crate) struct List<T> {
+    /// Room for `capacity` values; the first `len` are there.
+    at: *mut T,
+    len: usize,
+    capacity: usize,
+}
+
+impl<T> List<T> {
+    /// An empty list.
+    ///
+    /// # Safety
+    /// `at` is aligned for `T`, has room for `capacity` of them, and nothing else uses it while the list lives.
+    unsafe fn new(at: *mut T, capacity: usize) -> Self {
+        Self { at, len: 0, capacity }
+    }
+
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    pub fn is_full(&self) -> bool {
+        self.len >= self.capacity
+    }
+
+    /// Adds a value if there is room.
+    pub fn push(&mut self, value: T) {
+        if !self.is_full() {
+            // SAFETY: `len` is below the capacity, so the place is inside the room that `new` was promised. Nothing is
+            // dropped there: it was never written.
+            unsafe { self.at.add(self.len).write(value) };
+            self.len += 1;
+        }
+    }
+
+    #[inline(always)]
+    pub fn slice(&self) -> &[T] {
+        // SAFETY: `len` values were written by `push`, and only this list gives access to them.
+        unsafe { slice::from_raw_parts(self.at, self.len) }
+    }
+
+    #[inline(always)]
+    pub fn slice_mut(&mut self) -> &mut [T] {
+        // SAFETY: as `slice`, and `self` is borrowed alone.
+        unsafe { slice::from_raw_parts_mut(self.at, self.len) }
+    }
+}
+
+/// Where everything stands in the storage.
+struct Plan {
+    whole: Layout,
+    axes: usize,
+    drives: usize,
+    feedback: usize,
+    slots: usize,
+}
+
+impl Plan {
+    fn new(config: &RuntimeConfig) -> Result<Self, Code> {
+        let fits = (1..=AXES).contains(&config.axes)
+            && config.instances <= INSTANCES
+            && config.cycle_ns > 0
+            && config.reserved == 0;
+        if !fits {
+            return Err(Code::BadValue);
+        }
+        fn behind<T>(before: Layout, count: u32) -> Result<(Layout, usize), Code> {
+            let list = Layout::array::<T>(count as usize).map_err(|_| Code::NoRoom)?;
+            before.extend(list).map_err(|_| Code::NoRoom)
+        }
+        let (whole, axes) = behind::<Axis>(Layout::new::<Runtime>(), config.axes)?;
+        let (whole, drives) = behind::<AnyDrive>(whole, config.axes)?;
+        let (whole, feedback) = behind::<DriveFeedback>(whole, config.axes)?;
+        let (whole, slots) = behind::<Slot>(whole, config.instances)?;
+        Ok(Self {
+            whole: whole.pad_to_align(),
+            axes,
+            drives,
+            feedback,
+            slots,
+        })
+    }
+}
+
+// The host is told one alignment for all configurations.
+const _: () = assert!(align_of::<Runtime>() <= ALIGN && align_of::<Axis>() <= ALIGN);
+const _: () = assert!(align_of::<AnyDrive>() <= ALIGN && align_of::<Slot>() <= ALIGN);
+
+/// Bytes a runtime of this configuration needs.
+pub(crate) fn size(config: &RuntimeConfig) -> Result<usize, Code> {
+    Ok(Plan::new(config)?.whole.size())
+}
+
+/// Makes a runtime in the storage.
+///
+/// # Safety
+/// `storage` is not null, `bytes` bytes can be read and written there, and nothing but the runtime uses them until it is
+/// closed.
+pub(crate) unsafe fn init(
+    storage: *mut u8,
+    bytes: usize,
+    config: &RuntimeConfig,
+) -> Result<*mut Runtime, Code> {
+    let plan = Plan::new(config)?;
+    if plan.whole.size() > bytes || !storage.addr().is_multiple_of(ALIGN) {
+        return Err(Code::Storage);
+    }
+    let (axes, instances) = (config.axes as usize, config.instances as usize);
+    // SAFETY: the plan's places lie inside the storage, disjoint, each aligned for its type relative to a start that is
+    // aligned to at least the largest alignment; nothing else uses the storage.
+    let (axes, drives, feedback, mut slots) = unsafe {
+        (
+            List::new(storage.add(plan.axes).cast(), axes),
+            List::new(storage.add(plan.drives).cast(), axes),
+            List::new(storage.add(plan.feedback).cast(), axes),
+            List::new(storage.add(plan.slots).cast(), instances),
+        )
+    };
+    for _ in 0..instances {
+        slots.push(Slot {
+            generation: 1,
+            block: None,
+        });
+    }
+    let runtime: *mut Runtime = storage.cast();
+    // SAFETY: the head stands at the start of the storage, long and aligned enough for it by the plan.
+    unsafe {
+        ptr::write(
+            runtime,
+            Runtime {
+                magic: AtomicU32::new(MAGIC),
+                owner: AtomicUsize::new(0),
+                #[cfg(not(feature = "std"))]
+                busy: core::sync::atomic::AtomicBool::new(false),
+                inner: UnsafeCell::new(Inner::new(axes, drives, feedback, slots, config.cycle_ns)),
+            },
+        );
+    }
+    Ok(runtime)
+}

@@ -1,0 +1,415 @@
+//! What crosses the border: plain structures without hidden gaps, each with its size in front.
+
+use core::ffi::c_char;
+
+/// What a function says.
+///
+/// With anything but OK and INTERNAL it has done nothing: no output was written, no block called, no motion begun or
+/// ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Code {
+    /// Done.
+    Ok = 0,
+    /// A pointer that must not be null is null.
+    NullPointer = -1,
+    /// The size in front of a structure is smaller than the structure of this version: it was not set, or another
+    /// header was compiled with.
+    StructSize = -2,
+    /// The host was compiled with the header of another ABI version.
+    AbiMismatch = -3,
+    /// The storage is smaller than runtime_size says, or not aligned to 16 bytes.
+    Storage = -4,
+    /// There is no runtime at this address: it was not initialised, or closed.
+    NoRuntime = -5,
+    /// Another thread is in the runtime, or has a tick open.
+    OtherThread = -6,
+    /// Blocks are called between tick_begin and tick_end only.
+    NotInTick = -7,
+    /// Not between tick_begin and tick_end.
+    InTick = -8,
+    /// The instant is before that of the tick before: use a monotonic clock.
+    TimeBackwards = -9,
+    /// No instance has this key: it is of another runtime, was released, or was overwritten.
+    UnknownKey = -10,
+    /// The key is of an instance of another block.
+    WrongBlock = -11,
+    /// The runtime was set up for fewer axes or instances.
+    NoRoom = -12,
+    /// No axis has this number; the first is 1.
+    UnknownAxis = -13,
+    /// A value of the configuration cannot be used; config_error says which.
+    BadConfig = -14,
+    /// The drive under the axis is of another kind: simulated ones are not fed, others not made to fail.
+    WrongDrive = -15,
+    /// A number stands for nothing where a choice is asked for.
+    BadValue = -16,
+    /// An array has more records than its block takes, or records at address null.
+    Table = -17,
+    /// An axis is switched on or moving: stop, and go on with ticks until every axis is Disabled.
+    NotOff = -18,
+    /// The resource was stopped: blocks are not called, axes are on their way to power off.
+    Stopped = -19,
+    /// A defect of the library was caught. It has stopped the resource as stop does, and stays stopped.
+    Internal = -20,
+}
+
+/// Sizes of a runtime, fixed for its life.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct RuntimeConfig {
+    /// sizeof this structure.
+    pub size: u32,
+    /// Most axes, 1 to 1024.
+    pub axes: u32,
+    /// Most block instances, up to 65534.
+    pub instances: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Nominal time between ticks (ns), above 0. Every tick_end advances motion by this, however late it comes.
+    pub cycle_ns: i64,
+}
+
+/// How an axis is set up. axis_defaults fills everything but the five limits; docs/scan-scripts.md tells more of each.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct AxisSetup {
+    /// sizeof this structure.
+    pub size: u32,
+    /// 0: power off. 1: powered from the start, as if MC_Power had been called.
+    pub start_powered: u32,
+    /// Largest velocity (u/s), above 0.
+    pub velocity: f64,
+    /// Largest rate while the speed grows (u/s^2), above 0.
+    pub acceleration: f64,
+    /// Largest rate while the speed falls (u/s^2); 0: that of acceleration.
+    pub deceleration: f64,
+    /// Largest jerk (u/s^3); 0: no limit.
+    pub jerk: f64,
+    /// Largest snap (u/s^4); 0: no limit.
+    pub snap: f64,
+    /// What 0 at the pin Acceleration stands for; 0: the limit. So the next three.
+    pub default_acceleration: f64,
+    /// The same of Deceleration.
+    pub default_deceleration: f64,
+    /// The same of Jerk.
+    pub default_jerk: f64,
+    /// The same of Snap.
+    pub default_snap: f64,
+    /// Position at the start (u).
+    pub position: f64,
+    /// Drive increments that are scaling_units; 0: the drive speaks units.
+    pub scaling_increments: u32,
+    /// User units that are scaling_increments.
+    pub scaling_units: u32,
+    /// The drive counts the other way if not 0.
+    pub scaling_invert: u32,
+    /// What is done with values above the limits: 0 lowers and records, 1 refuses the command.
+    pub above_limit: i32,
+    /// Position at increment 0 (u).
+    pub scaling_offset: f64,
+    /// Length of a turn (u); 0: a linear axis.
+    pub modulo: f64,
+    /// Lowest end of a move (u); -INFINITY for none.
+    pub software_limit_min: f64,
+    /// Highest end of a move (u); INFINITY for none.
+    pub software_limit_max: f64,
+    /// How moves are planned: 0 overlapped, 1 grid, 2 sequential, 3 online, 4 fastest, 5 s_curve, 6 trapezoid,
+    /// 7 short_path.
+    pub profile: i32,
+    /// Commands that can wait, 0 to 8.
+    pub queue: u32,
+    /// When it is switched off in motion: 0 ramps down, 1 coasts, 2 leaves it to the drive.
+    pub on_power_off: i32,
+    /// Absolute moves need MC_Home first if not 0.
+    pub needs_homed: u32,
+    /// Deceleration of ramps nobody commanded (u/s^2); 0: the limit.
+    pub stop_deceleration: f64,
+    /// Jerk of ramps nobody commanded (u/s^3); 0: the limit.
+    pub stop_jerk: f64,
+    /// Largest factor of MC_SetOverride, at least 1.
+    pub override_max: f64,
+    /// Largest following error (u); 0: not supervised.
+    pub max_following_error: f64,
+    /// A move is done when the actual position is this near (u); 0: the set position decides alone.
+    pub in_position_window: f64,
+    /// .. for so many scans.
+    pub in_position_scans: u32,
+    /// Stops at the limit switches the drive reports if not 0.
+    pub hardware_limits: u32,
+    /// MC_Home: 0 direct, 1 absolute switch, 2 limit switch, 3 reference pulse, 4 block, 5 by the drive.
+    pub homing: i32,
+    /// 0 positive, 1 negative, 2 by the switch, positive, 3 by the switch, negative.
+    pub homing_direction: i32,
+    /// 0 rising, 1 falling, 2 lower end, 3 upper end.
+    pub homing_edge: i32,
+    /// The reference is the pulse behind the switch if not 0.
+    pub homing_pulse: u32,
+    /// Velocity of the search (u/s).
+    pub homing_velocity: f64,
+    /// Velocity of a second approach (u/s); 0: there is none.
+    pub homing_creep: f64,
+    /// An axis slower than this stands at its block (u/s).
+    pub homing_block_velocity: f64,
+    /// .. for so many scans.
+    pub homing_block_scans: u64,
+    /// Scans the search may take; 0: any.
+    pub homing_time_limit: u64,
+    /// Way the search may take (u); 0: any.
+    pub homing_distance_limit: f64,
+}
+
+/// The drive under an axis. drive_defaults gives an ideal one.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct DriveSetup {
+    /// sizeof this structure.
+    pub size: u32,
+    /// 0: the host's own, by feedback_write and command_read. Simulated: 1 ideal, 2 CiA 402 node (needs a scaling of
+    /// the axis), 3 a motor with a mechanism.
+    pub kind: i32,
+    /// Ideal and CiA 402: scans from command to actual position beyond the first, at most 64.
+    pub delay: u32,
+    /// Simulated: scans until power is confirmed; below 0: never.
+    pub power_on: i32,
+    /// CiA 402: scans of self-test.
+    pub start_up: u32,
+    /// CiA 402, object 605Ah: 0 coast, 1 ramp, 2 ramp and stay.
+    pub quick_stop: i32,
+    /// CiA 402, objects 605Bh and 605Ch: 0 coast, 1 ramp.
+    pub on_disable: i32,
+    /// CiA 402, object 605Eh: 0 coast, 1 ramp.
+    pub on_fault: i32,
+    /// CiA 402: rate of its own ramps (u/s^2); 0: the limit of the axis.
+    pub deceleration: f64,
+    /// Mechanism: torque for an acceleration of the motor (torque s^2/u), above 0.
+    pub inertia: f64,
+    /// Friction that grows with velocity (torque s/u).
+    pub viscous: f64,
+    /// Friction that does not (torque).
+    pub coulomb: f64,
+    /// Load on a spring: its inertia; 0: everything is rigid.
+    pub load_inertia: f64,
+    /// Its spring (torque/u).
+    pub load_stiffness: f64,
+    /// Its damping (torque s/u).
+    pub load_damping: f64,
+    /// Largest torque of the motor; 0: any.
+    pub torque_max: f64,
+}
+
+/// What a host's own drive tells in a tick. It is taken by the next tick_begin, once: a tick without a new one has lost
+/// its communication with the drive.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Feedback {
+    /// sizeof this structure.
+    pub size: u32,
+    /// The power stage is on and follows the command.
+    pub enabled: u8,
+    /// Power for the stage is available.
+    pub voltage: u8,
+    /// A fault is pending.
+    pub fault: u8,
+    /// .. and its cause is still there.
+    pub cause_present: u8,
+    /// The drive's own error code: of its fault, or of its homing that failed.
+    pub fault_code: u16,
+    /// The feedback is old: nothing arrived.
+    pub lost: u8,
+    /// A warning is present.
+    pub warning: u8,
+    /// The home switch.
+    pub home_switch: u8,
+    /// The limit switch in positive direction, as the drive counts.
+    pub limit_switch_positive: u8,
+    /// The one in negative direction.
+    pub limit_switch_negative: u8,
+    /// The drive is a simulated one.
+    pub simulated: u8,
+    /// Actual position (u), of an axis without scaling.
+    pub position: f64,
+    /// Actual position, of an axis with scaling.
+    pub increments: i64,
+    /// Digital inputs, a bit each.
+    pub inputs: u32,
+    /// Digital outputs as they are, a bit each.
+    pub outputs: u32,
+    /// Actual torque, in the drive's unit.
+    pub torque: f64,
+    /// The largest torque it can hold; 0: it only measures.
+    pub torque_max: f64,
+    /// The torque is known.
+    pub torque_known: u8,
+    /// It does not hold the torque it is asked for.
+    pub torque_limited: u8,
+    /// It has a home switch, so the next three.
+    pub has_home_switch: u8,
+    /// Limit switches at both ends.
+    pub has_limit_switches: u8,
+    /// It latches the reference pulse.
+    pub has_marker: u8,
+    /// It homes by itself.
+    pub has_homing: u8,
+    /// The latch of the reference pulse is armed.
+    pub marker_armed: u8,
+    /// .. and has one: marker_position or marker_increments.
+    pub marker_latched: u8,
+    /// Probes 1 and 2 are armed.
+    pub probe_armed: [u8; 2],
+    /// .. and have an edge.
+    pub probe_latched: [u8; 2],
+    /// Homing by itself: 0 off, 1 busy, 2 attained, 3 done, 4 failed.
+    pub homing: i32,
+    /// Where probes saw it (u).
+    pub probe_position: [f64; 2],
+    /// The same in increments.
+    pub probe_increments: [i64; 2],
+    /// Where the reference pulse was (u).
+    pub marker_position: f64,
+    /// The same in increments.
+    pub marker_increments: i64,
+    /// Where the reference is, attained or done (u).
+    pub home_position: f64,
+    /// The same in increments.
+    pub home_increments: i64,
+}
+
+/// What a host's own drive is told, after tick_end.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Command {
+    /// sizeof this structure.
+    pub size: u32,
+    /// Power stage: 0 off, 1 operation enabled, 2 quick stop, 3 fault reset.
+    pub request: i32,
+    /// Set-point for the end of the tick (u), of an axis without scaling.
+    pub position: f64,
+    /// The same of an axis with scaling.
+    pub increments: i64,
+    /// Velocity (u/s), to feed forward.
+    pub velocity: f64,
+    /// From now on the position of the command before is called this (u); if renamed.
+    pub rename: f64,
+    /// Torque to hold instead of the position; if has_torque.
+    pub torque: f64,
+    /// .. at no less than this velocity (u/s)
+    pub velocity_min: f64,
+    /// .. and no more than this.
+    pub velocity_max: f64,
+    /// Digital outputs, a bit each.
+    pub outputs: u32,
+    /// Positions are called anew: rename.
+    pub renamed: u8,
+    /// A torque is to be held.
+    pub has_torque: u8,
+    /// The next reference pulse is to be latched.
+    pub marker: u8,
+    /// The drive is to home by itself.
+    pub homing: u8,
+    /// What probes 1 and 2 wait for: 0 nothing, 1 a rising edge, 2 a falling one.
+    pub probe_edge: [u8; 2],
+    /// 0.
+    pub reserved: [u8; 6],
+}
+
+/// An axis as it stands.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct AxisStatus {
+    /// sizeof this structure.
+    pub size: u32,
+    /// 0 Disabled, 1 Standstill, 2 Homing, 3 DiscreteMotion, 4 ContinuousMotion, 5 SynchronizedMotion, 6 Stopping,
+    /// 7 ErrorStop.
+    pub state: i32,
+    /// Set position (u).
+    pub position: f64,
+    /// Set velocity (u/s).
+    pub velocity: f64,
+    /// Set acceleration (u/s^2).
+    pub acceleration: f64,
+    /// Jerk of the set-point (u/s^3).
+    pub jerk: f64,
+    /// Snap of the set-point (u/s^4).
+    pub snap: f64,
+    /// Actual position (u).
+    pub actual_position: f64,
+    /// ErrorID of the pending axis error, 0 without one.
+    pub error_id: u32,
+    /// The drive's own code.
+    pub error_code: u32,
+    /// Operation is enabled.
+    pub powered: u32,
+    /// The reference is known.
+    pub homed: u32,
+}
+
+/// Bytes of a name in a record.
+pub const NAME: usize = 32;
+
+/// One entry of the diagnostic ring, which keeps the last 64.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Record {
+    /// Its number, from 0 since the start.
+    pub number: u64,
+    /// The tick it happened in, from 0.
+    pub scan: u64,
+    /// The axis.
+    pub axis: i32,
+    /// The low half of the key of the block instance; 0: the runtime itself.
+    pub instance: u32,
+    /// 1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position, 8 planned to
+    /// a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault.
+    pub event: i32,
+    /// ErrorID, 0 without one.
+    pub error_id: u32,
+    /// Scans of a plan, number of a point, or code of a drive.
+    pub count: u64,
+    /// What was asked for; the excess of velocity; where to; the velocity.
+    pub value: f64,
+    /// What was used instead, or the limit; the excess of acceleration; the velocity when passing.
+    pub limit: f64,
+    /// The excess of jerk.
+    pub third: f64,
+    /// Name of the pin or field, ending in 0; empty: the axis state decided.
+    pub name: [c_char; NAME],
+}
+
+/// Why a configuration was refused.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct ConfigFault {
+    /// sizeof this structure.
+    pub size: u32,
+    /// 0.
+    pub reserved: u32,
+    /// The value refused; 0 where it is no number.
+    pub value: f64,
+    /// The key, as scan scripts call it, ending in 0; empty: nothing was refused.
+    pub key: [c_char; NAME],
+}
+
+/// What may befall a simulated drive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Mishap {
+    /// Whatever it was, its cause is gone.
+    Clear = 0,
+    /// A fault of the drive with a code of its own.
+    Fault = 1,
+    /// The supply of the power stage fails.
+    Power = 2,
+    /// Feedback no longer arrives.
+    Communication = 3,
+}
+
+// No gap a compiler might fill otherwise: every byte belongs to a field.
+const _: () = assert!(size_of::<RuntimeConfig>() == 24);
+const _: () = assert!(size_of::<AxisSetup>() == 264);
+const _: () = assert!(size_of::<DriveSetup>() == 96);
+const _: () = assert!(size_of::<Feedback>() == 136);
+const _: () = assert!(size_of::<Command>() == 80);
+const _: () = assert!(size_of::<AxisStatus>() == 72);
+const _: () = assert!(size_of::<Record>() == 96);
+const _: () = assert!(size_of::<ConfigFault>() == 48);

@@ -1,0 +1,339 @@
+//! The library from C: the examples are compiled with all warnings as errors, as C and as C++, linked to both libraries,
+//! run, and run under valgrind. One of them is the same as a scan script, to the bit.
+//!
+//! Without a C compiler or valgrind the tests say SKIP; with `CI` in the environment that is a failure.
+
+use standstill_export::{Dialect, Prefix, Target, export};
+use standstill_trace::Cell;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+use std::{env, fs};
+
+const EXAMPLES: [&str; 3] = ["single_axis", "own_drive", "diagnostics"];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).to_owned()
+}
+
+fn scratch(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Whether a tool can be run. Without it a test ends early, loudly, and not in CI.
+fn has(tool: &str) -> bool {
+    let found = Command::new(tool).arg("--version").output().is_ok();
+    if !found {
+        assert!(env::var_os("CI").is_none(), "CI must have {tool}");
+        eprintln!("SKIP: there is no {tool}");
+    }
+    found
+}
+
+fn run(program: impl AsRef<OsStr>, arguments: &[&OsStr]) -> Output {
+    let program = program.as_ref();
+    let output = Command::new(program)
+        .args(arguments)
+        .output()
+        .unwrap_or_else(|error| panic!("{}: {error}", program.display()));
+    assert!(
+        output.status.success(),
+        "{} {arguments:?}: {}\n{}{}",
+        program.display(),
+        output.status,
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+    output
+}
+
+fn text(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+/// Builds the libraries with a prefix; the paths of the static and the shared one.
+fn build(prefix: &str, folder: &Path) -> (PathBuf, PathBuf) {
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo
+        .args(["build", "--offline", "--quiet", "--lib", "--message-format=json"])
+        .arg("--manifest-path")
+        .arg(root().join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(folder)
+        .env("STANDSTILL_PREFIX", prefix);
+    let output = cargo.output().unwrap();
+    let messages = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let mut files = Vec::new();
+    for line in messages.lines() {
+        let message: serde_json::Value = serde_json::from_str(line).unwrap();
+        if message["target"]["name"] == "standstill_capi" {
+            files.extend(message["filenames"].as_array().into_iter().flatten().cloned());
+        }
+    }
+    let ending = |ending: &str| {
+        let found = files.iter().filter_map(serde_json::Value::as_str);
+        let mut found = found.filter(|path| path.ends_with(ending));
+        PathBuf::from(found.next().unwrap_or_else(|| panic!("no {ending} was built")))
+    };
+    (ending(".a"), ending(".so"))
+}
+
+/// The libraries as everybody gets them.
+fn libraries() -> &'static (PathBuf, PathBuf) {
+    static BUILT: OnceLock<(PathBuf, PathBuf)> = OnceLock::new();
+    BUILT.get_or_init(|| build("standstill", &scratch("c-library")))
+}
+
+/// Compiles a program with one of the libraries; everything a compiler may say is an error.
+fn compile(compiler: &[&str], source: &Path, include: &Path, library: &Path, to: &Path) {
+    let (tool, options) = compiler.split_first().unwrap();
+    let mut arguments: Vec<&OsStr> = options.iter().map(OsStr::new).collect();
+    arguments.extend(["-Wall", "-Wextra", "-Werror", "-pedantic", "-g", "-I"].map(OsStr::new));
+    arguments.push(include.as_os_str());
+    arguments.push(source.as_os_str());
+    arguments.push(OsStr::new("-o"));
+    arguments.push(to.as_os_str());
+    // After this a compiler of C++ no longer takes what follows for C++.
+    arguments.extend(["-x", "none"].map(OsStr::new));
+    arguments.push(library.as_os_str());
+    arguments.extend(["-lpthread", "-ldl", "-lm"].map(OsStr::new));
+    let rpath = format!("-Wl,-rpath,{}", library.parent().unwrap().display());
+    arguments.push(OsStr::new(&rpath));
+    run(tool, &arguments);
+}
+
+const C: [&str; 2] = ["cc", "-std=c11"];
+const C99: [&str; 2] = ["cc", "-std=c99"];
+const CPP: [&str; 4] = ["c++", "-std=c++11", "-x", "c++"];
+
+#[test]
+fn the_examples_run_from_c_and_cpp_with_both_libraries() {
+    if !has("cc") || !has("c++") {
+        return;
+    }
+    let (fixed, shared) = libraries();
+    let folder = scratch("c-examples");
+    for example in EXAMPLES {
+        let source = root().join("examples").join(format!("{example}.c"));
+        let mut printed = Vec::new();
+        for (name, compiler, library) in [
+            ("c", &C[..], fixed),
+            ("c99", &C99[..], shared),
+            ("cpp", &CPP[..], fixed),
+        ] {
+            let program = folder.join(format!("{example}-{name}"));
+            compile(compiler, &source, &root().join("include"), library, &program);
+            printed.push(text(&run(&program, &[])));
+        }
+        assert!(
+            !printed[0].is_empty() && printed.iter().all(|other| *other == printed[0]),
+            "{example}"
+        );
+    }
+}
+
+#[test]
+fn the_diagnostic_ring_tells_c_what_happened() {
+    if !has("cc") {
+        return;
+    }
+    let program = scratch("c-ring").join("diagnostics");
+    let source = root().join("examples/diagnostics.c");
+    compile(&C, &source, &root().join("include"), &libraries().0, &program);
+    // Clamped, planned to a position, refused: 102 is a velocity that is not above 0.
+    assert_eq!(
+        text(&run(&program, &[])),
+        "refused: limits.velocity is 0\n\
+         0 scan 0 axis 1 instance 1 event 3 error 0 count 0 Velocity 99 10\n\
+         1 scan 0 axis 1 instance 1 event 7 error 0 count 200  1 0\n\
+         2 scan 401 axis 1 instance 1 event 1 error 102 count 0 Velocity -1 0\n"
+    );
+}
+
+#[test]
+fn valgrind_has_nothing_to_report() {
+    if !has("cc") || !has("valgrind") {
+        return;
+    }
+    let folder = scratch("c-valgrind");
+    for example in EXAMPLES {
+        let program = folder.join(example);
+        let source = root().join("examples").join(format!("{example}.c"));
+        compile(&C, &source, &root().join("include"), &libraries().0, &program);
+        let options = [
+            "--quiet",
+            "--error-exitcode=9",
+            "--leak-check=full",
+            "--errors-for-leak-kinds=all",
+        ];
+        let mut arguments: Vec<&OsStr> = options.iter().map(OsStr::new).collect();
+        arguments.push(program.as_os_str());
+        let output = run("valgrind", &arguments);
+        assert_eq!(String::from_utf8_lossy(&output.stderr), "", "{example}");
+    }
+}
+
+#[test]
+fn c_and_a_scan_script_move_by_the_same_bits() {
+    if !has("cc") {
+        return;
+    }
+    let program = scratch("c-digest").join("single_axis");
+    let source = root().join("examples/single_axis.c");
+    compile(&C, &source, &root().join("include"), &libraries().0, &program);
+    let printed = text(&run(&program, &[OsStr::new("trace")]));
+    let rows: Vec<_> = printed.lines().filter(|line| line.len() > 50).collect();
+
+    let path = root().join("../../scan-tests/embedding/power_there_and_back.scan.json");
+    let script = standstill_script::read(&fs::read_to_string(&path).unwrap(), "there", &[]).unwrap();
+    let outcome = standstill_script::run(&script).unwrap();
+    assert!(outcome.passed());
+    let trace = &outcome.trace;
+    let real = |scan, name| match trace.cell(scan, trace.column(name).unwrap()) {
+        Some(Cell::Real(value)) => value.to_bits(),
+        other => panic!("{name}: {other:?}"),
+    };
+    let flag = |scan, name| match trace.cell(scan, trace.column(name).unwrap()) {
+        Some(Cell::Bool(value)) => u8::from(value),
+        other => panic!("{name}: {other:?}"),
+    };
+    assert_eq!(rows.len(), trace.scans());
+    for (scan, row) in rows.iter().enumerate() {
+        let expected = format!(
+            "{:016x} {:016x} {:016x} {}{}{}",
+            real(scan, "X.Position"),
+            real(scan, "X.Velocity"),
+            real(scan, "X.Acceleration"),
+            flag(scan, "power.Status"),
+            flag(scan, "there.Done"),
+            flag(scan, "back.Done")
+        );
+        assert_eq!(*row, expected, "scan {scan}");
+    }
+}
+
+#[test]
+fn two_libraries_of_different_prefixes_live_in_one_program() {
+    if !has("cc") {
+        return;
+    }
+    let folder = scratch("c-prefix");
+    let prefix = Prefix::new("acme").unwrap();
+    for file in export(Target::C, &prefix, &Dialect::default()) {
+        fs::write(folder.join(file.name), file.text).unwrap();
+    }
+    let (_, shared) = build("acme", &scratch("c-library-acme"));
+    let source = folder.join("both.c");
+    fs::write(
+        &source,
+        "#include \"acme_blocks.h\"\n#include \"standstill_blocks.h\"\n\
+         int main(void) {\n\
+             if (acme_mc_stop(0, 0, 0, 0) != ACME_NULL_POINTER) return 1;\n\
+             if (standstill_mc_stop(0, 0, 0, 0) != STANDSTILL_NULL_POINTER) return 2;\n\
+             return acme_abi_version() == ACME_ABI_VERSION ? 0 : 3;\n}\n",
+    )
+    .unwrap();
+    let program = folder.join("both");
+    let rpath = format!("-Wl,-rpath,{}", shared.parent().unwrap().display());
+    let include = root().join("include");
+    let arguments: Vec<&OsStr> = vec![
+        OsStr::new("-std=c11"),
+        OsStr::new("-Werror"),
+        OsStr::new("-I"),
+        include.as_os_str(),
+        source.as_os_str(),
+        OsStr::new("-o"),
+        program.as_os_str(),
+        libraries().0.as_os_str(),
+        shared.as_os_str(),
+        OsStr::new(&rpath),
+        OsStr::new("-lpthread"),
+        OsStr::new("-ldl"),
+        OsStr::new("-lm"),
+    ];
+    run("cc", &arguments);
+    run(&program, &[]);
+}
+
+/// The header and the library are made apart: every function the header declares is there.
+#[test]
+fn every_block_has_its_function() {
+    if !has("cc") {
+        return;
+    }
+    let folder = scratch("c-all");
+    let header = fs::read_to_string(root().join("include/standstill_blocks.h")).unwrap();
+    let names: Vec<_> = header
+        .lines()
+        .filter_map(|line| line.strip_prefix("int32_t standstill_")?.split('(').next())
+        .collect();
+    assert_eq!(names.len(), standstill_blocks::REGISTRY.len());
+    let calls: String = names
+        .iter()
+        .map(|name| format!("    if (standstill_{name}(0, 0, 0, 0) != STANDSTILL_NULL_POINTER) return 1;\n"))
+        .collect();
+    let source = folder.join("all.c");
+    fs::write(
+        &source,
+        format!("#include \"standstill_blocks.h\"\nint main(void) {{\n{calls}    return 0;\n}}\n"),
+    )
+    .unwrap();
+    let program = folder.join("all");
+    compile(&C, &source, &root().join("include"), &libraries().0, &program);
+    run(&program, &[]);
+}
+
+/// What rusty lays out in an instance, as our own C file has it: the compiler holds every offset.
+#[test]
+fn the_bodies_for_rusty_compile_and_move_an_axis() {
+    if !has("cc") {
+        return;
+    }
+    let folder = scratch("c-rusty");
+    for file in export(Target::StRusty, &Prefix::default(), &Dialect::default()) {
+        fs::write(folder.join(file.name), file.text).unwrap();
+    }
+    let source = folder.join("host.c");
+    // What the compiler of a program would emit: zeroed instances, VAR_IN_OUT as an address.
+    fs::write(
+        &source,
+        r#"
+#include "standstill_rusty.c"
+struct standstill_runtime *standstill_default;
+static long long storage[1 << 15] __attribute__((aligned(16)));
+int main(void) {
+    struct standstill_runtime_config config = {sizeof config, 1, 4, 0, 1000000};
+    struct standstill_axis_setup setup = {.size = sizeof setup};
+    struct standstill_drive_setup drive = {.size = sizeof drive};
+    int32_t number;
+    standstill_axis_defaults(&setup);
+    standstill_drive_defaults(&drive);
+    setup.velocity = 10.0, setup.acceleration = 100.0, setup.start_powered = 1;
+    if (standstill_runtime_init(1, storage, sizeof storage, &config, &standstill_default)) return 1;
+    if (standstill_axis_add(standstill_default, &setup, &drive, &number)) return 2;
+    struct standstill_reference axis = {number};
+    static struct standstill_mc_move_absolute_fb move;
+    move.axis = &axis, move.execute = 1, move.position = 1.0, move.velocity = 10.0;
+    for (int scan = 0; scan < 400; scan++) {
+        standstill_tick_begin(standstill_default, scan * 1000000LL);
+        MC_MoveAbsolute(&move);
+        standstill_tick_end(standstill_default);
+        if (move.result) return 3;
+    }
+    return move.done ? 0 : 4;
+}
+"#,
+    )
+    .unwrap();
+    let program = folder.join("host");
+    compile(&C, &source, &folder, &libraries().0, &program);
+    run(&program, &[]);
+}

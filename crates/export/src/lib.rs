@@ -1,0 +1,97 @@
+//! What a host needs to call the blocks, written from the one table of blocks.
+//!
+//! What stands here: text. Each module writes one language, from the registry and from [`flat`](standstill_fb::flat)
+//! alone, so that pins, layouts and defaults are those of the library. What does not: files of other systems; the shims
+//! are text of ours, for compilers the user has.
+#![forbid(unsafe_code)]
+
+mod c;
+mod dialect;
+mod guest;
+mod matiec;
+mod names;
+mod plcopen;
+mod rusty;
+mod st;
+mod strucpp;
+mod write;
+
+pub use dialect::{Dialect, UnknownDialect};
+pub use names::{BadPrefix, Prefix};
+pub use write::{WriteError, write};
+
+/// For whom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// Hosts in C and C++: headers.
+    C,
+    /// matiec, the compiler of Beremiz.
+    StMatiec,
+    /// STruC++, the compiler of OpenPLC.
+    StStrucpp,
+    /// rusty, the compiler of PLC-lang.
+    StRusty,
+    /// Guests in WebAssembly.
+    Wasm,
+    /// IDEs that read PLCopen XML.
+    PlcopenXml,
+}
+
+impl Target {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::C,
+        Self::StMatiec,
+        Self::StStrucpp,
+        Self::StRusty,
+        Self::Wasm,
+        Self::PlcopenXml,
+    ];
+
+    /// Its name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::C => "c",
+            Self::StMatiec => "st-matiec",
+            Self::StStrucpp => "st-strucpp",
+            Self::StRusty => "st-rusty",
+            Self::Wasm => "wasm",
+            Self::PlcopenXml => "plcopen-xml",
+        }
+    }
+}
+
+/// A file to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct File {
+    /// Its name, without a folder.
+    pub name: String,
+    /// What is in it; lines end in LF.
+    pub text: String,
+}
+
+/// Everything `target` needs. C names begin with `prefix`; pins and numbers of shims in Structured Text and of the
+/// XML library are those of `dialect`.
+pub fn export(target: Target, prefix: &Prefix, dialect: &Dialect) -> Vec<File> {
+    let headers = || c::files(prefix);
+    match target {
+        Target::C => headers(),
+        Target::StMatiec => {
+            let mut files = headers();
+            files.extend(matiec::files(prefix, dialect));
+            files
+        }
+        Target::StStrucpp => {
+            let mut files = headers();
+            files.extend(strucpp::files(prefix, dialect));
+            files
+        }
+        Target::StRusty => {
+            let mut files = headers();
+            files.extend(rusty::files(prefix, dialect));
+            files
+        }
+        Target::Wasm => guest::files(prefix),
+        Target::PlcopenXml => plcopen::files(prefix, dialect),
+    }
+}
