@@ -111,7 +111,7 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Print the JSON Schema of scripts, or of the maps of `compare`
+    /// Print the JSON Schema of scripts, of machine files, or of the maps of `compare`
     Schema {
         /// Of what
         #[arg(value_enum, default_value_t = Schema::Script)]
@@ -142,6 +142,8 @@ pub enum Golden {
 pub enum Schema {
     /// Scan scripts
     Script,
+    /// Machine files that scripts include
+    Machine,
     /// Maps for `compare`
     Map,
 }

@@ -128,6 +128,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Schema { of } => {
             let text = match of {
                 Schema::Script => standstill_script::schema(),
+                Schema::Machine => standstill_script::machine_schema(),
                 Schema::Map => standstill_script::map_schema(),
             };
             write!(out, "{text}")?;

@@ -14,6 +14,7 @@ pub mod model;
 mod read;
 pub mod run;
 mod schema;
+mod schema_machine;
 mod schema_map;
 pub mod suite;
 
@@ -25,4 +26,5 @@ pub use read::machine_map::read_map;
 pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read, read_with};
 pub use run::{Change, Outcome, RunError, Session, run, run_with};
 pub use schema::schema;
+pub use schema_machine::machine_schema;
 pub use schema_map::map_schema;
