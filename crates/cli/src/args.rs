@@ -129,7 +129,7 @@ pub enum Command {
         #[arg(long, value_name = "NAME")]
         dialect: Option<String>,
     },
-    /// Print the JSON Schema of scripts, of the maps of `compare`, or of sweeps
+    /// Print the JSON Schema of scripts, of machine files, of the maps of `compare`, or of sweeps
     Schema {
         /// Of what
         #[arg(value_enum, default_value_t = Schema::Script)]
@@ -177,6 +177,8 @@ pub enum ExportTarget {
 pub enum Schema {
     /// Scan scripts
     Script,
+    /// Machine files that scripts include
+    Machine,
     /// Maps for `compare`
     Map,
     /// Sweeps

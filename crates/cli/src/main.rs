@@ -137,6 +137,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Schema { of } => {
             let text = match of {
                 Schema::Script => standstill_script::schema(),
+                Schema::Machine => standstill_script::machine_schema(),
                 Schema::Map => standstill_script::map_schema(),
                 Schema::Sweep => standstill_script::sweep_schema(),
             };

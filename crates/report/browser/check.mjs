@@ -6,7 +6,7 @@
 // end how many passed; exits with 1 if one failed. `.ci/browser` runs it.
 
 import { execFileSync } from 'node:child_process';
-import { createReadStream, mkdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { createReadStream, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { createInterface } from 'node:readline';
 import { pathToFileURL } from 'node:url';
@@ -199,6 +199,47 @@ async function overlaid() {
   await page.close();
 }
 
+// The page of a failing test: golden and run over each other, the first difference marked.
+async function marked() {
+  const script = JSON.parse(nastyScript());
+  script.expect = [{ never: { 'move.Error': true } }];
+  const tests = file('failing');
+  rmSync(tests, { recursive: true, force: true });
+  mkdirSync(tests);
+  const write = () => writeFileSync(resolve(tests, 'a.scan.json'), JSON.stringify(script));
+  write();
+  standstill('test', '--accept', tests);
+  const SCAN = 37;
+  script.steps.push({ at: SCAN, set: { GO: false } });
+  write();
+  standstill('test', tests, '--report', resolve(tests, 'pages'));
+  const html = readdirSync(resolve(tests, 'pages'), { recursive: true }).find((path) => path.endsWith('.html'));
+  const { page, complaints } = await open(`failing/pages/${html}`);
+  check('the cursor begins at the first difference', (await page.textContent('#scan')) === `scan ${SCAN}`, await page.textContent('#scan'));
+  const lines = page.locator('.mark-line');
+  const where = async () => {
+    const box = await lines.first().boundingBox();
+    return page.evaluate(([x]) => {
+      const board = document.querySelector('#board').getBoundingClientRect();
+      return shared.view.min + ((x - board.left - document.querySelector('#board').plotLeft) / shared.width) * (shared.view.max - shared.view.min);
+    }, [box.x]);
+  };
+  const place = await where();
+  check('a line marks it', (await lines.count()) === 1 && (await lines.first().getAttribute('title')) === `scan ${SCAN}`
+    && Math.abs(place - SCAN) < 1.5, `${await lines.count()} lines, at scan ${place}`);
+  check('what differs is told', (await page.textContent('header')).includes(`first difference in scan ${SCAN}`));
+  await point(page, 5);
+  check('the cursor can go elsewhere', (await page.textContent('#scan')) !== `scan ${SCAN}`);
+  await page.locator(`button[data-scan="${SCAN}"]`).first().click();
+  await settle(page);
+  check('and the mark leads back', (await page.textContent('#scan')) === `scan ${SCAN}`, await page.textContent('#scan'));
+  await page.keyboard.press('+');
+  await settle(page);
+  check('the line moves with the zoom', Math.abs((await where()) - SCAN) < 1.5, String(await where()));
+  check('no error, no request with a mark', complaints.length === 0, complaints.join('; '));
+  await page.close();
+}
+
 async function texts() {
   standstill('run', '-q', file('nasty.scan.json'), '--report', file('nasty.html'));
   const { page, complaints } = await open('nasty.html');
@@ -274,7 +315,7 @@ async function longRun() {
   await page.close();
 }
 
-for (const part of [cursorAndZoom, overlaid, texts, hardNumbers, longRun]) await part();
+for (const part of [cursorAndZoom, overlaid, marked, texts, hardNumbers, longRun]) await part();
 await browser.close();
 console.log(`${passed} passed, ${failed} failed`);
 process.exit(failed === 0 ? 0 : 1);

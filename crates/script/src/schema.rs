@@ -50,10 +50,14 @@ fn document() -> Value {
         "description",
         json!("Drives PLCopen function blocks scan by scan and says what must happen."),
     );
-    let pins = REGISTRY.iter().map(|info| (pins_name(info), pins(info)));
-    let defs: Map<String, Value> = scalars().into_iter().chain(parts()).chain(pins).collect();
-    add(&mut root, "$defs", Value::Object(defs));
+    add(&mut root, "$defs", Value::Object(definitions()));
     root
+}
+
+/// All definitions by name.
+pub(crate) fn definitions() -> Map<String, Value> {
+    let pins = REGISTRY.iter().map(|info| (pins_name(info), pins(info)));
+    scalars().into_iter().chain(parts()).chain(pins).collect()
 }
 
 /// An object with the keys of `shape`; `schema_of` gives the schema of each.
@@ -115,7 +119,7 @@ fn names(of_each: Value) -> Value {
     json!({"type": "object", "propertyNames": of("identifier"), "additionalProperties": of_each})
 }
 
-fn script_key(key: &str) -> Value {
+pub(crate) fn script_key(key: &str) -> Value {
     match key {
         "standstill" => json!({"const": VERSION}),
         "covers" => list(text(), 0),

@@ -149,3 +149,21 @@ fn what_is_no_row_shows_in_the_text_alone() {
     assert!(told.starts_with("every bit of the rows is equal"), "{told}");
     assert!(told.contains("+axis    X  mm  order 4  v=250.0"), "{told}");
 }
+
+/// What is in the way of the new file leaves the old one as it is.
+#[test]
+fn a_golden_is_written_whole_or_not_at_all() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("golden_whole");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("the folder is ours");
+    let snap = folder.join("x.snap");
+    assert!(accept(&snap, &common::run(60, None)).expect("it can be written"));
+    let before = fs::read(&snap).expect("it was written");
+    fs::create_dir(folder.join("x.snap.partial")).expect("the folder is ours");
+    let refused = accept(&snap, &common::run(60, Some(30)));
+    assert!(
+        matches!(&refused, Err(GoldenError::Io { path, .. }) if *path == snap),
+        "{refused:?}"
+    );
+    assert_eq!(fs::read(&snap).expect("it is there"), before);
+}

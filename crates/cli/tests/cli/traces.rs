@@ -57,6 +57,36 @@ fn the_first_difference_is_explained() {
 }
 
 #[test]
+fn other_lengths_and_cycles_are_told_as_such() {
+    let folder = traces("traces_lengths");
+    let text = read(&folder, "move.scan.json");
+    for (file, from, to, cause) in [
+        (
+            "short.csv",
+            "\"scans\": 30",
+            "\"scans\": 25",
+            "one run is longer: expected 30 scans, found 25",
+        ),
+        (
+            "cycle.csv",
+            "T#10ms",
+            "T#20ms",
+            "another cycle: expected T#10ms, found T#20ms",
+        ),
+    ] {
+        write(&folder, "other.scan.json", &text.replace(from, to));
+        standstill(&folder, &["run", "-q", "other.scan.json", "--trace", file]);
+        let ended = explain(&folder, "a.csv", file);
+        assert_eq!(ended.status, 1);
+        assert!(
+            ended.out.contains(&format!("likely cause\n  {cause}")),
+            "{}",
+            ended.out
+        );
+    }
+}
+
+#[test]
 fn what_a_trace_lacks_is_said() {
     let folder = traces("traces_lack");
     std::fs::remove_file(folder.join("a.csv.meta.json")).unwrap();
@@ -73,8 +103,21 @@ fn a_file_that_is_no_trace_is_told_apart_from_one_that_is_not_there() {
         "scan,time_ns,X.Position\n0,0,zero\nnonsense\n",
     );
     std::fs::write(folder.join("bytes.csv"), b"scan,time_ns\n\xff,0\n").unwrap();
+    let (csv, jsonl) = (read(&folder, "a.csv"), read(&folder, "a.jsonl"));
+    write(&folder, "cut.csv", &csv[..csv.len() / 2]);
+    write(&folder, "cut.jsonl", &jsonl[..jsonl.len() / 2]);
+    write(&folder, "foreign.csv", "Name;Time [ms];Pos\nX;1;2\n");
+    std::fs::write(folder.join("cut.exact"), b"standstill").unwrap();
     for (file, status, message) in [
         ("wrong.csv", 3, "wrong.csv: "),
+        ("cut.csv", 3, "cut.csv: line "),
+        ("cut.jsonl", 3, "cut.jsonl: line "),
+        ("cut.exact", 3, "cut.exact: "),
+        (
+            "foreign.csv",
+            3,
+            "a trace begins with the columns `scan` and `time_ns`",
+        ),
         ("bytes.csv", 3, "bytes.csv: "),
         ("absent.csv", 4, "absent.csv: "),
         (

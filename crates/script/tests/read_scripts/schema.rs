@@ -2,7 +2,7 @@
 
 use crate::cases::{By, GOOD, cases};
 use boon::{Compiler, SchemaIndex, Schemas};
-use standstill_script::{map_schema, read, schema, sweep_schema};
+use standstill_script::{machine_schema, map_schema, read, schema, sweep_schema};
 use std::path::{Path, PathBuf};
 
 struct Validator {
@@ -38,6 +38,7 @@ fn the_committed_schema_is_fresh() {
         ("scan-script.schema.json", schema(), "schema"),
         ("compare-map.schema.json", map_schema(), "schema map"),
         ("sweep.schema.json", sweep_schema(), "schema sweep"),
+        ("machine-file.schema.json", machine_schema(), "schema machine"),
     ] {
         let path = docs().join(file);
         let committed = std::fs::read_to_string(&path).unwrap_or_default();
@@ -50,6 +51,33 @@ fn the_committed_schema_is_fresh() {
 
 fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
+}
+
+#[test]
+fn the_schema_of_machine_files_takes_good_ones_and_refuses_others() {
+    let validator = Validator::of(&machine_schema());
+    let path = docs().join("../scan-tests/include/feeder.machine.json");
+    let good = std::fs::read_to_string(path).unwrap();
+    assert_eq!(validator.accepts(&good), Ok(()));
+    assert_eq!(validator.accepts(r#"{"standstill": 1}"#), Ok(()));
+    for (from, to) in [
+        ("\"standstill\": 1", "\"standstill\": 2"),
+        ("\"inputs\"", "\"steps\": [], \"inputs\""),
+        ("\"inputs\"", "\"cycle\": \"T#1ms\", \"inputs\""),
+        ("\"velocity\": 400, ", "\"velocity\": -400, "),
+        ("\"Distance\"", "\"Way\""),
+        ("MC_MoveRelative", "MC_MoveSideways"),
+    ] {
+        assert!(good.contains(from), "{from}");
+        assert!(
+            validator.accepts(&good.replacen(from, to, 1)).is_err(),
+            "{from} as {to}"
+        );
+    }
+    // Nothing in it but what is used.
+    for unused in ["\"step\"", "\"claim\"", "\"conditions\""] {
+        assert!(!machine_schema().contains(&format!("{unused}: {{")), "{unused}");
+    }
 }
 
 #[test]

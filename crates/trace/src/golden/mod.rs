@@ -18,6 +18,7 @@ use similar::TextDiff;
 use crate::compare::{Closeness, Difference, Tolerance, Yardstick, closeness, compare, compare_by};
 use crate::digest;
 use crate::exact::{self, ExactError};
+use crate::file::{FileError, replace};
 use crate::trace::Trace;
 
 pub use text::text;
@@ -166,7 +167,7 @@ pub fn accept(snap: &Path, trace: &Trace) -> Result<bool, GoldenError> {
     };
     let mut wrote = false;
     if !held.is_some_and(|held| snap::same(&held, &found)) {
-        fs::write(snap, snap::file(snap, &found)).map_err(GoldenError::io(snap))?;
+        write(snap, snap::file(snap, &found).as_bytes())?;
         wrote = true;
     }
     let path = exact_path(snap);
@@ -176,7 +177,7 @@ pub fn accept(snap: &Path, trace: &Trace) -> Result<bool, GoldenError> {
         held.is_ok_and(|held| compare(&held, trace).is_none())
     });
     if !holds {
-        fs::write(&path, exact::encode(trace)).map_err(GoldenError::io(&path))?;
+        write(&path, &exact::encode(trace))?;
         wrote = true;
     }
     Ok(wrote)
@@ -194,7 +195,7 @@ pub fn proposal_path(snap: &Path) -> PathBuf {
 /// What the system says.
 pub fn propose(snap: &Path, trace: &Trace) -> Result<(), GoldenError> {
     let path = proposal_path(snap);
-    fs::write(&path, snap::file(snap, &text(trace))).map_err(GoldenError::io(&path))
+    write(&path, snap::file(snap, &text(trace)).as_bytes())
 }
 
 /// Removes the proposal beside a snapshot, if there is one.
@@ -207,6 +208,14 @@ pub fn withdraw(snap: &Path) -> Result<(), GoldenError> {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(GoldenError::io(&path)(error)),
         _ => Ok(()),
     }
+}
+
+/// Writes a file whole or not at all: half a golden would be no golden.
+fn write(path: &Path, bytes: &[u8]) -> Result<(), GoldenError> {
+    replace(path, |out| out.write_all(bytes)).map_err(|error| match error {
+        FileError::Io { path, source } => GoldenError::Io { path, source },
+        other => GoldenError::io(path)(io::Error::other(other)),
+    })
 }
 
 fn reviewed(snap: &Path) -> Result<Option<String>, GoldenError> {

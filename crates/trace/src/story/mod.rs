@@ -2,6 +2,7 @@
 //! cause leaves such marks.
 
 mod cause;
+mod tell;
 
 use std::fmt;
 

@@ -1,0 +1,61 @@
+//! The JSON Schema of machine files, which scripts include: of what the one of scripts says, the part they may hold.
+
+use crate::read::shape;
+use crate::schema::{add, definitions, object, required, script_key};
+use serde_json::{Map, Value, json};
+
+/// The JSON Schema (draft 2020-12) of machine files (`*.machine.json`), in the layout of [`format`](crate::format).
+///
+/// What an included file may name of the files that include it, only the reader of the script can say.
+pub fn machine_schema() -> String {
+    let mut document = document();
+    document.sort_all_objects();
+    let text = document.to_string();
+    // A JSON writer made the text, so it can be laid out.
+    crate::format(&text, "machine-file.schema.json").unwrap_or(text)
+}
+
+fn document() -> Value {
+    let mut root = required(&["standstill"], object(&shape::MACHINE, script_key));
+    let schema = "https://json-schema.org/draft/2020-12/schema";
+    let description =
+        "Axes with their drives, inputs, tasks, blocks and parameters that several scan scripts share.";
+    add(&mut root, "$schema", json!(schema));
+    add(&mut root, "title", json!("Machine file for scan scripts"));
+    add(&mut root, "description", json!(description));
+    let needed = needed(&root, &definitions());
+    add(&mut root, "$defs", Value::Object(needed));
+    root
+}
+
+/// The definitions that a schema refers to, and those that they refer to.
+fn needed(root: &Value, all: &Map<String, Value>) -> Map<String, Value> {
+    let mut needed = Map::new();
+    let mut open = references(root);
+    while let Some(name) = open.pop() {
+        if let (Some(definition), false) = (all.get(&name), needed.contains_key(&name)) {
+            open.extend(references(definition));
+            needed.insert(name, definition.clone());
+        }
+    }
+    needed
+}
+
+/// The names of the definitions that a schema refers to itself.
+fn references(schema: &Value) -> Vec<String> {
+    match schema {
+        Value::Object(members) => members
+            .iter()
+            .flat_map(|(key, value)| match (key.as_str(), value.as_str()) {
+                ("$ref", Some(path)) => path
+                    .strip_prefix("#/$defs/")
+                    .map(str::to_owned)
+                    .into_iter()
+                    .collect(),
+                _ => references(value),
+            })
+            .collect(),
+        Value::Array(items) => items.iter().flat_map(references).collect(),
+        _ => Vec::new(),
+    }
+}
