@@ -77,7 +77,7 @@ fn main() {
     );
     // Every second call gives a command, which is planned at once.
     let wishes = |number: u64| Wishes {
-        execute: number % 2 == 0,
+        execute: number.is_multiple_of(2),
         ..Wishes::MOVE
     };
     compare(
