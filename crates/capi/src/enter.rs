@@ -148,3 +148,72 @@ pub(crate) fn running(inner: &Inner) -> Result<(), Code> {
         Mode::Broken => Err(Code::Internal),
     }
 }
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use super::*;
+    use crate::{AxisSetup, DriveSetup, RuntimeConfig, storage};
+
+    /// What a defect of ours would do: no panic comes out, and the axis is ramped down in the ticks that follow.
+    #[test]
+    fn a_caught_panic_stops_the_resource_and_the_axis_switches_off() {
+        let config = RuntimeConfig {
+            size: size_of::<RuntimeConfig>() as u32,
+            axes: 1,
+            instances: 1,
+            reserved: 0,
+            cycle_ns: 1_000_000,
+        };
+        let bytes = storage::size(&config).unwrap();
+        let mut memory = vec![0_u128; bytes.div_ceil(16)];
+        // SAFETY: as long and as aligned as asked for, and alive until the end of the test.
+        let runtime = unsafe { storage::init(memory.as_mut_ptr().cast(), bytes, &config) }.unwrap();
+        // SAFETY: the runtime made above.
+        let with = |when, work: &mut dyn FnMut(&mut Inner) -> Result<(), Code>| unsafe {
+            enter(runtime, when, work)
+        };
+        let axis = AxisSetup {
+            start_powered: 1,
+            velocity: 10.0,
+            acceleration: 100.0,
+            ..AxisSetup::defaults(size_of::<AxisSetup>() as u32)
+        };
+        let drive = DriveSetup::defaults(size_of::<DriveSetup>() as u32);
+        assert_eq!(
+            with(When::Outside, &mut |inner| inner
+                .add_axis(&axis, &drive)
+                .map(|_| ())),
+            0
+        );
+        assert_eq!(with(When::Outside, &mut |inner| inner.begin(0)), 0);
+        assert_eq!(
+            with(When::InTick, &mut |_| panic!("on purpose")),
+            Code::Internal as i32
+        );
+        assert_eq!(
+            with(When::InTick, &mut |_| Ok(())),
+            Code::NotInTick as i32,
+            "the tick has ended"
+        );
+        for scan in 1..10 {
+            assert_eq!(with(When::Outside, &mut |inner| inner.begin(scan * 1_000_000)), 0);
+            assert_eq!(
+                with(When::InTick, &mut |inner| running(inner)),
+                Code::Internal as i32
+            );
+            assert_eq!(
+                with(When::InTick, &mut |inner| {
+                    inner.end();
+                    Ok(())
+                }),
+                0
+            );
+        }
+        assert_eq!(with(When::Outside, &mut |inner| inner.check_off()), 0);
+        assert_eq!(
+            with(When::Outside, &mut |inner| inner.start()),
+            Code::Internal as i32,
+            "it stays so"
+        );
+    }
+}

@@ -11,6 +11,10 @@
 #![allow(unsafe_code)]
 #![deny(unsafe_op_in_unsafe_fn, clippy::undocumented_unsafe_blocks)]
 
+// Pins cross as `fb::flat` has them, which is how these processors have them in memory.
+#[cfg(target_endian = "big")]
+compile_error!("the C library is for little-endian processors: pins would cross the border turned round");
+
 mod api;
 mod blocks;
 mod config;
