@@ -89,11 +89,13 @@ unsafe fn wake<B: Block + Described>(
     make: impl Fn(Instance<B>) -> BlockInstance,
     find: impl Fn(&mut BlockInstance) -> Option<&mut Instance<B>>,
 ) -> Result<(), Code> {
-    // SAFETY: as in `call`, here and in all that follows.
+    // SAFETY: by the contract; the outputs are written when this is not used any more.
     let flat = unsafe { slice::from_raw_parts(inputs, Sizes::<B>::INPUTS) };
+    // SAFETY: by the contract; its place may be odd.
     let mut number = unsafe { key.read_unaligned() };
     if number == 0 {
         number = inner.create(make(Instance::default()))?;
+        // SAFETY: as for reading.
         unsafe { key.write_unaligned(number) };
     }
     let (instance, mut context) = inner.instance(number, find)?;
@@ -101,6 +103,7 @@ unsafe fn wake<B: Block + Described>(
         set_tables(instance, flat);
     }
     instance.wake(flat, Pointer::NATIVE, &mut context);
+    // SAFETY: by the contract; the inputs are not used any more, should they overlap.
     let shown = unsafe { raw::bytes_mut(outputs, Sizes::<B>::OUTPUTS) };
     instance.outputs.put_flat(shown);
     Ok(())
