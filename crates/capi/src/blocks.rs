@@ -1,15 +1,26 @@
 //! A function for every block of the registry. Their declarations stand in `standstill_blocks.h`.
 
-use crate::enter::{When, enter, running};
+use crate::enter::{in_tick, running};
 use crate::runtime::{Inner, Runtime};
 use crate::{Code, raw};
+use core::marker::PhantomData;
 use core::slice;
-use standstill_axis::InstanceId;
 use standstill_blocks::BlockInstance;
 use standstill_fb::flat::{Layout, Pointer, read_record, read_table};
-use standstill_fb::{Block, Context, Described, Instance, PinType, Pins, TableRef, Value};
+use standstill_fb::{Block, Described, Instance, PinType, Pins, TableRef, Value};
+
+/// Bytes of the structures of `B`.
+struct Sizes<B>(PhantomData<B>);
+
+impl<B: Block> Sizes<B> {
+    const INPUTS: usize = Layout::of_pins(<B::Inputs as Pins>::PINS, Pointer::NATIVE).size;
+    const OUTPUTS: usize = Layout::of_pins(<B::Outputs as Pins>::PINS, Pointer::NATIVE).size;
+}
 
 /// One call of an instance of `B`, made first if its key is 0.
+///
+/// What a host does in almost every scan, a call of a block with nothing to do, is all here and calls nothing. The rest is
+/// in functions of their own, which come last: so nothing has to be saved on the stack for them.
 ///
 /// # Safety
 /// As every function of `standstill_blocks.h`: each pointer is null or leads to what its type says, as long as the size
@@ -20,65 +31,82 @@ unsafe fn call<B: Block + Described>(
     key: *mut u64,
     inputs: *const u8,
     outputs: *mut u8,
-    make: impl FnOnce(Instance<B>) -> BlockInstance,
-    find: impl FnOnce(&mut BlockInstance) -> Option<&mut Instance<B>>,
+    make: impl Fn(Instance<B>) -> BlockInstance + Copy,
+    find: impl Fn(&mut BlockInstance) -> Option<&mut Instance<B>> + Copy,
 ) -> i32 {
-    let inputs_size = const { Layout::of_pins(<B::Inputs as Pins>::PINS, Pointer::NATIVE).size };
-    let outputs_size = const { Layout::of_pins(<B::Outputs as Pins>::PINS, Pointer::NATIVE).size };
-    let work = |inner: &mut Inner| {
+    let look = |inner: &mut Inner| {
         running(inner)?;
         if key.is_null() {
             return Err(Code::NullPointer);
         }
         // SAFETY: null, or long enough for a size, by the contract.
         unsafe {
-            raw::check_size(inputs, inputs_size)?;
-            raw::check_size(outputs, outputs_size)?;
+            raw::check_size(inputs, Sizes::<B>::INPUTS)?;
+            raw::check_size(outputs, Sizes::<B>::OUTPUTS)?;
         }
-        // SAFETY: not null, and as long as its size told. Nothing writes there during the call: the outputs are
-        // written when this is not used any more.
-        let flat = unsafe { slice::from_raw_parts(inputs, inputs_size) };
+        // SAFETY: not null, and as long as its size told. Nothing writes there while it is used: the outputs are
+        // written later.
+        let flat = unsafe { slice::from_raw_parts(inputs, Sizes::<B>::INPUTS) };
         if const { B::INFO.has_tables() } {
             // SAFETY: the contract says that arrays are as long as their counts.
             unsafe { load_tables::<B>(inner, inputs, flat)? };
         }
         // SAFETY: not null; its place may be odd.
-        let mut number = unsafe { key.read_unaligned() };
+        let number = unsafe { key.read_unaligned() };
         if number == 0 {
-            number = inner.create(make(Instance::default()))?;
-            // SAFETY: as for reading.
-            unsafe { key.write_unaligned(number) };
+            return Ok(false);
         }
-        let place = (number as u32 as usize).wrapping_sub(1);
-        let Some(slot) = inner.slots.slice_mut().get_mut(place) else {
-            return Err(Code::UnknownKey);
-        };
-        if slot.generation != (number >> 32) as u32 {
-            return Err(Code::UnknownKey);
-        }
-        let block = slot.block.as_mut().ok_or(Code::UnknownKey)?;
-        let instance = find(block).ok_or(Code::WrongBlock)?;
-        instance.inputs.set_flat(flat, Pointer::NATIVE);
+        let (instance, mut context) = inner.instance(number, find)?;
         if const { B::INFO.has_tables() } {
             set_tables(instance, flat);
         }
-        let mut context = Context {
-            now_ns: inner.now_ns,
-            scan: inner.scan,
-            // At most 65534, so no cut is made.
-            instance: InstanceId(number as u16),
-            axes: inner.axes.slice_mut(),
-            log: &mut inner.log,
-            tables: &inner.cells,
-        };
-        instance.call(&mut context);
+        if !instance.rests_with(flat, Pointer::NATIVE, &mut context) {
+            return Ok(false);
+        }
         // SAFETY: not null, and as long as its size told; the inputs are not used any more, should they overlap.
-        let flat = unsafe { raw::bytes_mut(outputs, outputs_size) };
-        instance.outputs.put_flat(flat);
-        Ok(())
+        let shown = unsafe { raw::bytes_mut(outputs, Sizes::<B>::OUTPUTS) };
+        instance.outputs.put_flat(shown);
+        Ok(true)
+    };
+    let rest = move |inner: &mut Inner, key, inputs, outputs| {
+        // SAFETY: `look` checked the pointers and sizes, and nothing happened since.
+        unsafe { wake(inner, key, inputs, outputs, make, find) }
     };
     // SAFETY: passed on.
-    unsafe { enter(runtime, When::InTick, work) }
+    unsafe { in_tick(runtime, key, inputs, outputs, look, rest) }
+}
+
+/// The rest of a call of a block that does not rest, or is called for the first time.
+///
+/// # Safety
+/// No pointer is null, and all is as long as its size has to be.
+#[inline(always)]
+unsafe fn wake<B: Block + Described>(
+    inner: &mut Inner,
+    key: *mut u64,
+    inputs: *const u8,
+    outputs: *mut u8,
+    make: impl Fn(Instance<B>) -> BlockInstance,
+    find: impl Fn(&mut BlockInstance) -> Option<&mut Instance<B>>,
+) -> Result<(), Code> {
+    // SAFETY: by the contract; the outputs are written when this is not used any more.
+    let flat = unsafe { slice::from_raw_parts(inputs, Sizes::<B>::INPUTS) };
+    // SAFETY: by the contract; its place may be odd.
+    let mut number = unsafe { key.read_unaligned() };
+    if number == 0 {
+        number = inner.create(make(Instance::default()))?;
+        // SAFETY: as for reading.
+        unsafe { key.write_unaligned(number) };
+    }
+    let (instance, mut context) = inner.instance(number, find)?;
+    if const { B::INFO.has_tables() } {
+        set_tables(instance, flat);
+    }
+    instance.wake(flat, Pointer::NATIVE, &mut context);
+    // SAFETY: by the contract; the inputs are not used any more, should they overlap.
+    let shown = unsafe { raw::bytes_mut(outputs, Sizes::<B>::OUTPUTS) };
+    instance.outputs.put_flat(shown);
+    Ok(())
 }
 
 /// Copies the records of a block's arrays into the numbers of the runtime, one array behind the other.

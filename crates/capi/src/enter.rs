@@ -68,14 +68,12 @@ pub(crate) unsafe fn enter(
     result.map_or_else(|code| code as i32, |()| Code::Ok as i32)
 }
 
+/// The runtime at this place.
+///
 /// # Safety
 /// As [`enter`].
 #[inline(always)]
-unsafe fn try_enter(
-    runtime: *mut Runtime,
-    when: When,
-    work: impl FnOnce(&mut Inner) -> Result<(), Code>,
-) -> Result<(), Code> {
+unsafe fn there<'a>(runtime: *mut Runtime) -> Result<&'a Runtime, Code> {
     if runtime.is_null() {
         return Err(Code::NullPointer);
     }
@@ -88,7 +86,19 @@ unsafe fn try_enter(
     }
     // SAFETY: a runtime was made here and not closed, so all of it is there; what threads share of it is atomic, the rest
     // in a cell.
-    let runtime = unsafe { &*runtime };
+    Ok(unsafe { &*runtime })
+}
+
+/// # Safety
+/// As [`enter`].
+#[inline(always)]
+unsafe fn try_enter(
+    runtime: *mut Runtime,
+    when: When,
+    work: impl FnOnce(&mut Inner) -> Result<(), Code>,
+) -> Result<(), Code> {
+    // SAFETY: passed on.
+    let runtime = unsafe { there(runtime)? };
     #[cfg(not(feature = "std"))]
     let _busy = Busy::new(runtime)?;
     let me = me();
@@ -97,8 +107,7 @@ unsafe fn try_enter(
     match (owner == me, when) {
         (true, When::Outside) => return Err(Code::InTick),
         (true, When::InTick | When::Any) => {}
-        (false, When::InTick) if owner == 0 => return Err(Code::NotInTick),
-        (false, When::InTick) => return Err(Code::OtherThread),
+        (false, When::InTick) => return Err(not_in_tick(owner)),
         (false, When::Outside | When::Any) => {
             if runtime.owner.compare_exchange(0, me, Acquire, Relaxed).is_err() {
                 return Err(Code::OtherThread);
@@ -115,10 +124,91 @@ unsafe fn try_enter(
     result
 }
 
+/// Does `look` on the runtime at `runtime` if it has a tick of this thread open, and `rest` if that is not all there is to
+/// do. Both are guarded against panics; `rest` stands in a function of its own, and is handed the pointers, so that it
+/// need not capture anything.
+///
+/// # Safety
+/// As [`enter`].
+#[inline(always)]
+pub(crate) unsafe fn in_tick(
+    runtime: *mut Runtime,
+    key: *mut u64,
+    inputs: *const u8,
+    outputs: *mut u8,
+    look: impl FnOnce(&mut Inner) -> Result<bool, Code>,
+    rest: impl FnOnce(&mut Inner, *mut u64, *const u8, *mut u8) -> Result<(), Code>,
+) -> i32 {
+    // SAFETY: passed on.
+    let runtime = match unsafe { there(runtime) } {
+        Ok(runtime) => runtime,
+        Err(code) => return code as i32,
+    };
+    #[cfg(not(feature = "std"))]
+    let _busy = match Busy::new(runtime) {
+        Ok(busy) => busy,
+        Err(code) => return code as i32,
+    };
+    let owner = runtime.owner.load(Relaxed);
+    if owner != me() {
+        return not_in_tick(owner) as i32;
+    }
+    // SAFETY: as in `try_enter`.
+    let inner = unsafe { &mut *runtime.inner.get() };
+    match caught(inner, look) {
+        Ok(true) => Code::Ok as i32,
+        // SAFETY: the tick of this thread is still open.
+        Ok(false) => unsafe { finish(runtime, key, inputs, outputs, rest) },
+        Err(Code::Internal) => left(runtime, Code::Internal),
+        Err(code) => code as i32,
+    }
+}
+
+/// The second half of [`in_tick`].
+///
+/// # Safety
+/// This thread has a tick open, and uses nothing of the runtime's inner part.
+// As C calls, so that no panic comes out and it can be the last thing its caller does.
+#[inline(never)]
+unsafe extern "C" fn finish<W: FnOnce(&mut Inner, *mut u64, *const u8, *mut u8) -> Result<(), Code>>(
+    runtime: &Runtime,
+    key: *mut u64,
+    inputs: *const u8,
+    outputs: *mut u8,
+    rest: W,
+) -> i32 {
+    // SAFETY: by the contract nothing else uses it.
+    let inner = unsafe { &mut *runtime.inner.get() };
+    match caught(inner, |inner| rest(inner, key, inputs, outputs)) {
+        Ok(()) => Code::Ok as i32,
+        Err(code) => left(runtime, code),
+    }
+}
+
+/// Gives up the runtime if its tick was ended by a panic.
+#[cold]
+#[inline(never)]
+extern "C" fn left(runtime: &Runtime, code: Code) -> i32 {
+    // SAFETY: the thread still owns the runtime, and uses nothing else of its inner part.
+    if !unsafe { &*runtime.inner.get() }.ticking {
+        runtime.owner.store(0, Release);
+    }
+    code as i32
+}
+
+/// Why a function for the open tick is refused.
+fn not_in_tick(owner: usize) -> Code {
+    if owner == 0 {
+        Code::NotInTick
+    } else {
+        Code::OtherThread
+    }
+}
+
 /// Does `work`; a panic ends the tick, and the resource is stopped.
 #[cfg(feature = "std")]
 #[inline(always)]
-fn caught(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<(), Code>) -> Result<(), Code> {
+fn caught<T>(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<T, Code>) -> Result<T, Code> {
     use std::panic::{AssertUnwindSafe, catch_unwind};
     // What it leaves behind is asked for nothing but to ramp down.
     catch_unwind(AssertUnwindSafe(|| work(inner))).unwrap_or_else(|_| broken(inner))
@@ -126,7 +216,7 @@ fn caught(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<(), Code>) 
 
 #[cfg(feature = "std")]
 #[cold]
-fn broken(inner: &mut Inner) -> Result<(), Code> {
+fn broken<T>(inner: &mut Inner) -> Result<T, Code> {
     inner.ticking = false;
     inner.mode = Mode::Broken;
     inner.off_pending = true;
@@ -135,18 +225,21 @@ fn broken(inner: &mut Inner) -> Result<(), Code> {
 
 #[cfg(not(feature = "std"))]
 #[inline(always)]
-fn caught(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<(), Code>) -> Result<(), Code> {
+fn caught<T>(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<T, Code>) -> Result<T, Code> {
     work(inner)
 }
 
 /// Refuses to call a block in a resource that was stopped.
 #[inline(always)]
 pub(crate) fn running(inner: &Inner) -> Result<(), Code> {
-    match inner.mode {
-        Mode::Running => Ok(()),
-        Mode::Stopped => Err(Code::Stopped),
-        Mode::Broken => Err(Code::Internal),
+    if inner.mode == Mode::Running {
+        return Ok(());
     }
+    Err(if inner.mode == Mode::Stopped {
+        Code::Stopped
+    } else {
+        Code::Internal
+    })
 }
 
 #[cfg(all(test, feature = "std"))]
@@ -215,5 +308,46 @@ mod tests {
             Code::Internal as i32,
             "it stays so"
         );
+    }
+
+    /// A block's call has two halves, and neither lets a panic out or keeps the runtime for its thread.
+    #[test]
+    fn a_panic_in_either_half_of_a_call_ends_the_tick_and_stops_the_resource() {
+        for in_look in [true, false] {
+            let config = RuntimeConfig {
+                size: size_of::<RuntimeConfig>() as u32,
+                axes: 1,
+                instances: 1,
+                reserved: 0,
+                cycle_ns: 1_000_000,
+            };
+            let bytes = storage::size(&config).unwrap();
+            let mut memory = vec![0_u128; bytes.div_ceil(16)];
+            // SAFETY: as long and as aligned as asked for, and alive until the end of the test.
+            let runtime = unsafe { storage::init(memory.as_mut_ptr().cast(), bytes, &config) }.unwrap();
+            let (key, inputs, outputs) = (core::ptr::null_mut(), core::ptr::null(), core::ptr::null_mut());
+            let call = |rests: bool| {
+                let look = |_: &mut Inner| {
+                    assert!(!in_look, "on purpose");
+                    Ok(rests)
+                };
+                let rest = |_: &mut Inner, _, _, _| panic!("on purpose");
+                // SAFETY: the runtime made above; nothing uses the pointers.
+                unsafe { in_tick(runtime, key, inputs, outputs, look, rest) }
+            };
+            // SAFETY: the runtime made above.
+            let begin = || unsafe { enter(runtime, When::Outside, |inner| inner.begin(0)) };
+            assert_eq!(call(true), Code::NotInTick as i32);
+            assert_eq!(begin(), 0);
+            if !in_look {
+                assert_eq!(call(true), 0, "the other half is not come to");
+            }
+            assert_eq!(call(false), Code::Internal as i32);
+            assert_eq!(call(false), Code::NotInTick as i32, "the tick has ended");
+            assert_eq!(begin(), 0, "the runtime is free, but");
+            // SAFETY: the runtime made above.
+            let after = unsafe { enter(runtime, When::InTick, |inner| running(inner)) };
+            assert_eq!(after, Code::Internal as i32, "it stays stopped");
+        }
     }
 }

@@ -10,7 +10,7 @@ use standstill_axis::{
     Axis, AxisId, AxisState, Drive, DriveFeedback, InstanceId, Log, Source, Standard, steps,
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
-use standstill_fb::{PinType, axis_number, numbered_axis};
+use standstill_fb::{Context, PinType, axis_number, numbered_axis};
 
 /// The instance in records of what no block caused; `standstill-scan` has the same.
 pub(crate) const NOBODY: InstanceId = InstanceId(u16::MAX);
@@ -291,6 +291,38 @@ impl Inner {
             }) if *found == generation => Ok((number, block)),
             _ => Err(Code::UnknownKey),
         }
+    }
+
+    /// The instance of a key as what `find` takes it for, and what it is called with.
+    #[inline(always)]
+    pub fn instance<T>(
+        &mut self,
+        key: u64,
+        find: impl FnOnce(&mut BlockInstance) -> Option<&mut T>,
+    ) -> Result<(&mut T, Context<'_>), Code> {
+        let place = (key as u32 as usize).wrapping_sub(1);
+        let slot = self.slots.slice_mut().get_mut(place).ok_or(Code::UnknownKey)?;
+        if slot.generation != (key >> 32) as u32 {
+            return Err(Code::UnknownKey);
+        }
+        let missing = if slot.block.is_none() {
+            Code::UnknownKey
+        } else {
+            Code::WrongBlock
+        };
+        let Some(found) = slot.block.as_mut().and_then(find) else {
+            return Err(missing);
+        };
+        let context = Context {
+            now_ns: self.now_ns,
+            scan: self.scan,
+            // At most 65534, so no cut is made.
+            instance: InstanceId(key as u16),
+            axes: self.axes.slice_mut(),
+            log: &mut self.log,
+            tables: &self.cells,
+        };
+        Ok((found, context))
     }
 
     /// A place for a new instance; its key. Cost: a look at every place, at most 65534.

@@ -141,7 +141,10 @@ struct Out {
 #[derive(Debug)]
 pub struct CHost {
     runtime: *mut c::Runtime,
+    function: Call,
     key: u64,
+    /// Kept from scan to scan, as the instance of the host in Rust keeps its own.
+    out: Out,
     _storage: Vec<u128>,
 }
 
@@ -181,7 +184,13 @@ impl CHost {
                 && c::standstill_tick_begin(runtime, 0) == 0;
             let mut host = Self {
                 runtime,
+                // Hidden from the compiler: in C no call of the library is put in line.
+                function: black_box(c::mc_move_absolute),
                 key: 0,
+                out: Out {
+                    size: size_of::<Out>() as u32,
+                    ..Out::default()
+                },
                 _storage: storage,
             };
             good.then(|| {
@@ -202,20 +211,16 @@ impl CHost {
             velocity: wishes.velocity,
             ..In::default()
         };
-        let mut out = Out {
-            size: size_of::<Out>() as u32,
-            ..Out::default()
-        };
-        // SAFETY: all pointers lead to what their types say, and sizes are set. The function's address is hidden from
-        // the compiler: in C no call is put in line.
+        // SAFETY: all pointers lead to what their types say, and sizes are set.
         let code = unsafe {
-            black_box::<Call>(c::mc_move_absolute)(
+            (self.function)(
                 self.runtime,
                 &mut self.key,
                 from_ref(&given).cast(),
-                from_mut(&mut out).cast(),
+                from_mut(&mut self.out).cast(),
             )
         };
+        let out = &self.out;
         (code == 0).then_some((out.done != 0, out.active != 0, out.error != 0))
     }
 }
