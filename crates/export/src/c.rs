@@ -9,7 +9,7 @@ use standstill_fb::{BlockInfo, Direction, Pin, PinType, TableInfo, Value};
 use std::fmt::Write as _;
 
 /// The header of the runtime; a test of the C library holds it against its source.
-const RUNTIME: &str = include_str!("../../capi/include/standstill.h");
+const RUNTIME: &str = include_str!("standstill.h");
 
 /// Says whose work it is, and that it is no place to edit.
 pub(crate) const NOTICE: &str = "\
