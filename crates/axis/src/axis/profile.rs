@@ -229,11 +229,13 @@ impl<P: Planner> Axis<P> {
         };
         match self.plan_profile(&mut owner, profile, source, log) {
             Ok(motion) => {
+                // The curve starts where the sum is.
+                self.end_superimposed(Fate::Aborted);
                 self.enter(start_event(&owner.work));
                 self.before = self.limits_before(&owner.limits);
                 self.adopt(owner, motion, source.scan, log);
             }
-            Err(error) => self.drop_profile(error, source.scan, log),
+            Err(error) => self.drop_profile(Fate::Failed(error), error, source.scan, log),
         }
     }
 
@@ -287,7 +289,8 @@ impl<P: Planner> Axis<P> {
             return;
         }
         let before = self.limits_before(&next.limits);
-        self.end_superimposed(Fate::Aborted);
+        // What was added stays added as long as the axis goes on as it is.
+        self.end_superimposed_command(Fate::Aborted);
         self.queue.pop();
         self.end_owner(self.fate_at_hand_over());
         let starts_at_rest = self.setpoint.is_at_rest();
@@ -314,10 +317,23 @@ impl<P: Planner> Axis<P> {
         is_endless && self.goal_reached()
     }
 
+    /// The block that would give the profile `id` its points does not do so any more: it was triggered anew. One that waits
+    /// is passed over when its turn comes; one whose turn has come ends as if it could not start.
+    pub fn withdraw_profile(&mut self, id: CommandId, source: Source, log: &mut Log) {
+        if self.profile_is_due(id) {
+            self.drop_profile(Fate::Aborted, ErrorId::RemovedFromBuffer, source.scan, log);
+        }
+        for entry in self.queue.iter_mut().filter(|entry| entry.id == id) {
+            if let Work::Profile { due, .. } = &mut entry.work {
+                *due = false;
+            }
+        }
+    }
+
     /// A due profile cannot start.
     #[cold]
-    fn drop_profile(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
-        self.end_owner(Fate::Failed(error));
+    fn drop_profile(&mut self, fate: Fate, error: ErrorId, scan: u64, log: &mut Log) {
+        self.end_owner(fate);
         if self.setpoint.is_at_rest() {
             self.motion = Motion::Hold;
             self.enter(AxisEvent::MotionDone);

@@ -37,7 +37,8 @@ pub(super) enum Work {
     Through { to: Place, end_velocity: f64 },
     /// To a velocity (u/s); with `along` its sign is taken relative to the motion when it becomes active.
     Velocity { velocity: f64, along: bool },
-    /// Along a curve; with `due` it owns the axis, but its points have yet to come from its block.
+    /// Along a curve; with `due` its points have yet to come from its block, when it owns the axis. One that waits
+    /// without is withdrawn, and passed over when its turn comes.
     Profile {
         kind: ProfileKind,
         due: bool,

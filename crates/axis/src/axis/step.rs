@@ -233,8 +233,14 @@ impl<P: Planner> Axis<P> {
             if self.write_queued(scan, log) {
                 continue;
             }
-            if let Work::Profile { .. } = next.work {
-                return self.begin_due(next);
+            if let Work::Profile { due, .. } = next.work {
+                if due {
+                    return self.begin_due(next);
+                }
+                // Nobody would give it its points.
+                self.queue.pop();
+                self.decide(next.id, Fate::Aborted);
+                continue;
             }
             let passage_from = self.aim(&mut next, from);
             next.passage = self.passage(&next, passage_from, 1);

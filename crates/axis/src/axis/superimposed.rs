@@ -313,7 +313,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Ends the superimposed command, if there is one; what it set in motion is left to the caller.
-    fn end_superimposed_command(&mut self, fate: Fate) {
+    pub(super) fn end_superimposed_command(&mut self, fate: Fate) {
         let Some(layer) = &mut self.layer else { return };
         let moves = layer.moves();
         let Some(command) = layer.command.take() else {

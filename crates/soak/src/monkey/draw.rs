@@ -1,17 +1,27 @@
 //! Random machines.
 
-use super::scenario::{AxisSetup, BlockSetup, Scenario};
+use super::scenario::{AxisSetup, BlockSetup, Scenario, TableSetup, kind_of};
 use crate::random::Random;
 use standstill_axis::{
     AboveLimit, AxisConfig, Defaults, Limits, MoveProfile, PowerOff, QUEUE_MAX, Scaling, StartState,
 };
 use standstill_blocks::REGISTRY;
-use standstill_fb::{BlockInfo, Value};
+use standstill_fb::{BlockInfo, PinType, Value};
 
 use crate::rules::Kind;
 
 /// Most axes of a machine.
 const AXES: u64 = 3;
+
+/// Played more often than chance would have it: a curve, or one that waits for an edge and one that ends that.
+const FAVOURED: [&[&str]; 6] = [
+    &["MC_PositionProfile"],
+    &["MC_VelocityProfile"],
+    &["MC_AccelerationProfile"],
+    &["MC_VelocityProfile", "MC_PositionProfile"],
+    &["MC_TouchProbe", "MC_TouchProbe", "MC_AbortTrigger"],
+    &["MC_DigitalCamSwitch"],
+];
 
 /// Lengths of a scan (ns).
 const CYCLES: [i64; 4] = [1_000_000, 250_000, 2_000_000, 10_000_000];
@@ -21,7 +31,12 @@ pub fn scenario(random: &mut Random, scans: u64) -> Scenario {
     let cycle_ns = CYCLES[random.below(CYCLES.len() as u64) as usize];
     let count = 1 + random.below(AXES);
     let axes: Vec<_> = (0..count).map(|_| axis(random, cycle_ns as f64 / 1e9)).collect();
-    let blocks = (0..axes.len()).flat_map(|axis| blocks(random, axis)).collect();
+    let cycle = cycle_ns as f64 / 1e9;
+    let blocks = axes
+        .iter()
+        .enumerate()
+        .flat_map(|(place, axis)| blocks(random, place, &axis.config.limits, cycle))
+        .collect();
     let mut scenario = Scenario {
         cycle_ns,
         scans,
@@ -139,11 +154,11 @@ fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
 }
 
 /// MC_Power, MC_Reset and some more for an axis.
-fn blocks(random: &mut Random, axis: usize) -> Vec<BlockSetup> {
+fn blocks(random: &mut Random, axis: usize, limits: &Limits, cycle: f64) -> Vec<BlockSetup> {
     let of = |kinds: &[Kind]| -> Vec<&'static BlockInfo> {
         REGISTRY
             .iter()
-            .filter(|info| kinds.contains(&Kind::of(info)))
+            .filter(|info| kinds.contains(&kind_of(info)))
             .collect()
     };
     let owners = of(&[
@@ -161,10 +176,13 @@ fn blocks(random: &mut Random, axis: usize) -> Vec<BlockSetup> {
     if random.one_in(2) {
         names.push(one_of(random, &others).name);
     }
-    let setup = |block: &'static str| BlockSetup {
+    if random.one_in(3) {
+        names.extend(one_of(random, &FAVOURED));
+    }
+    let mut setup = |block: &'static str| BlockSetup {
         block,
         axis,
-        constants: match Kind::of(one(block)) {
+        constants: match kind_of(one(block)) {
             Kind::Power => one(block)
                 .pin("Enable")
                 .map(|(pin, _)| (pin, Value::Bool(true)))
@@ -172,8 +190,71 @@ fn blocks(random: &mut Random, axis: usize) -> Vec<BlockSetup> {
                 .collect(),
             _ => Vec::new(),
         },
+        tables: tables(random, one(block), limits, cycle),
     };
-    names.into_iter().map(setup).collect()
+    names.into_iter().map(&mut setup).collect()
+}
+
+/// The tables of a block.
+fn tables(random: &mut Random, info: &BlockInfo, limits: &Limits, cycle: f64) -> Vec<TableSetup> {
+    let mut tables = Vec::new();
+    for (pin, entry) in info.pins().enumerate() {
+        let PinType::Table(of) = entry.ty else { continue };
+        let records = match of.name {
+            "MC_TP_REF" | "MC_TV_REF" | "MC_TA_REF" => points(random, of.name, limits, cycle),
+            "MC_CAMSWITCH_REF" => (0..1 + random.below(3))
+                .map(|_| cam(random, limits.velocity * cycle))
+                .collect(),
+            _ => Vec::new(),
+        };
+        tables.push(TableSetup { pin, records });
+    }
+    tables
+}
+
+/// Points of a profile that most axes can follow from rest: time since the one before (ns), value, and whether the
+/// curve is level there.
+fn points(random: &mut Random, of: &str, limits: &Limits, cycle: f64) -> Vec<Vec<f64>> {
+    // Time in which the axis gets to its velocity and back, by all that limits it.
+    let jerk = limits.jerk.min(limits.acceleration / cycle);
+    let snap = limits.snap.min(jerk / cycle);
+    let slow = limits.velocity / limits.acceleration.min(limits.deceleration)
+        + limits.acceleration / jerk
+        + jerk / snap;
+    let count = 1 + random.below(6);
+    let mut position = 0.0;
+    let point = |_| {
+        let time = slow * random.log_between(0.7, 10.0);
+        let part = random.between(-0.4, 0.4);
+        let value = match of {
+            "MC_TP_REF" => {
+                position += part * limits.velocity * time;
+                position
+            }
+            "MC_TV_REF" => 2.0 * part * limits.velocity,
+            _ => part * limits.velocity / time,
+        };
+        let late = if random.one_in(40) { -1.0 } else { 1.0 };
+        vec![
+            late * (time * 1e9).floor(),
+            value,
+            f64::from(u8::from(random.one_in(4))),
+        ]
+    };
+    (0..count).map(point).collect()
+}
+
+/// A cam of some scans' way: track, ends, direction, mode, duration (ns).
+fn cam(random: &mut Random, way: f64) -> Vec<f64> {
+    let first = random.between(-50.0, 50.0) * way;
+    vec![
+        random.below(4) as f64 + 1.0,
+        first,
+        first + random.log_between(0.1, 50.0) * way,
+        random.below(3) as f64,
+        random.below(2) as f64,
+        random.below(20) as f64 * 1e6,
+    ]
 }
 
 /// A block of the registry by its name there.

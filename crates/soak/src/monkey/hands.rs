@@ -126,7 +126,7 @@ impl<'a> Monkey<'a> {
             if entry.direction != Direction::Input || Some(pin) == instance.trigger {
                 continue;
             }
-            if let Some(value) = self.value(instance.kind, entry, axis)
+            if let Some(value) = self.value(instance, entry, axis)
                 && instance.block.get(pin) != Some(value)
             {
                 actions.push(Action::Set { block, pin, value });
@@ -135,7 +135,8 @@ impl<'a> Monkey<'a> {
     }
 
     /// A value for a pin; none leaves it as it is.
-    fn value(&mut self, kind: Kind, pin: &Pin, axis: &Axis) -> Option<Value> {
+    fn value(&mut self, instance: &Instance, pin: &Pin, axis: &Axis) -> Option<Value> {
+        let (kind, block) = (instance.kind, instance.block.info().name);
         match pin.ty {
             PinType::Bool => {
                 let odds = match (kind, pin.name) {
@@ -154,18 +155,15 @@ impl<'a> Monkey<'a> {
             PinType::Lreal if self.random.one_in(BAD) => {
                 Some(Value::Lreal(one_of(self.random, &BAD_NUMBERS)))
             }
-            PinType::Lreal => self.number(pin.name, axis).map(Value::Lreal),
-            PinType::Int
-            | PinType::Word
-            | PinType::Dword
-            | PinType::Time
-            | PinType::Axis(_)
-            | PinType::Table(_) => None,
+            PinType::Lreal => self.number(block, pin.name, axis).map(Value::Lreal),
+            // Which tracks work.
+            PinType::Dword => Some(Value::Dword(self.random.below(16) as u32)),
+            PinType::Int | PinType::Word | PinType::Time | PinType::Axis(_) | PinType::Table(_) => None,
         }
     }
 
     /// A number that makes sense at a pin.
-    fn number(&mut self, pin: &str, axis: &Axis) -> Option<f64> {
+    fn number(&mut self, block: &str, pin: &str, axis: &Axis) -> Option<f64> {
         let config = axis.config();
         let limits = &config.limits;
         let way = limits.velocity * self.cycle;
@@ -177,6 +175,21 @@ impl<'a> Monkey<'a> {
                     _ => near,
                 })
             }
+            // Of a profile: where the axis is, or 0, or anywhere.
+            "Offset" if block == "MC_PositionProfile" => match self.random.below(8) {
+                0 => Some(0.0),
+                1 => Some(self.length(way)),
+                _ => Some(axis.setpoint().position),
+            },
+            "Offset" => Some(if self.random.one_in(4) {
+                0.2 * limits.velocity * self.random.between(-1.0, 1.0)
+            } else {
+                0.0
+            }),
+            "TimeScale" => Some(self.random.between(0.8, 2.0)),
+            "PositionScale" | "VelocityScale" | "AccelerationScale" => Some(self.random.between(-1.0, 1.0)),
+            // Of the window of a probe.
+            "FirstPosition" | "LastPosition" => Some(axis.setpoint().position + self.length(way)),
             "Distance" => Some(self.length(way)),
             "Velocity" | "VelocityDiff" | "EndVelocity" => {
                 let part = self.part(limits.velocity)?;

@@ -1,6 +1,6 @@
 //! The run of a scenario through the executor, with every rule held in every scan.
 
-use super::scenario::{Action, Bench, FAULT_CODE, FaultKind, Scenario, axis_id};
+use super::scenario::{Action, Bench, FAULT_CODE, FaultKind, Scenario, axis_id, kind_of};
 use crate::rules::arrows::{Part, Reach};
 use crate::rules::fence::Fence;
 use crate::rules::limits::{Track, check_excess};
@@ -114,7 +114,7 @@ impl Instance {
         let trigger = ["Execute", "Enable", "JogForward"].into_iter().find_map(place);
         let on = trigger.and_then(|pin| block.get(pin)) == Some(Value::Bool(true));
         Self {
-            kind: Kind::of(info),
+            kind: kind_of(info),
             outputs: Outputs::of(info),
             axis,
             shown: Shown::default(),
@@ -248,6 +248,8 @@ impl<H: Hands> Run<'_, H> {
         let state = axis.state();
         let refusing = matches!(state, AxisState::Disabled | AxisState::ErrorStop);
         let newest = axis.newest_command();
+        let due = instance.command.is_some_and(|id| axis.profile_is_due(id));
+        let part = if due { Part::DueCall } else { Part::Call };
         instance.block.call(context);
         let axis = &context.axes[instance.axis];
         let (was, now) = (instance.shown, instance.outputs.read(&instance.block));
@@ -314,7 +316,7 @@ impl<H: Hands> Run<'_, H> {
         let (was, now) = (state, axis.state());
         if was != now {
             self.states[instance.axis] = now;
-            self.reach.check(Part::Call, was, now)?;
+            self.reach.check(part, was, now)?;
         }
         Ok(())
     }

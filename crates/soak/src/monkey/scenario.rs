@@ -1,8 +1,9 @@
 //! A run as data: axes, block instances in call order, and what is done to them in which scan.
 
+use crate::rules::Kind;
 use standstill_axis::{AxisConfig, AxisId, DrivePosition, IdealDrive, Standard, StartState};
 use standstill_blocks::BlockInstance;
-use standstill_fb::{AnyInstance, Value};
+use standstill_fb::{AnyInstance, BlockInfo, Pin, PinType, TableRef, Value};
 use standstill_scan::Machine;
 
 /// Axes over ideal drives.
@@ -43,6 +44,17 @@ pub struct BlockSetup {
     pub axis: usize,
     /// Inputs that hold from the start, by pin.
     pub constants: Vec<(usize, Value)>,
+    /// Its tables.
+    pub tables: Vec<TableSetup>,
+}
+
+/// The table at a pin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableSetup {
+    /// The pin.
+    pub pin: usize,
+    /// Its records, each with all its fields as numbers of a table.
+    pub records: Vec<Vec<f64>>,
 }
 
 /// Something done at the latch of a scan.
@@ -108,6 +120,26 @@ impl FaultKind {
 /// The code faults show.
 pub const FAULT_CODE: u16 = 7;
 
+/// What a block is to the rules where its tables are not empty and its drive is an ideal one.
+pub fn kind_of(info: &BlockInfo) -> Kind {
+    match info.name {
+        // Without a drive that holds a torque it is always refused, and that must leave the axis alone.
+        "MC_PositionProfile" | "MC_VelocityProfile" | "MC_AccelerationProfile" | "MC_TorqueControl" => {
+            Kind::Motion
+        }
+        // The drive sees no edge: it waits until it is aborted, or finds the probe taken.
+        "MC_TouchProbe" => Kind::Administrative,
+        "MC_DigitalCamSwitch" | "MC_ReadActualTorque" => Kind::Reading,
+        _ => Kind::of(info),
+    }
+}
+
+/// The pins of a block that are axes.
+pub fn axis_pins(info: &'static BlockInfo) -> impl Iterator<Item = (usize, &'static Pin)> {
+    let pins = info.pins().enumerate();
+    pins.filter(|(_, pin)| matches!(pin.ty, PinType::Axis(_)))
+}
+
 impl AxisSetup {
     fn drive(&self) -> IdealDrive {
         let config = &self.config;
@@ -133,17 +165,29 @@ impl Scenario {
         for axis in &self.axes {
             machine.add_axis(axis.config, planner, axis.drive()).ok()?;
         }
+        let tables = self.blocks.iter().flat_map(|setup| &setup.tables);
+        let cells = tables.flat_map(|table| table.records.iter().flatten());
+        machine.tables_mut().extend(cells);
         Some(machine)
     }
 
     /// The instances before the first scan; `None` if a block or one of its pins is unknown.
     pub fn instances(&self) -> Option<Vec<BlockInstance>> {
+        let mut first = 0;
         let made = self.blocks.iter().map(|setup| {
             let mut block = BlockInstance::new(setup.block)?;
-            let (axis, _) = block.info().pin("Axis")?;
-            block.set(axis, Value::Axis(axis_id(setup.axis))).ok()?;
+            for (pin, _) in axis_pins(block.info()) {
+                block.set(pin, Value::Axis(axis_id(setup.axis))).ok()?;
+            }
             for (pin, value) in &setup.constants {
                 block.set(*pin, *value).ok()?;
+            }
+            for table in &setup.tables {
+                let records = u16::try_from(table.records.len()).ok()?;
+                block
+                    .set(table.pin, Value::Table(TableRef { first, records }))
+                    .ok()?;
+                first += u32::try_from(table.records.iter().map(Vec::len).sum::<usize>()).ok()?;
             }
             Some(block)
         });

@@ -1,10 +1,10 @@
 //! A scenario as a scan script that `standstill run` takes.
 
 use super::run::{Failure, Who};
-use super::scenario::{Action, AxisSetup, FAULT_CODE, Scenario};
+use super::scenario::{Action, AxisSetup, BlockSetup, FAULT_CODE, Scenario, axis_pins};
 use standstill_axis::{AboveLimit, AxisConfig, Limits, MoveProfile, PowerOff, StartState};
 use standstill_blocks::{REGISTRY, registry::find};
-use standstill_fb::{BlockInfo, Value};
+use standstill_fb::{BlockInfo, Pin, PinType, Value};
 use std::fmt::Write;
 
 /// Names of axes.
@@ -61,15 +61,18 @@ impl Scenario {
         list(&mut text, "axes", '{', axes, '}', false);
         let blocks = self.blocks.iter().enumerate().map(|(index, setup)| {
             let axis = axis_name(setup.axis);
+            let axes = axis_pins(info(setup.block)).map(|(_, pin)| format!("\"{}\": \"{axis}\"", pin.name));
             let constants = setup
                 .constants
                 .iter()
                 .map(|(pin, value)| format!(", \"{}\": {}", self.pin_name(index, *pin), shown(*value)));
             format!(
-                "    {{\"name\": \"{}\", \"type\": \"{}\", \"pins\": {{\"Axis\": \"{axis}\"{}}}}}",
+                "    {{\"name\": \"{}\", \"type\": \"{}\", \"pins\": {{{}{}{}}}}}",
                 self.instance_name(index),
                 setup.block,
-                constants.collect::<String>()
+                axes.collect::<Vec<_>>().join(", "),
+                constants.collect::<String>(),
+                tables(setup)
             )
         });
         list(&mut text, "blocks", '[', blocks, ']', false);
@@ -127,6 +130,7 @@ impl Scenario {
                     ("Busy", shown.busy),
                     ("Active", shown.active),
                     ("Done", shown.done),
+                    ("ProfileCompleted", shown.done),
                     ("CommandAborted", shown.aborted),
                     ("Error", shown.error),
                 ];
@@ -157,6 +161,37 @@ fn list(
     } else {
         writeln!(text, "  \"{key}\": {open}\n{items}\n  {close}{end}")
     };
+}
+
+/// The tables of a block, as further pins.
+fn tables(setup: &BlockSetup) -> String {
+    let pins = info(setup.block).pins().enumerate();
+    let tables = setup.tables.iter().filter_map(|table| {
+        let (_, pin) = pins.clone().find(|(place, _)| *place == table.pin)?;
+        let PinType::Table(of) = pin.ty else { return None };
+        let records = table.records.iter().map(|record| {
+            let fields = of.fields.iter().zip(record);
+            let fields =
+                fields.map(|(field, cell)| format!("\"{}\": {}", field.name, cell_text(field, *cell)));
+            format!("{{{}}}", fields.collect::<Vec<_>>().join(", "))
+        });
+        let records = records.collect::<Vec<_>>().join(", ");
+        Some(format!(", \"{}\": [{records}]", pin.name))
+    });
+    tables.collect()
+}
+
+/// A field of a record.
+fn cell_text(field: &Pin, cell: f64) -> String {
+    match field.ty {
+        PinType::Bool => (cell != 0.0).to_string(),
+        PinType::Lreal => number(cell),
+        PinType::Time => {
+            let (sign, ns) = (if cell < 0.0 { "-" } else { "" }, cell.abs() as u64);
+            format!("\"T#{sign}{}us{}ns\"", ns / 1000, ns % 1000)
+        }
+        _ => (cell as i64).to_string(),
+    }
 }
 
 /// The keys of an axis that differ from the default.

@@ -45,6 +45,7 @@ where
         shrinker.fewer_axes();
         shrinker.plainer_axes();
         shrinker.fewer_changes();
+        shrinker.shorter_tables();
         shrinker.sooner();
         shrinker.rounder();
         if shrinker.best == before || shrinker.budget == 0 {
@@ -194,6 +195,19 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
                 let mut less = self.best.clone();
                 less.blocks[block].constants.remove(place);
                 self.attempt(less);
+            }
+        }
+    }
+
+    /// Tables with fewer records.
+    fn shorter_tables(&mut self) {
+        for block in 0..self.best.blocks.len() {
+            for table in 0..self.best.blocks[block].tables.len() {
+                for record in (0..self.best.blocks[block].tables[table].records.len()).rev() {
+                    let mut less = self.best.clone();
+                    less.blocks[block].tables[table].records.remove(record);
+                    self.attempt(less);
+                }
             }
         }
     }

@@ -10,6 +10,8 @@ pub enum Part {
     Feedback,
     /// One call of a block.
     Call,
+    /// The call in which a profile that owns the axis gives its points, or cannot.
+    DueCall,
     /// The motion step.
     Motion,
 }
@@ -44,6 +46,20 @@ impl Part {
                 ],
                 1,
             ),
+            // A profile that cannot start gives way to the next command, and without one an axis in motion fails: from
+            // any state leads the arrow of an error (note 1 of the diagram).
+            Self::DueCall => (
+                &[
+                    E::MotionDone,
+                    E::StartHoming,
+                    E::StartDiscrete,
+                    E::StartContinuous,
+                    E::StartSynchronized,
+                    E::Stop,
+                    E::Fault,
+                ],
+                2,
+            ),
             Self::Motion => (
                 &[
                     E::MotionDone,
@@ -64,7 +80,7 @@ impl Part {
 
 /// For each part of a scan and each state, the states it may change to, as bits.
 #[derive(Clone, Debug)]
-pub struct Reach([[u16; 8]; 3]);
+pub struct Reach([[u16; 8]; 4]);
 
 const fn bit(state: AxisState) -> u16 {
     1 << state as u16
@@ -72,8 +88,8 @@ const fn bit(state: AxisState) -> u16 {
 
 impl Default for Reach {
     fn default() -> Self {
-        let mut reach = [[0; 8]; 3];
-        for part in [Part::Feedback, Part::Call, Part::Motion] {
+        let mut reach = [[0; 8]; 4];
+        for part in [Part::Feedback, Part::Call, Part::DueCall, Part::Motion] {
             let (events, most) = part.events();
             for from in AxisState::ALL {
                 let mut found = bit(*from);
@@ -112,6 +128,21 @@ mod tests {
         assert!(reach.check(Part::Call, S::Standstill, S::DiscreteMotion).is_ok());
         assert!(reach.check(Part::Call, S::Standstill, S::Disabled).is_err());
         assert!(reach.check(Part::Call, S::ErrorStop, S::Standstill).is_err());
+        assert!(
+            reach
+                .check(Part::Call, S::ContinuousMotion, S::ErrorStop)
+                .is_err()
+        );
+        assert!(
+            reach
+                .check(Part::DueCall, S::ContinuousMotion, S::ErrorStop)
+                .is_ok()
+        );
+        assert!(
+            reach
+                .check(Part::DueCall, S::ErrorStop, S::DiscreteMotion)
+                .is_err()
+        );
         assert!(reach.check(Part::Motion, S::Stopping, S::DiscreteMotion).is_ok());
         assert!(reach.check(Part::Call, S::Homing, S::DiscreteMotion).is_err());
         assert!(reach.check(Part::Feedback, S::Disabled, S::Standstill).is_ok());

@@ -70,7 +70,7 @@ pub struct Shown {
     pub busy: bool,
     /// Active.
     pub active: bool,
-    /// Done.
+    /// Done, ProfileCompleted.
     pub done: bool,
     /// CommandAborted.
     pub aborted: bool,
@@ -78,7 +78,7 @@ pub struct Shown {
     pub error: bool,
     /// ErrorID.
     pub error_id: u16,
-    /// InVelocity, InEndVelocity.
+    /// InVelocity, InEndVelocity, InTorque.
     pub reached: bool,
     /// Status of MC_Power.
     pub status: bool,
@@ -118,10 +118,12 @@ impl Outputs {
             flags: [
                 place("Busy"),
                 place("Active"),
-                place("Done"),
+                place("Done").or_else(|| place("ProfileCompleted")),
                 place("CommandAborted"),
                 place("Error"),
-                place("InVelocity").or_else(|| place("InEndVelocity")),
+                ["InVelocity", "InEndVelocity", "InTorque"]
+                    .into_iter()
+                    .find_map(place),
                 place("Status"),
                 place("Valid"),
             ],
@@ -245,7 +247,7 @@ fn check_execute(call: &Call) -> Result<(), Broken> {
     rule(
         !now.reached || (now.active && now.busy),
         "R43",
-        "InVelocity or InEndVelocity without Active and Busy",
+        "InVelocity, InEndVelocity or InTorque without Active and Busy",
     )?;
     let rising = *execute && !executed;
     rule(
