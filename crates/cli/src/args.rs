@@ -25,6 +25,8 @@ pub enum Command {
     Run(RunArguments),
     /// Run a script in the terminal: step it, stop at events and claims, change its inputs
     Watch(WatchArguments),
+    /// Run a script as a cyclic task, one scan a period of the wall clock (Linux)
+    Live(LiveArguments),
     /// Hold scripts against their claims and goldens
     Test {
         /// Scripts, and folders of them
@@ -300,6 +302,54 @@ pub struct WatchArguments {
     pub include_from: Vec<PathBuf>,
 }
 
+/// What `live` takes.
+#[derive(Args, Debug)]
+pub struct LiveArguments {
+    /// The script
+    #[arg(value_name = "SCRIPT")]
+    pub script: PathBuf,
+    /// Time between two scans, which must be the cycle of the script
+    #[arg(long, value_name = "TIME", value_parser = period)]
+    pub period: u64,
+    /// Write the trace to this file; its ending says how
+    #[arg(long, value_name = "FILE(.csv|.jsonl)")]
+    pub trace: Option<PathBuf>,
+    /// Write when scans began and how long they took to this file
+    #[arg(long, value_name = "FILE.json")]
+    pub timing: Option<PathBuf>,
+    /// What to do when a scan is not over before the next one is due
+    #[arg(long, value_enum, value_name = "WHAT", default_value_t = OnOverrun::Continue)]
+    pub on_overrun: OnOverrun,
+    /// Replace the value of a parameter of the script
+    #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
+    pub set: Vec<(String, f64)>,
+    /// Let the script include files from this folder, too
+    #[arg(long, value_name = "FOLDER")]
+    pub include_from: Vec<PathBuf>,
+}
+
+/// What an overrun of `live` leads to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum OnOverrun {
+    /// Count it, and skip the periods that have passed
+    Continue,
+    /// Stop the programs; the axes stop and switch off
+    Stop,
+}
+
+/// Reads the time between two scans (ns).
+fn period(text: &str) -> Result<u64, String> {
+    let literal = match text.contains('#') {
+        true => text.to_owned(),
+        false => format!("T#{text}"),
+    };
+    let known = standstill_script::parse_time(&literal).ok();
+    known
+        .and_then(|ns| u64::try_from(ns).ok())
+        .filter(|ns| *ns > 0)
+        .ok_or_else(|| "write a time above 0 with its unit, such as 1ms or 250us".to_owned())
+}
+
 /// Reads a delimiter.
 fn delimiter(text: &str) -> Result<char, String> {
     let text = if matches!(text, "tab" | "\\t") { "\t" } else { text };
@@ -350,6 +400,16 @@ mod tests {
         assert_eq!(tolerance("0"), Ok(0.0));
         for wrong in ["-1e-9", "NaN", "Infinity", "1e999", "", "1,5", "small"] {
             assert!(tolerance(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn periods_are_times_above_zero() {
+        assert_eq!(period("1ms"), Ok(1_000_000));
+        assert_eq!(period("0.25ms"), Ok(250_000));
+        assert_eq!(period("T#1s500ms"), Ok(1_500_000_000));
+        for wrong in ["", "0ms", "-1ms", "1", "1 ms", "fast", "NaN", "1e3us"] {
+            assert!(period(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -13,6 +13,7 @@ mod failing;
 mod fmt;
 mod json;
 mod junit;
+mod live;
 mod plan;
 mod progress;
 mod report;
@@ -64,6 +65,7 @@ fn explained(error: &clap::Error) -> Exit {
 fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
     match command {
         Command::Run(arguments) => run::run(arguments, out),
+        Command::Live(arguments) => live::live(arguments, out),
         Command::Watch(arguments) => watch::watch(arguments, out),
         Command::Test {
             paths,

@@ -152,13 +152,13 @@ fn show(name: &str, outcome: &Outcome, out: &mut dyn Write) -> Result<(), Failur
     Ok(())
 }
 
-fn failing_claims(outcome: &Outcome) -> String {
+pub fn failing_claims(outcome: &Outcome) -> String {
     let failures = outcome.verdicts.iter().flat_map(|verdict| &verdict.failures);
     failures.map(|failure| format!("  {failure}\n")).collect()
 }
 
 /// The last line: how many claims held, how long it was, and one number for every bit.
-fn verdict(outcome: &Outcome) -> String {
+pub fn verdict(outcome: &Outcome) -> String {
     let (trace, verdicts) = (&outcome.trace, &outcome.verdicts);
     let held = verdicts.iter().filter(|verdict| verdict.passed()).count();
     let word = if outcome.passed() { "passed" } else { "FAILED" };

@@ -226,6 +226,7 @@ fn layers_depend_only_downwards() {
                 "standstill-trace",
             ],
         ),
+        ("crates/live", "standstill-live", &["standstill-script"]),
         (
             "crates/cli",
             "standstill-cli",
@@ -233,6 +234,7 @@ fn layers_depend_only_downwards() {
                 "standstill-blocks",
                 "standstill-export",
                 "standstill-fb",
+                "standstill-live",
                 "standstill-planner",
                 "standstill-report",
                 "standstill-script",

@@ -5,6 +5,7 @@ mod compare;
 mod ends;
 mod export;
 mod fmt;
+mod live;
 mod machine;
 mod plan;
 mod reports;

@@ -13,7 +13,10 @@ const UNITS: [(&str, i64, i64); 7] = [
 
 /// The nanoseconds of a literal, or why it is none. Without regard to case; only the last unit may have a
 /// fraction, and only the first may exceed its range (`T#25h`). Exact: nothing is rounded.
-pub(crate) fn parse(text: &str) -> Result<i64, &'static str> {
+///
+/// # Errors
+/// Why it is none, as the end of a sentence.
+pub fn parse(text: &str) -> Result<i64, &'static str> {
     const TOO_LARGE: &str = "it does not fit in 64 bits of nanoseconds";
     let lower = text.to_ascii_lowercase();
     let body = ["t#", "time#", "lt#", "ltime#"]

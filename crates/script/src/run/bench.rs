@@ -13,7 +13,7 @@ use standstill_axis::{AxisId, AxisState, ErrorId, InstanceId, Standard};
 use standstill_fb::{AnyInstance, Context, PinType, Value};
 use standstill_record::told::Cells;
 use standstill_scan::{Machine, ProgramFault, ProgramId, Programs, RUNTIME, ScanTime, TaskId};
-use standstill_trace::{Cell, Trace};
+use standstill_trace::{Cell, Note, Trace};
 
 /// The machine of a script: Standard planners over simulated drives.
 pub(crate) type ScriptMachine = Machine<Standard, ScriptDrive>;
@@ -141,6 +141,20 @@ impl<'a> Bench<'a> {
 
     pub(crate) fn into_trace(self) -> (Trace, Vec<Shift>) {
         (self.trace, self.shifts)
+    }
+
+    /// Makes room for so many more rows.
+    pub(crate) fn reserve(&mut self, scans: usize) {
+        self.trace.reserve(scans);
+    }
+
+    /// Adds a note at the last scan.
+    pub(crate) fn tell(&mut self, subject: &str, text: &str) {
+        self.trace.push_note(Note {
+            scan: self.trace.scans().saturating_sub(1),
+            subject: subject.to_owned(),
+            text: text.to_owned(),
+        });
     }
 
     /// Ends the run after this scan; the first reason counts.

@@ -21,6 +21,8 @@ pub struct Session<'a> {
     /// Scans done.
     scans: u64,
     over: bool,
+    /// Programs no longer run; the axes stop and switch off.
+    stopping: bool,
     changes: Vec<Change>,
     standings: Standings,
 }
@@ -60,6 +62,7 @@ impl<'a> Session<'a> {
             bench: Bench::new(script, layout, Trace::new(header))?,
             scans: 0,
             over: script.scans == 0,
+            stopping: false,
             changes: Vec::new(),
             standings: Standings::new(script),
         })
@@ -76,6 +79,14 @@ impl<'a> Session<'a> {
         // Whatever ends this scan early ends the run.
         self.over = true;
         let scan = self.scans;
+        let columns = self.trace().columns().len();
+        // The script's own scans were checked; those of a stop come on top.
+        if self.stopping && (scan + 1).saturating_mul(columns as u64) > CELLS_MAX {
+            return Err(RunError::TooLarge {
+                scans: scan + 1,
+                columns,
+            });
+        }
         let now_ns = self.script.cycle_ns.saturating_mul(scan.cast_signed());
         let report = self
             .executor
@@ -86,8 +97,41 @@ impl<'a> Session<'a> {
             return Err(RunError::Internal(self.executor.describe(fault).to_string()));
         }
         self.scans = scan + 1;
-        self.over = self.bench.is_over(scan) || self.scans >= self.script.scans;
+        self.over = if self.stopping {
+            self.machine.is_off().is_ok()
+        } else {
+            self.bench.is_over(scan) || self.scans >= self.script.scans
+        };
         Ok(true)
+    }
+
+    /// Makes room for the rows of the whole run, so that scans take no memory for them. It is at most that of
+    /// [`CELLS_MAX`] cells of 8 bytes.
+    pub fn reserve(&mut self) {
+        let left = self.script.scans.saturating_sub(self.scans);
+        self.bench.reserve(usize::try_from(left).unwrap_or_default());
+    }
+
+    /// Stops the programs for good: from the next scan on none is called, and every axis stops and switches off in its
+    /// configured way. [`Session::advance`] then goes on until all are off, past the script's own end, too; its steps
+    /// still apply, since what they say of drives stays true. `reason` becomes a note at the last scan. Without effect
+    /// on a run that is over or stops already.
+    pub fn stop(&mut self, reason: &str) {
+        if self.over || self.stopping {
+            return;
+        }
+        self.stopping = true;
+        self.bench.tell("run", reason);
+        self.executor.stop(&mut self.bench, &mut self.machine);
+        self.over = self.machine.is_off().is_ok();
+    }
+
+    /// The first axis that is neither Disabled nor at rest in ErrorStop, and its state.
+    #[must_use]
+    pub fn not_off(&self) -> Option<(&str, &'static str)> {
+        let on = self.machine.is_off().err()?;
+        let axis = self.script.axes.get(on.axis.index())?;
+        Some((&axis.name, on.state.name()))
     }
 
     /// Scans done so far.
@@ -278,5 +322,11 @@ impl<'a> Session<'a> {
         let (mut trace, _) = self.bench.into_trace();
         trace.set_claims(verdicts.iter().map(told).collect());
         Outcome { trace, verdicts }
+    }
+
+    /// The rows so far without judging the claims: those of a run that was stopped speak of scans that never came.
+    #[must_use]
+    pub fn into_trace(self) -> Trace {
+        self.bench.into_trace().0
     }
 }

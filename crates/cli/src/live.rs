@@ -1,0 +1,161 @@
+//! `standstill live`: a script as a cyclic task.
+
+use crate::args::LiveArguments;
+use crate::exit::{Exit, Failure};
+use std::io::Write;
+
+/// Where there is nothing to pace a task with.
+#[cfg(not(target_os = "linux"))]
+pub fn live(_: &LiveArguments, _: &mut dyn Write) -> Result<Exit, Failure> {
+    Err(Failure::usage(
+        "live is unsupported on this system: it needs Linux; `standstill run` gives the same trace without the clock",
+    ))
+}
+
+#[cfg(target_os = "linux")]
+pub use linux::live;
+
+#[cfg(target_os = "linux")]
+mod linux {
+    use super::*;
+    use crate::args;
+    use crate::exit::complain;
+    use crate::run::{failing_claims, failure, verdict};
+    use serde_json::{Map, json};
+    use standstill_live::{Ended, OnOverrun, Stopped, System, Timing, pace};
+    use standstill_script::suite::{self, SuiteError, shown};
+    use standstill_script::{RunError, Session};
+    use standstill_trace::csv::Dialect;
+    use standstill_trace::{Trace, digest, file};
+
+    /// Runs the script in real time. What happened and when go to files; the last line is that of `run`.
+    pub fn live(arguments: &LiveArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
+        let LiveArguments {
+            script: path,
+            period,
+            set,
+            include_from,
+            ..
+        } = arguments;
+        if let Some(trace) = &arguments.trace
+            && !file::can_save(trace)
+        {
+            let name = shown(trace);
+            return Err(Failure::usage(&format!(
+                "--trace {name}: a trace is a .csv or a .jsonl file"
+            )));
+        }
+        let name = shown(path);
+        let (script, _) = suite::read_file(path, set, include_from).map_err(failure)?;
+        let cycle = script.cycle_ns.unsigned_abs();
+        if cycle != *period {
+            return Err(Failure::usage(&format!(
+                "--period {period} ns: the cycle of {name} is {cycle} ns, and a scan moves axes by one cycle, so at \
+                 another pace every velocity would be another; write `--period {cycle}ns`, or change `cycle` in the script"
+            )));
+        }
+        let wrong = |source: RunError| {
+            Failure::from(SuiteError::Run {
+                path: path.clone(),
+                source,
+            })
+        };
+        let mut session = Session::new(&script).map_err(wrong)?;
+        session.reserve();
+        let mut timing = Timing::new(*period);
+        let system = System::prepare().map_err(|error| Failure::io("signals", &error))?;
+        for lack in system.lacks() {
+            complain(&format!("{name}: {lack}"));
+        }
+        let on_overrun = match arguments.on_overrun {
+            args::OnOverrun::Continue => OnOverrun::Continue,
+            args::OnOverrun::Stop => OnOverrun::Stop,
+        };
+        let ended = pace(
+            &mut session,
+            &mut &system,
+            on_overrun,
+            || system.asked(),
+            &mut timing,
+        );
+        let mut about = Map::new();
+        about.insert("script".to_owned(), json!(name));
+        about.insert("ended".to_owned(), json!(told(&ended)));
+        about.insert("system".to_owned(), system.to_json());
+        drop(system);
+        tell(&name, &timing);
+        if let Some(path) = &arguments.timing {
+            let text = format!("{:#}\n", timing.to_json(&about));
+            file::replace(path, |out| out.write_all(text.as_bytes()))?;
+        }
+        let ended = ended.map_err(wrong)?;
+        let on = session
+            .not_off()
+            .map(|(axis, state)| format!("axis {axis} is still in {state}"));
+        let scans = session.scans();
+        let (trace, exit) = match ended {
+            Ended::Script => {
+                let outcome = session.finish();
+                write!(out, "{}", failing_claims(&outcome))?;
+                writeln!(out, "{name}: {}", verdict(&outcome))?;
+                let exit = Exit::of(outcome.passed());
+                (outcome.trace, exit)
+            }
+            Ended::Stopped { why, after } => {
+                let trace = session.into_trace();
+                let digest = digest::whole(&trace);
+                let ramp = scans.saturating_sub(after + 1);
+                let how = on.as_deref().unwrap_or("all axes are off");
+                let cause = cause(why);
+                writeln!(
+                    out,
+                    "{name}: stopped by {cause} after scan {after}, then {ramp} scans to switch off: {how}, \
+                     digest {digest:016x}"
+                )?;
+                (trace, Exit::of(on.is_none() && why != Stopped::Overrun))
+            }
+        };
+        save(&trace, arguments)?;
+        Ok(exit)
+    }
+
+    fn save(trace: &Trace, arguments: &LiveArguments) -> Result<(), Failure> {
+        if let Some(path) = &arguments.trace {
+            file::save_as(trace, path, Dialect::default())?;
+        }
+        Ok(())
+    }
+
+    fn cause(why: Stopped) -> &'static str {
+        match why {
+            Stopped::Asked(signal) => signal,
+            Stopped::Overrun => "an overrun",
+        }
+    }
+
+    fn told(ended: &Result<Ended, RunError>) -> String {
+        match ended {
+            Ok(Ended::Script) => "script".to_owned(),
+            Ok(Ended::Stopped { why, after }) => format!("{} after scan {after}", cause(*why)),
+            Err(error) => format!("error: {error}"),
+        }
+    }
+
+    /// What differs from run to run belongs on standard error.
+    fn tell(name: &str, timing: &Timing) {
+        let us = |ns: u64| ns as f64 / 1e3;
+        let (wake, scan) = (timing.wake_latency(), timing.scan_time());
+        complain(&format!(
+            "{name}: {} scans; woken late by {:.1} us (median), {:.1} us (99 %), {:.1} us (most); a scan took {:.1} us \
+             (median), {:.1} us (most); {} overruns, {} periods skipped",
+            scan.count(),
+            us(wake.quantile_ns(0.5)),
+            us(wake.quantile_ns(0.99)),
+            us(wake.max_ns()),
+            us(scan.quantile_ns(0.5)),
+            us(scan.max_ns()),
+            timing.overruns(),
+            timing.skipped(),
+        ));
+    }
+}
