@@ -8,7 +8,8 @@
 //! so that it ends and does so at the same instruction everywhere; its memory has a limit that is checked before it is
 //! had; and whatever it does wrong is a [`Fault`], after which the host stops the resource.
 //!
-//! [`Program`] is what was compiled, [`Guest`] a running one.
+//! What stands here: [`Program`], which is what was compiled, and [`Guest`], a running one. What does not: which file
+//! a guest comes from, what its variables are called, tasks (`standstill-script`).
 #![forbid(unsafe_code)]
 
 mod engine;
