@@ -4,6 +4,9 @@ use standstill_axis::{AxisConfig, AxisState, DrivePosition, IdealDrive, Limits, 
 use standstill_fb::{Context, PinType, Value};
 use standstill_guest::{Fault, Guest, LoadError, Program, Settings, Symbol, SymbolError, Told};
 use standstill_scan::{Executor, Machine, Mode, ProgramConfig, ProgramFault, ProgramId, Programs};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
 
 const MOVE: &str = include_str!("move.wat");
 
@@ -407,4 +410,90 @@ fn a_flood_of_instances_and_lines_ends_somewhere() {
         .count();
     assert_eq!(made, standstill_guest::INSTANCES_MOST);
     assert_eq!(bench.executor.mode(), Mode::Running);
+}
+
+/// The rows of a move of a guest: states and set-points to the bit.
+fn rows_of(program: &Program) -> Vec<(AxisState, u64, u64)> {
+    let mut bench = Bench::new(program.start().unwrap());
+    let mut rows = Vec::new();
+    for scan in 0..700 {
+        if scan == 20 {
+            bench.set("target", Value::Lreal(2.5), PinType::Lreal);
+            bench.set("go", Value::Bool(true), PinType::Bool);
+        }
+        let (state, position, velocity, _) = bench.scan();
+        rows.push((state, position, velocity));
+    }
+    assert_eq!(bench.get("done", PinType::Bool), Value::Bool(true));
+    rows
+}
+
+/// Runs a compiler; `None`, told aloud, where it is not there, which in CI is a failure.
+fn compiled(name: &str, compiler: &str, arguments: &[&str]) -> Option<Program> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/programs");
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let output = Command::new(compiler)
+        .args(arguments)
+        .arg("-o")
+        .arg(&out)
+        .current_dir(folder)
+        .output();
+    let why = match output {
+        Ok(output) if output.status.success() => {
+            let bytes = fs::read(out).unwrap();
+            return Some(Program::compile(&bytes, Settings::default()).unwrap());
+        }
+        Ok(output) => String::from_utf8_lossy(&output.stderr).into_owned(),
+        Err(error) => error.to_string(),
+    };
+    assert!(
+        std::env::var_os("CI").is_none(),
+        "{compiler} is needed in CI: {why}"
+    );
+    eprintln!("SKIPPED {name}: {compiler} cannot build it here: {why}");
+    None
+}
+
+#[test]
+fn the_same_program_in_c_gives_the_same_motion() {
+    let arguments = [
+        "--target=wasm32",
+        "-O2",
+        "-ffreestanding",
+        "-mbulk-memory",
+        "-nostdlib",
+        "-nostdlibinc",
+        "-Iinclude",
+        "-I../../../export/tests/golden/wasm",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-Wl,--no-entry",
+        "-Wl,--export=go",
+        "-Wl,--export=target",
+        "-Wl,--export=done",
+        "move.c",
+    ];
+    if let Some(program) = compiled("c.wasm", "clang", &arguments) {
+        assert!(rows_of(&program) == rows_of(&compile(MOVE).unwrap()));
+    }
+}
+
+#[test]
+fn the_same_program_in_rust_gives_the_same_motion() {
+    let arguments = [
+        "--edition",
+        "2024",
+        "--target",
+        "wasm32-wasip1",
+        "--crate-type",
+        "cdylib",
+        "-O",
+        "-C",
+        "panic=abort",
+        "move.rs",
+    ];
+    if let Some(program) = compiled("rust.wasm", "rustc", &arguments) {
+        assert!(rows_of(&program) == rows_of(&compile(MOVE).unwrap()));
+    }
 }
