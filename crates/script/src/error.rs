@@ -84,6 +84,8 @@ codes! {
     BadInclude = "bad_include",
     /// An override of something that is not both in an included file and here.
     BadOverride = "bad_override",
+    /// A guest program that cannot be had or is not usable.
+    BadProgram = "bad_program",
     /// A script whose trace would be larger than the runtime records.
     TooLarge = "too_large",
 }

@@ -4,7 +4,7 @@ use standstill_axis::{AxisConfig, AxisState};
 use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Gains, Plant, Stops};
 use standstill_drives::switches::Switches;
-use standstill_fb::{BlockInfo, Value};
+use standstill_fb::{BlockInfo, PinType, Value};
 use std::collections::BTreeMap;
 
 /// A script that has been read and checked.
@@ -26,6 +26,8 @@ pub struct Script {
     pub tables: Vec<f64>,
     /// Block instances in call order.
     pub blocks: Vec<Instance>,
+    /// Guest programs; each runs in its task after the task's instances.
+    pub programs: Vec<Program>,
     /// Tasks; at least `main`.
     pub tasks: Vec<Task>,
     /// Steps in file order.
@@ -175,6 +177,30 @@ pub struct Instance {
     pub wires: Vec<(usize, Wire)>,
 }
 
+/// A guest program.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// Name as written.
+    pub name: String,
+    /// Index of its task in [`Script::tasks`].
+    pub task: usize,
+    /// What was compiled.
+    pub guest: standstill_guest::Program,
+    /// Its variables that are signals; before them stands `Fault`, which the runtime writes.
+    pub symbols: Vec<Symbol>,
+}
+
+/// A variable of a guest.
+#[derive(Clone, Debug)]
+pub struct Symbol {
+    /// Name as written.
+    pub name: String,
+    /// BOOL, INT, WORD, DWORD, LREAL or TIME.
+    pub ty: PinType,
+    /// Where it stands; where the guest exports a variable of this name if absent.
+    pub address: Option<u32>,
+}
+
 /// Where a value comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Point {
@@ -182,6 +208,8 @@ pub enum Point {
     Input(usize),
     /// Pin of an instance, both by index.
     Pin(usize, usize),
+    /// Variable of a guest program, both by index; 0 is `Fault`.
+    Symbol(usize, usize),
 }
 
 /// What feeds an input pin.

@@ -8,6 +8,7 @@ use crate::read::block::is_needed;
 use crate::read::drive::{NODE_DIRECTIONS, REACTIONS};
 use crate::read::homing::{HOME_DIRECTIONS, PROCEDURES, SWITCH_EDGES};
 use crate::read::names::KEYWORDS;
+use crate::read::program::{FUEL_MAX, MEMORY_MAX, SYMBOL_TYPES};
 use crate::read::shape::{self, Shape};
 use crate::read::step::FAULT_KINDS;
 use crate::read::value::NUMBER_WORDS;
@@ -132,6 +133,7 @@ pub(crate) fn script_key(key: &str) -> Value {
         "inputs" => names(any(&[json!({"type": "boolean"}), of("number")])),
         "tasks" => names(of("task")),
         "blocks" => list(of("block"), 0),
+        "programs" => names(of("program")),
         "steps" => list(of("step"), 0),
         "expect" => list(of("claim"), 0),
         "stop_when" => of("conditions"),
@@ -181,6 +183,10 @@ fn parts() -> Vec<(String, Value)> {
         ("axis", required(&["limits"], object(&shape::AXIS, axis_key))),
         ("task", task()),
         ("block", block()),
+        (
+            "program",
+            required(&["wasm"], object(&shape::PROGRAM, program_key)),
+        ),
         ("wire", wire()),
         ("step", step()),
         ("conditions", conditions()),
@@ -191,6 +197,23 @@ fn parts() -> Vec<(String, Value)> {
         ),
     ];
     defs.map(|(name, def)| (name.to_owned(), def)).into()
+}
+
+fn program_key(key: &str) -> Value {
+    let symbol = |key: &str| match key {
+        "type" => json!({"enum": SYMBOL_TYPES}),
+        _ => of("count"),
+    };
+    match key {
+        "fuel" => integer(1, FUEL_MAX),
+        "memory" => integer(1, MEMORY_MAX),
+        "may_fault" => json!({"type": "boolean"}),
+        "symbols" => names(any(&[
+            json!({"enum": SYMBOL_TYPES}),
+            required(&["type"], object(&shape::SYMBOL, symbol)),
+        ])),
+        _ => text(),
+    }
 }
 
 fn axis_key(key: &str) -> Value {

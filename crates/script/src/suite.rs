@@ -5,13 +5,13 @@
 use crate::golden::{self, Mode, Standing};
 use crate::model::Script;
 use crate::run::{Outcome, RunError, run_with};
-use crate::{ScriptError, Verdict, read_with};
+use crate::{ScriptError, Verdict, read_with_programs};
 use standstill_trace::compare::Yardstick;
 use standstill_trace::golden::GoldenError;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
-use std::io;
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 /// What the name of a scan script ends in.
@@ -151,7 +151,8 @@ pub fn read_file(
 ) -> Result<(Script, String), SuiteError> {
     let text = read_text(path)?;
     let mut load = |inner: &str| included(path, inner, allowed);
-    let script = read_with(&text, &shown(path), parameters, &mut load)?;
+    let mut guest = |inner: &str| module(path, inner, allowed);
+    let script = read_with_programs(&text, &shown(path), parameters, &mut load, &mut guest)?;
     Ok((script, text))
 }
 
@@ -161,6 +162,7 @@ pub struct Texts {
     name: String,
     text: String,
     included: BTreeMap<String, String>,
+    guests: BTreeMap<String, Vec<u8>>,
 }
 
 impl Texts {
@@ -177,11 +179,18 @@ impl Texts {
             files.insert(inner.to_owned(), text.clone());
             Ok(text)
         };
-        let script = read_with(&text, &name, &[], &mut load)?;
+        let mut guests = BTreeMap::new();
+        let mut guest = |inner: &str| {
+            let bytes = module(path, inner, allowed)?;
+            guests.insert(inner.to_owned(), bytes.clone());
+            Ok(bytes)
+        };
+        let script = read_with_programs(&text, &name, &[], &mut load, &mut guest)?;
         let texts = Self {
             name,
             text,
             included: files,
+            guests,
         };
         Ok((texts, script))
     }
@@ -195,7 +204,11 @@ impl Texts {
             let text = self.included.get(inner).cloned();
             text.ok_or_else(|| "it was not included before".to_owned())
         };
-        read_with(&self.text, &self.name, parameters, &mut load)
+        let mut guest = |inner: &str| {
+            let bytes = self.guests.get(inner).cloned();
+            bytes.ok_or_else(|| "it was not there before".to_owned())
+        };
+        read_with_programs(&self.text, &self.name, parameters, &mut load, &mut guest)
     }
 }
 
@@ -214,6 +227,15 @@ pub fn read_text(path: &Path) -> Result<String, SuiteError> {
 /// The text of a file that the script at `outer` includes.
 fn included(outer: &Path, inner: &str, allowed: &[PathBuf]) -> Result<String, String> {
     fs::read_to_string(beside(outer, inner, allowed, "script")?).map_err(why)
+}
+
+/// The bytes of a guest that the script at `outer` names; of a file that is too large so many that it shows.
+fn module(outer: &Path, inner: &str, allowed: &[PathBuf]) -> Result<Vec<u8>, String> {
+    let file = fs::File::open(beside(outer, inner, allowed, "script")?).map_err(why)?;
+    let mut bytes = Vec::new();
+    let most = standstill_guest::MODULE_MOST as u64 + 1;
+    file.take(most).read_to_end(&mut bytes).map_err(why)?;
+    Ok(bytes)
 }
 
 /// The system's own path of a file that is named relative to the folder of `outer`, and lies in this folder or below,

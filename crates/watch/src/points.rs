@@ -52,5 +52,17 @@ pub(crate) fn lines(script: &Script) -> Vec<Line> {
             });
         }
     }
+    for (index, program) in script.programs.iter().enumerate() {
+        lines.push(heading(format!("{} PROGRAM", program.name)));
+        for (number, symbol) in program.symbols.iter().enumerate() {
+            lines.push(Line {
+                name: symbol.name.clone(),
+                full: format!("{}.{}", program.name, symbol.name),
+                point: Some(Point::Symbol(index, number)),
+                output: number == 0,
+                wired: false,
+            });
+        }
+    }
     lines
 }

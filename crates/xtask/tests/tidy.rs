@@ -184,6 +184,11 @@ fn layers_depend_only_downwards() {
             "standstill-export",
             &["standstill-blocks", "standstill-fb"],
         ),
+        (
+            "crates/guest",
+            "standstill-guest",
+            &["standstill-axis", "standstill-blocks", "standstill-fb"],
+        ),
         ("crates/trace", "standstill-trace", &[]),
         ("crates/report", "standstill-report", &["standstill-trace"]),
         (
@@ -194,6 +199,7 @@ fn layers_depend_only_downwards() {
                 "standstill-blocks",
                 "standstill-drives",
                 "standstill-fb",
+                "standstill-guest",
                 "standstill-planner",
                 "standstill-record",
                 "standstill-scan",

@@ -15,6 +15,7 @@ mod include;
 pub(crate) mod json;
 pub(crate) mod machine_map;
 pub(crate) mod names;
+pub(crate) mod program;
 pub(crate) mod shape;
 pub(crate) mod step;
 pub(crate) mod sweep;
@@ -26,7 +27,7 @@ mod wire;
 
 use crate::error::{Code, Diagnostic, ScriptError, quoted};
 use crate::format::number_text;
-use crate::model::{Conditions, DriveSetup, Input, Script, Span};
+use crate::model::{Conditions, DriveSetup, Input, Program, Script, Span};
 use json::{Json, Key, Node};
 use names::{Entity, Names, identifier_error, suggestion};
 use standstill_fb::{PinType, Value};
@@ -58,6 +59,8 @@ struct Reader {
     wires: circle::Wires,
     /// The numbers of the tables read so far.
     tables: Vec<f64>,
+    /// The guest programs read so far.
+    programs: Vec<Option<Program>>,
     errors: Vec<Diagnostic>,
 }
 
@@ -85,6 +88,29 @@ pub fn read_with(
     overrides: &[(String, f64)],
     load: &mut dyn FnMut(&str) -> Result<String, String>,
 ) -> Result<Script, ScriptError> {
+    read_with_programs(text, file_name, overrides, load, &mut |_| {
+        Err("there are no files here".to_owned())
+    })
+}
+
+/// As [`read_with`], for a script that may have guest programs: `guest` gives the bytes of one, named relative to the
+/// script's folder, or says why not.
+///
+/// # Errors
+/// As [`read_with`].
+pub fn read_with_programs(
+    text: &str,
+    file_name: &str,
+    overrides: &[(String, f64)],
+    load: &mut dyn FnMut(&str) -> Result<String, String>,
+    guest: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+) -> Result<Script, ScriptError> {
+    let mut guests: Vec<Vec<u8>> = Vec::new();
+    let mut keep = |path: &str| {
+        let bytes = guest(path)?;
+        guests.push(bytes.clone());
+        Ok(bytes)
+    };
     let plain = without_mark(text);
     let root =
         json::parse(plain).map_err(|diagnostic| ScriptError::new(file_name, plain, vec![diagnostic]))?;
@@ -93,7 +119,7 @@ pub fn read_with(
     let root = reader.with_includes(root, &mut files);
     // What is missing may stand in a file that could not be had.
     let script = if reader.errors.is_empty() {
-        reader.script(&root, overrides)
+        reader.script(&root, overrides, &mut keep)
     } else {
         None
     };
@@ -103,6 +129,7 @@ pub fn read_with(
             Ok(Script {
                 hash: std::iter::once(text.as_bytes())
                     .chain(included)
+                    .chain(guests.iter().map(Vec::as_slice))
                     .fold(FNV_START, fnv1a_64),
                 ..script
             })
@@ -130,7 +157,12 @@ fn fnv1a_64(hash: u64, bytes: &[u8]) -> u64 {
 }
 
 impl Reader {
-    fn script(&mut self, root: &Node, overrides: &[(String, f64)]) -> Option<Script> {
+    fn script(
+        &mut self,
+        root: &Node,
+        overrides: &[(String, f64)],
+        guest: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+    ) -> Option<Script> {
         let fields = self.fields(root, &shape::SCRIPT)?;
         self.version(&fields, "a script")?;
         if let Some(node) = fields.get("$schema") {
@@ -147,10 +179,19 @@ impl Reader {
         let covers = self.covers(&fields);
         let axes = self.axes(&fields);
         let inputs = self.inputs(&fields);
+        // Before whatever may name a variable of theirs.
+        let programs = self.programs(&fields, guest);
         let tasks = self.tasks(&fields);
+        let program_tasks = self.program_tasks(&fields, tasks.as_deref());
         let blocks = self.blocks(&fields, tasks.as_deref());
         let steps = self.steps(&fields);
-        let claims = self.claims(&fields);
+        let claims = self
+            .claims(&fields)
+            .zip(self.fault_claims(&fields))
+            .map(|(mut claims, more)| {
+                claims.extend(more);
+                claims
+            });
         let stop_when = self.stop_when(&fields);
         let script = Script {
             title: title?.to_owned(),
@@ -160,6 +201,7 @@ impl Reader {
             axes: axes?,
             inputs: inputs?,
             blocks: blocks?,
+            programs: self.with_tasks(programs?, program_tasks?),
             tasks: tasks?,
             steps: steps?,
             claims: claims?,
@@ -291,6 +333,7 @@ impl Reader {
                 self.declare_name(&mut places, &key.text, key.span, Entity::Input(index, ty));
             }
         }
+        self.declare_programs(fields, &mut places);
         if let Some(Json::List(items)) = fields.get("blocks").map(|node| &node.json) {
             for (index, node) in items.iter().enumerate() {
                 let member = |name: &str| match &node.json {
@@ -315,6 +358,14 @@ impl Reader {
         }
     }
 
+    fn declare_programs(&mut self, fields: &Fields<'_>, places: &mut BTreeMap<String, Span>) {
+        if let Some(Json::Map(members)) = fields.get("programs").map(|node| &node.json) {
+            for (index, (key, _)) in members.iter().enumerate() {
+                self.declare_name(places, &key.text, key.span, Entity::Program(index));
+            }
+        }
+    }
+
     fn declare_name(&mut self, places: &mut BTreeMap<String, Span>, name: &str, span: Span, entity: Entity) {
         if let Some(why) = identifier_error(name) {
             let message = format!("{} cannot be a name: {why}", quoted(name));
@@ -325,7 +376,9 @@ impl Reader {
             self.report(
                 Diagnostic::new(Code::DuplicateName, span, message)
                     .related(first, "by this one")
-                    .help("axes, inputs and instances share one set of names, without regard to case"),
+                    .help(
+                        "axes, inputs, instances and programs share one set of names, without regard to case",
+                    ),
             );
         }
         self.names.add(name, entity);
@@ -406,7 +459,8 @@ impl Reader {
 
     fn check_size(&mut self, script: &Script, span: Span) {
         let pins: usize = script.blocks.iter().map(|block| block.block.pins().count()).sum();
-        let columns = (2 + 7 * script.axes.len() + script.inputs.len() + pins) as u64;
+        let symbols: usize = script.programs.iter().map(|program| program.symbols.len()).sum();
+        let columns = (2 + 7 * script.axes.len() + script.inputs.len() + pins + symbols) as u64;
         if script.scans.saturating_mul(columns) > CELLS_MAX {
             let message = format!(
                 "{} scans of {columns} columns are more than the {CELLS_MAX} cells of one trace",

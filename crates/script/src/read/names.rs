@@ -160,6 +160,8 @@ pub(crate) enum Entity {
     Input(usize, Option<PinType>),
     /// With its table, unknown if its type was refused.
     Block(usize, Option<&'static BlockInfo>),
+    /// A guest program.
+    Program(usize),
 }
 
 /// All names of a script. Like IEC 61131-3 it does not distinguish case.

@@ -35,6 +35,7 @@ pub(crate) const SCRIPT: Shape = shape(
         "inputs",
         "tasks",
         "blocks",
+        "programs",
         "steps",
         "expect",
         "stop_when",
@@ -206,6 +207,12 @@ pub(crate) const WIRE: Shape = shape("a wire", &["from", "not", "any", "all", "n
 /// The keys of a wire that say what it does; it has exactly one of them.
 pub(crate) const WIRE_KINDS: [&str; 4] = ["from", "not", "any", "all"];
 pub(crate) const TASK: Shape = shape("a task", &["interval", "priority", "single", "watchdog"]);
+
+pub(crate) const PROGRAM: Shape = shape(
+    "a program",
+    &["wasm", "task", "fuel", "memory", "symbols", "may_fault", "note"],
+);
+pub(crate) const SYMBOL: Shape = shape("a symbol", &["type", "address", "note"]);
 
 pub(crate) const STEP: Shape = shape(
     "a step",

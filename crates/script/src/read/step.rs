@@ -153,6 +153,11 @@ impl Reader {
                 return None;
             }
         }
+        if let Point::Symbol(_, 0) = point {
+            let message = format!("{} is written by the runtime", quoted(name));
+            self.report(Diagnostic::new(Code::NotWritable, span, message));
+            return None;
+        }
         let what = format!("{} ({})", quoted(name), ty.iec_name());
         self.value(node, ty, &what).map(|value| Action::Set(point, value))
     }

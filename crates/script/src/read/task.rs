@@ -10,7 +10,7 @@ use standstill_fb::PinType;
 use std::collections::BTreeMap;
 
 /// The task of blocks that name none.
-const MAIN: &str = "main";
+pub(super) const MAIN: &str = "main";
 
 impl Reader {
     pub(super) fn tasks(&mut self, fields: &Fields<'_>) -> Option<Vec<Task>> {
@@ -95,7 +95,7 @@ impl Reader {
         }
     }
 
-    fn task_index(&mut self, name: &str, span: Span, tasks: Option<&[Task]>) -> Option<usize> {
+    pub(super) fn task_index(&mut self, name: &str, span: Span, tasks: Option<&[Task]>) -> Option<usize> {
         // Tasks that were refused are already reported.
         let tasks = tasks?;
         let index = tasks.iter().position(|task| task.name.eq_ignore_ascii_case(name));

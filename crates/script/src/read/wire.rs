@@ -95,6 +95,13 @@ impl Reader {
             (Some(Entity::Block(..)), None) => {
                 format!("{} is an instance: which pin? Write `{name}.Pin`", quoted(name))
             }
+            (Some(Entity::Program(index)), Some(symbol)) => return self.symbol_point(index, symbol, span),
+            (Some(Entity::Program(_)), None) => {
+                format!(
+                    "{} is a program: which variable? Write `{name}.variable`",
+                    quoted(name)
+                )
+            }
             (Some(Entity::Axis(_)), _) => {
                 format!(
                     "{} is an axis: here an input variable or the pin of an instance must stand",

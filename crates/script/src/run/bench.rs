@@ -3,6 +3,7 @@
 use super::RunError;
 use super::cells;
 use super::drive::ScriptDrive;
+use super::guests::Guests;
 use super::layout::Layout;
 use super::notes::Notes;
 use super::rows::{Rows, Shift};
@@ -73,6 +74,7 @@ pub(crate) struct Bench<'a> {
     /// Axis states after all blocks were called, before the motion step.
     states: Vec<AxisState>,
     notes: Notes,
+    guests: Guests,
     trace: Trace,
     /// Where coordinates moved, for differences of positions.
     shifts: Vec<Shift>,
@@ -86,11 +88,14 @@ pub(crate) struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     pub(crate) fn new(script: &'a Script, layout: Layout, trace: Trace) -> Result<Self, RunError> {
-        let values = Values::new(script)
+        let mut values = Values::new(script)
             .ok_or_else(|| RunError::Internal("the script was not checked before its run".to_owned()))?;
+        let guests = Guests::new(script)?;
+        values.symbols = guests.values(script)?;
         Ok(Self {
             script,
             layout,
+            guests,
             values,
             types: script
                 .blocks
@@ -112,6 +117,11 @@ impl<'a> Bench<'a> {
     /// Tells what went wrong in the last scan.
     pub(crate) fn check(&mut self) -> Result<(), RunError> {
         self.error.take().map_or(Ok(()), Err)
+    }
+
+    /// Whether a guest program has had a fault.
+    pub(crate) fn has_guest_fault(&self) -> bool {
+        self.guests.has_fault()
     }
 
     /// Whether `scan` is the last one.
@@ -206,6 +216,10 @@ impl<'a> Bench<'a> {
                 target: cells::point_name(self.script, point),
                 value,
             });
+        } else if let Point::Symbol(program, symbol) = point
+            && let Some(value) = self.values.read(point)
+        {
+            self.guests.write(program, symbol, value);
         }
     }
 
@@ -233,14 +247,16 @@ impl<'a> Bench<'a> {
                 Cell::Real(axis.actual_position()),
             ]
         });
-        let cells = &self.cells;
+        let named = &self.cells;
         let variables = self
             .values
             .variables
             .iter()
-            .map(|value| cells.cell(PinType::Lreal, *value));
-        let pins = pins.iter().map(|(ty, value)| cells.cell(*ty, *value));
-        let row: Vec<_> = axes.chain(variables).chain(pins).collect();
+            .map(|value| named.cell(PinType::Lreal, *value));
+        let pins = pins.iter().map(|(ty, value)| named.cell(*ty, *value));
+        let symbols = self.values.symbols.iter().flatten();
+        let symbols = symbols.map(|value| named.cell(cells::type_of(*value), *value));
+        let row: Vec<_> = axes.chain(variables).chain(pins).chain(symbols).collect();
         if let Err(error) = self.trace.push_row(&row) {
             self.stop(RunError::Internal(error.to_string()));
         }
@@ -279,6 +295,16 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
                 instance.call(context);
             }
         }
+        for (index, declared) in script.programs.iter().enumerate() {
+            if declared.task != program.0 {
+                continue;
+            }
+            let outcome = self.guests.scan(index, context);
+            if let Some(values) = self.values.symbols.get_mut(index) {
+                self.guests.refresh(index, values);
+            }
+            outcome.map_err(|reason| ProgramFault { reason })?;
+        }
         Ok(0)
     }
 
@@ -289,6 +315,8 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
 
     fn published(&mut self, time: ScanTime, machine: &ScriptMachine) {
         self.push_row(machine);
+        self.guests
+            .take_told(self.script, &mut self.notes, &mut self.trace);
         self.notes.take(machine, &mut self.trace, &mut self.shifts);
         let rows = Rows {
             script: self.script,

@@ -26,8 +26,25 @@ pub(crate) fn point_name(script: &Script, point: Point) -> String {
             let pin = instance.block.pins().nth(pin)?;
             Some(format!("{}.{}", instance.name, pin.name))
         }),
+        Point::Symbol(program, symbol) => script.programs.get(program).and_then(|program| {
+            let symbol = program.symbols.get(symbol)?;
+            Some(format!("{}.{}", program.name, symbol.name))
+        }),
     }
     .unwrap_or_default()
+}
+
+/// The type of a variable of a guest that holds this.
+pub(crate) fn type_of(value: Value) -> PinType {
+    match value {
+        Value::Bool(_) => PinType::Bool,
+        Value::Int(_) => PinType::Int,
+        Value::Word(_) => PinType::Word,
+        Value::Dword(_) => PinType::Dword,
+        Value::Time(_) => PinType::Time,
+        // The others are no types of symbols.
+        _ => PinType::Lreal,
+    }
 }
 
 /// A value as a pin of type `ty` takes it; `None` if the pin cannot hold it.

@@ -1,6 +1,6 @@
 //! Where the signals of a script stand in a row of its trace, and the trace's header.
 
-use crate::model::{AxisNumber, Point, Script};
+use crate::model::{AxisNumber, Point, Program, Script, Symbol};
 use standstill_fb::{PinType, Value};
 use standstill_record::told;
 use standstill_trace as trace;
@@ -12,6 +12,8 @@ pub(crate) struct Layout {
     variables: usize,
     /// First column of each instance.
     instances: Vec<usize>,
+    /// First column of each guest program.
+    programs: Vec<usize>,
 }
 
 impl Layout {
@@ -23,7 +25,16 @@ impl Layout {
             instances.push(next);
             next += instance.block.pins().count();
         }
-        Self { variables, instances }
+        let mut programs = Vec::with_capacity(script.programs.len());
+        for program in &script.programs {
+            programs.push(next);
+            next += program.symbols.len();
+        }
+        Self {
+            variables,
+            instances,
+            programs,
+        }
     }
 
     /// Column of a variable or pin.
@@ -31,6 +42,7 @@ impl Layout {
         match point {
             Point::Input(index) => Some(self.variables + index),
             Point::Pin(instance, pin) => Some(self.instances.get(instance)? + pin),
+            Point::Symbol(program, symbol) => Some(self.programs.get(program)? + symbol),
         }
     }
 
@@ -78,8 +90,23 @@ pub(crate) fn header(script: &Script) -> trace::Header {
             .blocks
             .iter()
             .map(|instance| told::instance(instance.name.clone(), instance.block))
+            .chain(script.programs.iter().map(program))
             .collect(),
         claims: Vec::new(),
+    }
+}
+
+/// A guest program stands in a trace as an instance whose pins are its symbols.
+fn program(program: &Program) -> trace::Instance {
+    let pin = |symbol: &Symbol| trace::Pin {
+        name: symbol.name.clone(),
+        iec_type: symbol.ty.iec_name().to_owned(),
+        direction: trace::Direction::Output,
+    };
+    trace::Instance {
+        name: program.name.clone(),
+        block: "PROGRAM".to_owned(),
+        pins: program.symbols.iter().map(pin).collect(),
     }
 }
 

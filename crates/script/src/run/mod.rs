@@ -3,6 +3,7 @@
 mod bench;
 pub(crate) mod cells;
 mod drive;
+mod guests;
 mod layout;
 mod notes;
 mod rows;
@@ -57,6 +58,14 @@ pub enum RunError {
     Axis {
         /// Name of the axis.
         axis: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A guest program cannot be started.
+    #[error("programs.{program}: {reason}")]
+    Program {
+        /// Its name.
+        program: String,
         /// What is wrong with it.
         reason: String,
     },

@@ -26,6 +26,11 @@ impl Notes {
         Self { taken: 0, names }
     }
 
+    /// Gives a block instance of a guest its name.
+    pub(crate) fn name(&mut self, id: u16, name: String) {
+        self.names.instances.insert(id, name);
+    }
+
     /// Takes this scan's records into the trace.
     pub(crate) fn take(&mut self, machine: &ScriptMachine, trace: &mut Trace, shifts: &mut Vec<Shift>) {
         let log = machine.log();

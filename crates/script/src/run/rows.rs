@@ -191,6 +191,10 @@ impl<'a> Rows<'a> {
                 let instance = self.script.blocks.get(instance)?;
                 instance.block.pins().nth(pin).map(|pin| pin.ty)
             }
+            Signal::Point(Point::Symbol(program, symbol)) => {
+                let program = self.script.programs.get(program)?;
+                program.symbols.get(symbol).map(|symbol| symbol.ty)
+            }
             Signal::Point(Point::Input(_)) | Signal::State(_) | Signal::Axis(..) | Signal::Difference(..) => {
                 None
             }

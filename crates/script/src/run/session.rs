@@ -93,7 +93,10 @@ impl<'a> Session<'a> {
             .scan(now_ns, &mut self.bench, &mut self.machine)
             .map_err(|error| RunError::Internal(error.to_string()))?;
         self.bench.check()?;
-        if let Some(&fault) = report.mode.fault() {
+        // A guest that faults has stopped the resource: the run goes on while its axes ramp down.
+        if let Some(&fault) = report.mode.fault()
+            && !self.bench.has_guest_fault()
+        {
             return Err(RunError::Internal(self.executor.describe(fault).to_string()));
         }
         self.scans = scan + 1;
@@ -175,7 +178,7 @@ impl<'a> Session<'a> {
     pub fn text(&self, point: Point) -> Option<String> {
         let value = self.value(point)?;
         let ty = match point {
-            Point::Input(_) => None,
+            Point::Input(_) | Point::Symbol(..) => None,
             Point::Pin(instance, pin) => {
                 let instance = self.script.blocks.get(instance)?;
                 instance.block.pins().nth(pin).map(|pin| pin.ty)
@@ -219,8 +222,11 @@ impl<'a> Session<'a> {
     /// Why a point cannot be written; `None` if it can.
     #[must_use]
     pub fn obstacle(&self, point: Point) -> Option<&'static str> {
-        let Point::Pin(instance, pin) = point else {
-            return None;
+        let (instance, pin) = match point {
+            Point::Input(_) => return None,
+            Point::Symbol(_, 0) => return Some("the runtime writes it"),
+            Point::Symbol(..) => return None,
+            Point::Pin(instance, pin) => (instance, pin),
         };
         let instance = self.script.blocks.get(instance)?;
         let info = instance.block.pins().nth(pin)?;
@@ -242,7 +248,7 @@ impl<'a> Session<'a> {
             return Err(obstacle.to_owned());
         }
         let ty = match point {
-            Point::Input(_) => None,
+            Point::Input(_) | Point::Symbol(..) => None,
             Point::Pin(instance, pin) => self
                 .script
                 .blocks

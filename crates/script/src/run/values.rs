@@ -1,6 +1,6 @@
 //! What input variables and pins hold, and what wires make of it.
 
-use super::cells::convert;
+use super::cells::{self, convert};
 use crate::model::{Point, Script, Wire};
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, PinType, Value};
@@ -10,6 +10,8 @@ use standstill_fb::{AnyInstance, PinType, Value};
 pub(crate) struct Values {
     pub(crate) variables: Vec<Value>,
     pub(crate) instances: Vec<BlockInstance>,
+    /// Of guest programs: as they were after their last call, and what was written since.
+    pub(crate) symbols: Vec<Vec<Value>>,
 }
 
 impl Values {
@@ -27,6 +29,7 @@ impl Values {
         Some(Self {
             variables: script.inputs.iter().map(|input| input.initial).collect(),
             instances,
+            symbols: Vec::new(),
         })
     }
 
@@ -35,6 +38,7 @@ impl Values {
         match point {
             Point::Input(index) => self.variables.get(index).copied(),
             Point::Pin(instance, pin) => self.instances.get(instance)?.get(pin),
+            Point::Symbol(program, symbol) => self.symbols.get(program)?.get(symbol).copied(),
         }
     }
 
@@ -54,6 +58,10 @@ impl Values {
                 let instance = self.instances.get_mut(instance)?;
                 let ty = instance.info().pins().nth(pin)?.ty;
                 instance.set(pin, convert(value, ty)?).ok()?;
+            }
+            Point::Symbol(program, symbol) => {
+                let place = self.symbols.get_mut(program)?.get_mut(symbol)?;
+                *place = convert(value, cells::type_of(*place))?;
             }
         }
         Some(())

@@ -1,0 +1,131 @@
+//! Why a module is no guest, and what a guest did wrong.
+
+use std::fmt;
+
+/// Why a module cannot be used as a guest.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LoadError {
+    /// Too many bytes.
+    #[error("it has {bytes} bytes, more than the {most} of a guest")]
+    Large {
+        /// Its bytes.
+        bytes: usize,
+        /// What is permitted.
+        most: usize,
+    },
+    /// No module, or one with features or sizes that are not permitted.
+    #[error("it is no module of WebAssembly that can be used here: {0}")]
+    Module(String),
+    /// An import that nobody offers.
+    #[error("it imports `{module}` `{name}`, which does not exist here{hint}")]
+    Import {
+        /// Module of the import.
+        module: String,
+        /// Its name.
+        name: String,
+        /// What may be meant, from the first character on.
+        hint: String,
+    },
+    /// An import or export of another type than that in the list of imports.
+    #[error("its `{name}` has another type than it must have: {wanted}")]
+    Type {
+        /// Its name.
+        name: String,
+        /// What it must be.
+        wanted: &'static str,
+    },
+    /// An export that every guest has is missing.
+    #[error("it has no export `{name}`: {wanted}")]
+    Export {
+        /// Its name.
+        name: &'static str,
+        /// What it must be.
+        wanted: &'static str,
+    },
+    /// Its memory begins larger than it may ever be.
+    #[error(
+        "its memory begins with {bytes} bytes, more than the {most} permitted: raise the limit of memory, or build \
+         it with less"
+    )]
+    Memory {
+        /// What it begins with.
+        bytes: u64,
+        /// What is permitted.
+        most: u64,
+    },
+    /// Its `_initialize` or `plc_init` failed.
+    #[error("its `{name}` failed: {fault}")]
+    Init {
+        /// Which of them.
+        name: &'static str,
+        /// How.
+        fault: Fault,
+    },
+}
+
+/// What a guest did wrong at work. It does not run again.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// It did not come to its end within its budget of instructions.
+    Fuel {
+        /// The budget.
+        most: u64,
+    },
+    /// An instruction that cannot be executed; the name is that of the standard.
+    Trap(&'static str),
+    /// A block or `log` was given an address that is not in the memory of the guest.
+    Pointer {
+        /// The function.
+        function: &'static str,
+        /// Which of its arguments.
+        what: &'static str,
+        /// The address.
+        address: u32,
+        /// Bytes that must be there.
+        bytes: u64,
+        /// Bytes of the memory.
+        memory: u64,
+    },
+    /// The interpreter refused to go on.
+    Other(String),
+    /// It had a fault before.
+    Over,
+}
+
+impl Fault {
+    /// The kind of fault, as the reason for which a resource stops.
+    #[must_use]
+    pub const fn reason(&self) -> &'static str {
+        match self {
+            Self::Fuel { .. } => "the guest used up its fuel",
+            Self::Trap(_) => "the guest trapped",
+            Self::Pointer { .. } => "the guest gave an address outside its memory",
+            Self::Other(_) => "the guest could not go on",
+            Self::Over => "the guest had a fault before",
+        }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fuel { most } => write!(
+                f,
+                "it used up its fuel of {most} in one call: an endless loop, or a limit of `fuel` that is too low"
+            ),
+            Self::Trap(name) => write!(f, "it trapped: {name}"),
+            Self::Pointer {
+                function,
+                what,
+                address,
+                bytes,
+                memory,
+            } => write!(
+                f,
+                "{function}: {bytes} bytes of `{what}` at address {address} do not lie in its memory of {memory} bytes"
+            ),
+            Self::Other(why) => write!(f, "it could not go on: {why}"),
+            Self::Over => f.write_str("it had a fault before and is not called again"),
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! A guest, from its bytes to its scans.
+
+use crate::engine::{Globals, Machine, Module};
+use crate::host::{Host, Told};
+use crate::symbol::SymbolError;
+use crate::{Fault, LoadError, MODULE, Symbol};
+use standstill_axis::Planner;
+use standstill_fb::{Context, Value};
+
+/// What a guest may use up.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Instructions of one call, counted by the interpreter; a call that needs more is a fault.
+    pub fuel: u64,
+    /// Most bytes of memory.
+    pub memory: u64,
+    /// Name of the module that its imports come from.
+    pub module: String,
+    /// The number in records of its first block instance; the others follow. 1 or more.
+    pub first_instance: u16,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            fuel: 1_000_000,
+            memory: 16 << 20,
+            module: MODULE.to_owned(),
+            first_instance: 1,
+        }
+    }
+}
+
+/// A module that has been checked and compiled.
+#[derive(Clone, Debug)]
+pub struct Program {
+    pub(crate) module: Module,
+    pub(crate) settings: Settings,
+}
+
+/// A guest between two scans.
+#[derive(Debug)]
+pub struct Guest {
+    program: Program,
+    machine: Machine,
+    host: Host,
+    fuel_used: u64,
+    faulted: bool,
+}
+
+/// A guest as it stood between two scans: its memory, the block instances it has, and its exported variables.
+///
+/// Variables of WebAssembly itself (globals) that are not exported are not in it; compilers keep the stack pointer there,
+/// which between scans is where it was at the start.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    memory: Vec<u8>,
+    globals: Globals,
+    host: Host,
+    fuel_used: u64,
+    faulted: bool,
+}
+
+impl Program {
+    /// Checks and compiles a module, in its binary form or as text. Cost: proportional to the bytes.
+    ///
+    /// # Errors
+    /// [`LoadError`]: what is wrong with it.
+    pub fn compile(bytes: &[u8], settings: Settings) -> Result<Self, LoadError> {
+        Ok(Self {
+            module: Module::compile(bytes, &settings)?,
+            settings,
+        })
+    }
+
+    /// A guest before its first scan: its `_initialize` and then its `plc_init` have run, in which blocks answer
+    /// [`Code::NotInTick`](crate::Code::NotInTick).
+    ///
+    /// # Errors
+    /// [`LoadError`]: memory that is not there, or a fault of these two.
+    pub fn start(&self) -> Result<Guest, LoadError> {
+        let mut guest = self.raw()?;
+        let Guest { machine, host, .. } = &mut guest;
+        for name in ["_initialize", "plc_init"] {
+            machine
+                .run(name, None, self.settings.fuel, |call, memory| {
+                    host.answer::<standstill_axis::Standard>(call, memory, None)
+                })
+                .map_err(|fault| LoadError::Init { name, fault })?;
+        }
+        Ok(guest)
+    }
+
+    /// A guest as it stood when the snapshot was taken, of a guest of this program; it goes on from there.
+    ///
+    /// # Errors
+    /// [`LoadError`]: there is not enough memory.
+    pub fn restore(&self, snapshot: &Snapshot) -> Result<Guest, LoadError> {
+        let mut guest = self.raw()?;
+        guest.machine.grow_to(snapshot.memory.len());
+        let memory = guest.machine.memory_mut();
+        if memory.len() != snapshot.memory.len() {
+            return Err(LoadError::Memory {
+                bytes: snapshot.memory.len() as u64,
+                most: self.settings.memory,
+            });
+        }
+        memory.copy_from_slice(&snapshot.memory);
+        guest.machine.set_globals(&snapshot.globals);
+        guest.host.clone_from(&snapshot.host);
+        guest.fuel_used = snapshot.fuel_used;
+        guest.faulted = snapshot.faulted;
+        Ok(guest)
+    }
+
+    fn raw(&self) -> Result<Guest, LoadError> {
+        Ok(Guest {
+            machine: Machine::new(self)?,
+            host: Host::new(self.settings.first_instance),
+            program: self.clone(),
+            fuel_used: 0,
+            faulted: false,
+        })
+    }
+}
+
+impl Guest {
+    /// One execution: `plc_scan` with the number and the instant of the scan. Cost: at most the fuel.
+    ///
+    /// # Errors
+    /// [`Fault`]: what it did wrong. What it told axes before stays told; the caller stops the resource.
+    pub fn scan<P: Planner>(&mut self, context: &mut Context<'_, P>) -> Result<u64, Fault> {
+        if self.faulted {
+            return Err(Fault::Over);
+        }
+        let Self { machine, host, .. } = self;
+        // A tick is the number of the scan, as far as 32 bits go.
+        let arguments = (context.scan as i32, context.now_ns);
+        let outcome = machine.run(
+            "plc_scan",
+            Some(arguments),
+            self.program.settings.fuel,
+            |call, memory| host.answer(call, memory, Some(context)),
+        );
+        self.faulted = outcome.is_err();
+        self.fuel_used = outcome?.unwrap_or(0);
+        Ok(self.fuel_used)
+    }
+
+    /// The fuel that the last scan used.
+    #[must_use]
+    pub const fn fuel_used(&self) -> u64 {
+        self.fuel_used
+    }
+
+    /// What it told since the last call of this.
+    pub fn take_told(&mut self) -> Vec<Told> {
+        self.host.take_told()
+    }
+
+    /// The address of a variable that the guest exports.
+    ///
+    /// # Errors
+    /// [`SymbolError::Unknown`].
+    pub fn address_of(&self, name: &str) -> Result<u32, SymbolError> {
+        let address = self.machine.address_of(name);
+        address.ok_or_else(|| SymbolError::Unknown(name.to_owned()))
+    }
+
+    /// What stands in a variable.
+    ///
+    /// # Errors
+    /// [`SymbolError::Outside`].
+    pub fn read(&self, symbol: &Symbol) -> Result<Value, SymbolError> {
+        symbol.read(self.machine.memory())
+    }
+
+    /// Writes a variable; `value` must be of its type.
+    ///
+    /// # Errors
+    /// [`SymbolError::Outside`].
+    pub fn write(&mut self, symbol: &Symbol, value: Value) -> Result<(), SymbolError> {
+        symbol.write(self.machine.memory_mut(), value)
+    }
+
+    /// The guest as it stands now, to be gone on with by [`Program::restore`].
+    #[must_use]
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            memory: self.machine.memory().to_vec(),
+            globals: self.machine.globals(),
+            host: self.host.clone(),
+            fuel_used: self.fuel_used,
+            faulted: self.faulted,
+        }
+    }
+}

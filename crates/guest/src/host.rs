@@ -1,0 +1,355 @@
+//! The functions a guest imports, done on its memory and on instances that stand here.
+
+use crate::Fault;
+use crate::engine::Call;
+use standstill_axis::{InstanceId, Planner};
+use standstill_blocks::{BlockInstance, REGISTRY};
+use standstill_fb::flat::{Flat, Layout, Pointer, read_record, read_table};
+use standstill_fb::{AnyInstance, BlockInfo, Context, PinType, TableRef, Value};
+use std::sync::LazyLock;
+
+/// Most block instances of a guest.
+pub const INSTANCES_MOST: usize = 1024;
+
+/// Most lines that a guest can tell in one scan; further ones are counted.
+const LINES_MOST: usize = 16;
+
+/// Most bytes of a line; the rest is cut off.
+const LINE_MOST: u32 = 1024;
+
+/// What the functions of blocks give back; numbers and meanings are those of the C library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Code {
+    /// Done.
+    Ok = 0,
+    /// An address is 0.
+    NullPointer = -1,
+    /// The size in front of a structure is smaller than the structure.
+    StructSize = -2,
+    /// A block was called in `plc_init`.
+    NotInTick = -7,
+    /// No instance has this key.
+    UnknownKey = -10,
+    /// The key is of an instance of another block.
+    WrongBlock = -11,
+    /// [`INSTANCES_MOST`] instances are there.
+    NoRoom = -12,
+    /// An array has more records than its block takes, or records at address 0.
+    Table = -17,
+}
+
+/// What a guest told.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Told {
+    /// A line of `log`.
+    Line(String),
+    /// So many lines more than a scan may have.
+    LinesLost(u64),
+    /// It has a new instance.
+    Made {
+        /// Its number in records.
+        id: InstanceId,
+        /// Its place among the guest's instances, from 1.
+        number: usize,
+        /// Its block.
+        block: &'static str,
+    },
+}
+
+/// What can be imported.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Import {
+    #[default]
+    Log,
+    /// A block, by its place in the registry.
+    Block(usize),
+}
+
+macro_rules! names {
+    ($($group:ident :: $name:ident :: $block:ident)*) => {
+        /// Names of the blocks' functions, in the order of the registry.
+        const NAMES: &[&str] = &[$(stringify!($name)),*];
+    };
+}
+
+standstill_blocks::for_every_block!(names);
+
+impl Import {
+    pub(crate) fn find(name: &str) -> Option<Self> {
+        if name == "log" {
+            return Some(Self::Log);
+        }
+        NAMES.iter().position(|known| *known == name).map(Self::Block)
+    }
+}
+
+/// Where the pins of a block lie, made once for all.
+struct Shape {
+    info: &'static BlockInfo,
+    inputs: Layout,
+    outputs: Layout,
+    /// Numbers of its arrays when they are full.
+    cells: usize,
+}
+
+static SHAPES: LazyLock<Vec<Shape>> = LazyLock::new(|| {
+    let shape = |info: &'static BlockInfo| Shape {
+        info,
+        inputs: info.flat_inputs(Pointer::Bits32),
+        outputs: info.flat_outputs(),
+        cells: info
+            .tables()
+            .map(|(_, pin)| match pin.ty {
+                PinType::Table(table) => table.most * table.fields.len(),
+                _ => 0,
+            })
+            .sum(),
+    };
+    REGISTRY.iter().map(shape).collect()
+});
+
+/// The instances of a guest, and what it told.
+#[derive(Clone, Debug)]
+pub(crate) struct Host {
+    first: u16,
+    /// With the place of their block in the registry; an instance's key is its place here, from 1.
+    slots: Vec<(usize, BlockInstance)>,
+    cells: Vec<f64>,
+    told: Vec<Told>,
+    lines: usize,
+    lost: u64,
+}
+
+/// So many bytes of the guest's memory.
+struct Place {
+    function: &'static str,
+    what: &'static str,
+    address: u32,
+    bytes: usize,
+}
+
+impl Place {
+    fn fault(&self, memory: usize) -> Fault {
+        Fault::Pointer {
+            function: self.function,
+            what: self.what,
+            address: self.address,
+            bytes: self.bytes as u64,
+            memory: memory as u64,
+        }
+    }
+
+    fn of<'m>(&self, memory: &'m [u8]) -> Result<&'m [u8], Fault> {
+        let rest = memory.get(self.address as usize..);
+        let there = rest.and_then(|rest| rest.get(..self.bytes));
+        there.ok_or_else(|| self.fault(memory.len()))
+    }
+
+    fn of_mut<'m>(&self, memory: &'m mut [u8]) -> Result<&'m mut [u8], Fault> {
+        let fault = self.fault(memory.len());
+        let rest = memory.get_mut(self.address as usize..);
+        rest.and_then(|rest| rest.get_mut(..self.bytes)).ok_or(fault)
+    }
+}
+
+impl Host {
+    pub(crate) fn new(first: u16) -> Self {
+        Self {
+            first,
+            slots: Vec::new(),
+            cells: vec![0.0; SHAPES.iter().map(|shape| shape.cells).max().unwrap_or(0)],
+            told: Vec::new(),
+            lines: 0,
+            lost: 0,
+        }
+    }
+
+    pub(crate) fn take_told(&mut self) -> Vec<Told> {
+        if self.lost > 0 {
+            self.told.push(Told::LinesLost(self.lost));
+        }
+        self.lines = 0;
+        self.lost = 0;
+        std::mem::take(&mut self.told)
+    }
+
+    /// Does what a guest called. Without a context it is not in a scan.
+    pub(crate) fn answer<P: Planner>(
+        &mut self,
+        call: Call,
+        memory: &mut [u8],
+        context: Option<&mut Context<'_, P>>,
+    ) -> Result<i32, Fault> {
+        let [first, second, third] = call.arguments;
+        match call.import {
+            Import::Log => self.log(memory, first, second).map(|()| 0),
+            Import::Block(block) => {
+                let outcome = self.block(block, memory, [first, second, third], context)?;
+                Ok(outcome.map_or_else(|code| code as i32, |()| Code::Ok as i32))
+            }
+        }
+    }
+
+    fn log(&mut self, memory: &[u8], address: u32, bytes: u32) -> Result<(), Fault> {
+        let text = Place {
+            function: "log",
+            what: "text",
+            address,
+            bytes: bytes as usize,
+        }
+        .of(memory)?;
+        if self.lines >= LINES_MOST {
+            self.lost += 1;
+            return Ok(());
+        }
+        self.lines += 1;
+        let text = text.get(..bytes.min(LINE_MOST) as usize).unwrap_or(text);
+        // Notes are lines: what would end one, or move a terminal's cursor, is shown as what it is.
+        let text = String::from_utf8_lossy(text);
+        let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
+        self.told.push(Told::Line(text.chars().map(clean).collect()));
+        Ok(())
+    }
+
+    fn block<P: Planner>(
+        &mut self,
+        block: usize,
+        memory: &mut [u8],
+        [key, inputs, outputs]: [u32; 3],
+        context: Option<&mut Context<'_, P>>,
+    ) -> Result<Result<(), Code>, Fault> {
+        let (Some(shape), Some(&function)) = (SHAPES.get(block), NAMES.get(block)) else {
+            return Ok(Err(Code::UnknownKey));
+        };
+        let Some(context) = context else {
+            return Ok(Err(Code::NotInTick));
+        };
+        if key == 0 || inputs == 0 || outputs == 0 {
+            return Ok(Err(Code::NullPointer));
+        }
+        let place = |what, address, bytes| Place {
+            function,
+            what,
+            address,
+            bytes,
+        };
+        for (what, address, size) in [
+            ("in", inputs, shape.inputs.size),
+            ("out", outputs, shape.outputs.size),
+        ] {
+            let told = u32::read(place(what, address, 4).of(memory)?, 0);
+            if (told as usize) < size {
+                return Ok(Err(Code::StructSize));
+            }
+        }
+        let flat = place("in", inputs, shape.inputs.size).of(memory)?;
+        if let Err(code) = self.load_tables(shape, function, flat, memory)? {
+            return Ok(Err(code));
+        }
+        place("out", outputs, shape.outputs.size).of(memory)?;
+        let mut number = u64::read(place("key", key, 8).of(memory)?, 0);
+        if number == 0 {
+            match self.make(block, shape) {
+                Ok(made) => number = made,
+                Err(code) => return Ok(Err(code)),
+            }
+            let made = place("key", key, 8).of_mut(memory)?;
+            number.write(made, 0);
+        }
+        let slot = usize::try_from(number)
+            .ok()
+            .and_then(|number| number.checked_sub(1));
+        let Some((index, (found, instance))) = slot.and_then(|slot| Some((slot, self.slots.get_mut(slot)?)))
+        else {
+            return Ok(Err(Code::UnknownKey));
+        };
+        if *found != block {
+            return Ok(Err(Code::WrongBlock));
+        }
+        let flat = place("in", inputs, shape.inputs.size).of(memory)?;
+        instance.set_flat(flat, Pointer::Bits32);
+        set_tables(shape, instance, flat);
+        let mut inner = Context {
+            now_ns: context.now_ns,
+            scan: context.scan,
+            // At most INSTANCES_MOST.
+            instance: InstanceId(self.first.saturating_add(index as u16)),
+            axes: &mut *context.axes,
+            log: &mut *context.log,
+            tables: &self.cells,
+        };
+        instance.call(&mut inner);
+        instance.put_flat(place("out", outputs, shape.outputs.size).of_mut(memory)?);
+        Ok(Ok(()))
+    }
+
+    /// A new instance; gives its key.
+    fn make(&mut self, block: usize, shape: &Shape) -> Result<u64, Code> {
+        if self.slots.len() >= INSTANCES_MOST {
+            return Err(Code::NoRoom);
+        }
+        let instance = BlockInstance::new(shape.info.name).ok_or(Code::NoRoom)?;
+        self.told.push(Told::Made {
+            id: InstanceId(self.first.saturating_add(self.slots.len() as u16)),
+            number: self.slots.len() + 1,
+            block: shape.info.name,
+        });
+        self.slots.push((block, instance));
+        Ok(self.slots.len() as u64)
+    }
+
+    /// Copies the records of a block's arrays, one array behind the other.
+    fn load_tables(
+        &mut self,
+        shape: &Shape,
+        function: &'static str,
+        flat: &[u8],
+        memory: &[u8],
+    ) -> Result<Result<(), Code>, Fault> {
+        let mut cells = &mut self.cells[..];
+        if shape.cells == 0 {
+            return Ok(Ok(()));
+        }
+        for (index, pin) in shape.info.tables() {
+            let PinType::Table(table) = pin.ty else { continue };
+            let (address, count) = read_table(flat, shape.inputs.offset(index), Pointer::Bits32);
+            let count = count as usize;
+            if count > table.most || (count > 0 && address == 0) {
+                return Ok(Err(Code::Table));
+            }
+            let record = Layout::of_record(table.fields);
+            let bytes = Place {
+                function,
+                what: pin.name,
+                // Read as 32 bits.
+                address: address as u32,
+                bytes: count * record.size,
+            };
+            for row in bytes.of(memory)?.chunks_exact(record.size) {
+                let Some((cells_of_row, rest)) = cells.split_at_mut_checked(table.fields.len()) else {
+                    return Ok(Err(Code::Table));
+                };
+                read_record(row, table.fields, &record, cells_of_row);
+                cells = rest;
+            }
+        }
+        Ok(Ok(()))
+    }
+}
+
+/// Tells a block where [`Host::load_tables`] put its records.
+fn set_tables(shape: &Shape, instance: &mut BlockInstance, flat: &[u8]) {
+    let mut first = 0_u32;
+    for (index, pin) in shape.info.tables() {
+        let PinType::Table(table) = pin.ty else { continue };
+        let (_, count) = read_table(flat, shape.inputs.offset(index), Pointer::Bits32);
+        // Both were checked against the most records of the table.
+        let place = TableRef {
+            first,
+            records: count as u16,
+        };
+        let _fits = instance.set(index, Value::Table(place));
+        first += count * table.fields.len() as u32;
+    }
+}

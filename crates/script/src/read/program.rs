@@ -1,0 +1,267 @@
+//! Guest programs: their modules, and which of their variables are signals.
+
+use super::json::{Json, Node};
+use super::names::identifier_error;
+use super::task::MAIN;
+use super::value::Fields;
+use super::{Reader, is_note, shape};
+use crate::error::{Code, Diagnostic, quoted};
+use crate::model::Point;
+use crate::model::{Claim, ClaimKind, Condition, Program, Range, Signal, Span, Symbol, Task, Test};
+use standstill_fb::PinType;
+use standstill_guest::{INSTANCES_MOST, Settings, symbol_type};
+
+/// Most guest programs of a script; their instances have numbers of 16 bits with those of the script.
+pub(crate) const PROGRAMS_MAX: usize = 16;
+
+/// Most variables of a program that are signals.
+const SYMBOLS_MAX: usize = 256;
+
+/// Most fuel of a call.
+pub(crate) const FUEL_MAX: i64 = 1_000_000_000;
+
+/// Most bytes of memory: what 32 bits reach.
+pub(crate) const MEMORY_MAX: i64 = 1 << 32;
+
+/// Types of symbols.
+pub(crate) const SYMBOL_TYPES: [&str; 6] = ["BOOL", "INT", "WORD", "DWORD", "LREAL", "TIME"];
+
+/// The signal of a program that the runtime writes.
+pub(crate) const FAULT: &str = "Fault";
+
+/// Gives the bytes of a module, or says why not.
+type LoadGuest<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
+
+impl Reader {
+    pub(super) fn programs(&mut self, fields: &Fields<'_>, load: LoadGuest<'_>) -> Option<Vec<Program>> {
+        let Some(node) = fields.get("programs") else {
+            return Some(Vec::new());
+        };
+        let members = self.map(node, "`programs`")?;
+        if members.iter().count() > PROGRAMS_MAX {
+            let message = format!("a script has at most {PROGRAMS_MAX} programs");
+            self.report(Diagnostic::new(Code::TooLarge, node.span, message));
+            return None;
+        }
+        // The numbers of their instances end below the largest one.
+        let first = 65_535 - PROGRAMS_MAX * INSTANCES_MOST;
+        let instances = match fields.get("blocks").map(|node| &node.json) {
+            Some(Json::List(items)) => items.len(),
+            _ => 0,
+        };
+        if instances >= first {
+            let message = format!("beside programs a script has less than {first} instances");
+            self.report(Diagnostic::new(Code::TooLarge, node.span, message));
+            return None;
+        }
+        for (index, (key, node)) in members.iter().enumerate() {
+            let first = first + index * INSTANCES_MOST;
+            let program = self.program(&key.text, node, u16::try_from(first).unwrap_or(1), load);
+            self.programs.push(program);
+        }
+        self.programs.iter().cloned().collect()
+    }
+
+    fn program(&mut self, name: &str, node: &Node, first: u16, load: LoadGuest<'_>) -> Option<Program> {
+        let fields = self.fields(node, &shape::PROGRAM)?;
+        let defaults = Settings::default();
+        let fuel = match fields.get("fuel") {
+            None => Some(defaults.fuel),
+            Some(node) => self.whole(node, "`fuel`", 1..=FUEL_MAX).map(i64::cast_unsigned),
+        };
+        let memory = match fields.get("memory") {
+            None => Some(defaults.memory),
+            Some(node) => self
+                .whole(node, "`memory`", 1..=MEMORY_MAX)
+                .map(i64::cast_unsigned),
+        };
+        if let Some(node) = fields.get("may_fault") {
+            self.boolean(node, "`may_fault`");
+        }
+        let symbols = self.symbols(&fields);
+        let wasm = self.require(&fields, "wasm", "a program")?;
+        let path = self.text(wasm, "`wasm`")?;
+        let settings = Settings {
+            fuel: fuel?,
+            memory: memory?,
+            first_instance: first,
+            ..defaults
+        };
+        let guest = load(path).and_then(|bytes| {
+            standstill_guest::Program::compile(&bytes, settings).map_err(|error| error.to_string())
+        });
+        match guest {
+            Ok(guest) => Some(Program {
+                name: name.to_owned(),
+                task: 0,
+                guest,
+                symbols: symbols?,
+            }),
+            Err(why) => {
+                let message = format!("{} cannot be the program {}: {why}", quoted(path), quoted(name));
+                self.report(Diagnostic::new(Code::BadProgram, wasm.span, message));
+                None
+            }
+        }
+    }
+
+    fn symbols(&mut self, fields: &Fields<'_>) -> Option<Vec<Symbol>> {
+        let mut symbols = vec![Some(Symbol {
+            name: FAULT.to_owned(),
+            ty: PinType::Bool,
+            address: None,
+        })];
+        let members = match fields.get("symbols") {
+            None => None,
+            Some(node) => Some((self.map(node, "`symbols`")?, node)),
+        };
+        if let Some((members, node)) = members {
+            if members.iter().count() > SYMBOLS_MAX {
+                let message = format!("a program has at most {SYMBOLS_MAX} symbols");
+                self.report(Diagnostic::new(Code::TooLarge, node.span, message));
+                return None;
+            }
+            let mut names = vec![FAULT.to_ascii_uppercase()];
+            for (key, node) in members.iter() {
+                if is_note(key, node)
+                    && symbol_type(match &node.json {
+                        Json::Text(text) => text,
+                        _ => "",
+                    })
+                    .is_none()
+                {
+                    continue;
+                }
+                if let Some(why) = identifier_error(&key.text) {
+                    let message = format!("{} cannot be a name: {why}", quoted(&key.text));
+                    self.report(Diagnostic::new(Code::BadName, key.span, message));
+                }
+                let upper = key.text.to_ascii_uppercase();
+                if names.contains(&upper) {
+                    let message = format!("the name {} is taken", quoted(&key.text));
+                    self.report(Diagnostic::new(Code::DuplicateName, key.span, message).help(
+                        "symbols of a program differ without regard to case, and `Fault` is there already",
+                    ));
+                }
+                names.push(upper);
+                symbols.push(self.symbol(&key.text, node));
+            }
+        }
+        symbols.into_iter().collect()
+    }
+
+    fn symbol(&mut self, name: &str, node: &Node) -> Option<Symbol> {
+        let (ty, address) = match &node.json {
+            Json::Map(_) => {
+                let fields = self.fields(node, &shape::SYMBOL)?;
+                let address = match fields.get("address") {
+                    None => None,
+                    Some(node) => Some(self.whole(node, "`address`", 0..=i64::from(u32::MAX))?),
+                };
+                (self.require(&fields, "type", "a symbol")?, address)
+            }
+            _ => (node, None),
+        };
+        let text = self.text(ty, "the type of a symbol")?;
+        let Some(found) = symbol_type(text) else {
+            let message = format!("a symbol cannot be of type {}", quoted(text));
+            let help = format!("one of {}", SYMBOL_TYPES.join(", "));
+            self.report(Diagnostic::new(Code::BadValue, ty.span, message).help(help));
+            return None;
+        };
+        Some(Symbol {
+            name: name.to_owned(),
+            ty: found,
+            address: address.and_then(|address| u32::try_from(address).ok()),
+        })
+    }
+
+    /// The tasks of the programs, in their order.
+    pub(super) fn program_tasks(
+        &mut self,
+        fields: &Fields<'_>,
+        tasks: Option<&[Task]>,
+    ) -> Option<Vec<usize>> {
+        let Some(Json::Map(members)) = fields.get("programs").map(|node| &node.json) else {
+            return Some(Vec::new());
+        };
+        let of = |reader: &mut Self, node: &Node| match &node.json {
+            Json::Map(inner) => {
+                let task = inner.iter().find(|(key, _)| key.text == "task");
+                let (name, span) = match task {
+                    None => (MAIN, node.span),
+                    Some((_, node)) => (reader.text(node, "`task`")?, node.span),
+                };
+                reader.task_index(name, span, tasks)
+            }
+            // Already reported.
+            _ => None,
+        };
+        let found: Vec<_> = members.iter().map(|(_, node)| of(self, node)).collect();
+        found.into_iter().collect()
+    }
+
+    pub(super) fn with_tasks(&self, programs: Vec<Program>, tasks: Vec<usize>) -> Vec<Program> {
+        let both = programs.into_iter().zip(tasks);
+        both.map(|(program, task)| Program { task, ..program }).collect()
+    }
+
+    /// A claim for each program that may not fault: that it does not.
+    pub(super) fn fault_claims(&mut self, fields: &Fields<'_>) -> Option<Vec<Claim>> {
+        let Some(Json::Map(members)) = fields.get("programs").map(|node| &node.json) else {
+            return Some(Vec::new());
+        };
+        let may = |node: &Node| match &node.json {
+            Json::Map(inner) => inner
+                .iter()
+                .any(|(key, node)| key.text == "may_fault" && matches!(node.json, Json::Bool(true))),
+            _ => true,
+        };
+        let claim = |index: usize, name: &str, span: Span| Claim {
+            path: format!("programs.{name}"),
+            span,
+            kind: ClaimKind::Never {
+                range: Range { from: 0, to: None },
+                during: Vec::new(),
+                that: vec![Condition {
+                    text: format!("{name}.{FAULT}"),
+                    signal: Signal::Point(Point::Symbol(index, 0)),
+                    test: Test::Bool(true),
+                    span,
+                }],
+            },
+        };
+        Some(
+            members
+                .iter()
+                .enumerate()
+                .filter(|(_, (_, node))| !may(node))
+                .map(|(index, (key, _))| claim(index, &key.text, key.span))
+                .collect(),
+        )
+    }
+
+    /// The variable of a program that `name` stands for.
+    pub(super) fn symbol_point(
+        &mut self,
+        program: usize,
+        name: &str,
+        span: Span,
+    ) -> Option<(Point, PinType)> {
+        // A program that was refused is already reported.
+        let program_read = self.programs.get(program)?.as_ref()?;
+        let symbols = &program_read.symbols;
+        let found = symbols
+            .iter()
+            .position(|symbol| symbol.name.eq_ignore_ascii_case(name));
+        if let Some(index) = found {
+            return Some((Point::Symbol(program, index), symbols.get(index)?.ty));
+        }
+        let message = format!("{} has no symbol {}", quoted(&program_read.name), quoted(name));
+        let help = super::names::suggestion(name, symbols.iter().map(|symbol| symbol.name.as_str()));
+        self.report(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(
+            help.or_else(|| Some("`symbols` of the program lists its variables that are signals".to_owned())),
+        ));
+        None
+    }
+}
