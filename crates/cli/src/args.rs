@@ -51,9 +51,9 @@ pub enum Command {
         /// Write a page of every script that fails into this folder: golden and run over each other
         #[arg(long, value_name = "FOLDER")]
         report: Option<PathBuf>,
-        /// Let scripts include files from this folder, too
-        #[arg(long, value_name = "FOLDER")]
-        include_from: Vec<PathBuf>,
+        /// Files beside those of the script's folder
+        #[command(flatten)]
+        outside: Outside,
     },
     /// Draw traces: a page to look into, a picture, a waveform
     Report {
@@ -257,9 +257,9 @@ pub struct RunArguments {
     /// Replace the value of a parameter of the script
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
     pub set: Vec<(String, f64)>,
-    /// Let the scripts include files from this folder, too
-    #[arg(long, value_name = "FOLDER")]
-    pub include_from: Vec<PathBuf>,
+    /// Files beside those of the script's folder
+    #[command(flatten)]
+    pub outside: Outside,
     /// Print failing claims and one line a script
     #[arg(long, short)]
     pub quiet: bool,
@@ -283,9 +283,9 @@ pub struct SweepArguments {
     /// Compute nothing: put the tables of all shards together
     #[arg(long, value_name = "SHARD.csv", num_args = 1..)]
     pub merge: Vec<PathBuf>,
-    /// Let the sweep and the script read files from this folder, too
-    #[arg(long, value_name = "FOLDER")]
-    pub include_from: Vec<PathBuf>,
+    /// Files beside those of the script's folder
+    #[command(flatten)]
+    pub outside: Outside,
 }
 
 /// What `watch` takes.
@@ -297,9 +297,9 @@ pub struct WatchArguments {
     /// Replace the value of a parameter of the script
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
     pub set: Vec<(String, f64)>,
-    /// Let the script include files from this folder, too
-    #[arg(long, value_name = "FOLDER")]
-    pub include_from: Vec<PathBuf>,
+    /// Files beside those of the script's folder
+    #[command(flatten)]
+    pub outside: Outside,
 }
 
 /// What `live` takes.
@@ -323,9 +323,9 @@ pub struct LiveArguments {
     /// Replace the value of a parameter of the script
     #[arg(long, value_name = "NAME=VALUE", value_parser = parameter)]
     pub set: Vec<(String, f64)>,
-    /// Let the script include files from this folder, too
-    #[arg(long, value_name = "FOLDER")]
-    pub include_from: Vec<PathBuf>,
+    /// Files beside those of the script's folder
+    #[command(flatten)]
+    pub outside: Outside,
 }
 
 /// What an overrun of `live` leads to.
@@ -348,6 +348,28 @@ fn period(text: &str) -> Result<u64, String> {
         .and_then(|ns| u64::try_from(ns).ok())
         .filter(|ns| *ns > 0)
         .ok_or_else(|| "write a time above 0 with its unit, such as 1ms or 250us".to_owned())
+}
+
+/// Files that scripts may read although they lie outside their folder.
+#[derive(Args, Debug)]
+pub struct Outside {
+    /// Let scripts read files (machine files, programs) from this folder, too
+    #[arg(long, value_name = "FOLDER")]
+    include_from: Vec<PathBuf>,
+    /// Let scripts read files from anywhere
+    #[arg(long)]
+    allow_outside: bool,
+}
+
+impl Outside {
+    /// The folders from which files may be read, and from folders below.
+    pub fn folders(&self) -> Vec<PathBuf> {
+        let mut folders = self.include_from.clone();
+        if self.allow_outside {
+            folders.push(PathBuf::from(std::path::MAIN_SEPARATOR_STR));
+        }
+        folders
+    }
 }
 
 /// Reads a delimiter.

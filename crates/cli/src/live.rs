@@ -34,7 +34,7 @@ mod linux {
             script: path,
             period,
             set,
-            include_from,
+            outside,
             ..
         } = arguments;
         if let Some(trace) = &arguments.trace
@@ -46,7 +46,7 @@ mod linux {
             )));
         }
         let name = shown(path);
-        let (script, _) = suite::read_file(path, set, include_from).map_err(failure)?;
+        let (script, _) = suite::read_file(path, set, &outside.folders()).map_err(failure)?;
         let cycle = script.cycle_ns.unsigned_abs();
         if cycle != *period {
             return Err(Failure::usage(&format!(

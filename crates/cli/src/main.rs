@@ -75,7 +75,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             rel,
             junit,
             report,
-            include_from,
+            outside,
         } => {
             let wish = test::Wish {
                 paths,
@@ -83,7 +83,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
                 yardstick: test::yardstick(*golden, *abs, *rel)?,
                 junit: junit.as_deref(),
                 report: report.as_deref(),
-                include_from,
+                include_from: &outside.folders(),
             };
             test::test(wish, out)
         }

@@ -89,7 +89,7 @@ fn run_one(
     let name = suite::shown(script);
     let outcome = {
         let mut progress = Progress::new(!arguments.quiet);
-        suite::run_file(script, &arguments.set, &arguments.include_from, |scans| {
+        suite::run_file(script, &arguments.set, &arguments.outside.folders(), |scans| {
             progress.show(|| format!("{name}: {scans} scans"))
         })
     };

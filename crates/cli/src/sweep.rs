@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 /// Runs the sweep, or puts its shards together, and tells how many cases passed.
 pub fn sweep(arguments: &SweepArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
-    let job = Job::load(&arguments.sweep, &arguments.include_from)?;
+    let job = Job::load(&arguments.sweep, &arguments.outside.folders())?;
     let (rows, part) = if arguments.merge.is_empty() {
         computed(&job, arguments)?
     } else {

@@ -24,10 +24,10 @@ pub fn watch(arguments: &WatchArguments, out: &mut dyn Write) -> Result<Exit, Fa
     let WatchArguments {
         script: path,
         set,
-        include_from,
+        outside,
     } = arguments;
     let name = shown(path);
-    let (script, text) = suite::read_file(path, set, include_from).map_err(crate::run::failure)?;
+    let (script, text) = suite::read_file(path, set, &outside.folders()).map_err(crate::run::failure)?;
     let save = Box::new(|changes: &[_]| save(path, &text, !set.is_empty(), changes));
     let mut app = App::new(&script, &name, save).map_err(|source| SuiteError::Run {
         path: path.clone(),

@@ -257,7 +257,7 @@ pub fn beside(outer: &Path, inner: &str, allowed: &[PathBuf], what: &str) -> Res
     let below = |root: &Path| real(root).is_ok_and(|root| file.starts_with(root));
     if !below(folder) && !allowed.iter().any(|root| below(root)) {
         return Err(format!(
-            "it lies outside the {what}'s folder; `--include-from` allows another one"
+            "it lies outside the {what}'s folder; `--include-from` allows another one, `--allow-outside` all"
         ));
     }
     Ok(file)

@@ -356,6 +356,8 @@ fn files_outside_the_folder_are_included_only_where_that_is_allowed() {
             &[command, "jobs/in.scan.json", "--include-from", "machines"],
         );
         assert_ne!(allowed.status, 3, "{}", allowed.err);
+        let allowed = standstill(&folder, &[command, "jobs/in.scan.json", "--allow-outside"]);
+        assert_ne!(allowed.status, 3, "{}", allowed.err);
     }
     // A mistake in the machine file is told there.
     write(
