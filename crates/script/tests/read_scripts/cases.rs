@@ -992,6 +992,13 @@ pub fn cases() -> Vec<Case> {
             "\"scans\": 100, \"include\": \"feeder.machine.json\",",
         ),
         case(
+            "bad_program",
+            Reader,
+            "a program where there are no files",
+            "\"scans\": 100,",
+            "\"scans\": 100, \"programs\": {\"main\": {\"wasm\": \"main.wasm\"}},",
+        ),
+        case(
             "bad_override",
             Reader,
             "an override without an include",

@@ -1,10 +1,16 @@
 //! docs/scan-scripts.md against the reader: its examples are read, and it names every key and every code.
 
 use serde_json::{Map, Value};
-use standstill_script::{Code, read, schema};
+use standstill_script::{Code, read, read_with_programs, schema};
 use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 const DOCUMENT: &str = include_str!("../../../../docs/scan-scripts.md");
+
+/// Where the programs of the examples lie.
+fn guests() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests/guests")
+}
 
 /// The ```json blocks.
 fn examples() -> Vec<&'static str> {
@@ -26,7 +32,13 @@ fn every_example_is_read() {
         let part: Map<String, Value> = serde_json::from_str(&format!("{{{part}}}")).unwrap();
         script.extend(part);
         let text = serde_json::to_string_pretty(&script).unwrap();
-        read(&text, "docs/scan-scripts.md", &[]).unwrap_or_else(|error| panic!("{error}"));
+        let mut files = |_: &str| Err("there are no files here".to_owned());
+        let mut guest = |path: &str| {
+            let found = std::fs::read(guests().join(path));
+            found.map_err(|error| error.to_string())
+        };
+        read_with_programs(&text, "docs/scan-scripts.md", &[], &mut files, &mut guest)
+            .unwrap_or_else(|error| panic!("{error}"));
     }
 }
 
