@@ -31,6 +31,7 @@ use crate::model::{Conditions, DriveSetup, Input, Program, Script, Span};
 use json::{Json, Key, Node};
 use names::{Entity, Names, identifier_error, suggestion};
 use standstill_fb::{PinType, Value};
+use standstill_trace::digest::Fnv1a;
 use std::collections::BTreeMap;
 use value::Fields;
 
@@ -125,12 +126,16 @@ pub fn read_with_programs(
     };
     match script {
         Some(script) if reader.errors.is_empty() => {
-            let included = files.read.iter().skip(1).map(|file| file.text().as_bytes());
+            let mut hash = Fnv1a::new();
+            hash.write(text.as_bytes());
+            for file in files.read.iter().skip(1) {
+                hash.write(file.text().as_bytes());
+            }
+            for guest in &guests {
+                hash.write(guest);
+            }
             Ok(Script {
-                hash: std::iter::once(text.as_bytes())
-                    .chain(included)
-                    .chain(guests.iter().map(Vec::as_slice))
-                    .fold(FNV_START, fnv1a_64),
+                hash: hash.finish(),
                 ..script
             })
         }
@@ -144,16 +149,6 @@ pub fn read_with_programs(
 /// `text` without a byte order mark.
 pub(crate) fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
-}
-
-/// What FNV-1a, 64 bits, begins with.
-const FNV_START: u64 = 0xcbf2_9ce4_8422_2325;
-
-/// FNV-1a, 64 bits, of what `hash` is of and these bytes.
-fn fnv1a_64(hash: u64, bytes: &[u8]) -> u64 {
-    bytes.iter().fold(hash, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
 }
 
 impl Reader {
