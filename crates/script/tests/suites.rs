@@ -1,7 +1,7 @@
 //! Folders of scripts: what is found, and what each mode does to goldens.
 
 use standstill_script::golden::{Mode, Standing};
-use standstill_script::suite::{Report, SuiteError, find, judge_file, name, orphans};
+use standstill_script::suite::{Report, SuiteError, find, find_texts, judge_file, name, orphans, shown};
 use standstill_trace::compare::{Tolerance, Yardstick};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -245,4 +245,18 @@ fn what_is_no_script_is_told_apart_from_what_cannot_be_read() {
     fs::write(folder.0.join("bytes.scan.json"), [b'{', 0xff]).expect("the folder is ours");
     let error = judge("bytes.scan.json").map(|_| ()).unwrap_err();
     assert!(error.to_string().ends_with("not UTF-8 after 1 bytes"), "{error}");
+}
+
+/// What `standstill fmt` makes of a script of the suite is the script.
+#[test]
+fn the_scripts_of_the_suite_are_in_the_canonical_layout() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests");
+    let files = find_texts(&folder).unwrap();
+    assert!(files.len() > 450, "{}", files.len());
+    for file in files {
+        let text = fs::read_to_string(&file).unwrap();
+        let name = shown(&file);
+        let laid_out = standstill_script::format(&text, &name).unwrap_or_else(|error| panic!("{error}"));
+        assert!(text == laid_out, "{name}: run `standstill fmt scan-tests`");
+    }
 }
