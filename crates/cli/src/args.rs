@@ -51,6 +51,10 @@ pub enum Command {
         /// Write a page of every script that fails into this folder: golden and run over each other
         #[arg(long, value_name = "FOLDER")]
         report: Option<PathBuf>,
+        /// Judge the script's claims on this trace (.csv, .jsonl, .exact) instead of a run of its own: on what a flight
+        /// recorder kept, say
+        #[arg(long, value_name = "TRACE", conflicts_with_all = ["accept", "golden", "abs", "rel", "report"])]
+        recording: Option<PathBuf>,
         /// Files beside those of the script's folder
         #[command(flatten)]
         outside: Outside,

@@ -23,7 +23,8 @@ pub fn explain(expected: &Path, found: &Path, out: &mut dyn Write) -> Result<Exi
     }
 }
 
-fn load(path: &Path) -> Result<Trace, Failure> {
+/// A trace, with what it lacks told on standard error.
+pub fn load(path: &Path) -> Result<Trace, Failure> {
     let loaded = file::load(path)?;
     if !loaded.lacks.is_empty() {
         complain(&format!(

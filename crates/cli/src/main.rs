@@ -75,6 +75,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             rel,
             junit,
             report,
+            recording,
             outside,
         } => {
             let wish = test::Wish {
@@ -83,6 +84,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
                 yardstick: test::yardstick(*golden, *abs, *rel)?,
                 junit: junit.as_deref(),
                 report: report.as_deref(),
+                recording: recording.as_deref(),
                 include_from: &outside.folders(),
             };
             test::test(wish, out)

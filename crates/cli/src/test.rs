@@ -2,10 +2,12 @@
 
 use crate::args::Golden;
 use crate::exit::{Exit, Failure, go_on};
+use crate::explain::load;
 use crate::failing::Pages;
 use crate::junit::{self, Case, Ending};
 use crate::progress::Progress;
 use standstill_script::golden::{Mode, Standing};
+use standstill_script::judge_recording;
 use standstill_script::suite::{self, Report};
 use standstill_trace::compare::{Tolerance, Yardstick};
 use std::fmt;
@@ -26,6 +28,8 @@ pub struct Wish<'a> {
     pub junit: Option<&'a Path>,
     /// The folder for pages of scripts that fail.
     pub report: Option<&'a Path>,
+    /// The trace to judge the claims on, instead of runs.
+    pub recording: Option<&'a Path>,
     /// Folders that scripts may include files from.
     pub include_from: &'a [PathBuf],
 }
@@ -47,6 +51,9 @@ pub fn yardstick(golden: Golden, abs: Option<f64>, rel: Option<f64>) -> Result<Y
 
 /// Judges all scripts at the paths, in sorted order, and reports goldens that have no script any more.
 pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
+    if let Some(recording) = wish.recording {
+        return on_recording(wish, recording, out);
+    }
     let mode = Mode::from_environment(wish.accept).map_err(|error| Failure::usage(&error.to_string()))?;
     let scripts = found(wish.paths)?;
     let mut pages = wish.report.map(Pages::new).transpose()?;
@@ -84,11 +91,43 @@ pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
     for folder in wish.paths.iter().filter(|path| path.is_dir()) {
         tally.orphans(&suite::orphans(folder)?, out)?;
     }
-    write!(out, "{tally}")?;
-    if let Some(path) = wish.junit {
-        junit::save(&tally.cases, path)?;
+    tally.end(wish, out)
+}
+
+/// Judges the claims of one script on a recording.
+fn on_recording(wish: Wish<'_>, recording: &Path, out: &mut dyn Write) -> Result<Exit, Failure> {
+    let [script] = wish.paths else {
+        return Err(Failure::usage("--recording is judged by one script"));
+    };
+    if script.is_dir() {
+        let name = suite::shown(script);
+        let message = format!("{name}: --recording is judged by one script, and this is a folder");
+        return Err(Failure::usage(&message));
     }
-    Ok(tally.exit())
+    let begin = Instant::now();
+    let (judge, _) = suite::read_file(script, &[], wish.include_from)?;
+    let outcome = judge_recording(&judge, load(recording)?).map_err(|error| {
+        Failure::Told(
+            Exit::BadInput,
+            format!("error: {}: {error}", suite::shown(recording)),
+        )
+    })?;
+    // No golden is of this trace, so none is missed.
+    let report = Report {
+        outcome,
+        golden: Standing::Same,
+    };
+    let name = suite::shown(script);
+    let mut tally = Tally::default();
+    let shown = format!("{name} on {}", suite::shown(recording));
+    let (ending, text) = tally.judged(&shown, &report, out)?;
+    tally.cases.push(Case {
+        file: name,
+        ending,
+        text,
+        took: begin.elapsed(),
+    });
+    tally.end(wish, out)
 }
 
 /// All scripts at the paths.
@@ -187,6 +226,15 @@ impl Tally {
             0 => String::new(),
             count => format!(", {count} failed"),
         }
+    }
+
+    /// Prints the counts and writes what was asked for.
+    fn end(&self, wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
+        write!(out, "{self}")?;
+        if let Some(path) = wish.junit {
+            junit::save(&self.cases, path)?;
+        }
+        Ok(self.exit())
     }
 
     fn exit(&self) -> Exit {

@@ -29,7 +29,7 @@ pub use read::machine_map::read_map;
 pub use read::sweep::read_sweep;
 pub use read::time::parse as parse_time;
 pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read, read_with, read_with_programs};
-pub use run::{Change, Outcome, RunError, Session, run, run_with};
+pub use run::{Change, Outcome, RecordingError, RunError, Session, judge_recording, run, run_with};
 pub use schema::schema;
 pub use schema_machine::machine_schema;
 pub use schema_map::map_schema;

@@ -398,3 +398,139 @@ fn a_link_does_not_lead_outside() {
     assert_eq!(ended.status, 3);
     assert!(ended.err.contains("outside the script's folder"), "{}", ended.err);
 }
+
+/// The claims of a script on the trace of another run, with the same names in another order of columns.
+#[test]
+fn a_recording_is_judged_by_the_claims_of_a_script() {
+    let folder = with_script("test_recording");
+    let slow = standstill(
+        &folder,
+        &[
+            "run",
+            "--quiet",
+            "move.scan.json",
+            "--trace",
+            "run.jsonl",
+            "--set",
+            "v=5",
+        ],
+    );
+    assert_eq!(slow.status, 1, "{}", slow.out);
+    let judged = standstill(
+        &folder,
+        &[
+            "test",
+            "move.scan.json",
+            "--recording",
+            "run.jsonl",
+            "--junit",
+            "out.xml",
+        ],
+    );
+    assert_eq!(
+        (judged.status, judged.out.as_str()),
+        (
+            1,
+            "FAILED    move.scan.json on run.jsonl\n    expect[0].that.move.Done: FALSE at scan 21, expected TRUE; it \
+             came at 26, 5 later\n    expect[0].that.X.Position: 0.92 at scan 21, expected 1.0; it came at 25, 4 later\n\
+             1 script: 1 failed\n"
+        )
+    );
+    assert!(read(&folder, "out.xml").contains("it came at 26, 5 later"));
+    // A recording that has less than the script, and begins amid the move.
+    let csv = "scan,time_ns,X.State,X.Position,X.Velocity,X.Acceleration,X.Jerk,X.Snap,X.ActualPosition\n";
+    let row = |scan: i32| {
+        format!(
+            "{scan},{}0000000,DiscreteMotion,{},5.0,0.0,0.0,0.0,0.0\n",
+            scan,
+            f64::from(scan) * 0.05
+        )
+    };
+    let rows: String = (0..9).map(row).collect();
+    write(&folder, "cut.csv", &format!("{csv}{rows}"));
+    let missing = standstill(&folder, &["test", "move.scan.json", "--recording", "cut.csv"]);
+    assert_eq!(missing.status, 3);
+    assert!(
+        missing.err.ends_with(
+            "error: cut.csv: expect[0] speaks of move.Done, which the recording has not (nor what another claim speaks \
+             of); columns go by name, as the script's own trace has them\n"
+        ),
+        "{}",
+        missing.err
+    );
+    let claims = SCRIPT
+        .replace(
+            r#"{"at": 21, "that": {"move.Done": true, "X.Position": 1}}"#,
+            r#"{"within_limits": "X"}"#,
+        )
+        .replace(
+            r#"{"never": {"move.Error": true}}"#,
+            r#"{"at": 4, "that": {"X.Position.d1": {"near": 5, "within": 1e-9}}}"#,
+        );
+    write(&folder, "claims.scan.json", &claims);
+    let passed = standstill(&folder, &["test", "claims.scan.json", "--recording", "cut.csv"]);
+    assert_eq!(
+        (passed.status, passed.out.as_str()),
+        (0, "ok        claims.scan.json on cut.csv\n1 script: 1 passed\n"),
+        "{}",
+        passed.err
+    );
+    let faster = claims.replace("\"velocity\": 20", "\"velocity\": 4");
+    write(&folder, "claims.scan.json", &faster);
+    let failed = standstill(&folder, &["test", "claims.scan.json", "--recording", "cut.csv"]);
+    assert!(
+        failed
+            .out
+            .contains("expect[0].within_limits.X.Position.d1: 4.999999999999999 at scan 5, expected of magnitude <= 4.0"),
+        "{}",
+        failed.out
+    );
+    write(&folder, "claims.scan.json", &claims.replace("T#10ms", "T#1ms"));
+    let other = standstill(&folder, &["test", "claims.scan.json", "--recording", "cut.csv"]);
+    assert_eq!(other.status, 3);
+    assert!(
+        other
+            .err
+            .contains("its cycle is 10000000 ns and that of the script 1000000 ns"),
+        "{}",
+        other.err
+    );
+}
+
+#[test]
+fn a_recording_needs_one_script_and_no_golden() {
+    let folder = with_script("test_recording_usage");
+    for (arguments, wanted) in [
+        (&["test", ".", "--recording", "run.csv"][..], "this is a folder"),
+        (
+            &[
+                "test",
+                "move.scan.json",
+                "move.scan.json",
+                "--recording",
+                "run.csv",
+            ],
+            "--recording is judged by one script",
+        ),
+        (
+            &["test", "move.scan.json", "--accept", "--recording", "run.csv"],
+            "cannot be used with",
+        ),
+        (
+            &[
+                "test",
+                "move.scan.json",
+                "--golden",
+                "events",
+                "--recording",
+                "run.csv",
+            ],
+            "cannot be used with",
+        ),
+        (&["test", "move.scan.json", "--recording", "run.txt"], "run.txt"),
+    ] {
+        let ended = standstill(&folder, arguments);
+        assert_eq!(ended.status, 2, "{arguments:?}: {}", ended.err);
+        assert!(ended.err.contains(wanted), "{arguments:?}: {}", ended.err);
+    }
+}

@@ -8,6 +8,9 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
+/// What the note of a shift begins with.
+const SHIFTED: &str = "coordinates moved by ";
+
 /// What axes and block instances are called.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
@@ -34,6 +37,12 @@ pub fn note(names: &Names, record: &Record, scan: usize, plan: Option<&StandardP
         subject: subject(names, record).to_owned(),
         text: text(names, record, plan),
     }
+}
+
+/// By how much the coordinates of its subject moved (u), if this is what the text of a note tells.
+#[must_use]
+pub fn shift(text: &str) -> Option<f64> {
+    text.strip_prefix(SHIFTED)?.parse().ok()
 }
 
 /// Whose line the note stands under: what a program asked for under its instance, what the axis did under
@@ -124,7 +133,7 @@ fn text(names: &Names, record: &Record, plan: Option<&StandardPlan>) -> String {
         }
         Event::RoomAwaited => "waits for room below the axis limits".to_owned(),
         Event::Paused { error } => format!("pauses: {} {}", error.number(), error.name()),
-        Event::Shifted { by } => format!("coordinates moved by {}", shortest(by)),
+        Event::Shifted { by } => format!("{SHIFTED}{}", shortest(by)),
         Event::Fault { error, code } => {
             format!("fault {} {}, code {code}", error.number(), error.name())
         }

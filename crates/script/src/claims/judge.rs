@@ -61,9 +61,11 @@ pub(super) fn always(
     that.iter()
         .filter_map(|condition| {
             let broken = || {
-                scans
-                    .clone()
-                    .filter(|&scan| rows.hold(during, scan) && !rows.holds(condition, scan))
+                scans.clone().filter(|&scan| {
+                    rows.hold(during, scan)
+                        && !rows.holds(condition, scan)
+                        && !rows.too_early(&condition.signal, scan)
+                })
             };
             let first = broken().next()?;
             let nearest = nearest(rows, first, |scan| rows.holds(condition, scan));

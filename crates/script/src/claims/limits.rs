@@ -88,12 +88,14 @@ fn limits(rows: &Rows<'_>, axis: usize, derivatives: &Derivatives) -> [f64; 4] {
 /// there and back to the first turn a plan may lead.
 fn resolved(rows: &Rows<'_>, axis: usize) -> [f64; 4] {
     let turn = rows.script.axes.get(axis).and_then(|axis| axis.config.modulo);
-    let mut position = rows.position(axis, 0, 1).unwrap_or(0.0);
+    let first = rows.position(axis, 0, 1).or_else(|| rows.position(axis, 0, 0));
+    let mut position = first.unwrap_or(0.0);
     let mut largest = position.abs().max(turn.unwrap_or(0.0));
     for scan in 0..rows.count() {
-        let (Some(now), Some(before)) = (rows.position(axis, scan, 0), rows.position(axis, scan, 1)) else {
+        let Some(now) = rows.position(axis, scan, 0) else {
             break;
         };
+        let before = rows.position(axis, scan, 1).unwrap_or(now);
         position = match turn {
             Some(_) => position + rows.way(axis, scan, 0, now - before),
             None => now,

@@ -1,4 +1,4 @@
-//! Where the signals of a script stand in a row of its trace, and the trace's header.
+//! Where the signals of a script stand in a row of a trace, and the header of its own one.
 
 use crate::model::{AxisNumber, Point, Program, Script, Symbol};
 use standstill_fb::{PinType, Value};
@@ -14,6 +14,8 @@ pub(crate) struct Layout {
     instances: Vec<usize>,
     /// First column of each guest program.
     programs: Vec<usize>,
+    /// Where a trace that is not of the script's own run has these columns.
+    elsewhere: Option<Vec<Option<usize>>>,
 }
 
 impl Layout {
@@ -34,25 +36,52 @@ impl Layout {
             variables,
             instances,
             programs,
+            elsewhere: None,
+        }
+    }
+
+    /// The columns of a script as a trace has them by name: those of the same name and kind.
+    pub(crate) fn of(script: &Script, recording: &trace::Trace) -> Self {
+        let place = |column: trace::Column| {
+            let place = recording.column(&column.name)?;
+            (recording.columns().get(place)?.kind == column.kind).then_some(place)
+        };
+        let columns = header(script).columns();
+        Self {
+            elsewhere: Some(columns.into_iter().map(place).collect()),
+            ..Self::new(script)
+        }
+    }
+
+    /// Whether the trace may begin amid motion: it is not of the script's own run.
+    pub(crate) const fn is_of_recording(&self) -> bool {
+        self.elsewhere.is_some()
+    }
+
+    /// Where the trace has a column of the script.
+    fn place(&self, column: usize) -> Option<usize> {
+        match &self.elsewhere {
+            None => Some(column),
+            Some(places) => *places.get(column)?,
         }
     }
 
     /// Column of a variable or pin.
     pub(crate) fn point(&self, point: Point) -> Option<usize> {
-        match point {
-            Point::Input(index) => Some(self.variables + index),
-            Point::Pin(instance, pin) => Some(self.instances.get(instance)? + pin),
-            Point::Symbol(program, symbol) => Some(self.programs.get(program)? + symbol),
-        }
+        self.place(match point {
+            Point::Input(index) => self.variables + index,
+            Point::Pin(instance, pin) => self.instances.get(instance)? + pin,
+            Point::Symbol(program, symbol) => self.programs.get(program)? + symbol,
+        })
     }
 
     /// Column of an axis state.
-    pub(crate) fn state(&self, axis: usize) -> usize {
-        axis * trace::AXIS_SIGNALS.len()
+    pub(crate) fn state(&self, axis: usize) -> Option<usize> {
+        self.place(axis * trace::AXIS_SIGNALS.len())
     }
 
     /// Column of a number of an axis; the order is that of [`trace::AXIS_SIGNALS`].
-    pub(crate) fn number(&self, axis: usize, number: AxisNumber) -> usize {
+    pub(crate) fn number(&self, axis: usize, number: AxisNumber) -> Option<usize> {
         let place = match number {
             AxisNumber::Position => 1,
             AxisNumber::Velocity => 2,
@@ -61,7 +90,7 @@ impl Layout {
             AxisNumber::Snap => 5,
             AxisNumber::ActualPosition => 6,
         };
-        self.state(axis) + place
+        self.place(axis * trace::AXIS_SIGNALS.len() + place)
     }
 }
 

@@ -6,11 +6,13 @@ mod drive;
 mod guests;
 mod layout;
 mod notes;
+mod recorded;
 mod rows;
 mod schedule;
 mod session;
 mod values;
 
+pub use recorded::{RecordingError, judge_recording};
 pub(crate) use rows::{Derivatives, Rows};
 pub use session::{Change, Session};
 

@@ -36,8 +36,8 @@ impl<'a> Rows<'a> {
     pub(crate) fn cell(&self, signal: &Signal, scan: u64) -> Option<Cell<'a>> {
         let column = match *signal {
             Signal::Point(point) => self.layout.point(point)?,
-            Signal::State(axis) => self.layout.state(axis),
-            Signal::Axis(axis, number) => self.layout.number(axis, number),
+            Signal::State(axis) => self.layout.state(axis)?,
+            Signal::Axis(axis, number) => self.layout.number(axis, number)?,
             Signal::Difference(axis, order) => {
                 let [.., last] = self.differences(axis, scan, order)?;
                 return Some(Cell::Real(last));
@@ -46,13 +46,24 @@ impl<'a> Rows<'a> {
         self.trace.cell(usize::try_from(scan).ok()?, column)
     }
 
+    /// Whether a scan is too near to the begin of a recording for the value of a signal: rows before it would tell it.
+    pub(crate) fn too_early(&self, signal: &Signal, scan: u64) -> bool {
+        match *signal {
+            Signal::Difference(_, order) => self.layout.is_of_recording() && scan <= order.into(),
+            Signal::Point(_) | Signal::State(_) | Signal::Axis(..) => false,
+        }
+    }
+
     /// Published position of an axis (u) `back` scans before `scan`; before scan 0 it stood still where it
-    /// started. `None` past the end.
+    /// started. `None` past the end, and before the begin of a recording, which may be amid motion.
     pub(crate) fn position(&self, axis: usize, scan: u64, back: u64) -> Option<f64> {
         let Some(scan) = scan.checked_sub(back) else {
+            if self.layout.is_of_recording() {
+                return None;
+            }
             return Some(self.script.axes.get(axis)?.config.position);
         };
-        let column = self.layout.number(axis, AxisNumber::Position);
+        let column = self.layout.number(axis, AxisNumber::Position)?;
         match self.trace.cell(usize::try_from(scan).ok()?, column)? {
             Cell::Real(position) => Some(position),
             Cell::Bool(_) | Cell::Integer(_) | Cell::Name(_) => None,

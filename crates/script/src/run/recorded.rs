@@ -1,0 +1,166 @@
+//! Claims judged on a recording: a trace that was not made by the script.
+
+use super::layout::{self, Layout};
+use super::rows::{Rows, Shift};
+use super::{Outcome, told};
+use crate::claims;
+use crate::model::{AxisNumber, ClaimKind, Comparison, Condition, Point, Script, Signal, Test};
+use standstill_record::told::shift;
+use standstill_trace::Trace;
+use std::collections::BTreeSet;
+
+/// Why a recording cannot be judged.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RecordingError {
+    /// Its scans are of another length.
+    #[error(
+        "its cycle is {found} ns and that of the script {expected} ns: scans mean other times; set `cycle` to that of \
+         the recording"
+    )]
+    Cycle {
+        /// Of the script (ns).
+        expected: u64,
+        /// Of the recording (ns).
+        found: u64,
+    },
+    /// It lacks what claims speak of.
+    #[error(
+        "{claim} speaks of {}, which the recording has not{}; columns go by name, as the script's own trace has them",
+        .columns.join(", "),
+        .others
+    )]
+    Missing {
+        /// Path of the first claim that cannot be judged.
+        claim: String,
+        /// What it speaks of and the recording lacks, as columns.
+        columns: Vec<String>,
+        /// How many claims there are besides, in words.
+        others: String,
+    },
+}
+
+/// Judges the claims of a script on a recording: what a flight recorder kept, or the trace of another run. Nothing is
+/// run; of the script its axes, blocks and variables count, by name, and its claims. Scans are rows of the recording.
+///
+/// What axes did before the first row is not known, so a difference of positions is first there in the row that has
+/// enough rows before it, and limits are looked at from there on.
+///
+/// # Errors
+/// [`RecordingError`]; a claim that fails is none, it is a verdict.
+pub fn judge_recording(script: &Script, mut recording: Trace) -> Result<Outcome, RecordingError> {
+    let (expected, found) = (script.cycle_ns.unsigned_abs(), recording.header().cycle_ns);
+    if expected != found {
+        return Err(RecordingError::Cycle { expected, found });
+    }
+    let layout = Layout::of(script, &recording);
+    all_there(script, &layout)?;
+    let shifts = shifts(script, &recording);
+    let verdicts = claims::judge(&Rows {
+        script,
+        layout: &layout,
+        trace: &recording,
+        shifts: &shifts,
+    });
+    recording.set_claims(verdicts.iter().map(told).collect());
+    Ok(Outcome {
+        trace: recording,
+        verdicts,
+    })
+}
+
+/// Where coordinates moved, which a trace tells in its notes.
+fn shifts(script: &Script, recording: &Trace) -> Vec<Shift> {
+    let mut shifts: Vec<_> = recording
+        .notes()
+        .iter()
+        .filter_map(|note| {
+            Some(Shift {
+                scan: note.scan as u64,
+                axis: script.axes.iter().position(|axis| axis.name == note.subject)?,
+                by: shift(&note.text)?,
+            })
+        })
+        .collect();
+    shifts.sort_by_key(|shift| shift.scan);
+    shifts
+}
+
+fn all_there(script: &Script, layout: &Layout) -> Result<(), RecordingError> {
+    let columns = layout::header(script).columns();
+    let own = Layout::new(script);
+    let missing = |signal: &Signal| {
+        if column(layout, signal).is_some() {
+            return None;
+        }
+        Some(columns.get(column(&own, signal)?)?.name.clone())
+    };
+    let mut broken = script.claims.iter().filter_map(|claim| {
+        let lacks: BTreeSet<_> = signals(&claim.kind).iter().filter_map(missing).collect();
+        (!lacks.is_empty()).then_some((claim, lacks))
+    });
+    let Some((claim, lacks)) = broken.next() else {
+        return Ok(());
+    };
+    Err(RecordingError::Missing {
+        claim: claim.path.clone(),
+        columns: lacks.into_iter().collect(),
+        others: match broken.count() {
+            0 => String::new(),
+            1 => " (nor what another claim speaks of)".to_owned(),
+            count => format!(" (nor what {count} other claims speak of)"),
+        },
+    })
+}
+
+/// The column a signal is taken from.
+fn column(layout: &Layout, signal: &Signal) -> Option<usize> {
+    match *signal {
+        Signal::Point(point) => layout.point(point),
+        Signal::State(axis) => layout.state(axis),
+        Signal::Axis(axis, number) => layout.number(axis, number),
+        Signal::Difference(axis, _) => layout.number(axis, AxisNumber::Position),
+    }
+}
+
+/// Everything a claim looks at.
+fn signals(kind: &ClaimKind) -> Vec<Signal> {
+    let mut found = Vec::new();
+    let mut add = |conditions: &[Condition]| {
+        for condition in conditions {
+            found.push(condition.signal.clone());
+            compared(&condition.test, &mut found);
+        }
+    };
+    match kind {
+        ClaimKind::At(_, that) | ClaimKind::By(_, that) | ClaimKind::Once(_, that) => add(that),
+        ClaimKind::Always { during, that, .. } | ClaimKind::Never { during, that, .. } => {
+            add(during);
+            add(that);
+        }
+        ClaimKind::Exclusive(_, points) => {
+            found.extend(points.iter().map(|(_, point): &(_, Point)| Signal::Point(*point)));
+        }
+        ClaimKind::WithinLimits { axis, .. } => found.push(Signal::Axis(*axis, AxisNumber::Position)),
+    }
+    found
+}
+
+/// The signals that a test compares with.
+fn compared(test: &Test, found: &mut Vec<Signal>) {
+    let Test::Compare(comparisons) = test else {
+        return;
+    };
+    for comparison in comparisons {
+        match comparison {
+            Comparison::SameAs(_, other) => found.push(other.clone()),
+            // A script's nesting is bounded by its reader.
+            Comparison::Ne(inner) => compared(inner, found),
+            Comparison::Near { .. }
+            | Comparison::Le(_)
+            | Comparison::Ge(_)
+            | Comparison::Lt(_)
+            | Comparison::Gt(_)
+            | Comparison::AbsLe(_) => {}
+        }
+    }
+}

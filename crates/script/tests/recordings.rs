@@ -1,0 +1,40 @@
+//! Claims judged on traces that a script did not make itself.
+
+use standstill_script::suite::{find, read_file, shown};
+use standstill_script::{judge_recording, run};
+use std::path::Path;
+
+/// Written to a file and read again, the trace of a run is judged as the run was. What differs is what nobody knows of
+/// a recording: how the axes moved before its first row.
+#[test]
+fn a_recording_of_a_run_is_judged_as_the_run() {
+    // Shifted and unwrapped positions, differences from the first scan on, variables of guests, names of enumerations.
+    let folders = [
+        "mc_set_position",
+        "modulo",
+        "limits",
+        "mc_move_superimposed",
+        "guests",
+        "reading",
+    ];
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests");
+    let scripts = folders.map(|name| find(&folder.join(name)).expect("a folder of scripts"));
+    let (mut claims, mut differing) = (0, Vec::new());
+    for path in scripts.concat() {
+        let (script, _) = read_file(&path, &[], &[]).expect("a good script");
+        let ran = run(&script).expect("a run");
+        let mut text = Vec::new();
+        standstill_trace::jsonl::write(&ran.trace, &mut text).expect("memory");
+        let text = std::str::from_utf8(&text).expect("text");
+        let recording = standstill_trace::jsonl::read(text).expect("a trace");
+        let recorded = judge_recording(&script, recording.trace).expect("all columns are there");
+        claims += ran.verdicts.len();
+        for (ran, recorded) in ran.verdicts.iter().zip(&recorded.verdicts) {
+            if ran != recorded {
+                differing.push(format!("{} {}: {recorded:?}", shown(&path), ran.path));
+            }
+        }
+    }
+    assert!(claims > 400, "{claims}");
+    assert_eq!(differing, [""; 0]);
+}
