@@ -12,7 +12,6 @@ use std::fmt::Write as _;
 
 const SYNTAX: Syntax = Syntax {
     numbered_enumerations: false,
-    tables: true,
 };
 
 const TIME: &str = "\

@@ -14,7 +14,6 @@ use std::fmt::Write as _;
 
 const SYNTAX: Syntax = Syntax {
     numbered_enumerations: true,
-    tables: true,
 };
 
 pub(crate) fn files(prefix: &Prefix, dialect: &Dialect) -> Vec<File> {

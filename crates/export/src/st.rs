@@ -11,8 +11,6 @@ use std::fmt::Write as _;
 pub(crate) struct Syntax {
     /// `(a := 1, b := 3)`; edition 2 only has elements in order from 0.
     pub numbered_enumerations: bool,
-    /// Arrays of structures can be handed over to C.
-    pub tables: bool,
 }
 
 /// The comment every shim begins with.
@@ -57,21 +55,19 @@ pub(crate) fn types(dialect: &Dialect, syntax: Syntax) -> String {
             let _ = writeln!(out, "  {} : DINT; (* {} *)", info.name, list.join(", "));
         }
     }
-    if syntax.tables {
-        for table in tables() {
-            let record = record_name(&table);
-            let _ = writeln!(out, "  {record} : STRUCT");
-            for field in table.fields {
-                let _ = writeln!(out, "    {} : {};", field.name, field.ty.iec_name());
-            }
-            let _ = writeln!(
-                out,
-                "  END_STRUCT;\n  {0} : STRUCT\n    Count : DINT; (* records that are used *)\n    \
-                 Records : ARRAY [0..{1}] OF {record};\n  END_STRUCT;",
-                table.name,
-                table.most - 1
-            );
+    for table in tables() {
+        let record = record_name(&table);
+        let _ = writeln!(out, "  {record} : STRUCT");
+        for field in table.fields {
+            let _ = writeln!(out, "    {} : {};", field.name, field.ty.iec_name());
         }
+        let _ = writeln!(
+            out,
+            "  END_STRUCT;\n  {0} : STRUCT\n    Count : DINT; (* records that are used *)\n    \
+             Records : ARRAY [0..{1}] OF {record};\n  END_STRUCT;",
+            table.name,
+            table.most - 1
+        );
     }
     out + "END_TYPE\n\n"
 }

@@ -24,9 +24,20 @@ extern struct standstill_runtime *standstill_default;
 }
 #endif
 
-/* Pins are wrapped there; members of structures may be or not. */
-template <class T> auto standstill_get(const T &value, int) -> decltype(value.get()) { return value.get(); }
-template <class T> const T &standstill_get(const T &value, long) { return value; }
-#define STANDSTILL_GET(value) standstill_get((value), 0)
+#include <type_traits>
+#include <utility>
+
+/* Pins and members of structures are wrapped there, enumerations twice; what is in the wrappers counts. */
+template <class T, class = void> struct standstill_is_wrapped : std::false_type {};
+template <class T>
+struct standstill_is_wrapped<T, std::void_t<decltype(std::declval<const T &>().get())>> : std::true_type {};
+template <class T> auto standstill_get(const T &value) {
+    if constexpr (standstill_is_wrapped<T>::value) {
+        return standstill_get(value.get());
+    } else {
+        return value;
+    }
+}
+#define STANDSTILL_GET(value) standstill_get(value)
 
 #endif /* STANDSTILL_SHIM_H */
