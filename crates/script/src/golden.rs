@@ -7,6 +7,7 @@ use crate::run::Outcome;
 use standstill_trace::Trace;
 use standstill_trace::compare::{Closeness, Yardstick};
 use standstill_trace::golden::{self, GoldenError, Verdict};
+use standstill_trace::story::story;
 use std::path::{Path, PathBuf};
 
 /// What may be done to goldens.
@@ -125,7 +126,10 @@ pub fn judge(
         }
         Verdict::Companion(why) => format!("{why}; run the test once outside CI to write it"),
         Verdict::Missing => "there is no golden yet".to_owned(),
-        Verdict::Different(mismatch) => format!("the run differs from its golden\n{mismatch}"),
+        Verdict::Different(mismatch) => {
+            let cause = likely_cause(&snap, trace)?;
+            format!("the run differs from its golden\n{mismatch}{cause}")
+        }
     };
     if !proposing || !outcome.passed() {
         return Ok(Standing::Failed(what));
@@ -134,6 +138,15 @@ pub fn judge(
     let hint = "review the proposal (.snap.new), then accept it: `standstill test --accept` with the \
                 script's path, or `cargo insta review`";
     Ok(Standing::Failed(format!("{}\n{hint}", what.trim_end())))
+}
+
+/// What may be behind a difference, where the golden's exact trace can tell.
+fn likely_cause(snap: &Path, trace: &Trace) -> Result<String, GoldenError> {
+    let story = golden::expected(snap)?.and_then(|expected| story(&expected, trace));
+    let cause = story.and_then(|story| story.causes.into_iter().next());
+    Ok(cause.map_or_else(String::new, |cause| {
+        format!("likely cause\n  {cause}\n  look at: {}\n", cause.look_at())
+    }))
 }
 
 #[cfg(test)]

@@ -35,7 +35,10 @@ fn a_golden_is_accepted_once_and_judges_from_then_on() {
     let differs = standstill(&folder, &["test", "."]);
     assert_eq!(differs.status, 1);
     assert!(
-        differs.out.contains("first difference in scan 25"),
+        differs.out.contains("first difference in scan 25")
+            && differs
+                .out
+                .contains("    likely cause\n      another input: GO is FALSE instead of TRUE\n"),
         "{}",
         differs.out
     );
@@ -479,9 +482,9 @@ fn a_recording_is_judged_by_the_claims_of_a_script() {
     write(&folder, "claims.scan.json", &faster);
     let failed = standstill(&folder, &["test", "claims.scan.json", "--recording", "cut.csv"]);
     assert!(
-        failed
-            .out
-            .contains("expect[0].within_limits.X.Position.d1: 4.999999999999999 at scan 5, expected of magnitude <= 4.0"),
+        failed.out.contains(
+            "expect[0].within_limits.X.Position.d1: 4.999999999999999 at scan 5, expected of magnitude <= 4.0"
+        ),
         "{}",
         failed.out
     );
