@@ -74,15 +74,21 @@ pub struct File {
 /// XML library are those of `dialect`.
 pub fn export(target: Target, prefix: &Prefix, dialect: &Dialect) -> Vec<File> {
     let headers = || c::files(prefix);
+    // A program in Structured Text may become a guest, too: the header alone.
+    let for_both = || {
+        let mut files = headers();
+        files.extend(guest::files(prefix).into_iter().take(1));
+        files
+    };
     match target {
         Target::C => headers(),
         Target::StMatiec => {
-            let mut files = headers();
+            let mut files = for_both();
             files.extend(matiec::files(prefix, dialect));
             files
         }
         Target::StStrucpp => {
-            let mut files = headers();
+            let mut files = for_both();
             files.extend(strucpp::files(prefix, dialect));
             files
         }

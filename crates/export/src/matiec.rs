@@ -1,4 +1,4 @@
-//! Shims for matiec: bodies in C between `{{` and `}}`, pins through `GetFbVar` and `SetFbVar`.
+//! Shims for matiec: bodies in C between `{{` and `}}`, pins through `GetFbVar` and `SetFbVar`, and what runs a program.
 //!
 //! These two respect forcing, do not depend on the layout of an instance, and work in a guest, too.
 
@@ -14,6 +14,55 @@ const SYNTAX: Syntax = Syntax {
     numbered_enumerations: false,
 };
 
+/// What a host calls, and what matiec leaves to it.
+const MAIN: &str = r#"
+#include "standstill_shim.h"
+#include "iec_types_all.h"
+#include <stddef.h>
+
+/* Variables of VAR_GLOBAL are read and written from outside by address and type: the value comes first. */
+_Static_assert(sizeof(BOOL) == 1 && offsetof(__IEC_BOOL_t, value) == 0, "bool");
+_Static_assert(sizeof(INT) == 2 && offsetof(__IEC_INT_t, value) == 0, "int");
+_Static_assert(sizeof(WORD) == 2 && offsetof(__IEC_WORD_t, value) == 0, "word");
+_Static_assert(sizeof(DINT) == 4 && offsetof(__IEC_DINT_t, value) == 0, "dint");
+_Static_assert(sizeof(DWORD) == 4 && offsetof(__IEC_DWORD_t, value) == 0, "dword");
+_Static_assert(sizeof(ULINT) == 8 && offsetof(__IEC_ULINT_t, value) == 0, "ulint");
+_Static_assert(sizeof(LREAL) == 8 && offsetof(__IEC_LREAL_t, value) == 0, "lreal");
+
+#ifdef __wasm__
+#define STANDSTILL_EXPORT(name) __attribute__((export_name(#name)))
+#else
+#define STANDSTILL_EXPORT(name)
+#endif
+
+TIME __CURRENT_TIME;
+BOOL __DEBUG;
+
+extern unsigned long greatest_tick_count__;
+void config_init__(void);
+void config_run__(unsigned long tick);
+
+void plc_init(void);
+void plc_scan(int32_t tick, int64_t now_ns);
+
+static unsigned long standstill_tick;
+
+/* Sets all variables; before the first scan. */
+STANDSTILL_EXPORT(plc_init) void plc_init(void) {
+    standstill_tick = 0;
+    config_init__();
+}
+
+/* Runs the tasks that are due. The host calls it every common_ticktime__ ns, between tick_begin and tick_end. */
+STANDSTILL_EXPORT(plc_scan) void plc_scan(int32_t tick, int64_t now_ns) {
+    (void)tick;
+    __CURRENT_TIME.tv_sec = now_ns / 1000000000;
+    __CURRENT_TIME.tv_nsec = now_ns % 1000000000;
+    config_run__(standstill_tick++);
+    if (greatest_tick_count__ != 0 && standstill_tick >= greatest_tick_count__) standstill_tick = 0;
+}
+"#;
+
 const TIME: &str = "\
 /* TIME is a structure of seconds and nanoseconds there. */
 #define STANDSTILL_NS(time) ((int64_t)(time).tv_sec * INT64_C(1000000000) + (time).tv_nsec)
@@ -23,7 +72,8 @@ const TIME: &str = "\
 pub(crate) fn files(prefix: &Prefix, dialect: &Dialect) -> Vec<File> {
     let mut text = st::notice(
         "The function blocks of standstill for matiec and Beremiz.\n\n   Compile the C files with \
-         -include standstill_shim.h and link the library of standstill.",
+         -include standstill_shim.h, standstill_matiec_main.c with them, and link the library of standstill,\n   or \
+         nothing for a guest in WebAssembly.",
         dialect,
     );
     text += &st::types(dialect, SYNTAX);
@@ -39,12 +89,21 @@ pub(crate) fn files(prefix: &Prefix, dialect: &Dialect) -> Vec<File> {
             name: format!("{}_matiec.st", prefix.lower()),
             text: prefix.applied(&text),
         },
+        File {
+            name: format!("{}_matiec_main.c", prefix.lower()),
+            text: prefix.applied(&format!(
+                "/* A program that matiec translated, as a guest in WebAssembly or linked to a host in C: plc_init and plc_scan.\n \
+                 *\n{} */\n{MAIN}",
+                crate::c::NOTICE
+            )),
+        },
     ]
 }
 
 fn block(out: &mut String, info: &BlockInfo, dialect: &Dialect) {
     let name = function(info);
     *out += &st::head(info, dialect, SYNTAX);
+    // SetFbVar does not evaluate its value for a pin that is forced, so the call stands by itself.
     // Names are upper-cased in the generated C. A private variable has a name no pin has.
     *out += "  VAR\n    Standstill_Key : ULINT;\n  END_VAR\n  {{\n";
     let _ = writeln!(
@@ -88,8 +147,8 @@ fn block(out: &mut String, info: &BlockInfo, dialect: &Dialect) {
     }
     let _ = writeln!(
         out,
-        "    SetFbVar(RESULT, standstill_{name}(standstill_default, &key, &in, &out));\n    \
-         SetFbVar(STANDSTILL_KEY, key);\n    if (GetFbVar(RESULT) == 0) {{"
+        "    int32_t result = standstill_{name}(STANDSTILL_RUNTIME &key, &in, &out);\n    \
+         SetFbVar(STANDSTILL_KEY, key);\n    SetFbVar(RESULT, result);\n    if (result == 0) {{"
     );
     for pin in info.outputs() {
         let (field, there) = (pin.field, dialect.pin(info, pin).to_ascii_uppercase());

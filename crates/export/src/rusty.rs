@@ -83,6 +83,15 @@ fn block(out: &mut String, info: &BlockInfo, dialect: &Dialect) {
         );
         at += size;
     }
+    // Behind the pins: what the library says, and the key.
+    let result = at.max(8).next_multiple_of(4);
+    let key = (result + 4).next_multiple_of(8);
+    let _ = writeln!(
+        asserts,
+        "STANDSTILL_ASSERT(rusty_{name}_key, sizeof(void *) != 8 || (offsetof(struct standstill_{name}_fb, result) == {result} && \
+         offsetof(struct standstill_{name}_fb, key) == {key} && sizeof(struct standstill_{name}_fb) == {}));",
+        key + 8
+    );
     let _ = writeln!(
         out,
         "    int32_t result;\n    uint64_t key;\n}};\n{asserts}\nvoid {0}(struct standstill_{name}_fb *self);\n\n\
@@ -117,7 +126,7 @@ fn block(out: &mut String, info: &BlockInfo, dialect: &Dialect) {
     }
     let _ = writeln!(
         out,
-        "    self->result = standstill_{name}(standstill_default, &self->key, &in, &out);\n    \
+        "    self->result = standstill_{name}(STANDSTILL_RUNTIME &self->key, &in, &out);\n    \
          if (self->result == 0) {{"
     );
     for pin in info.outputs() {

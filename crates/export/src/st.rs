@@ -190,12 +190,28 @@ pub(crate) fn translated(of: &EnumInfo, value: &str, dialect: &Dialect) -> Strin
 pub(crate) fn shim_header(time: &str, dialect: &Dialect) -> String {
     format!(
         "/* What the shims of standstill need in C: give it to the compiler with -include.\n *\n{} */\n\n\
-         #ifndef STANDSTILL_SHIM_H\n#define STANDSTILL_SHIM_H\n\n#include \"standstill_blocks.h\"\n\n\
-         #ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
-         /* The runtime the blocks of the program belong to. The host defines it, and begins and ends its ticks. */\n\
-         extern struct standstill_runtime *standstill_default;\n\n\
-         #ifdef __cplusplus\n}}\n#endif\n\n{time}{}#endif /* STANDSTILL_SHIM_H */\n",
+         #ifndef STANDSTILL_SHIM_H\n#define STANDSTILL_SHIM_H\n\n{RUNTIME}{time}{}#endif /* STANDSTILL_SHIM_H */\n",
         crate::c::NOTICE,
         translations(dialect)
     )
 }
+
+const RUNTIME: &str = "\
+#ifdef __wasm__
+/* A guest: its blocks are imports, and its runtime is that of its host. */
+#include \"standstill_guest.h\"
+#define STANDSTILL_RUNTIME
+#else
+#include \"standstill_blocks.h\"
+#ifdef __cplusplus
+extern \"C\" {
+#endif
+/* The runtime the blocks of the program belong to. The host defines it, and begins and ends its ticks. */
+extern struct standstill_runtime *standstill_default;
+#ifdef __cplusplus
+}
+#endif
+#define STANDSTILL_RUNTIME standstill_default,
+#endif
+
+";

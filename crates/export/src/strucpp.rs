@@ -76,7 +76,7 @@ fn block(out: &mut String, info: &BlockInfo, dialect: &Dialect) {
     }
     let _ = writeln!(
         out,
-        "    int32_t result = standstill_{name}(standstill_default, &key, &in, &out);\n    \
+        "    int32_t result = standstill_{name}(STANDSTILL_RUNTIME &key, &in, &out);\n    \
          STANDSTILL_KEY.set(key);\n    RESULT.set(result);\n    if (result == 0) {{"
     );
     for pin in info.outputs() {

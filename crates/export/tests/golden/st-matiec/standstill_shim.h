@@ -11,17 +11,21 @@
 #ifndef STANDSTILL_SHIM_H
 #define STANDSTILL_SHIM_H
 
+#ifdef __wasm__
+/* A guest: its blocks are imports, and its runtime is that of its host. */
+#include "standstill_guest.h"
+#define STANDSTILL_RUNTIME
+#else
 #include "standstill_blocks.h"
-
 #ifdef __cplusplus
 extern "C" {
 #endif
-
 /* The runtime the blocks of the program belong to. The host defines it, and begins and ends its ticks. */
 extern struct standstill_runtime *standstill_default;
-
 #ifdef __cplusplus
 }
+#endif
+#define STANDSTILL_RUNTIME standstill_default,
 #endif
 
 /* TIME is a structure of seconds and nanoseconds there. */

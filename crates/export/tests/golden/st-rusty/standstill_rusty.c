@@ -61,6 +61,7 @@ STANDSTILL_ASSERT(rusty_mc_power_status, sizeof(void *) != 8 || offsetof(struct 
 STANDSTILL_ASSERT(rusty_mc_power_valid, sizeof(void *) != 8 || offsetof(struct standstill_mc_power_fb, valid) == 20);
 STANDSTILL_ASSERT(rusty_mc_power_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_power_fb, error) == 21);
 STANDSTILL_ASSERT(rusty_mc_power_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_power_fb, error_id) == 22);
+STANDSTILL_ASSERT(rusty_mc_power_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_power_fb, result) == 24 && offsetof(struct standstill_mc_power_fb, key) == 32 && sizeof(struct standstill_mc_power_fb) == 40));
 
 void MC_Power(struct standstill_mc_power_fb *self);
 
@@ -71,7 +72,7 @@ void MC_Power(struct standstill_mc_power_fb *self) {
     in.enable = self->enable;
     in.enable_positive = self->enable_positive;
     in.enable_negative = self->enable_negative;
-    self->result = standstill_mc_power(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_power(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->status = out.status;
         self->valid = out.valid;
@@ -97,6 +98,7 @@ STANDSTILL_ASSERT(rusty_mc_reset_done, sizeof(void *) != 8 || offsetof(struct st
 STANDSTILL_ASSERT(rusty_mc_reset_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_reset_fb, busy) == 18);
 STANDSTILL_ASSERT(rusty_mc_reset_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_reset_fb, error) == 19);
 STANDSTILL_ASSERT(rusty_mc_reset_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_reset_fb, error_id) == 20);
+STANDSTILL_ASSERT(rusty_mc_reset_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_reset_fb, result) == 24 && offsetof(struct standstill_mc_reset_fb, key) == 32 && sizeof(struct standstill_mc_reset_fb) == 40));
 
 void MC_Reset(struct standstill_mc_reset_fb *self);
 
@@ -105,7 +107,7 @@ void MC_Reset(struct standstill_mc_reset_fb *self) {
     struct standstill_mc_reset_out out = standstill_mc_reset_out_default();
     in.axis = self->axis != NULL ? self->axis->number : 0;
     in.execute = self->execute;
-    self->result = standstill_mc_reset(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_reset(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -147,6 +149,7 @@ STANDSTILL_ASSERT(rusty_mc_read_status_standstill, sizeof(void *) != 8 || offset
 STANDSTILL_ASSERT(rusty_mc_read_status_discrete_motion, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_status_fb, discrete_motion) == 27);
 STANDSTILL_ASSERT(rusty_mc_read_status_continuous_motion, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_status_fb, continuous_motion) == 28);
 STANDSTILL_ASSERT(rusty_mc_read_status_synchronized_motion, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_status_fb, synchronized_motion) == 29);
+STANDSTILL_ASSERT(rusty_mc_read_status_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_read_status_fb, result) == 32 && offsetof(struct standstill_mc_read_status_fb, key) == 40 && sizeof(struct standstill_mc_read_status_fb) == 48));
 
 void MC_ReadStatus(struct standstill_mc_read_status_fb *self);
 
@@ -155,7 +158,7 @@ void MC_ReadStatus(struct standstill_mc_read_status_fb *self) {
     struct standstill_mc_read_status_out out = standstill_mc_read_status_out_default();
     in.axis = self->axis != NULL ? self->axis->number : 0;
     in.enable = self->enable;
-    self->result = standstill_mc_read_status(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_read_status(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->valid = out.valid;
         self->busy = out.busy;
@@ -201,6 +204,7 @@ STANDSTILL_ASSERT(rusty_mc_read_motion_state_accelerating, sizeof(void *) != 8 |
 STANDSTILL_ASSERT(rusty_mc_read_motion_state_decelerating, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_motion_state_fb, decelerating) == 32);
 STANDSTILL_ASSERT(rusty_mc_read_motion_state_direction_positive, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_motion_state_fb, direction_positive) == 33);
 STANDSTILL_ASSERT(rusty_mc_read_motion_state_direction_negative, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_motion_state_fb, direction_negative) == 34);
+STANDSTILL_ASSERT(rusty_mc_read_motion_state_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_read_motion_state_fb, result) == 36 && offsetof(struct standstill_mc_read_motion_state_fb, key) == 40 && sizeof(struct standstill_mc_read_motion_state_fb) == 48));
 
 void MC_ReadMotionState(struct standstill_mc_read_motion_state_fb *self);
 
@@ -210,7 +214,7 @@ void MC_ReadMotionState(struct standstill_mc_read_motion_state_fb *self) {
     in.axis = self->axis != NULL ? self->axis->number : 0;
     in.enable = self->enable;
     in.source = (int32_t)self->source;
-    self->result = standstill_mc_read_motion_state(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_read_motion_state(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->valid = out.valid;
         self->busy = out.busy;
@@ -259,6 +263,7 @@ STANDSTILL_ASSERT(rusty_mc_read_axis_info_ready_for_power_on, sizeof(void *) != 
 STANDSTILL_ASSERT(rusty_mc_read_axis_info_power_on, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_axis_info_fb, power_on) == 28);
 STANDSTILL_ASSERT(rusty_mc_read_axis_info_is_homed, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_axis_info_fb, is_homed) == 29);
 STANDSTILL_ASSERT(rusty_mc_read_axis_info_axis_warning, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_axis_info_fb, axis_warning) == 30);
+STANDSTILL_ASSERT(rusty_mc_read_axis_info_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_read_axis_info_fb, result) == 32 && offsetof(struct standstill_mc_read_axis_info_fb, key) == 40 && sizeof(struct standstill_mc_read_axis_info_fb) == 48));
 
 void MC_ReadAxisInfo(struct standstill_mc_read_axis_info_fb *self);
 
@@ -267,7 +272,7 @@ void MC_ReadAxisInfo(struct standstill_mc_read_axis_info_fb *self) {
     struct standstill_mc_read_axis_info_out out = standstill_mc_read_axis_info_out_default();
     in.axis = self->axis != NULL ? self->axis->number : 0;
     in.enable = self->enable;
-    self->result = standstill_mc_read_axis_info(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_read_axis_info(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->valid = out.valid;
         self->busy = out.busy;
@@ -304,6 +309,7 @@ STANDSTILL_ASSERT(rusty_mc_read_axis_error_busy, sizeof(void *) != 8 || offsetof
 STANDSTILL_ASSERT(rusty_mc_read_axis_error_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_axis_error_fb, error) == 19);
 STANDSTILL_ASSERT(rusty_mc_read_axis_error_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_axis_error_fb, error_id) == 20);
 STANDSTILL_ASSERT(rusty_mc_read_axis_error_axis_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_axis_error_fb, axis_error_id) == 22);
+STANDSTILL_ASSERT(rusty_mc_read_axis_error_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_read_axis_error_fb, result) == 24 && offsetof(struct standstill_mc_read_axis_error_fb, key) == 32 && sizeof(struct standstill_mc_read_axis_error_fb) == 40));
 
 void MC_ReadAxisError(struct standstill_mc_read_axis_error_fb *self);
 
@@ -312,7 +318,7 @@ void MC_ReadAxisError(struct standstill_mc_read_axis_error_fb *self) {
     struct standstill_mc_read_axis_error_out out = standstill_mc_read_axis_error_out_default();
     in.axis = self->axis != NULL ? self->axis->number : 0;
     in.enable = self->enable;
-    self->result = standstill_mc_read_axis_error(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_read_axis_error(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->valid = out.valid;
         self->busy = out.busy;
@@ -341,6 +347,7 @@ STANDSTILL_ASSERT(rusty_mc_read_actual_position_busy, sizeof(void *) != 8 || off
 STANDSTILL_ASSERT(rusty_mc_read_actual_position_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_actual_position_fb, error) == 19);
 STANDSTILL_ASSERT(rusty_mc_read_actual_position_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_actual_position_fb, error_id) == 20);
 STANDSTILL_ASSERT(rusty_mc_read_actual_position_position, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_actual_position_fb, position) == 24);
+STANDSTILL_ASSERT(rusty_mc_read_actual_position_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_read_actual_position_fb, result) == 32 && offsetof(struct standstill_mc_read_actual_position_fb, key) == 40 && sizeof(struct standstill_mc_read_actual_position_fb) == 48));
 
 void MC_ReadActualPosition(struct standstill_mc_read_actual_position_fb *self);
 
@@ -349,7 +356,7 @@ void MC_ReadActualPosition(struct standstill_mc_read_actual_position_fb *self) {
     struct standstill_mc_read_actual_position_out out = standstill_mc_read_actual_position_out_default();
     in.axis = self->axis != NULL ? self->axis->number : 0;
     in.enable = self->enable;
-    self->result = standstill_mc_read_actual_position(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_read_actual_position(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->valid = out.valid;
         self->busy = out.busy;
@@ -378,6 +385,7 @@ STANDSTILL_ASSERT(rusty_mc_read_actual_velocity_busy, sizeof(void *) != 8 || off
 STANDSTILL_ASSERT(rusty_mc_read_actual_velocity_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_actual_velocity_fb, error) == 19);
 STANDSTILL_ASSERT(rusty_mc_read_actual_velocity_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_actual_velocity_fb, error_id) == 20);
 STANDSTILL_ASSERT(rusty_mc_read_actual_velocity_velocity, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_actual_velocity_fb, velocity) == 24);
+STANDSTILL_ASSERT(rusty_mc_read_actual_velocity_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_read_actual_velocity_fb, result) == 32 && offsetof(struct standstill_mc_read_actual_velocity_fb, key) == 40 && sizeof(struct standstill_mc_read_actual_velocity_fb) == 48));
 
 void MC_ReadActualVelocity(struct standstill_mc_read_actual_velocity_fb *self);
 
@@ -386,7 +394,7 @@ void MC_ReadActualVelocity(struct standstill_mc_read_actual_velocity_fb *self) {
     struct standstill_mc_read_actual_velocity_out out = standstill_mc_read_actual_velocity_out_default();
     in.axis = self->axis != NULL ? self->axis->number : 0;
     in.enable = self->enable;
-    self->result = standstill_mc_read_actual_velocity(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_read_actual_velocity(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->valid = out.valid;
         self->busy = out.busy;
@@ -415,6 +423,7 @@ STANDSTILL_ASSERT(rusty_mc_read_actual_torque_busy, sizeof(void *) != 8 || offse
 STANDSTILL_ASSERT(rusty_mc_read_actual_torque_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_actual_torque_fb, error) == 19);
 STANDSTILL_ASSERT(rusty_mc_read_actual_torque_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_actual_torque_fb, error_id) == 20);
 STANDSTILL_ASSERT(rusty_mc_read_actual_torque_torque, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_actual_torque_fb, torque) == 24);
+STANDSTILL_ASSERT(rusty_mc_read_actual_torque_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_read_actual_torque_fb, result) == 32 && offsetof(struct standstill_mc_read_actual_torque_fb, key) == 40 && sizeof(struct standstill_mc_read_actual_torque_fb) == 48));
 
 void MC_ReadActualTorque(struct standstill_mc_read_actual_torque_fb *self);
 
@@ -423,7 +432,7 @@ void MC_ReadActualTorque(struct standstill_mc_read_actual_torque_fb *self) {
     struct standstill_mc_read_actual_torque_out out = standstill_mc_read_actual_torque_out_default();
     in.axis = self->axis != NULL ? self->axis->number : 0;
     in.enable = self->enable;
-    self->result = standstill_mc_read_actual_torque(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_read_actual_torque(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->valid = out.valid;
         self->busy = out.busy;
@@ -456,6 +465,7 @@ STANDSTILL_ASSERT(rusty_mc_set_position_done, sizeof(void *) != 8 || offsetof(st
 STANDSTILL_ASSERT(rusty_mc_set_position_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_set_position_fb, busy) == 41);
 STANDSTILL_ASSERT(rusty_mc_set_position_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_set_position_fb, error) == 42);
 STANDSTILL_ASSERT(rusty_mc_set_position_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_set_position_fb, error_id) == 44);
+STANDSTILL_ASSERT(rusty_mc_set_position_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_set_position_fb, result) == 48 && offsetof(struct standstill_mc_set_position_fb, key) == 56 && sizeof(struct standstill_mc_set_position_fb) == 64));
 
 void MC_SetPosition(struct standstill_mc_set_position_fb *self);
 
@@ -467,7 +477,7 @@ void MC_SetPosition(struct standstill_mc_set_position_fb *self) {
     in.position = self->position;
     in.relative = self->relative;
     in.execution_mode = (int32_t)self->execution_mode;
-    self->result = standstill_mc_set_position(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_set_position(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -499,6 +509,7 @@ STANDSTILL_ASSERT(rusty_mc_set_override_enabled, sizeof(void *) != 8 || offsetof
 STANDSTILL_ASSERT(rusty_mc_set_override_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_set_override_fb, busy) == 49);
 STANDSTILL_ASSERT(rusty_mc_set_override_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_set_override_fb, error) == 50);
 STANDSTILL_ASSERT(rusty_mc_set_override_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_set_override_fb, error_id) == 52);
+STANDSTILL_ASSERT(rusty_mc_set_override_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_set_override_fb, result) == 56 && offsetof(struct standstill_mc_set_override_fb, key) == 64 && sizeof(struct standstill_mc_set_override_fb) == 72));
 
 void MC_SetOverride(struct standstill_mc_set_override_fb *self);
 
@@ -510,7 +521,7 @@ void MC_SetOverride(struct standstill_mc_set_override_fb *self) {
     in.vel_factor = self->vel_factor;
     in.acc_factor = self->acc_factor;
     in.jerk_factor = self->jerk_factor;
-    self->result = standstill_mc_set_override(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_set_override(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->enabled = out.enabled;
         self->busy = out.busy;
@@ -540,6 +551,7 @@ STANDSTILL_ASSERT(rusty_mc_read_parameter_busy, sizeof(void *) != 8 || offsetof(
 STANDSTILL_ASSERT(rusty_mc_read_parameter_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_parameter_fb, error) == 22);
 STANDSTILL_ASSERT(rusty_mc_read_parameter_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_parameter_fb, error_id) == 24);
 STANDSTILL_ASSERT(rusty_mc_read_parameter_value, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_parameter_fb, value) == 32);
+STANDSTILL_ASSERT(rusty_mc_read_parameter_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_read_parameter_fb, result) == 40 && offsetof(struct standstill_mc_read_parameter_fb, key) == 48 && sizeof(struct standstill_mc_read_parameter_fb) == 56));
 
 void MC_ReadParameter(struct standstill_mc_read_parameter_fb *self);
 
@@ -549,7 +561,7 @@ void MC_ReadParameter(struct standstill_mc_read_parameter_fb *self) {
     in.axis = self->axis != NULL ? self->axis->number : 0;
     in.enable = self->enable;
     in.parameter_number = self->parameter_number;
-    self->result = standstill_mc_read_parameter(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_read_parameter(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->valid = out.valid;
         self->busy = out.busy;
@@ -580,6 +592,7 @@ STANDSTILL_ASSERT(rusty_mc_read_bool_parameter_busy, sizeof(void *) != 8 || offs
 STANDSTILL_ASSERT(rusty_mc_read_bool_parameter_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_bool_parameter_fb, error) == 22);
 STANDSTILL_ASSERT(rusty_mc_read_bool_parameter_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_bool_parameter_fb, error_id) == 24);
 STANDSTILL_ASSERT(rusty_mc_read_bool_parameter_value, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_bool_parameter_fb, value) == 26);
+STANDSTILL_ASSERT(rusty_mc_read_bool_parameter_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_read_bool_parameter_fb, result) == 28 && offsetof(struct standstill_mc_read_bool_parameter_fb, key) == 32 && sizeof(struct standstill_mc_read_bool_parameter_fb) == 40));
 
 void MC_ReadBoolParameter(struct standstill_mc_read_bool_parameter_fb *self);
 
@@ -589,7 +602,7 @@ void MC_ReadBoolParameter(struct standstill_mc_read_bool_parameter_fb *self) {
     in.axis = self->axis != NULL ? self->axis->number : 0;
     in.enable = self->enable;
     in.parameter_number = self->parameter_number;
-    self->result = standstill_mc_read_bool_parameter(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_read_bool_parameter(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->valid = out.valid;
         self->busy = out.busy;
@@ -622,6 +635,7 @@ STANDSTILL_ASSERT(rusty_mc_write_parameter_done, sizeof(void *) != 8 || offsetof
 STANDSTILL_ASSERT(rusty_mc_write_parameter_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_write_parameter_fb, busy) == 37);
 STANDSTILL_ASSERT(rusty_mc_write_parameter_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_write_parameter_fb, error) == 38);
 STANDSTILL_ASSERT(rusty_mc_write_parameter_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_write_parameter_fb, error_id) == 40);
+STANDSTILL_ASSERT(rusty_mc_write_parameter_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_write_parameter_fb, result) == 44 && offsetof(struct standstill_mc_write_parameter_fb, key) == 48 && sizeof(struct standstill_mc_write_parameter_fb) == 56));
 
 void MC_WriteParameter(struct standstill_mc_write_parameter_fb *self);
 
@@ -633,7 +647,7 @@ void MC_WriteParameter(struct standstill_mc_write_parameter_fb *self) {
     in.parameter_number = self->parameter_number;
     in.value = self->value;
     in.execution_mode = (int32_t)self->execution_mode;
-    self->result = standstill_mc_write_parameter(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_write_parameter(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -665,6 +679,7 @@ STANDSTILL_ASSERT(rusty_mc_write_bool_parameter_done, sizeof(void *) != 8 || off
 STANDSTILL_ASSERT(rusty_mc_write_bool_parameter_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_write_bool_parameter_fb, busy) == 29);
 STANDSTILL_ASSERT(rusty_mc_write_bool_parameter_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_write_bool_parameter_fb, error) == 30);
 STANDSTILL_ASSERT(rusty_mc_write_bool_parameter_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_write_bool_parameter_fb, error_id) == 32);
+STANDSTILL_ASSERT(rusty_mc_write_bool_parameter_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_write_bool_parameter_fb, result) == 36 && offsetof(struct standstill_mc_write_bool_parameter_fb, key) == 40 && sizeof(struct standstill_mc_write_bool_parameter_fb) == 48));
 
 void MC_WriteBoolParameter(struct standstill_mc_write_bool_parameter_fb *self);
 
@@ -676,7 +691,7 @@ void MC_WriteBoolParameter(struct standstill_mc_write_bool_parameter_fb *self) {
     in.parameter_number = self->parameter_number;
     in.value = self->value;
     in.execution_mode = (int32_t)self->execution_mode;
-    self->result = standstill_mc_write_bool_parameter(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_write_bool_parameter(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -706,6 +721,7 @@ STANDSTILL_ASSERT(rusty_mc_read_digital_input_busy, sizeof(void *) != 8 || offse
 STANDSTILL_ASSERT(rusty_mc_read_digital_input_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_digital_input_fb, error) == 22);
 STANDSTILL_ASSERT(rusty_mc_read_digital_input_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_digital_input_fb, error_id) == 24);
 STANDSTILL_ASSERT(rusty_mc_read_digital_input_value, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_digital_input_fb, value) == 26);
+STANDSTILL_ASSERT(rusty_mc_read_digital_input_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_read_digital_input_fb, result) == 28 && offsetof(struct standstill_mc_read_digital_input_fb, key) == 32 && sizeof(struct standstill_mc_read_digital_input_fb) == 40));
 
 void MC_ReadDigitalInput(struct standstill_mc_read_digital_input_fb *self);
 
@@ -715,7 +731,7 @@ void MC_ReadDigitalInput(struct standstill_mc_read_digital_input_fb *self) {
     in.input = self->input != NULL ? self->input->number : 0;
     in.enable = self->enable;
     in.input_number = self->input_number;
-    self->result = standstill_mc_read_digital_input(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_read_digital_input(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->valid = out.valid;
         self->busy = out.busy;
@@ -746,6 +762,7 @@ STANDSTILL_ASSERT(rusty_mc_read_digital_output_busy, sizeof(void *) != 8 || offs
 STANDSTILL_ASSERT(rusty_mc_read_digital_output_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_digital_output_fb, error) == 22);
 STANDSTILL_ASSERT(rusty_mc_read_digital_output_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_digital_output_fb, error_id) == 24);
 STANDSTILL_ASSERT(rusty_mc_read_digital_output_value, sizeof(void *) != 8 || offsetof(struct standstill_mc_read_digital_output_fb, value) == 26);
+STANDSTILL_ASSERT(rusty_mc_read_digital_output_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_read_digital_output_fb, result) == 28 && offsetof(struct standstill_mc_read_digital_output_fb, key) == 32 && sizeof(struct standstill_mc_read_digital_output_fb) == 40));
 
 void MC_ReadDigitalOutput(struct standstill_mc_read_digital_output_fb *self);
 
@@ -755,7 +772,7 @@ void MC_ReadDigitalOutput(struct standstill_mc_read_digital_output_fb *self) {
     in.output = self->output != NULL ? self->output->number : 0;
     in.enable = self->enable;
     in.output_number = self->output_number;
-    self->result = standstill_mc_read_digital_output(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_read_digital_output(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->valid = out.valid;
         self->busy = out.busy;
@@ -788,6 +805,7 @@ STANDSTILL_ASSERT(rusty_mc_write_digital_output_done, sizeof(void *) != 8 || off
 STANDSTILL_ASSERT(rusty_mc_write_digital_output_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_write_digital_output_fb, busy) == 29);
 STANDSTILL_ASSERT(rusty_mc_write_digital_output_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_write_digital_output_fb, error) == 30);
 STANDSTILL_ASSERT(rusty_mc_write_digital_output_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_write_digital_output_fb, error_id) == 32);
+STANDSTILL_ASSERT(rusty_mc_write_digital_output_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_write_digital_output_fb, result) == 36 && offsetof(struct standstill_mc_write_digital_output_fb, key) == 40 && sizeof(struct standstill_mc_write_digital_output_fb) == 48));
 
 void MC_WriteDigitalOutput(struct standstill_mc_write_digital_output_fb *self);
 
@@ -799,7 +817,7 @@ void MC_WriteDigitalOutput(struct standstill_mc_write_digital_output_fb *self) {
     in.output_number = self->output_number;
     in.value = self->value;
     in.execution_mode = (int32_t)self->execution_mode;
-    self->result = standstill_mc_write_digital_output(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_write_digital_output(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -837,6 +855,7 @@ STANDSTILL_ASSERT(rusty_mc_touch_probe_command_aborted, sizeof(void *) != 8 || o
 STANDSTILL_ASSERT(rusty_mc_touch_probe_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_touch_probe_fb, error) == 51);
 STANDSTILL_ASSERT(rusty_mc_touch_probe_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_touch_probe_fb, error_id) == 52);
 STANDSTILL_ASSERT(rusty_mc_touch_probe_recorded_position, sizeof(void *) != 8 || offsetof(struct standstill_mc_touch_probe_fb, recorded_position) == 56);
+STANDSTILL_ASSERT(rusty_mc_touch_probe_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_touch_probe_fb, result) == 64 && offsetof(struct standstill_mc_touch_probe_fb, key) == 72 && sizeof(struct standstill_mc_touch_probe_fb) == 80));
 
 void MC_TouchProbe(struct standstill_mc_touch_probe_fb *self);
 
@@ -849,7 +868,7 @@ void MC_TouchProbe(struct standstill_mc_touch_probe_fb *self) {
     in.window_only = self->window_only;
     in.first_position = self->first_position;
     in.last_position = self->last_position;
-    self->result = standstill_mc_touch_probe(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_touch_probe(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -879,6 +898,7 @@ STANDSTILL_ASSERT(rusty_mc_abort_trigger_done, sizeof(void *) != 8 || offsetof(s
 STANDSTILL_ASSERT(rusty_mc_abort_trigger_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_abort_trigger_fb, busy) == 26);
 STANDSTILL_ASSERT(rusty_mc_abort_trigger_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_abort_trigger_fb, error) == 27);
 STANDSTILL_ASSERT(rusty_mc_abort_trigger_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_abort_trigger_fb, error_id) == 28);
+STANDSTILL_ASSERT(rusty_mc_abort_trigger_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_abort_trigger_fb, result) == 32 && offsetof(struct standstill_mc_abort_trigger_fb, key) == 40 && sizeof(struct standstill_mc_abort_trigger_fb) == 48));
 
 void MC_AbortTrigger(struct standstill_mc_abort_trigger_fb *self);
 
@@ -888,7 +908,7 @@ void MC_AbortTrigger(struct standstill_mc_abort_trigger_fb *self) {
     in.axis = self->axis != NULL ? self->axis->number : 0;
     in.trigger_input = (int32_t)(self->trigger_input != NULL ? *self->trigger_input : 0);
     in.execute = self->execute;
-    self->result = standstill_mc_abort_trigger(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_abort_trigger(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -924,6 +944,7 @@ STANDSTILL_ASSERT(rusty_mc_digital_cam_switch_in_operation, sizeof(void *) != 8 
 STANDSTILL_ASSERT(rusty_mc_digital_cam_switch_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_digital_cam_switch_fb, busy) == 53);
 STANDSTILL_ASSERT(rusty_mc_digital_cam_switch_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_digital_cam_switch_fb, error) == 54);
 STANDSTILL_ASSERT(rusty_mc_digital_cam_switch_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_digital_cam_switch_fb, error_id) == 56);
+STANDSTILL_ASSERT(rusty_mc_digital_cam_switch_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_digital_cam_switch_fb, result) == 60 && offsetof(struct standstill_mc_digital_cam_switch_fb, key) == 64 && sizeof(struct standstill_mc_digital_cam_switch_fb) == 72));
 
 void MC_DigitalCamSwitch(struct standstill_mc_digital_cam_switch_fb *self);
 
@@ -943,7 +964,7 @@ void MC_DigitalCamSwitch(struct standstill_mc_digital_cam_switch_fb *self) {
     in.enable = self->enable;
     in.enable_mask = self->enable_mask;
     in.value_source = (int32_t)self->value_source;
-    self->result = standstill_mc_digital_cam_switch(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_digital_cam_switch(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->in_operation = out.in_operation;
         self->busy = out.busy;
@@ -977,6 +998,7 @@ STANDSTILL_ASSERT(rusty_mc_home_active, sizeof(void *) != 8 || offsetof(struct s
 STANDSTILL_ASSERT(rusty_mc_home_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_home_fb, command_aborted) == 39);
 STANDSTILL_ASSERT(rusty_mc_home_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_home_fb, error) == 40);
 STANDSTILL_ASSERT(rusty_mc_home_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_home_fb, error_id) == 42);
+STANDSTILL_ASSERT(rusty_mc_home_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_home_fb, result) == 44 && offsetof(struct standstill_mc_home_fb, key) == 48 && sizeof(struct standstill_mc_home_fb) == 56));
 
 void MC_Home(struct standstill_mc_home_fb *self);
 
@@ -987,7 +1009,7 @@ void MC_Home(struct standstill_mc_home_fb *self) {
     in.execute = self->execute;
     in.position = self->position;
     in.buffer_mode = (int32_t)self->buffer_mode;
-    self->result = standstill_mc_home(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_home(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -1023,6 +1045,7 @@ STANDSTILL_ASSERT(rusty_mc_stop_busy, sizeof(void *) != 8 || offsetof(struct sta
 STANDSTILL_ASSERT(rusty_mc_stop_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_stop_fb, command_aborted) == 50);
 STANDSTILL_ASSERT(rusty_mc_stop_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_stop_fb, error) == 51);
 STANDSTILL_ASSERT(rusty_mc_stop_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_stop_fb, error_id) == 52);
+STANDSTILL_ASSERT(rusty_mc_stop_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_stop_fb, result) == 56 && offsetof(struct standstill_mc_stop_fb, key) == 64 && sizeof(struct standstill_mc_stop_fb) == 72));
 
 void MC_Stop(struct standstill_mc_stop_fb *self);
 
@@ -1034,7 +1057,7 @@ void MC_Stop(struct standstill_mc_stop_fb *self) {
     in.deceleration = self->deceleration;
     in.jerk = self->jerk;
     in.snap = self->snap;
-    self->result = standstill_mc_stop(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_stop(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -1073,6 +1096,7 @@ STANDSTILL_ASSERT(rusty_mc_halt_active, sizeof(void *) != 8 || offsetof(struct s
 STANDSTILL_ASSERT(rusty_mc_halt_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_halt_fb, command_aborted) == 59);
 STANDSTILL_ASSERT(rusty_mc_halt_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_halt_fb, error) == 60);
 STANDSTILL_ASSERT(rusty_mc_halt_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_halt_fb, error_id) == 62);
+STANDSTILL_ASSERT(rusty_mc_halt_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_halt_fb, result) == 64 && offsetof(struct standstill_mc_halt_fb, key) == 72 && sizeof(struct standstill_mc_halt_fb) == 80));
 
 void MC_Halt(struct standstill_mc_halt_fb *self);
 
@@ -1085,7 +1109,7 @@ void MC_Halt(struct standstill_mc_halt_fb *self) {
     in.jerk = self->jerk;
     in.buffer_mode = (int32_t)self->buffer_mode;
     in.snap = self->snap;
-    self->result = standstill_mc_halt(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_halt(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -1135,6 +1159,7 @@ STANDSTILL_ASSERT(rusty_mc_move_absolute_active, sizeof(void *) != 8 || offsetof
 STANDSTILL_ASSERT(rusty_mc_move_absolute_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_absolute_fb, command_aborted) == 83);
 STANDSTILL_ASSERT(rusty_mc_move_absolute_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_absolute_fb, error) == 84);
 STANDSTILL_ASSERT(rusty_mc_move_absolute_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_absolute_fb, error_id) == 86);
+STANDSTILL_ASSERT(rusty_mc_move_absolute_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_move_absolute_fb, result) == 88 && offsetof(struct standstill_mc_move_absolute_fb, key) == 96 && sizeof(struct standstill_mc_move_absolute_fb) == 104));
 
 void MC_MoveAbsolute(struct standstill_mc_move_absolute_fb *self);
 
@@ -1152,7 +1177,7 @@ void MC_MoveAbsolute(struct standstill_mc_move_absolute_fb *self) {
     in.direction = (int32_t)self->direction;
     in.buffer_mode = (int32_t)self->buffer_mode;
     in.snap = self->snap;
-    self->result = standstill_mc_move_absolute(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_move_absolute(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -1200,6 +1225,7 @@ STANDSTILL_ASSERT(rusty_mc_move_relative_active, sizeof(void *) != 8 || offsetof
 STANDSTILL_ASSERT(rusty_mc_move_relative_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_relative_fb, command_aborted) == 83);
 STANDSTILL_ASSERT(rusty_mc_move_relative_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_relative_fb, error) == 84);
 STANDSTILL_ASSERT(rusty_mc_move_relative_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_relative_fb, error_id) == 86);
+STANDSTILL_ASSERT(rusty_mc_move_relative_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_move_relative_fb, result) == 88 && offsetof(struct standstill_mc_move_relative_fb, key) == 96 && sizeof(struct standstill_mc_move_relative_fb) == 104));
 
 void MC_MoveRelative(struct standstill_mc_move_relative_fb *self);
 
@@ -1216,7 +1242,7 @@ void MC_MoveRelative(struct standstill_mc_move_relative_fb *self) {
     in.jerk = self->jerk;
     in.buffer_mode = (int32_t)self->buffer_mode;
     in.snap = self->snap;
-    self->result = standstill_mc_move_relative(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_move_relative(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -1264,6 +1290,7 @@ STANDSTILL_ASSERT(rusty_mc_move_additive_active, sizeof(void *) != 8 || offsetof
 STANDSTILL_ASSERT(rusty_mc_move_additive_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_additive_fb, command_aborted) == 83);
 STANDSTILL_ASSERT(rusty_mc_move_additive_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_additive_fb, error) == 84);
 STANDSTILL_ASSERT(rusty_mc_move_additive_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_additive_fb, error_id) == 86);
+STANDSTILL_ASSERT(rusty_mc_move_additive_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_move_additive_fb, result) == 88 && offsetof(struct standstill_mc_move_additive_fb, key) == 96 && sizeof(struct standstill_mc_move_additive_fb) == 104));
 
 void MC_MoveAdditive(struct standstill_mc_move_additive_fb *self);
 
@@ -1280,7 +1307,7 @@ void MC_MoveAdditive(struct standstill_mc_move_additive_fb *self) {
     in.jerk = self->jerk;
     in.buffer_mode = (int32_t)self->buffer_mode;
     in.snap = self->snap;
-    self->result = standstill_mc_move_additive(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_move_additive(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -1328,6 +1355,7 @@ STANDSTILL_ASSERT(rusty_mc_move_velocity_active, sizeof(void *) != 8 || offsetof
 STANDSTILL_ASSERT(rusty_mc_move_velocity_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_velocity_fb, command_aborted) == 75);
 STANDSTILL_ASSERT(rusty_mc_move_velocity_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_velocity_fb, error) == 76);
 STANDSTILL_ASSERT(rusty_mc_move_velocity_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_velocity_fb, error_id) == 78);
+STANDSTILL_ASSERT(rusty_mc_move_velocity_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_move_velocity_fb, result) == 80 && offsetof(struct standstill_mc_move_velocity_fb, key) == 88 && sizeof(struct standstill_mc_move_velocity_fb) == 96));
 
 void MC_MoveVelocity(struct standstill_mc_move_velocity_fb *self);
 
@@ -1344,7 +1372,7 @@ void MC_MoveVelocity(struct standstill_mc_move_velocity_fb *self) {
     in.direction = (int32_t)self->direction;
     in.buffer_mode = (int32_t)self->buffer_mode;
     in.snap = self->snap;
-    self->result = standstill_mc_move_velocity(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_move_velocity(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->in_velocity = out.in_velocity;
         self->busy = out.busy;
@@ -1396,6 +1424,7 @@ STANDSTILL_ASSERT(rusty_mc_move_continuous_absolute_active, sizeof(void *) != 8 
 STANDSTILL_ASSERT(rusty_mc_move_continuous_absolute_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_continuous_absolute_fb, command_aborted) == 91);
 STANDSTILL_ASSERT(rusty_mc_move_continuous_absolute_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_continuous_absolute_fb, error) == 92);
 STANDSTILL_ASSERT(rusty_mc_move_continuous_absolute_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_continuous_absolute_fb, error_id) == 94);
+STANDSTILL_ASSERT(rusty_mc_move_continuous_absolute_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_move_continuous_absolute_fb, result) == 96 && offsetof(struct standstill_mc_move_continuous_absolute_fb, key) == 104 && sizeof(struct standstill_mc_move_continuous_absolute_fb) == 112));
 
 void MC_MoveContinuousAbsolute(struct standstill_mc_move_continuous_absolute_fb *self);
 
@@ -1414,7 +1443,7 @@ void MC_MoveContinuousAbsolute(struct standstill_mc_move_continuous_absolute_fb 
     in.direction = (int32_t)self->direction;
     in.buffer_mode = (int32_t)self->buffer_mode;
     in.snap = self->snap;
-    self->result = standstill_mc_move_continuous_absolute(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_move_continuous_absolute(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->in_end_velocity = out.in_end_velocity;
         self->busy = out.busy;
@@ -1464,6 +1493,7 @@ STANDSTILL_ASSERT(rusty_mc_move_continuous_relative_active, sizeof(void *) != 8 
 STANDSTILL_ASSERT(rusty_mc_move_continuous_relative_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_continuous_relative_fb, command_aborted) == 91);
 STANDSTILL_ASSERT(rusty_mc_move_continuous_relative_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_continuous_relative_fb, error) == 92);
 STANDSTILL_ASSERT(rusty_mc_move_continuous_relative_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_continuous_relative_fb, error_id) == 94);
+STANDSTILL_ASSERT(rusty_mc_move_continuous_relative_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_move_continuous_relative_fb, result) == 96 && offsetof(struct standstill_mc_move_continuous_relative_fb, key) == 104 && sizeof(struct standstill_mc_move_continuous_relative_fb) == 112));
 
 void MC_MoveContinuousRelative(struct standstill_mc_move_continuous_relative_fb *self);
 
@@ -1481,7 +1511,7 @@ void MC_MoveContinuousRelative(struct standstill_mc_move_continuous_relative_fb 
     in.jerk = self->jerk;
     in.buffer_mode = (int32_t)self->buffer_mode;
     in.snap = self->snap;
-    self->result = standstill_mc_move_continuous_relative(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_move_continuous_relative(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->in_end_velocity = out.in_end_velocity;
         self->busy = out.busy;
@@ -1533,6 +1563,7 @@ STANDSTILL_ASSERT(rusty_mc_torque_control_active, sizeof(void *) != 8 || offseto
 STANDSTILL_ASSERT(rusty_mc_torque_control_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_torque_control_fb, command_aborted) == 91);
 STANDSTILL_ASSERT(rusty_mc_torque_control_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_torque_control_fb, error) == 92);
 STANDSTILL_ASSERT(rusty_mc_torque_control_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_torque_control_fb, error_id) == 94);
+STANDSTILL_ASSERT(rusty_mc_torque_control_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_torque_control_fb, result) == 96 && offsetof(struct standstill_mc_torque_control_fb, key) == 104 && sizeof(struct standstill_mc_torque_control_fb) == 112));
 
 void MC_TorqueControl(struct standstill_mc_torque_control_fb *self);
 
@@ -1551,7 +1582,7 @@ void MC_TorqueControl(struct standstill_mc_torque_control_fb *self) {
     in.direction = (int32_t)self->direction;
     in.buffer_mode = (int32_t)self->buffer_mode;
     in.snap = self->snap;
-    self->result = standstill_mc_torque_control(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_torque_control(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->in_torque = out.in_torque;
         self->busy = out.busy;
@@ -1595,6 +1626,7 @@ STANDSTILL_ASSERT(rusty_mc_position_profile_active, sizeof(void *) != 8 || offse
 STANDSTILL_ASSERT(rusty_mc_position_profile_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_position_profile_fb, command_aborted) == 63);
 STANDSTILL_ASSERT(rusty_mc_position_profile_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_position_profile_fb, error) == 64);
 STANDSTILL_ASSERT(rusty_mc_position_profile_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_position_profile_fb, error_id) == 66);
+STANDSTILL_ASSERT(rusty_mc_position_profile_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_position_profile_fb, result) == 68 && offsetof(struct standstill_mc_position_profile_fb, key) == 72 && sizeof(struct standstill_mc_position_profile_fb) == 80));
 
 void MC_PositionProfile(struct standstill_mc_position_profile_fb *self);
 
@@ -1612,7 +1644,7 @@ void MC_PositionProfile(struct standstill_mc_position_profile_fb *self) {
     in.position_scale = self->position_scale;
     in.offset = self->offset;
     in.buffer_mode = (int32_t)self->buffer_mode;
-    self->result = standstill_mc_position_profile(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_position_profile(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -1656,6 +1688,7 @@ STANDSTILL_ASSERT(rusty_mc_velocity_profile_active, sizeof(void *) != 8 || offse
 STANDSTILL_ASSERT(rusty_mc_velocity_profile_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_velocity_profile_fb, command_aborted) == 63);
 STANDSTILL_ASSERT(rusty_mc_velocity_profile_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_velocity_profile_fb, error) == 64);
 STANDSTILL_ASSERT(rusty_mc_velocity_profile_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_velocity_profile_fb, error_id) == 66);
+STANDSTILL_ASSERT(rusty_mc_velocity_profile_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_velocity_profile_fb, result) == 68 && offsetof(struct standstill_mc_velocity_profile_fb, key) == 72 && sizeof(struct standstill_mc_velocity_profile_fb) == 80));
 
 void MC_VelocityProfile(struct standstill_mc_velocity_profile_fb *self);
 
@@ -1673,7 +1706,7 @@ void MC_VelocityProfile(struct standstill_mc_velocity_profile_fb *self) {
     in.velocity_scale = self->velocity_scale;
     in.offset = self->offset;
     in.buffer_mode = (int32_t)self->buffer_mode;
-    self->result = standstill_mc_velocity_profile(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_velocity_profile(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->profile_completed = out.profile_completed;
         self->busy = out.busy;
@@ -1717,6 +1750,7 @@ STANDSTILL_ASSERT(rusty_mc_acceleration_profile_active, sizeof(void *) != 8 || o
 STANDSTILL_ASSERT(rusty_mc_acceleration_profile_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_acceleration_profile_fb, command_aborted) == 63);
 STANDSTILL_ASSERT(rusty_mc_acceleration_profile_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_acceleration_profile_fb, error) == 64);
 STANDSTILL_ASSERT(rusty_mc_acceleration_profile_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_acceleration_profile_fb, error_id) == 66);
+STANDSTILL_ASSERT(rusty_mc_acceleration_profile_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_acceleration_profile_fb, result) == 68 && offsetof(struct standstill_mc_acceleration_profile_fb, key) == 72 && sizeof(struct standstill_mc_acceleration_profile_fb) == 80));
 
 void MC_AccelerationProfile(struct standstill_mc_acceleration_profile_fb *self);
 
@@ -1734,7 +1768,7 @@ void MC_AccelerationProfile(struct standstill_mc_acceleration_profile_fb *self) 
     in.acceleration_scale = self->acceleration_scale;
     in.offset = self->offset;
     in.buffer_mode = (int32_t)self->buffer_mode;
-    self->result = standstill_mc_acceleration_profile(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_acceleration_profile(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->profile_completed = out.profile_completed;
         self->busy = out.busy;
@@ -1782,6 +1816,7 @@ STANDSTILL_ASSERT(rusty_mc_move_superimposed_error, sizeof(void *) != 8 || offse
 STANDSTILL_ASSERT(rusty_mc_move_superimposed_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_superimposed_fb, error_id) == 76);
 STANDSTILL_ASSERT(rusty_mc_move_superimposed_covered_distance, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_superimposed_fb, covered_distance) == 80);
 STANDSTILL_ASSERT(rusty_mc_move_superimposed_active, sizeof(void *) != 8 || offsetof(struct standstill_mc_move_superimposed_fb, active) == 88);
+STANDSTILL_ASSERT(rusty_mc_move_superimposed_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_move_superimposed_fb, result) == 92 && offsetof(struct standstill_mc_move_superimposed_fb, key) == 96 && sizeof(struct standstill_mc_move_superimposed_fb) == 104));
 
 void MC_MoveSuperimposed(struct standstill_mc_move_superimposed_fb *self);
 
@@ -1797,7 +1832,7 @@ void MC_MoveSuperimposed(struct standstill_mc_move_superimposed_fb *self) {
     in.deceleration = self->deceleration;
     in.jerk = self->jerk;
     in.snap = self->snap;
-    self->result = standstill_mc_move_superimposed(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_move_superimposed(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -1836,6 +1871,7 @@ STANDSTILL_ASSERT(rusty_mc_halt_superimposed_command_aborted, sizeof(void *) != 
 STANDSTILL_ASSERT(rusty_mc_halt_superimposed_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_halt_superimposed_fb, error) == 51);
 STANDSTILL_ASSERT(rusty_mc_halt_superimposed_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_halt_superimposed_fb, error_id) == 52);
 STANDSTILL_ASSERT(rusty_mc_halt_superimposed_active, sizeof(void *) != 8 || offsetof(struct standstill_mc_halt_superimposed_fb, active) == 54);
+STANDSTILL_ASSERT(rusty_mc_halt_superimposed_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_halt_superimposed_fb, result) == 56 && offsetof(struct standstill_mc_halt_superimposed_fb, key) == 64 && sizeof(struct standstill_mc_halt_superimposed_fb) == 72));
 
 void MC_HaltSuperimposed(struct standstill_mc_halt_superimposed_fb *self);
 
@@ -1847,7 +1883,7 @@ void MC_HaltSuperimposed(struct standstill_mc_halt_superimposed_fb *self) {
     in.deceleration = self->deceleration;
     in.jerk = self->jerk;
     in.snap = self->snap;
-    self->result = standstill_mc_halt_superimposed(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_halt_superimposed(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -1893,6 +1929,7 @@ STANDSTILL_ASSERT(rusty_mc_jog_active, sizeof(void *) != 8 || offsetof(struct st
 STANDSTILL_ASSERT(rusty_mc_jog_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_jog_fb, command_aborted) == 75);
 STANDSTILL_ASSERT(rusty_mc_jog_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_jog_fb, error) == 76);
 STANDSTILL_ASSERT(rusty_mc_jog_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_jog_fb, error_id) == 78);
+STANDSTILL_ASSERT(rusty_mc_jog_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_jog_fb, result) == 80 && offsetof(struct standstill_mc_jog_fb, key) == 88 && sizeof(struct standstill_mc_jog_fb) == 96));
 
 void MC_Jog(struct standstill_mc_jog_fb *self);
 
@@ -1908,7 +1945,7 @@ void MC_Jog(struct standstill_mc_jog_fb *self) {
     in.deceleration = self->deceleration;
     in.jerk = self->jerk;
     in.snap = self->snap;
-    self->result = standstill_mc_jog(standstill_default, &self->key, &in, &out);
+    self->result = standstill_mc_jog(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->done = out.done;
         self->busy = out.busy;
@@ -1928,6 +1965,7 @@ struct standstill_r_trig_fb {
 };
 STANDSTILL_ASSERT(rusty_r_trig_clk, sizeof(void *) != 8 || offsetof(struct standstill_r_trig_fb, clk) == 8);
 STANDSTILL_ASSERT(rusty_r_trig_q, sizeof(void *) != 8 || offsetof(struct standstill_r_trig_fb, q) == 9);
+STANDSTILL_ASSERT(rusty_r_trig_key, sizeof(void *) != 8 || (offsetof(struct standstill_r_trig_fb, result) == 12 && offsetof(struct standstill_r_trig_fb, key) == 16 && sizeof(struct standstill_r_trig_fb) == 24));
 
 void STANDSTILL_R_TRIG(struct standstill_r_trig_fb *self);
 
@@ -1935,7 +1973,7 @@ void STANDSTILL_R_TRIG(struct standstill_r_trig_fb *self) {
     struct standstill_r_trig_in in = standstill_r_trig_in_default();
     struct standstill_r_trig_out out = standstill_r_trig_out_default();
     in.clk = self->clk;
-    self->result = standstill_r_trig(standstill_default, &self->key, &in, &out);
+    self->result = standstill_r_trig(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->q = out.q;
     }
@@ -1950,6 +1988,7 @@ struct standstill_f_trig_fb {
 };
 STANDSTILL_ASSERT(rusty_f_trig_clk, sizeof(void *) != 8 || offsetof(struct standstill_f_trig_fb, clk) == 8);
 STANDSTILL_ASSERT(rusty_f_trig_q, sizeof(void *) != 8 || offsetof(struct standstill_f_trig_fb, q) == 9);
+STANDSTILL_ASSERT(rusty_f_trig_key, sizeof(void *) != 8 || (offsetof(struct standstill_f_trig_fb, result) == 12 && offsetof(struct standstill_f_trig_fb, key) == 16 && sizeof(struct standstill_f_trig_fb) == 24));
 
 void STANDSTILL_F_TRIG(struct standstill_f_trig_fb *self);
 
@@ -1957,7 +1996,7 @@ void STANDSTILL_F_TRIG(struct standstill_f_trig_fb *self) {
     struct standstill_f_trig_in in = standstill_f_trig_in_default();
     struct standstill_f_trig_out out = standstill_f_trig_out_default();
     in.clk = self->clk;
-    self->result = standstill_f_trig(standstill_default, &self->key, &in, &out);
+    self->result = standstill_f_trig(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->q = out.q;
     }
@@ -1974,6 +2013,7 @@ struct standstill_sr_fb {
 STANDSTILL_ASSERT(rusty_sr_s1, sizeof(void *) != 8 || offsetof(struct standstill_sr_fb, s1) == 8);
 STANDSTILL_ASSERT(rusty_sr_r, sizeof(void *) != 8 || offsetof(struct standstill_sr_fb, r) == 9);
 STANDSTILL_ASSERT(rusty_sr_q1, sizeof(void *) != 8 || offsetof(struct standstill_sr_fb, q1) == 10);
+STANDSTILL_ASSERT(rusty_sr_key, sizeof(void *) != 8 || (offsetof(struct standstill_sr_fb, result) == 12 && offsetof(struct standstill_sr_fb, key) == 16 && sizeof(struct standstill_sr_fb) == 24));
 
 void STANDSTILL_SR(struct standstill_sr_fb *self);
 
@@ -1982,7 +2022,7 @@ void STANDSTILL_SR(struct standstill_sr_fb *self) {
     struct standstill_sr_out out = standstill_sr_out_default();
     in.s1 = self->s1;
     in.r = self->r;
-    self->result = standstill_sr(standstill_default, &self->key, &in, &out);
+    self->result = standstill_sr(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->q1 = out.q1;
     }
@@ -1999,6 +2039,7 @@ struct standstill_rs_fb {
 STANDSTILL_ASSERT(rusty_rs_s, sizeof(void *) != 8 || offsetof(struct standstill_rs_fb, s) == 8);
 STANDSTILL_ASSERT(rusty_rs_r1, sizeof(void *) != 8 || offsetof(struct standstill_rs_fb, r1) == 9);
 STANDSTILL_ASSERT(rusty_rs_q1, sizeof(void *) != 8 || offsetof(struct standstill_rs_fb, q1) == 10);
+STANDSTILL_ASSERT(rusty_rs_key, sizeof(void *) != 8 || (offsetof(struct standstill_rs_fb, result) == 12 && offsetof(struct standstill_rs_fb, key) == 16 && sizeof(struct standstill_rs_fb) == 24));
 
 void STANDSTILL_RS(struct standstill_rs_fb *self);
 
@@ -2007,7 +2048,7 @@ void STANDSTILL_RS(struct standstill_rs_fb *self) {
     struct standstill_rs_out out = standstill_rs_out_default();
     in.s = self->s;
     in.r1 = self->r1;
-    self->result = standstill_rs(standstill_default, &self->key, &in, &out);
+    self->result = standstill_rs(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->q1 = out.q1;
     }
@@ -2028,6 +2069,7 @@ STANDSTILL_ASSERT(rusty_ctu_r, sizeof(void *) != 8 || offsetof(struct standstill
 STANDSTILL_ASSERT(rusty_ctu_pv, sizeof(void *) != 8 || offsetof(struct standstill_ctu_fb, pv) == 10);
 STANDSTILL_ASSERT(rusty_ctu_q, sizeof(void *) != 8 || offsetof(struct standstill_ctu_fb, q) == 12);
 STANDSTILL_ASSERT(rusty_ctu_cv, sizeof(void *) != 8 || offsetof(struct standstill_ctu_fb, cv) == 14);
+STANDSTILL_ASSERT(rusty_ctu_key, sizeof(void *) != 8 || (offsetof(struct standstill_ctu_fb, result) == 16 && offsetof(struct standstill_ctu_fb, key) == 24 && sizeof(struct standstill_ctu_fb) == 32));
 
 void STANDSTILL_CTU(struct standstill_ctu_fb *self);
 
@@ -2037,7 +2079,7 @@ void STANDSTILL_CTU(struct standstill_ctu_fb *self) {
     in.cu = self->cu;
     in.r = self->r;
     in.pv = self->pv;
-    self->result = standstill_ctu(standstill_default, &self->key, &in, &out);
+    self->result = standstill_ctu(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->q = out.q;
         self->cv = out.cv;
@@ -2059,6 +2101,7 @@ STANDSTILL_ASSERT(rusty_ctd_ld, sizeof(void *) != 8 || offsetof(struct standstil
 STANDSTILL_ASSERT(rusty_ctd_pv, sizeof(void *) != 8 || offsetof(struct standstill_ctd_fb, pv) == 10);
 STANDSTILL_ASSERT(rusty_ctd_q, sizeof(void *) != 8 || offsetof(struct standstill_ctd_fb, q) == 12);
 STANDSTILL_ASSERT(rusty_ctd_cv, sizeof(void *) != 8 || offsetof(struct standstill_ctd_fb, cv) == 14);
+STANDSTILL_ASSERT(rusty_ctd_key, sizeof(void *) != 8 || (offsetof(struct standstill_ctd_fb, result) == 16 && offsetof(struct standstill_ctd_fb, key) == 24 && sizeof(struct standstill_ctd_fb) == 32));
 
 void STANDSTILL_CTD(struct standstill_ctd_fb *self);
 
@@ -2068,7 +2111,7 @@ void STANDSTILL_CTD(struct standstill_ctd_fb *self) {
     in.cd = self->cd;
     in.ld = self->ld;
     in.pv = self->pv;
-    self->result = standstill_ctd(standstill_default, &self->key, &in, &out);
+    self->result = standstill_ctd(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->q = out.q;
         self->cv = out.cv;
@@ -2096,6 +2139,7 @@ STANDSTILL_ASSERT(rusty_ctud_pv, sizeof(void *) != 8 || offsetof(struct standsti
 STANDSTILL_ASSERT(rusty_ctud_qu, sizeof(void *) != 8 || offsetof(struct standstill_ctud_fb, qu) == 14);
 STANDSTILL_ASSERT(rusty_ctud_qd, sizeof(void *) != 8 || offsetof(struct standstill_ctud_fb, qd) == 15);
 STANDSTILL_ASSERT(rusty_ctud_cv, sizeof(void *) != 8 || offsetof(struct standstill_ctud_fb, cv) == 16);
+STANDSTILL_ASSERT(rusty_ctud_key, sizeof(void *) != 8 || (offsetof(struct standstill_ctud_fb, result) == 20 && offsetof(struct standstill_ctud_fb, key) == 24 && sizeof(struct standstill_ctud_fb) == 32));
 
 void STANDSTILL_CTUD(struct standstill_ctud_fb *self);
 
@@ -2107,7 +2151,7 @@ void STANDSTILL_CTUD(struct standstill_ctud_fb *self) {
     in.r = self->r;
     in.ld = self->ld;
     in.pv = self->pv;
-    self->result = standstill_ctud(standstill_default, &self->key, &in, &out);
+    self->result = standstill_ctud(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->qu = out.qu;
         self->qd = out.qd;
@@ -2128,6 +2172,7 @@ STANDSTILL_ASSERT(rusty_ton_input, sizeof(void *) != 8 || offsetof(struct stands
 STANDSTILL_ASSERT(rusty_ton_pt, sizeof(void *) != 8 || offsetof(struct standstill_ton_fb, pt) == 16);
 STANDSTILL_ASSERT(rusty_ton_q, sizeof(void *) != 8 || offsetof(struct standstill_ton_fb, q) == 24);
 STANDSTILL_ASSERT(rusty_ton_et, sizeof(void *) != 8 || offsetof(struct standstill_ton_fb, et) == 32);
+STANDSTILL_ASSERT(rusty_ton_key, sizeof(void *) != 8 || (offsetof(struct standstill_ton_fb, result) == 40 && offsetof(struct standstill_ton_fb, key) == 48 && sizeof(struct standstill_ton_fb) == 56));
 
 void STANDSTILL_TON(struct standstill_ton_fb *self);
 
@@ -2136,7 +2181,7 @@ void STANDSTILL_TON(struct standstill_ton_fb *self) {
     struct standstill_ton_out out = standstill_ton_out_default();
     in.input = self->input;
     in.pt = self->pt;
-    self->result = standstill_ton(standstill_default, &self->key, &in, &out);
+    self->result = standstill_ton(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->q = out.q;
         self->et = out.et;
@@ -2156,6 +2201,7 @@ STANDSTILL_ASSERT(rusty_tof_input, sizeof(void *) != 8 || offsetof(struct stands
 STANDSTILL_ASSERT(rusty_tof_pt, sizeof(void *) != 8 || offsetof(struct standstill_tof_fb, pt) == 16);
 STANDSTILL_ASSERT(rusty_tof_q, sizeof(void *) != 8 || offsetof(struct standstill_tof_fb, q) == 24);
 STANDSTILL_ASSERT(rusty_tof_et, sizeof(void *) != 8 || offsetof(struct standstill_tof_fb, et) == 32);
+STANDSTILL_ASSERT(rusty_tof_key, sizeof(void *) != 8 || (offsetof(struct standstill_tof_fb, result) == 40 && offsetof(struct standstill_tof_fb, key) == 48 && sizeof(struct standstill_tof_fb) == 56));
 
 void STANDSTILL_TOF(struct standstill_tof_fb *self);
 
@@ -2164,7 +2210,7 @@ void STANDSTILL_TOF(struct standstill_tof_fb *self) {
     struct standstill_tof_out out = standstill_tof_out_default();
     in.input = self->input;
     in.pt = self->pt;
-    self->result = standstill_tof(standstill_default, &self->key, &in, &out);
+    self->result = standstill_tof(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->q = out.q;
         self->et = out.et;
@@ -2184,6 +2230,7 @@ STANDSTILL_ASSERT(rusty_tp_input, sizeof(void *) != 8 || offsetof(struct standst
 STANDSTILL_ASSERT(rusty_tp_pt, sizeof(void *) != 8 || offsetof(struct standstill_tp_fb, pt) == 16);
 STANDSTILL_ASSERT(rusty_tp_q, sizeof(void *) != 8 || offsetof(struct standstill_tp_fb, q) == 24);
 STANDSTILL_ASSERT(rusty_tp_et, sizeof(void *) != 8 || offsetof(struct standstill_tp_fb, et) == 32);
+STANDSTILL_ASSERT(rusty_tp_key, sizeof(void *) != 8 || (offsetof(struct standstill_tp_fb, result) == 40 && offsetof(struct standstill_tp_fb, key) == 48 && sizeof(struct standstill_tp_fb) == 56));
 
 void STANDSTILL_TP(struct standstill_tp_fb *self);
 
@@ -2192,7 +2239,7 @@ void STANDSTILL_TP(struct standstill_tp_fb *self) {
     struct standstill_tp_out out = standstill_tp_out_default();
     in.input = self->input;
     in.pt = self->pt;
-    self->result = standstill_tp(standstill_default, &self->key, &in, &out);
+    self->result = standstill_tp(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->q = out.q;
         self->et = out.et;

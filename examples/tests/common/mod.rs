@@ -1,0 +1,197 @@
+//! What is digested of feed and place, in this one place, and how its hosts are built.
+
+use standstill_trace::{Axis, Cell, Header, Input, Trace, digest};
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::{env, fs};
+
+/// The digest of feed and place in every host.
+pub const FEED_AND_PLACE: u64 = 0x0ea5_2292_313f_b652;
+
+/// Scans of feed and place.
+pub const SCANS: usize = 5700;
+
+const STATES: [&str; 8] = [
+    "Disabled",
+    "Standstill",
+    "Homing",
+    "DiscreteMotion",
+    "ContinuousMotion",
+    "SynchronizedMotion",
+    "Stopping",
+    "ErrorStop",
+];
+
+/// The variables that count, in this order, with the types of `prog.st`.
+pub const VARIABLES: [(&str, &str); 9] = [
+    ("State", "INT"),
+    ("Parts", "INT"),
+    ("Aborts", "INT"),
+    ("FeedBusy", "BOOL"),
+    ("FeedDone", "BOOL"),
+    ("FeedAborted", "BOOL"),
+    ("PlaceBusy", "BOOL"),
+    ("PlaceDone", "BOOL"),
+    ("PlaceAborted", "BOOL"),
+];
+
+/// What counts of a run: all columns of both axes, then the variables. The digest is that of any trace.
+pub fn empty() -> Trace {
+    let axis = |name: &str| Axis {
+        name: name.to_owned(),
+        ..Axis::default()
+    };
+    let inputs = VARIABLES.map(|(name, iec_type)| Input {
+        name: name.to_owned(),
+        iec_type: iec_type.to_owned(),
+    });
+    Trace::new(Header {
+        cycle_ns: 1_000_000,
+        axes: vec![axis("Feeder"), axis("Placer")],
+        inputs: inputs.to_vec(),
+        ..Header::default()
+    })
+}
+
+/// The trace of a host that prints every scan, as `host.c` does.
+pub fn of_lines(text: &str) -> Trace {
+    let mut trace = empty();
+    for line in text.lines() {
+        let mut words = line.split(' ');
+        let mut cells = Vec::new();
+        for _ in 0..2 {
+            let state: usize = words.next().unwrap().parse().unwrap();
+            cells.push(Cell::Name(STATES[state]));
+            for word in words.by_ref().take(6) {
+                cells.push(Cell::Real(f64::from_bits(u64::from_str_radix(word, 16).unwrap())));
+            }
+        }
+        for ((_, iec_type), word) in VARIABLES.iter().zip(words) {
+            let number: i64 = word.parse().unwrap();
+            cells.push(match *iec_type {
+                "BOOL" => Cell::Bool(number != 0),
+                _ => Cell::Integer(number),
+            });
+        }
+        trace.push_row(&cells).unwrap();
+    }
+    trace
+}
+
+/// The trace of a scan script: the columns of its axes, and what `variables` makes of a scan.
+pub fn of_script(path: &Path, variables: impl Fn(&Trace, usize) -> Vec<Cell<'static>>) -> Trace {
+    let (_, script) = standstill_script::suite::Texts::read(path, &[]).unwrap();
+    let outcome = standstill_script::run(&script).unwrap();
+    for verdict in &outcome.verdicts {
+        assert!(verdict.failures.is_empty(), "{}: {verdict:?}", path.display());
+    }
+    let run = &outcome.trace;
+    let mut trace = empty();
+    let axes: Vec<_> = trace.columns()[..14]
+        .iter()
+        .map(|column| run.column(&column.name).unwrap())
+        .collect();
+    for scan in 0..run.scans() {
+        let mut cells: Vec<_> = axes.iter().map(|at| run.cell(scan, *at).unwrap()).collect();
+        cells.extend(variables(run, scan));
+        trace.push_row(&cells).unwrap();
+    }
+    trace
+}
+
+/// The variables of a guest, which its script calls so.
+pub fn of_guest(path: &Path, name: impl Fn(&str) -> String) -> Trace {
+    of_script(path, |run, scan| {
+        let at = |(variable, _)| run.column(&format!("cell.{}", name(variable))).unwrap();
+        let cells = VARIABLES.map(|variable| match run.cell(scan, at(variable)).unwrap() {
+            Cell::Bool(value) => Cell::Bool(value),
+            Cell::Integer(value) => Cell::Integer(value),
+            other => panic!("{variable:?}: {other:?}"),
+        });
+        cells.to_vec()
+    })
+}
+
+/// Holds a trace against the digest, and says where it leaves another one that is known to be right.
+pub fn hold(host: &str, trace: &Trace, right: Option<&Trace>) {
+    assert_eq!(trace.scans(), SCANS, "{host}");
+    for scan in 0..SCANS {
+        let Some(right) = right else { break };
+        let differing = right.columns().iter().zip(right.row(scan).zip(trace.row(scan)));
+        for (column, (right, found)) in differing {
+            assert_eq!(found, right, "{host}: {} in scan {scan}", column.name);
+        }
+    }
+    let found = digest::whole(trace);
+    assert_eq!(found, FEED_AND_PLACE, "{host}: {found:#018x}");
+}
+
+/// The folder with all forms of the program.
+pub fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("feed_and_place")
+}
+
+pub fn scratch(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Whether a tool can be run. Without it a test ends early, loudly, and not in CI.
+pub fn has(tool: &str) -> bool {
+    let found = Command::new(tool).arg("--version").output().is_ok();
+    if !found {
+        assert!(env::var_os("CI").is_none(), "CI must have {tool}");
+        eprintln!("SKIP: there is no {tool}");
+    }
+    found
+}
+
+pub fn run(program: impl AsRef<OsStr>, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Output {
+    let program = program.as_ref();
+    let arguments: Vec<_> = arguments.into_iter().map(|it| it.as_ref().to_owned()).collect();
+    let output = Command::new(program).args(&arguments).output();
+    let output = output.unwrap_or_else(|error| panic!("{}: {error}", program.display()));
+    assert!(
+        output.status.success(),
+        "{} {arguments:?}: {}\n{}{}",
+        program.display(),
+        output.status,
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+    output
+}
+
+/// The static C library, which the tests of `standstill-capi` build in the same place.
+pub fn library() -> PathBuf {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/capi/Cargo.toml");
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo
+        .args(["build", "--offline", "--quiet", "--lib", "--message-format=json"])
+        .arg("--manifest-path")
+        .arg(manifest)
+        .arg("--target-dir")
+        .arg(scratch("c-library"))
+        .env("STANDSTILL_PREFIX", "standstill");
+    let output = cargo.output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}");
+    let messages = String::from_utf8(output.stdout).unwrap();
+    let messages = messages
+        .lines()
+        .map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+    let files = messages.flat_map(|message| message["filenames"].as_array().cloned().unwrap_or_default());
+    let mut files = files.filter_map(|file| Some(PathBuf::from(file.as_str()?)));
+    let library = files.find(|file| file.ends_with("libstandstill_capi.a"));
+    library.expect("no static library was built")
+}
+
+/// Puts what `standstill export` writes for a target into a folder.
+pub fn exported(target: standstill_export::Target, folder: &Path) {
+    use standstill_export::{Dialect, Prefix, export};
+    for file in export(target, &Prefix::default(), &Dialect::default()) {
+        fs::write(folder.join(file.name), file.text).unwrap();
+    }
+}
