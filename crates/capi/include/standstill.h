@@ -48,8 +48,7 @@ enum standstill_result
    */
   STANDSTILL_NULL_POINTER = -1,
   /**
-   * The size in front of a structure is smaller than the structure of this version: it was not set, or another
-   * header was compiled with.
+   * The size in front of a structure is smaller than its first version was: it was not set.
    */
   STANDSTILL_STRUCT_SIZE = -2,
   /**
@@ -157,6 +156,26 @@ enum standstill_mishap
    * Feedback no longer arrives.
    */
   STANDSTILL_MISHAP_COMMUNICATION = 3,
+  /**
+   * The axis itself fails; CLEAR ends that, too.
+   */
+  STANDSTILL_MISHAP_AXIS = 4,
+  /**
+   * A CiA 402 drive no longer listens to its controller ..
+   */
+  STANDSTILL_MISHAP_LOCAL = 5,
+  /**
+   * .. and listens again.
+   */
+  STANDSTILL_MISHAP_REMOTE = 6,
+  /**
+   * A CiA 402 drive shows a warning ..
+   */
+  STANDSTILL_MISHAP_WARNING = 7,
+  /**
+   * .. and shows none.
+   */
+  STANDSTILL_MISHAP_NO_WARNING = 8,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -431,9 +450,95 @@ typedef struct standstill_drive_setup {
    */
   double load_damping;
   /**
-   * Largest torque of the motor; 0: any.
+   * Largest torque of the motor; 0: any, of a CiA 402 drive three times the rated one.
    */
   double torque_max;
+  /**
+   * Simulated, from here on; a structure that ends here has none of it. Limit switches stand along the travel if not
+   * 0.
+   */
+  uint32_t limit_switches;
+  /**
+   * A home switch does if not 0.
+   */
+  uint32_t home_switch;
+  /**
+   * The drive latches reference pulses if not 0.
+   */
+  uint32_t marker;
+  /**
+   * CiA 402, homing by the drive: 0 upwards, 1 downwards, to where its home switch goes on.
+   */
+  int32_t homing_direction;
+  /**
+   * The limit switches are active up to this (u) ..
+   */
+  double limit_switch_negative;
+  /**
+   * .. and from this on (u).
+   */
+  double limit_switch_positive;
+  /**
+   * The home switch is active from this (u) ..
+   */
+  double home_switch_from;
+  /**
+   * .. to this (u).
+   */
+  double home_switch_to;
+  /**
+   * A reference pulse is here (u) ..
+   */
+  double marker_at;
+  /**
+   * .. and one every so many units from there; 0: there is but one.
+   */
+  double marker_every;
+  /**
+   * CiA 402: velocity of homing by the drive (u/s); 0: it has no homing mode.
+   */
+  double homing_velocity;
+  /**
+   * CiA 402: rated torque of its motor, which has inertia, viscous, coulomb and torque_max; 0: it has no torque
+   * mode and tells no torque.
+   */
+  double rated_torque;
+  /**
+   * Mechanism: springs at the ends of the travel (torque/u); 0: it has no end.
+   */
+  double stop_stiffness;
+  /**
+   * Their damping (torque s/u).
+   */
+  double stop_damping;
+  /**
+   * Where the lower one begins (u).
+   */
+  double stop_negative;
+  /**
+   * Where the upper one begins (u).
+   */
+  double stop_positive;
+  /**
+   * Mechanism, its loops: position (1/s); NaN: what holds any rigid mechanism. So the next two.
+   */
+  double gain_position;
+  /**
+   * Velocity (torque s/u).
+   */
+  double gain_velocity;
+  /**
+   * Integral of velocity (torque/u).
+   */
+  double gain_integral;
+  /**
+   * The part of the velocity that is fed forward.
+   */
+  double feed_velocity;
+  /**
+   * The part of the acceleration's torque that is fed forward.
+   */
+  double feed_acceleration;
 } standstill_drive_setup;
 
 /**
@@ -915,11 +1020,42 @@ int32_t standstill_command_read(struct standstill_runtime *runtime, int32_t axis
 
 /**
  * Lets something befall the simulated drive under `axis`, or clears the cause of it; `mishap` is one of
- * standstill_mishap, `code` what the drive calls its fault.
+ * standstill_mishap, `code` what the drive or the axis calls its fault. WRONG_DRIVE also for what only a CiA 402 drive
+ * knows.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
  */
 int32_t standstill_simulate(struct standstill_runtime *runtime, int32_t axis, int32_t mishap, uint16_t code);
+
+/**
+ * Sets the digital input `number`, 0 to 31, of the simulated drive under `axis` to `level`; it shows from the next
+ * tick_begin on.
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
+ */
+int32_t standstill_simulate_input(struct standstill_runtime *runtime, int32_t axis, uint32_t number, uint8_t level);
+
+/**
+ * Sets the input of touch probe `number`, 1 or 2, of the simulated drive under `axis` to `level`, from the part `at` (0 to 1)
+ * of the cycle on that ends with the next tick_begin. Up to four changes before a tick are kept.
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
+ */
+int32_t standstill_simulate_probe(struct standstill_runtime *runtime,
+                                  int32_t axis,
+                                  uint32_t number,
+                                  double at,
+                                  uint8_t level);
+
+/**
+ * Somebody pushes the axis by `distance` while the power stage of its simulated drive is off: in units, with a CiA 402
+ * drive and an ideal one that counts in increments.
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE, NOT_OFF (it has torque).
+ */
+int32_t standstill_simulate_push(struct standstill_runtime *runtime,
+                                 int32_t axis,
+                                 double distance);
 
 /**
  * Copies records of the diagnostic ring, oldest first, from number `*next` on; `*next` becomes the number to go on
@@ -956,7 +1092,7 @@ int32_t standstill_log_read(struct standstill_runtime *runtime,
 /* The library was compiled with these sizes. */
 STANDSTILL_ASSERT(runtime_config, sizeof(standstill_runtime_config) == 24);
 STANDSTILL_ASSERT(axis_setup, sizeof(standstill_axis_setup) == 264);
-STANDSTILL_ASSERT(drive_setup, sizeof(standstill_drive_setup) == 96);
+STANDSTILL_ASSERT(drive_setup, sizeof(standstill_drive_setup) == 248);
 STANDSTILL_ASSERT(feedback, sizeof(standstill_feedback) == 136);
 STANDSTILL_ASSERT(command, sizeof(standstill_command) == 80);
 STANDSTILL_ASSERT(axis_status, sizeof(standstill_axis_status) == 72);

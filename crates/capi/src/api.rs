@@ -11,6 +11,8 @@ use crate::{
 };
 use core::ffi::{c_char, c_void};
 use core::sync::atomic::Ordering::Release;
+use standstill_axis::{DIGITAL, PROBES};
+use standstill_drives::simulated::DriveChange;
 
 /// The code of a result.
 fn code(result: Result<(), Code>) -> i32 {
@@ -29,7 +31,7 @@ pub extern "C" fn standstill_result_text(result: i32) -> *const c_char {
     let text = match result {
         0 => c"done",
         -1 => c"a pointer is null",
-        -2 => c"the size in front of a structure is smaller than the structure of this version",
+        -2 => c"the size in front of a structure is smaller than its first version",
         -3 => c"the host was compiled with the header of another ABI version",
         -4 => c"the storage is too small, or not aligned to 16 bytes",
         -5 => c"there is no runtime at this address",
@@ -144,10 +146,7 @@ pub unsafe extern "C" fn standstill_axis_defaults(setup: *mut AxisSetup) -> i32 
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_drive_defaults"))]
 pub unsafe extern "C" fn standstill_drive_defaults(setup: *mut DriveSetup) -> i32 {
     // SAFETY: the caller's contract.
-    code(unsafe { raw::read(setup) }.map(|given| {
-        // SAFETY: it was read.
-        unsafe { setup.write_unaligned(DriveSetup::defaults(given.size)) }
-    }))
+    code(unsafe { raw::write_under(setup, DriveSetup::defaults) })
 }
 
 /// Adds an axis with its drive; `axis` gets its number, from 1 in the order of the calls.
@@ -166,7 +165,9 @@ pub unsafe extern "C" fn standstill_axis_add(
     // SAFETY: the caller's contract, here and in all that follows.
     unsafe {
         enter(runtime, When::Outside, |inner| {
-            let (setup, drive) = (raw::read(setup)?, raw::read(drive)?);
+            let setup = raw::read(setup)?;
+            // What a host of the first header does not know of stays out.
+            let drive = raw::read_over(drive, DriveSetup::defaults(0))?;
             if axis.is_null() {
                 return Err(Code::NullPointer);
             }
@@ -353,7 +354,8 @@ pub unsafe extern "C" fn standstill_command_read(
 }
 
 /// Lets something befall the simulated drive under `axis`, or clears the cause of it; `mishap` is one of
-/// standstill_mishap, `code` what the drive calls its fault.
+/// standstill_mishap, `code` what the drive or the axis calls its fault. WRONG_DRIVE also for what only a CiA 402 drive
+/// knows.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
 ///
@@ -369,16 +371,91 @@ pub unsafe extern "C" fn standstill_simulate(
     // SAFETY: the caller's contract.
     unsafe {
         enter(runtime, When::Outside, |inner| {
-            let mishap = match mishap {
-                0 => Mishap::Clear,
-                1 => Mishap::Fault,
-                2 => Mishap::Power,
-                3 => Mishap::Communication,
-                _ => return Err(Code::BadValue),
-            };
-            let place = inner.place(axis)?;
-            let drive = inner.drives.slice_mut().get_mut(place);
-            drive.map_or(Err(Code::UnknownAxis), |drive| drive.suffer(mishap, code))
+            let number = usize::try_from(mishap).map_err(|_| Code::BadValue)?;
+            let mishap = *Mishap::ALL.get(number).ok_or(Code::BadValue)?;
+            inner.suffer(axis, mishap, code)
+        })
+    }
+}
+
+/// Sets the digital input `number`, 0 to 31, of the simulated drive under `axis` to `level`; it shows from the next
+/// tick_begin on.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
+///
+/// # Safety
+/// `runtime` is null or a handle whose storage is still there.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_simulate_input"))]
+pub unsafe extern "C" fn standstill_simulate_input(
+    runtime: *mut Runtime,
+    axis: i32,
+    number: u32,
+    level: u8,
+) -> i32 {
+    // SAFETY: the caller's contract.
+    unsafe {
+        enter(runtime, When::Outside, |inner| {
+            let drive = inner.simulated(axis)?;
+            if number >= DIGITAL {
+                return Err(Code::BadValue);
+            }
+            let level = level != 0;
+            // Only a push can be refused.
+            let _done = drive.change(DriveChange::Input { number, level });
+            Ok(())
+        })
+    }
+}
+
+/// Sets the input of touch probe `number`, 1 or 2, of the simulated drive under `axis` to `level`, from the part `at` (0 to 1)
+/// of the cycle on that ends with the next tick_begin. Up to four changes before a tick are kept.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
+///
+/// # Safety
+/// `runtime` is null or a handle whose storage is still there.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_simulate_probe"))]
+pub unsafe extern "C" fn standstill_simulate_probe(
+    runtime: *mut Runtime,
+    axis: i32,
+    number: u32,
+    at: f64,
+    level: u8,
+) -> i32 {
+    // SAFETY: the caller's contract.
+    unsafe {
+        enter(runtime, When::Outside, |inner| {
+            let drive = inner.simulated(axis)?;
+            let number = (number as usize).wrapping_sub(1);
+            if number >= PROBES || !(0.0..=1.0).contains(&at) {
+                return Err(Code::BadValue);
+            }
+            let level = level != 0;
+            // Only a push can be refused.
+            let _done = drive.change(DriveChange::Probe { number, at, level });
+            Ok(())
+        })
+    }
+}
+
+/// Somebody pushes the axis by `distance` while the power stage of its simulated drive is off: in units, with a CiA 402
+/// drive and an ideal one that counts in increments.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE, NOT_OFF (it has torque).
+///
+/// # Safety
+/// `runtime` is null or a handle whose storage is still there.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_simulate_push"))]
+pub unsafe extern "C" fn standstill_simulate_push(runtime: *mut Runtime, axis: i32, distance: f64) -> i32 {
+    // SAFETY: the caller's contract.
+    unsafe {
+        enter(runtime, When::Outside, |inner| {
+            let drive = inner.simulated(axis)?;
+            if !distance.is_finite() {
+                return Err(Code::BadValue);
+            }
+            let pushed = drive.change(DriveChange::Displace(distance));
+            pushed.map_err(|_| Code::NotOff)
         })
     }
 }

@@ -5,6 +5,10 @@ use standstill_axis::{
     AboveLimit, AxisConfig, BlockDetection, ConfigError, Defaults, HomeDirection, Homing, InPosition, Limits,
     MoveProfile, PowerOff, Procedure, Scaling, StartState, SwitchEdge,
 };
+use standstill_drives::cia402::Reaction;
+use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
+use standstill_drives::simulated::{self, Cia402Setup, IdealDriveSetup, MotorSetup, PlantSetup};
+use standstill_drives::switches::{Marker, Switches};
 
 /// What cannot be used.
 pub(crate) struct SetupFault {
@@ -172,8 +176,206 @@ impl DriveSetup {
             load_stiffness: 0.0,
             load_damping: 0.0,
             torque_max: 0.0,
+            limit_switches: 0,
+            home_switch: 0,
+            marker: 0,
+            homing_direction: 0,
+            limit_switch_negative: 0.0,
+            limit_switch_positive: 0.0,
+            home_switch_from: 0.0,
+            home_switch_to: 0.0,
+            marker_at: 0.0,
+            marker_every: 0.0,
+            homing_velocity: 0.0,
+            rated_torque: 0.0,
+            stop_stiffness: 0.0,
+            stop_damping: 0.0,
+            stop_negative: 0.0,
+            stop_positive: 0.0,
+            gain_position: f64::NAN,
+            gain_velocity: f64::NAN,
+            gain_integral: f64::NAN,
+            feed_velocity: 1.0,
+            feed_acceleration: 1.0,
         }
     }
+
+    /// The simulated drive under an axis of this configuration, in cycles of so many nanoseconds.
+    pub(crate) fn simulated(
+        &self,
+        axis: &AxisConfig,
+        cycle_ns: i64,
+    ) -> Result<simulated::DriveSetup, SetupFault> {
+        let power_on = u32::try_from(self.power_on).ok();
+        let switches = self.switches()?;
+        Ok(match self.kind {
+            1 => simulated::DriveSetup::Ideal(IdealDriveSetup {
+                delay: self.delay as usize,
+                power_on,
+                switches,
+            }),
+            2 => simulated::DriveSetup::Cia402(self.cia402(axis, power_on, switches)?),
+            3 => {
+                let plant = Plant {
+                    inertia: self.inertia,
+                    viscous: self.viscous,
+                    coulomb: self.coulomb,
+                    load: (self.load_inertia != 0.0).then_some(Load {
+                        inertia: self.load_inertia,
+                        stiffness: self.load_stiffness,
+                        damping: self.load_damping,
+                    }),
+                };
+                simulated::DriveSetup::Plant(PlantSetup {
+                    power_on,
+                    plant,
+                    stops: (self.stop_stiffness != 0.0).then_some(Stops {
+                        ends: (self.stop_negative, self.stop_positive),
+                        stiffness: self.stop_stiffness,
+                        damping: self.stop_damping,
+                    }),
+                    gains: self.gains(&plant, cycle_ns),
+                    switches,
+                })
+            }
+            other => return Err(fault("drive.kind", other.into())),
+        })
+    }
+
+    fn gains(&self, plant: &Plant, cycle_ns: i64) -> Gains {
+        let own = Gains::of(plant, cycle_ns as f64 / 1e9);
+        let or = |given: f64, own: f64| if given.is_nan() { own } else { given };
+        Gains {
+            position: or(self.gain_position, own.position),
+            velocity: or(self.gain_velocity, own.velocity),
+            integral: or(self.gain_integral, own.integral),
+            feed_velocity: self.feed_velocity,
+            feed_acceleration: self.feed_acceleration,
+            torque: given(self.torque_max).unwrap_or(own.torque),
+        }
+    }
+
+    fn cia402(
+        &self,
+        axis: &AxisConfig,
+        power_on: Option<u32>,
+        switches: Switches,
+    ) -> Result<Cia402Setup, SetupFault> {
+        let scaling = axis.scaling.ok_or(fault("scaling_increments", 0.0))?;
+        let rate = given(self.deceleration).unwrap_or(axis.limits.deceleration);
+        // The node brakes by increments, of which there must be a countable number.
+        let counted = rate * (f64::from(scaling.increments()) / f64::from(scaling.units()));
+        if !(rate > 0.0 && counted.is_finite()) {
+            return Err(fault("drive.deceleration", rate));
+        }
+        let reactions = [Reaction::Coast, Reaction::Ramp, Reaction::RampAndStay];
+        let [coast, ramp, _] = reactions;
+        let upwards = choice("drive.homing_direction", self.homing_direction, &[true, false])?;
+        if !(self.homing_velocity >= 0.0 && self.homing_velocity.is_finite()) {
+            return Err(fault("drive.homing_velocity", self.homing_velocity));
+        }
+        Ok(Cia402Setup {
+            delay: self.delay as usize,
+            power_on,
+            start_up: self.start_up,
+            deceleration: Some(rate),
+            quick_stop: choice("drive.quick_stop", self.quick_stop, &reactions)?,
+            on_disable: choice("drive.on_disable", self.on_disable, &[coast, ramp])?,
+            on_fault: choice("drive.on_fault", self.on_fault, &[coast, ramp])?,
+            homing: (self.homing_velocity != 0.0).then_some((upwards, self.homing_velocity)),
+            motor: self.motor()?,
+            switches,
+        })
+    }
+
+    /// The motor of a CiA 402 drive, as its bus can tell of it.
+    fn motor(&self) -> Result<Option<MotorSetup>, SetupFault> {
+        let rated_torque = self.rated_torque;
+        if rated_torque == 0.0 {
+            return Ok(None);
+        }
+        let motor = MotorSetup {
+            rated_torque,
+            max_torque: given(self.torque_max).unwrap_or(3.0 * rated_torque),
+            inertia: self.inertia,
+            viscous: self.viscous,
+            coulomb: self.coulomb,
+        };
+        // A thousandth of the rated torque is the smallest the bus can say, 32767 the most.
+        let told = 0.001 * rated_torque..=f64::from(i16::MAX) / 1000.0 * rated_torque;
+        let finite = [rated_torque, motor.inertia, motor.viscous, motor.coulomb].map(f64::is_finite);
+        let good = [
+            (
+                "drive.rated_torque",
+                rated_torque,
+                rated_torque > 0.0 && finite[0],
+            ),
+            ("drive.inertia", motor.inertia, motor.inertia > 0.0 && finite[1]),
+            ("drive.viscous", motor.viscous, motor.viscous >= 0.0 && finite[2]),
+            ("drive.coulomb", motor.coulomb, motor.coulomb >= 0.0 && finite[3]),
+            (
+                "drive.torque_max",
+                motor.max_torque,
+                told.contains(&motor.max_torque),
+            ),
+        ];
+        match good.into_iter().find(|(_, _, good)| !good) {
+            Some((key, value, _)) => Err(fault(key, value)),
+            None => Ok(Some(motor)),
+        }
+    }
+
+    /// What stands along the travel.
+    fn switches(&self) -> Result<Switches, SetupFault> {
+        let pair = |there: u32, keys: [&'static str; 2], from: f64, to: f64| {
+            if there == 0 {
+                return Ok(None);
+            }
+            let [first, second] = keys;
+            if !from.is_finite() {
+                return Err(fault(first, from));
+            }
+            if !(to.is_finite() && from <= to) {
+                return Err(fault(second, to));
+            }
+            Ok(Some((from, to)))
+        };
+        let limits = pair(
+            self.limit_switches,
+            ["drive.limit_switch_negative", "drive.limit_switch_positive"],
+            self.limit_switch_negative,
+            self.limit_switch_positive,
+        )?;
+        let home = pair(
+            self.home_switch,
+            ["drive.home_switch_from", "drive.home_switch_to"],
+            self.home_switch_from,
+            self.home_switch_to,
+        )?;
+        let marker = if self.marker == 0 {
+            None
+        } else if !self.marker_at.is_finite() {
+            return Err(fault("drive.marker_at", self.marker_at));
+        } else if !(self.marker_every >= 0.0 && self.marker_every.is_finite()) {
+            return Err(fault("drive.marker_every", self.marker_every));
+        } else {
+            Some(Marker {
+                at: self.marker_at,
+                every: given(self.marker_every),
+            })
+        };
+        Ok(Switches {
+            limits,
+            home,
+            marker,
+            // That of the axis is put in when the drive is made.
+            turn: None,
+        })
+    }
+}
+
+const fn fault(key: &'static str, value: f64) -> SetupFault {
+    SetupFault { key, value }
 }
 
 /// 0 stands for what is not given; NaN is a value, and refused as one.

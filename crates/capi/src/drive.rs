@@ -1,36 +1,18 @@
 //! The drives an axis may have here: the host's own, and simulated ones.
 
-use crate::{Code, Command, DriveSetup, Feedback, Mishap};
+use crate::config::SetupFault;
+use crate::{Code, Command, DriveSetup, Feedback};
 use standstill_axis::{
     AxisConfig, Comms, Drive, DriveCommand, DriveFeedback, DriveHoming, DriveOrder, DrivePosition,
-    DriveReport, DriveRequest, DriveSignals, Edge, Equipment, Fault, IdealDrive, ProbeReport, StartState,
-    TorqueReport,
+    DriveReport, DriveRequest, DriveSignals, Edge, Equipment, Fault, ProbeReport, TorqueReport,
 };
-use standstill_drives::cia402::{Cia402Drive, Reaction, Settings};
-use standstill_drives::mechanism::{Gains, Load, Mechanism, MechanismError, Plant, PlantDrive, Servo};
+use standstill_drives::simulated::SimulatedDrive;
 
-/// A drive. They stand in the storage of the runtime beside each other, so the largest sets the size of all.
+/// A drive. They stand in the storage of the runtime beside each other, so the larger sets the size of both.
 #[allow(clippy::large_enum_variant)]
 pub(crate) enum AnyDrive {
     Host(HostDrive),
-    Ideal(IdealDrive),
-    Cia402(Cia402Drive),
-    Plant(PlantDrive),
-}
-
-/// What a drive cannot be made of.
-pub(crate) struct DriveFault {
-    pub key: &'static str,
-    pub value: f64,
-}
-
-impl From<MechanismError> for DriveFault {
-    fn from(error: MechanismError) -> Self {
-        Self {
-            key: error.key,
-            value: error.value,
-        }
-    }
+    Simulated(SimulatedDrive),
 }
 
 /// Both sides of a drive the host carries: what it told, and what it is told.
@@ -187,117 +169,30 @@ impl HostDrive {
 }
 
 impl AnyDrive {
-    /// The drive of this setup under an axis of this configuration, in cycles of so many seconds.
-    pub fn new(setup: &DriveSetup, axis: &AxisConfig, cycle: f64) -> Result<Self, DriveFault> {
-        let position = match &axis.scaling {
-            Some(scaling) => DrivePosition::Increments(scaling.to_increments(axis.position)),
-            None => DrivePosition::Units(axis.position),
-        };
-        let enabled = axis.start == StartState::Standstill;
-        let power_on = u32::try_from(setup.power_on).ok();
-        Ok(match setup.kind {
-            0 => Self::Host(HostDrive::new(position)),
-            1 => Self::Ideal(IdealDrive::new(position, setup.delay as usize, power_on, enabled)),
-            2 => Self::Cia402(node(setup, axis, cycle, power_on)?),
-            3 => {
-                let plant = Plant {
-                    inertia: setup.inertia,
-                    viscous: setup.viscous,
-                    coulomb: setup.coulomb,
-                    load: (setup.load_inertia != 0.0).then_some(Load {
-                        inertia: setup.load_inertia,
-                        stiffness: setup.load_stiffness,
-                        damping: setup.load_damping,
-                    }),
-                };
-                let mut gains = Gains::of(&plant, cycle);
-                if setup.torque_max != 0.0 {
-                    gains.torque = setup.torque_max;
-                }
-                let mechanism = Mechanism::new(plant, axis.position, cycle)?;
-                let servo = Servo::new(mechanism, gains, cycle)?;
-                Self::Plant(PlantDrive::new(servo, axis.scaling, power_on, enabled))
-            }
-            other => {
-                return Err(DriveFault {
-                    key: "drive.kind",
-                    value: other.into(),
-                });
-            }
+    /// The drive of this setup under an axis of this configuration, in cycles of so many nanoseconds.
+    pub fn new(setup: &DriveSetup, axis: &AxisConfig, cycle_ns: i64) -> Result<Self, SetupFault> {
+        if setup.kind == 0 {
+            let position = match &axis.scaling {
+                Some(scaling) => DrivePosition::Increments(scaling.to_increments(axis.position)),
+                None => DrivePosition::Units(axis.position),
+            };
+            return Ok(Self::Host(HostDrive::new(position)));
+        }
+        let setup = setup.simulated(axis, cycle_ns)?;
+        let made = SimulatedDrive::new(&setup, axis, cycle_ns);
+        made.map(Self::Simulated).map_err(|error| SetupFault {
+            key: error.key,
+            value: error.value,
         })
     }
 
-    /// Lets something befall a simulated drive.
-    pub fn suffer(&mut self, mishap: Mishap, code: u16) -> Result<(), Code> {
-        macro_rules! each {
-            ($ideal:ident => $do:expr, $node:ident => $node_do:expr) => {
-                match self {
-                    Self::Host(_) => return Err(Code::WrongDrive),
-                    Self::Ideal($ideal) => $do,
-                    Self::Plant($ideal) => $do,
-                    Self::Cia402(drive) => {
-                        let $node = drive.node_mut();
-                        $node_do
-                    }
-                }
-            };
+    /// The drive, if it is a simulated one.
+    pub fn simulated(&mut self) -> Result<&mut SimulatedDrive, Code> {
+        match self {
+            Self::Host(_) => Err(Code::WrongDrive),
+            Self::Simulated(drive) => Ok(drive),
         }
-        match mishap {
-            Mishap::Clear => each!(drive => drive.clear_cause(), node => node.clear_cause()),
-            Mishap::Fault => each!(drive => drive.fail(code), node => node.fail(code)),
-            Mishap::Power => each!(drive => drive.cut_power(), node => node.cut_power()),
-            Mishap::Communication => {
-                each!(drive => drive.cut_communication(), node => node.cut_communication());
-            }
-        }
-        Ok(())
     }
-}
-
-fn node(
-    setup: &DriveSetup,
-    axis: &AxisConfig,
-    cycle: f64,
-    power_on: Option<u32>,
-) -> Result<Cia402Drive, DriveFault> {
-    let scaling = axis.scaling.ok_or(DriveFault {
-        key: "scaling_increments",
-        value: 0.0,
-    })?;
-    let reaction = |key, number: i32, most| match number {
-        0 => Ok(Reaction::Coast),
-        1 => Ok(Reaction::Ramp),
-        2 if most == 2 => Ok(Reaction::RampAndStay),
-        other => Err(DriveFault {
-            key,
-            value: other.into(),
-        }),
-    };
-    let rate = if setup.deceleration == 0.0 {
-        axis.limits.deceleration
-    } else {
-        setup.deceleration
-    };
-    let scale = f64::from(scaling.increments()) / f64::from(scaling.units());
-    let deceleration = rate * scale * cycle * cycle;
-    if !(deceleration > 0.0 && deceleration.is_finite()) {
-        return Err(DriveFault {
-            key: "drive.deceleration",
-            value: rate,
-        });
-    }
-    Ok(Cia402Drive::simulated_node(Settings {
-        position: scaling.to_increments(axis.position),
-        enabled: axis.start == StartState::Standstill,
-        deceleration,
-        delay: setup.delay as usize,
-        start_up: setup.start_up,
-        power_on,
-        quick_stop: reaction("drive.quick_stop", setup.quick_stop, 2)?,
-        leaving: reaction("drive.on_disable", setup.on_disable, 1)?,
-        fault: reaction("drive.on_fault", setup.on_fault, 1)?,
-        ..Settings::default()
-    }))
 }
 
 impl Drive for HostDrive {
@@ -326,36 +221,28 @@ impl Drive for AnyDrive {
     fn read(&mut self, now_ns: i64) -> DriveFeedback {
         match self {
             Self::Host(drive) => drive.read(now_ns),
-            Self::Ideal(drive) => drive.read(now_ns),
-            Self::Cia402(drive) => drive.read(now_ns),
-            Self::Plant(drive) => drive.read(now_ns),
+            Self::Simulated(drive) => drive.read(now_ns),
         }
     }
 
     fn write(&mut self, now_ns: i64, command: &DriveCommand) {
         match self {
             Self::Host(drive) => drive.write(now_ns, command),
-            Self::Ideal(drive) => drive.write(now_ns, command),
-            Self::Cia402(drive) => drive.write(now_ns, command),
-            Self::Plant(drive) => drive.write(now_ns, command),
+            Self::Simulated(drive) => drive.write(now_ns, command),
         }
     }
 
     fn report(&mut self, report: &mut DriveReport) {
         match self {
             Self::Host(drive) => drive.report(report),
-            Self::Ideal(drive) => drive.report(report),
-            Self::Cia402(drive) => drive.report(report),
-            Self::Plant(drive) => drive.report(report),
+            Self::Simulated(drive) => drive.report(report),
         }
     }
 
     fn order(&mut self, order: &DriveOrder) {
         match self {
             Self::Host(drive) => drive.order(order),
-            Self::Ideal(drive) => drive.order(order),
-            Self::Cia402(drive) => drive.order(order),
-            Self::Plant(drive) => drive.order(order),
+            Self::Simulated(drive) => drive.order(order),
         }
     }
 }

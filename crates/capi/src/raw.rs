@@ -2,13 +2,16 @@
 
 use crate::Code;
 use core::ffi::c_char;
-use core::slice;
+use core::{ptr, slice};
 
 /// A structure of the border: its size is the `u32` it begins with.
 ///
 /// # Safety
 /// The type is `repr(C)`, begins with a `u32`, has no gaps, and every pattern of bits is a value of it.
-pub(crate) unsafe trait Sized32: Copy {}
+pub(crate) unsafe trait Sized32: Copy {
+    /// Bytes of its first version: hosts compiled with that header are served for ever.
+    const LEAST: usize = size_of::<Self>();
+}
 
 macro_rules! sized {
     ($($ty:ident),*) => {$(
@@ -20,12 +23,16 @@ macro_rules! sized {
 sized!(
     RuntimeConfig,
     AxisSetup,
-    DriveSetup,
     Feedback,
     Command,
     AxisStatus,
     ConfigFault
 );
+
+// SAFETY: as those above. It grew: switches, homing, a motor, stops and gains came behind its first 96 bytes.
+unsafe impl Sized32 for crate::DriveSetup {
+    const LEAST: usize = 96;
+}
 
 /// Checks the size in front of a structure of at least `needed` bytes.
 ///
@@ -53,6 +60,45 @@ pub(crate) unsafe fn read<T: Sized32>(at: *const T) -> Result<T, Code> {
     unsafe { check_size(at.cast(), size_of::<T>())? };
     // SAFETY: not null, and long enough, or the size would have been refused.
     Ok(unsafe { at.read_unaligned() })
+}
+
+/// The structure at `at`, and of `otherwise` what an older version of it did not have.
+///
+/// # Safety
+/// As [`read`].
+pub(crate) unsafe fn read_over<T: Sized32>(at: *const T, otherwise: T) -> Result<T, Code> {
+    // SAFETY: the caller's contract.
+    let known = unsafe { known::<T>(at.cast())? };
+    let mut value = otherwise;
+    // SAFETY: so many bytes are there by the size in front, and at most those of the value; any bytes are one.
+    unsafe { ptr::copy_nonoverlapping(at.cast::<u8>(), ptr::from_mut(&mut value).cast(), known) };
+    Ok(value)
+}
+
+/// Writes to `at` as much of a value as there is room for by the size in front, which stays as it is.
+///
+/// # Safety
+/// As [`read`], and the bytes can be written.
+pub(crate) unsafe fn write_under<T: Sized32>(at: *mut T, make: impl FnOnce(u32) -> T) -> Result<(), Code> {
+    // SAFETY: the caller's contract.
+    let known = unsafe { known::<T>(at.cast_const().cast())? };
+    // SAFETY: not null, and a `u32` is there.
+    let value = make(unsafe { at.cast::<u32>().read_unaligned() });
+    // SAFETY: so many bytes are there, and at most those of the value, which is none of them.
+    unsafe { ptr::copy_nonoverlapping(ptr::from_ref(&value).cast(), at.cast::<u8>(), known) };
+    Ok(())
+}
+
+/// Bytes at `at` that this version knows.
+///
+/// # Safety
+/// As [`read`].
+unsafe fn known<T: Sized32>(at: *const u8) -> Result<usize, Code> {
+    // SAFETY: the caller's contract.
+    unsafe { check_size(at, T::LEAST)? };
+    // SAFETY: not null, and a `u32` is there.
+    let size = unsafe { at.cast::<u32>().read_unaligned() } as usize;
+    Ok(size.min(size_of::<T>()))
 }
 
 /// Checks that a structure can be written to `at`.

@@ -3,13 +3,14 @@
 use crate::config::refused;
 use crate::drive::AnyDrive;
 use crate::storage::List;
-use crate::{AxisSetup, AxisStatus, Code, ConfigFault, DriveSetup, raw};
+use crate::{AxisSetup, AxisStatus, Code, ConfigFault, DriveSetup, Mishap, raw};
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicU32, AtomicUsize};
 use standstill_axis::{
-    Axis, AxisId, AxisState, Drive, DriveFeedback, InstanceId, Log, Source, Standard, steps,
+    Axis, AxisId, AxisState, Drive, DriveFeedback, ErrorId, InstanceId, Log, Source, Standard, steps,
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
+use standstill_drives::simulated::{DriveChange, SimulatedDrive};
 use standstill_fb::{Context, PinType, axis_number, numbered_axis};
 
 /// The instance in records of what no block caused; `standstill-scan` has the same.
@@ -84,7 +85,7 @@ pub(crate) struct Inner {
     pub log: Log,
     /// The records of the arrays of the block being called.
     pub cells: [f64; CELLS],
-    cycle: f64,
+    cycle_ns: i64,
     pub scan: u64,
     pub now_ns: i64,
     /// The first tick has begun.
@@ -112,7 +113,7 @@ impl Inner {
             slots,
             log: Log::default(),
             cells: [0.0; CELLS],
-            cycle: cycle_ns as f64 / 1e9,
+            cycle_ns,
             scan: 0,
             now_ns: 0,
             started: false,
@@ -147,23 +148,20 @@ impl Inner {
         let config = setup
             .config()
             .map_err(|fault| self.refuse(fault.key, fault.value))?;
-        let axis = Axis::new(id, config, Standard::new(self.cycle)).map_err(|error| {
+        let axis = Axis::new(id, config, Standard::new(self.cycle_ns as f64 / 1e9)).map_err(|error| {
             let fault = refused(&error);
             self.refuse(fault.key, fault.value)
         })?;
-        let mut drive = AnyDrive::new(drive, axis.config(), self.cycle)
+        let drive = AnyDrive::new(drive, axis.config(), self.cycle_ns)
             .map_err(|fault| self.refuse(fault.key, fault.value))?;
         // Only to have a value there: the first tick reads the drive before anybody looks.
-        let feedback = match &drive {
-            AnyDrive::Host(_) | AnyDrive::Ideal(_) => drive.read(0),
-            AnyDrive::Cia402(_) | AnyDrive::Plant(_) => DriveFeedback {
-                enabled: false,
-                voltage: false,
-                fault: None,
-                position: standstill_axis::DrivePosition::Units(0.0),
-                comms: standstill_axis::Comms::Lost,
-                signals: standstill_axis::DriveSignals::default(),
-            },
+        let feedback = DriveFeedback {
+            enabled: false,
+            voltage: false,
+            fault: None,
+            position: standstill_axis::DrivePosition::Units(0.0),
+            comms: standstill_axis::Comms::Lost,
+            signals: standstill_axis::DriveSignals::default(),
         };
         // Of equal capacity, so all of them take it.
         self.axes.push(axis);
@@ -176,6 +174,61 @@ impl Inner {
         self.fault.key = raw::name(key);
         self.fault.value = value;
         Code::BadConfig
+    }
+
+    /// The simulated drive under an axis.
+    pub fn simulated(&mut self, axis: i32) -> Result<&mut SimulatedDrive, Code> {
+        let place = self.place(axis)?;
+        let drive = self.drives.slice_mut().get_mut(place).ok_or(Code::UnknownAxis)?;
+        drive.simulated()
+    }
+
+    /// Lets something befall an axis or the simulated drive under it.
+    pub fn suffer(&mut self, axis: i32, mishap: Mishap, code: u16) -> Result<(), Code> {
+        let place = self.place(axis)?;
+        let drive = self.simulated(axis)?;
+        let is_node = drive.is_cia402();
+        let change = match mishap {
+            Mishap::Clear => {
+                drive.clear_cause();
+                if let Some(axis) = self.axes.slice_mut().get_mut(place) {
+                    axis.clear_cause();
+                }
+                return Ok(());
+            }
+            Mishap::Fault => {
+                drive.fail(code);
+                return Ok(());
+            }
+            Mishap::Power => {
+                drive.cut_power();
+                return Ok(());
+            }
+            Mishap::Communication => {
+                drive.cut_communication();
+                return Ok(());
+            }
+            Mishap::Axis => {
+                let source = Source {
+                    scan: self.scan,
+                    instance: NOBODY,
+                };
+                if let Some(axis) = self.axes.slice_mut().get_mut(place) {
+                    axis.raise(ErrorId::AxisFault, code, source, &mut self.log);
+                }
+                return Ok(());
+            }
+            Mishap::Local => DriveChange::Remote(false),
+            Mishap::Remote => DriveChange::Remote(true),
+            Mishap::Warning => DriveChange::Warning(true),
+            Mishap::NoWarning => DriveChange::Warning(false),
+        };
+        if !is_node {
+            return Err(Code::WrongDrive);
+        }
+        // Only a push can be refused.
+        let _done = drive.change(change);
+        Ok(())
     }
 
     /// Begins a tick: drives are read, axis states follow.

@@ -13,8 +13,7 @@ pub enum Code {
     Ok = 0,
     /// A pointer that must not be null is null.
     NullPointer = -1,
-    /// The size in front of a structure is smaller than the structure of this version: it was not set, or another
-    /// header was compiled with.
+    /// The size in front of a structure is smaller than its first version was: it was not set.
     StructSize = -2,
     /// The host was compiled with the header of another ABI version.
     AbiMismatch = -3,
@@ -194,8 +193,52 @@ pub struct DriveSetup {
     pub load_stiffness: f64,
     /// Its damping (torque s/u).
     pub load_damping: f64,
-    /// Largest torque of the motor; 0: any.
+    /// Largest torque of the motor; 0: any, of a CiA 402 drive three times the rated one.
     pub torque_max: f64,
+    /// Simulated, from here on; a structure that ends here has none of it. Limit switches stand along the travel if not
+    /// 0.
+    pub limit_switches: u32,
+    /// A home switch does if not 0.
+    pub home_switch: u32,
+    /// The drive latches reference pulses if not 0.
+    pub marker: u32,
+    /// CiA 402, homing by the drive: 0 upwards, 1 downwards, to where its home switch goes on.
+    pub homing_direction: i32,
+    /// The limit switches are active up to this (u) ..
+    pub limit_switch_negative: f64,
+    /// .. and from this on (u).
+    pub limit_switch_positive: f64,
+    /// The home switch is active from this (u) ..
+    pub home_switch_from: f64,
+    /// .. to this (u).
+    pub home_switch_to: f64,
+    /// A reference pulse is here (u) ..
+    pub marker_at: f64,
+    /// .. and one every so many units from there; 0: there is but one.
+    pub marker_every: f64,
+    /// CiA 402: velocity of homing by the drive (u/s); 0: it has no homing mode.
+    pub homing_velocity: f64,
+    /// CiA 402: rated torque of its motor, which has inertia, viscous, coulomb and torque_max; 0: it has no torque
+    /// mode and tells no torque.
+    pub rated_torque: f64,
+    /// Mechanism: springs at the ends of the travel (torque/u); 0: it has no end.
+    pub stop_stiffness: f64,
+    /// Their damping (torque s/u).
+    pub stop_damping: f64,
+    /// Where the lower one begins (u).
+    pub stop_negative: f64,
+    /// Where the upper one begins (u).
+    pub stop_positive: f64,
+    /// Mechanism, its loops: position (1/s); NaN: what holds any rigid mechanism. So the next two.
+    pub gain_position: f64,
+    /// Velocity (torque s/u).
+    pub gain_velocity: f64,
+    /// Integral of velocity (torque/u).
+    pub gain_integral: f64,
+    /// The part of the velocity that is fed forward.
+    pub feed_velocity: f64,
+    /// The part of the acceleration's torque that is fed forward.
+    pub feed_acceleration: f64,
 }
 
 /// What a host's own drive tells in a tick. It is taken by the next tick_begin, once: a tick without a new one has lost
@@ -402,12 +445,37 @@ pub enum Mishap {
     Power = 2,
     /// Feedback no longer arrives.
     Communication = 3,
+    /// The axis itself fails; CLEAR ends that, too.
+    Axis = 4,
+    /// A CiA 402 drive no longer listens to its controller ..
+    Local = 5,
+    /// .. and listens again.
+    Remote = 6,
+    /// A CiA 402 drive shows a warning ..
+    Warning = 7,
+    /// .. and shows none.
+    NoWarning = 8,
+}
+
+impl Mishap {
+    /// All, each at the place of its number.
+    pub(crate) const ALL: [Self; 9] = [
+        Self::Clear,
+        Self::Fault,
+        Self::Power,
+        Self::Communication,
+        Self::Axis,
+        Self::Local,
+        Self::Remote,
+        Self::Warning,
+        Self::NoWarning,
+    ];
 }
 
 // No gap a compiler might fill otherwise: every byte belongs to a field.
 const _: () = assert!(size_of::<RuntimeConfig>() == 24);
 const _: () = assert!(size_of::<AxisSetup>() == 264);
-const _: () = assert!(size_of::<DriveSetup>() == 96);
+const _: () = assert!(size_of::<DriveSetup>() == 248);
 const _: () = assert!(size_of::<Feedback>() == 136);
 const _: () = assert!(size_of::<Command>() == 80);
 const _: () = assert!(size_of::<AxisStatus>() == 72);

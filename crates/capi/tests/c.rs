@@ -11,7 +11,7 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 use std::{env, fs};
 
-const EXAMPLES: [&str; 3] = ["single_axis", "own_drive", "diagnostics"];
+const EXAMPLES: [&str; 4] = ["single_axis", "own_drive", "diagnostics", "home_and_latch"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).to_owned()
@@ -181,43 +181,74 @@ fn valgrind_has_nothing_to_report() {
     }
 }
 
-#[test]
-fn c_and_a_scan_script_move_by_the_same_bits() {
+/// Compares what an example prints, row by row, with a scan script: doubles as their bits, then flags.
+fn same_bits(example: &str, script: &str, reals: &[&str], flags: &[&str]) {
     if !has("cc") {
         return;
     }
-    let program = scratch("c-digest").join("single_axis");
-    let source = root().join("examples/single_axis.c");
+    let program = scratch("c-digest").join(example);
+    let source = root().join("examples").join(format!("{example}.c"));
     compile(&C, &source, &root().join("include"), &libraries().0, &program);
     let printed = text(&run(&program, &[OsStr::new("trace")]));
-    let rows: Vec<_> = printed.lines().filter(|line| line.len() > 50).collect();
+    let is_row = |line: &&str| {
+        let first = line.split(' ').next().unwrap_or_default();
+        first.len() == 16 && first.bytes().all(|byte| byte.is_ascii_hexdigit())
+    };
+    let rows: Vec<_> = printed.lines().filter(is_row).collect();
 
-    let path = root().join("../../scan-tests/embedding/power_there_and_back.scan.json");
+    let path = root().join("../../scan-tests/embedding").join(script);
     let script = standstill_script::read(&fs::read_to_string(&path).unwrap(), "there", &[]).unwrap();
     let outcome = standstill_script::run(&script).unwrap();
     assert!(outcome.passed());
     let trace = &outcome.trace;
     let real = |scan, name| match trace.cell(scan, trace.column(name).unwrap()) {
-        Some(Cell::Real(value)) => value.to_bits(),
+        Some(Cell::Real(value)) => format!("{:016x} ", value.to_bits()),
         other => panic!("{name}: {other:?}"),
     };
     let flag = |scan, name| match trace.cell(scan, trace.column(name).unwrap()) {
-        Some(Cell::Bool(value)) => u8::from(value),
+        Some(Cell::Bool(value)) => u8::from(value).to_string(),
         other => panic!("{name}: {other:?}"),
     };
     assert_eq!(rows.len(), trace.scans());
     for (scan, row) in rows.iter().enumerate() {
-        let expected = format!(
-            "{:016x} {:016x} {:016x} {}{}{}",
-            real(scan, "X.Position"),
-            real(scan, "X.Velocity"),
-            real(scan, "X.Acceleration"),
-            flag(scan, "power.Status"),
-            flag(scan, "there.Done"),
-            flag(scan, "back.Done")
-        );
+        let mut expected: String = reals.iter().map(|name| real(scan, name)).collect();
+        expected.extend(flags.iter().map(|name| flag(scan, name)));
         assert_eq!(*row, expected, "scan {scan}");
     }
+}
+
+#[test]
+fn c_and_a_scan_script_move_by_the_same_bits() {
+    same_bits(
+        "single_axis",
+        "power_there_and_back.scan.json",
+        &["X.Position", "X.Velocity", "X.Acceleration"],
+        &["power.Status", "there.Done", "back.Done"],
+    );
+}
+
+/// Switches, inputs and probes of simulated drives are those of scan scripts.
+#[test]
+fn c_homes_and_latches_by_the_bits_of_a_scan_script() {
+    same_bits(
+        "home_and_latch",
+        "home_and_latch.scan.json",
+        &[
+            "X.Position",
+            "X.Velocity",
+            "Y.Position",
+            "Y.ActualPosition",
+            "probe_x.RecordedPosition",
+            "probe_y.RecordedPosition",
+        ],
+        &[
+            "home_x.Done",
+            "home_y.Done",
+            "probe_x.Done",
+            "probe_y.Done",
+            "gate.Value",
+        ],
+    );
 }
 
 #[test]

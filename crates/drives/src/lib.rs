@@ -14,6 +14,7 @@ extern crate std;
 pub mod cia402;
 pub mod mechanism;
 pub mod peripherals;
+pub mod simulated;
 pub mod switches;
 mod wire;
 

@@ -27,7 +27,7 @@ impl Wire {
         }
         // A later one goes behind those of the same instant.
         for slot in (1..kept.len()).rev() {
-            if let [before, after] = &mut kept[slot - 1..=slot]
+            if let Some([before, after]) = kept.get_mut(slot - 1..=slot)
                 && before.0 > after.0
             {
                 core::mem::swap(before, after);

@@ -1,11 +1,12 @@
 //! A scan script as values: checked, names resolved to indices, parameters filled in.
 
 use standstill_axis::{AxisConfig, AxisState};
-use standstill_drives::cia402::Reaction;
-use standstill_drives::mechanism::{Gains, Plant, Stops};
-use standstill_drives::switches::Switches;
 use standstill_fb::{BlockInfo, PinType, Value};
 use std::collections::BTreeMap;
+
+pub use standstill_drives::simulated::{
+    Cia402Setup, DriveChange, DriveSetup, IdealDriveSetup, MotorSetup, PlantSetup,
+};
 
 /// A script that has been read and checked.
 #[derive(Clone, Debug)]
@@ -53,104 +54,6 @@ pub struct Axis {
     pub config: AxisConfig,
     /// Its drive.
     pub drive: DriveSetup,
-}
-
-/// The drive of an axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum DriveSetup {
-    /// Follows its command exactly.
-    Ideal(IdealDriveSetup),
-    /// A simulated CiA 402 drive.
-    Cia402(Cia402Setup),
-    /// Turns a mechanism.
-    Plant(PlantSetup),
-}
-
-/// Parameters of a drive with a mechanism.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlantSetup {
-    /// Scans until power is confirmed; `None` never.
-    pub power_on: Option<u32>,
-    /// What is moved.
-    pub plant: Plant,
-    /// Between them.
-    pub stops: Option<Stops>,
-    /// The loops.
-    pub gains: Gains,
-    /// Along its travel.
-    pub switches: Switches,
-}
-
-impl DriveSetup {
-    /// What stands along its travel.
-    pub fn switches(&self) -> &Switches {
-        match self {
-            Self::Ideal(setup) => &setup.switches,
-            Self::Cia402(setup) => &setup.switches,
-            Self::Plant(setup) => &setup.switches,
-        }
-    }
-}
-
-impl Default for DriveSetup {
-    fn default() -> Self {
-        Self::Ideal(IdealDriveSetup {
-            delay: 0,
-            power_on: Some(0),
-            switches: Switches::default(),
-        })
-    }
-}
-
-/// Parameters of a simulated CiA 402 drive.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cia402Setup {
-    /// Scans from command to actual position.
-    pub delay: usize,
-    /// Scans from Switched on to Operation enabled; `None` never.
-    pub power_on: Option<u32>,
-    /// Scans of self-test.
-    pub start_up: u32,
-    /// Rate of the drive's own ramps (u/s^2); that of the axis limits if absent.
-    pub deceleration: Option<f64>,
-    /// Object 605Ah.
-    pub quick_stop: Reaction,
-    /// Objects 605Bh and 605Ch.
-    pub on_disable: Reaction,
-    /// Object 605Eh.
-    pub on_fault: Reaction,
-    /// What it does in homing mode: whether it goes upwards, and the velocity (u/s).
-    pub homing: Option<(bool, f64)>,
-    /// What it turns in torque mode; none if it does not know the mode.
-    pub motor: Option<MotorSetup>,
-    /// Along its travel.
-    pub switches: Switches,
-}
-
-/// The motor of a simulated CiA 402 drive, in a unit of torque of the script's choice.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MotorSetup {
-    /// Object 6076h, above 0.
-    pub rated_torque: f64,
-    /// Object 6072h, above 0 and within what the bus can say.
-    pub max_torque: f64,
-    /// Torque for an acceleration (torque s^2/u), above 0.
-    pub inertia: f64,
-    /// Friction that grows with velocity (torque s/u), from 0.
-    pub viscous: f64,
-    /// Friction that does not (torque), from 0.
-    pub coulomb: f64,
-}
-
-/// Parameters of the ideal drive.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct IdealDriveSetup {
-    /// Scans from command to actual position.
-    pub delay: usize,
-    /// Scans until power is confirmed; `None` never.
-    pub power_on: Option<u32>,
-    /// Along its travel.
-    pub switches: Switches,
 }
 
 /// A script variable.
@@ -309,33 +212,6 @@ pub enum Action {
         axis: usize,
         /// What.
         change: DriveChange,
-    },
-}
-
-/// What happens to a drive, beside failing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum DriveChange {
-    /// Someone pushes the axis while its power is off (u; increments at drives that count them).
-    Displace(f64),
-    /// A CiA 402 drive listens to its controller, or does not.
-    Remote(bool),
-    /// A CiA 402 drive shows a warning, or does not.
-    Warning(bool),
-    /// A digital input.
-    Input {
-        /// From 0.
-        number: u32,
-        /// What it shows from this scan on.
-        level: bool,
-    },
-    /// The input of a touch probe.
-    Probe {
-        /// From 0.
-        number: usize,
-        /// The part of the scan that ends with this feedback (0 to 1).
-        at: f64,
-        /// What it shows from there on.
-        level: bool,
     },
 }
 

@@ -42,6 +42,9 @@ mod bare_metal {
         keep::<unsafe extern "C" fn(_, _, _) -> _>(c::standstill_feedback_write);
         keep::<unsafe extern "C" fn(_, _, _) -> _>(c::standstill_command_read);
         keep::<unsafe extern "C" fn(_, _, _, _) -> _>(c::standstill_simulate);
+        keep::<unsafe extern "C" fn(_, _, _, _) -> _>(c::standstill_simulate_input);
+        keep::<unsafe extern "C" fn(_, _, _, _, _) -> _>(c::standstill_simulate_probe);
+        keep::<unsafe extern "C" fn(_, _, _) -> _>(c::standstill_simulate_push);
         keep::<unsafe extern "C" fn(_, _, _, _, _, _) -> _>(c::standstill_log_read);
         standstill_blocks::for_every_block!(keep_blocks);
         #[cfg(feature = "reachable-panic")]

@@ -2,7 +2,6 @@
 
 use super::RunError;
 use super::cells;
-use super::drive::ScriptDrive;
 use super::guests::Guests;
 use super::layout::Layout;
 use super::notes::Notes;
@@ -11,13 +10,14 @@ use super::schedule::Schedule;
 use super::values::Values;
 use crate::model::{Action, FaultKind, Point, Script, Wire};
 use standstill_axis::{AxisId, AxisState, ErrorId, InstanceId, Standard};
+use standstill_drives::simulated::SimulatedDrive;
 use standstill_fb::{AnyInstance, Context, PinType, Value};
 use standstill_record::told::Cells;
 use standstill_scan::{Machine, ProgramFault, ProgramId, Programs, RUNTIME, ScanTime, TaskId};
 use standstill_trace::{Cell, Note, Trace};
 
 /// The machine of a script: Standard planners over simulated drives.
-pub(crate) type ScriptMachine = Machine<Standard, ScriptDrive>;
+pub(crate) type ScriptMachine = Machine<Standard, SimulatedDrive>;
 
 /// The number of an instance in records: 0 is nobody's, so that it can stand for the host.
 pub(crate) fn instance_id(index: usize) -> InstanceId {
@@ -30,9 +30,11 @@ pub(crate) fn machine(script: &Script) -> Result<ScriptMachine, RunError> {
     machine.tables_mut().clone_from(&script.tables);
     let planner = Standard::new(script.cycle_ns as f64 / 1e9);
     for axis in &script.axes {
-        let drive = ScriptDrive::new(axis, script.cycle_ns).map_err(|error| RunError::Axis {
-            axis: axis.name.clone(),
-            reason: error.to_string(),
+        let drive = SimulatedDrive::new(&axis.drive, &axis.config, script.cycle_ns).map_err(|error| {
+            RunError::Axis {
+                axis: axis.name.clone(),
+                reason: error.to_string(),
+            }
         })?;
         machine
             .add_axis(axis.config, planner, drive)
@@ -263,7 +265,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-impl Programs<Standard, ScriptDrive> for Bench<'_> {
+impl Programs<Standard, SimulatedDrive> for Bench<'_> {
     fn latch(&mut self, time: ScanTime, machine: &mut ScriptMachine) {
         let script = self.script;
         for index in self.schedule.take(time.scan) {

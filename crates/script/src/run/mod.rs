@@ -2,7 +2,6 @@
 
 mod bench;
 pub(crate) mod cells;
-mod drive;
 mod guests;
 mod layout;
 mod notes;

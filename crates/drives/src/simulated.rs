@@ -1,18 +1,147 @@
-//! The drives a script can have.
+//! The simulated drives with all they can have: motion, switches along the travel, digital inputs and outputs, probes.
+//!
+//! What stands here: how a drive is described in the units of its axis, and the drive made of that. What does not: how its
+//! parts behave, which stands in the modules they are from. Scan scripts and the C library have these drives.
 
-use crate::model::{Axis, Cia402Setup, DriveChange, DriveSetup, IdealDriveSetup, MotorSetup, PlantSetup};
+use crate::cia402::{Cia402Drive, MotorLoad, NodeHoming, Reaction, Settings, TorqueScale};
+use crate::mechanism::{Gains, Mechanism, MechanismError, Plant, PlantDrive, Servo, Stops};
+use crate::peripherals::Peripherals;
+use crate::switches::{Switches, Travel};
 use standstill_axis::{
-    Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, IdealDrive, Powered,
-    StartState,
+    AxisConfig, Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, IdealDrive,
+    Powered, StartState,
 };
-use standstill_drives::cia402::{Cia402Drive, MotorLoad, NodeHoming, Settings, TorqueScale};
-use standstill_drives::mechanism::{Mechanism, MechanismError, PlantDrive, Servo};
-use standstill_drives::peripherals::Peripherals;
-use standstill_drives::switches::{Switches, Travel};
+
+/// The drive of an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DriveSetup {
+    /// Follows its command exactly.
+    Ideal(IdealDriveSetup),
+    /// A simulated CiA 402 drive.
+    Cia402(Cia402Setup),
+    /// Turns a mechanism.
+    Plant(PlantSetup),
+}
+
+/// Parameters of a drive with a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlantSetup {
+    /// Scans until power is confirmed; `None` never.
+    pub power_on: Option<u32>,
+    /// What is moved.
+    pub plant: Plant,
+    /// Between them.
+    pub stops: Option<Stops>,
+    /// The loops.
+    pub gains: Gains,
+    /// Along its travel.
+    pub switches: Switches,
+}
+
+impl DriveSetup {
+    /// What stands along its travel.
+    pub fn switches(&self) -> &Switches {
+        match self {
+            Self::Ideal(setup) => &setup.switches,
+            Self::Cia402(setup) => &setup.switches,
+            Self::Plant(setup) => &setup.switches,
+        }
+    }
+}
+
+impl Default for DriveSetup {
+    fn default() -> Self {
+        Self::Ideal(IdealDriveSetup {
+            delay: 0,
+            power_on: Some(0),
+            switches: Switches::default(),
+        })
+    }
+}
+
+/// Parameters of a simulated CiA 402 drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cia402Setup {
+    /// Scans from command to actual position.
+    pub delay: usize,
+    /// Scans from Switched on to Operation enabled; `None` never.
+    pub power_on: Option<u32>,
+    /// Scans of self-test.
+    pub start_up: u32,
+    /// Rate of the drive's own ramps (u/s^2), above 0; that of the axis limits if absent.
+    pub deceleration: Option<f64>,
+    /// Object 605Ah.
+    pub quick_stop: Reaction,
+    /// Objects 605Bh and 605Ch.
+    pub on_disable: Reaction,
+    /// Object 605Eh.
+    pub on_fault: Reaction,
+    /// What it does in homing mode: whether it goes upwards, and the velocity (u/s), above 0.
+    pub homing: Option<(bool, f64)>,
+    /// What it turns in torque mode; none if it does not know the mode.
+    pub motor: Option<MotorSetup>,
+    /// Along its travel.
+    pub switches: Switches,
+}
+
+/// The motor of a simulated CiA 402 drive, in a unit of torque of the host's choice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotorSetup {
+    /// Object 6076h, above 0.
+    pub rated_torque: f64,
+    /// Object 6072h, above 0 and within what the bus can say.
+    pub max_torque: f64,
+    /// Torque for an acceleration (torque s^2/u), above 0.
+    pub inertia: f64,
+    /// Friction that grows with velocity (torque s/u), from 0.
+    pub viscous: f64,
+    /// Friction that does not (torque), from 0.
+    pub coulomb: f64,
+}
+
+/// Parameters of the ideal drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IdealDriveSetup {
+    /// Scans from command to actual position.
+    pub delay: usize,
+    /// Scans until power is confirmed; `None` never.
+    pub power_on: Option<u32>,
+    /// Along its travel.
+    pub switches: Switches,
+}
+
+/// What happens to a drive, beside failing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DriveChange {
+    /// Someone pushes the axis while its power is off (u; increments at drives that count them).
+    Displace(f64),
+    /// A CiA 402 drive listens to its controller, or does not.
+    Remote(bool),
+    /// A CiA 402 drive shows a warning, or does not.
+    Warning(bool),
+    /// A digital input.
+    Input {
+        /// From 0.
+        number: u32,
+        /// What it shows from this scan on.
+        level: bool,
+    },
+    /// The input of a touch probe.
+    Probe {
+        /// From 0.
+        number: usize,
+        /// The part of the scan that ends with this feedback (0 to 1).
+        at: f64,
+        /// What it shows from there on.
+        level: bool,
+    },
+}
 
 /// A drive, and what it has beside its motion.
+///
+/// Powers up, moves and fails as its [`DriveSetup`] says, in cycles of fixed length.
 #[derive(Clone, Debug)]
-pub(crate) struct ScriptDrive {
+pub struct SimulatedDrive {
     kind: Kind,
     peripherals: Peripherals,
     travel: Travel,
@@ -24,26 +153,33 @@ pub(crate) struct ScriptDrive {
 
 /// What moves.
 #[derive(Clone, Debug)]
+// Without a heap they stand where the drive stands, so the largest sets the size of all.
+#[allow(clippy::large_enum_variant)]
 enum Kind {
-    Ideal(Box<IdealDrive>),
-    Cia402(Box<Cia402Drive>),
-    Plant(Box<PlantDrive>),
+    Ideal(IdealDrive),
+    Cia402(Cia402Drive),
+    Plant(PlantDrive),
 }
 
-impl ScriptDrive {
+impl SimulatedDrive {
+    /// The drive under an axis of this configuration, in cycles of so many nanoseconds, above 0.
+    ///
+    /// Only a mechanism is checked. A CiA 402 drive under an axis without a scaling counts one increment a unit; what
+    /// is out of the ranges of [`Cia402Setup`] and [`MotorSetup`] gives a drive of no use.
+    ///
     /// # Errors
-    /// None for what was read: the mechanism was made once then.
-    pub(crate) fn new(axis: &Axis, cycle_ns: i64) -> Result<Self, MechanismError> {
-        let increments = |position: f64| axis.config.scaling.map(|scaling| scaling.to_increments(position));
-        let position = increments(axis.config.position);
-        let enabled = axis.config.start == StartState::Standstill;
-        let kind = match axis.drive {
+    /// [`MechanismError`], of a plant.
+    pub fn new(setup: &DriveSetup, axis: &AxisConfig, cycle_ns: i64) -> Result<Self, MechanismError> {
+        let increments = |position: f64| axis.scaling.map(|scaling| scaling.to_increments(position));
+        let position = increments(axis.position);
+        let enabled = axis.start == StartState::Standstill;
+        let kind = match *setup {
             DriveSetup::Ideal(IdealDriveSetup { delay, power_on, .. }) => {
                 let position = match position {
                     Some(increments) => DrivePosition::Increments(increments),
-                    None => DrivePosition::Units(axis.config.position),
+                    None => DrivePosition::Units(axis.position),
                 };
-                Kind::Ideal(Box::new(IdealDrive::new(position, delay, power_on, enabled)))
+                Kind::Ideal(IdealDrive::new(position, delay, power_on, enabled))
             }
             DriveSetup::Cia402(setup) => {
                 let ordered = |(one, other): (f64, f64)| {
@@ -81,7 +217,7 @@ impl ScriptDrive {
                         gain: 0.25 * motor.inertia * rate,
                     });
                 }
-                Kind::Cia402(Box::new(drive))
+                Kind::Cia402(drive)
             }
             DriveSetup::Plant(PlantSetup {
                 power_on,
@@ -91,37 +227,34 @@ impl ScriptDrive {
                 ..
             }) => {
                 let cycle = cycle_ns as f64 / 1e9;
-                let mut mechanism = Mechanism::new(plant, axis.config.position, cycle)?;
+                let mut mechanism = Mechanism::new(plant, axis.position, cycle)?;
                 if let Some(stops) = stops {
                     mechanism = mechanism.between(stops, cycle)?;
                 }
                 let servo = Servo::new(mechanism, gains, cycle)?;
-                Kind::Plant(Box::new(PlantDrive::new(
-                    servo,
-                    axis.config.scaling,
-                    power_on,
-                    enabled,
-                )))
+                Kind::Plant(PlantDrive::new(servo, axis.scaling, power_on, enabled))
             }
         };
         let switches = Switches {
-            turn: axis.config.modulo,
-            ..*axis.drive.switches()
+            turn: axis.modulo,
+            ..*setup.switches()
         };
         Ok(Self {
             kind,
-            travel: Travel::new(switches, axis.config.scaling),
-            peripherals: Peripherals::new(axis.config.modulo),
-            commanded: axis.config.position,
-            position: position.map_or(
-                DrivePosition::Units(axis.config.position),
-                DrivePosition::Increments,
-            ),
+            travel: Travel::new(switches, axis.scaling),
+            peripherals: Peripherals::new(axis.modulo),
+            commanded: axis.position,
+            position: position.map_or(DrivePosition::Units(axis.position), DrivePosition::Increments),
         })
     }
 
+    /// Whether it is a CiA 402 drive.
+    pub fn is_cia402(&self) -> bool {
+        matches!(self.kind, Kind::Cia402(_))
+    }
+
     /// A drive fault with the drive's own `code`.
-    pub(crate) fn fail(&mut self, code: u16) {
+    pub fn fail(&mut self, code: u16) {
         match &mut self.kind {
             Kind::Ideal(drive) => drive.fail(code),
             Kind::Cia402(drive) => drive.node_mut().fail(code),
@@ -130,7 +263,7 @@ impl ScriptDrive {
     }
 
     /// The power stage loses its supply.
-    pub(crate) fn cut_power(&mut self) {
+    pub fn cut_power(&mut self) {
         match &mut self.kind {
             Kind::Ideal(drive) => drive.cut_power(),
             Kind::Cia402(drive) => drive.node_mut().cut_power(),
@@ -139,7 +272,7 @@ impl ScriptDrive {
     }
 
     /// Feedback no longer arrives.
-    pub(crate) fn cut_communication(&mut self) {
+    pub fn cut_communication(&mut self) {
         match &mut self.kind {
             Kind::Ideal(drive) => drive.cut_communication(),
             Kind::Cia402(drive) => drive.node_mut().cut_communication(),
@@ -148,7 +281,7 @@ impl ScriptDrive {
     }
 
     /// The cause of whatever fault is gone.
-    pub(crate) fn clear_cause(&mut self) {
+    pub fn clear_cause(&mut self) {
         match &mut self.kind {
             Kind::Ideal(drive) => drive.clear_cause(),
             Kind::Cia402(drive) => drive.node_mut().clear_cause(),
@@ -156,11 +289,11 @@ impl ScriptDrive {
         }
     }
 
-    /// What a step does to it; one that the drive does not know was refused when the script was read.
+    /// What befalls it beside faults; what only a CiA 402 drive knows does nothing to others.
     ///
     /// # Errors
     /// [`Powered`] if it is to be pushed while it has torque.
-    pub(crate) fn change(&mut self, change: DriveChange) -> Result<(), Powered> {
+    pub fn change(&mut self, change: DriveChange) -> Result<(), Powered> {
         match (&mut self.kind, change) {
             (Kind::Ideal(drive), DriveChange::Displace(distance)) => drive.displace(distance),
             (Kind::Plant(drive), DriveChange::Displace(distance)) => drive.displace(distance),
@@ -192,8 +325,8 @@ impl ScriptDrive {
     }
 }
 
-fn counts_down(axis: &Axis) -> bool {
-    axis.config.scaling.is_some_and(|scaling| scaling.invert())
+fn counts_down(axis: &AxisConfig) -> bool {
+    axis.scaling.is_some_and(|scaling| scaling.invert())
 }
 
 /// In thousandths of the rated torque, increments and scans, `per_unit` increments a unit and `rate` scans a second.
@@ -208,20 +341,20 @@ fn load(motor: &MotorSetup, per_unit: f64, rate: f64) -> MotorLoad {
     }
 }
 
-fn increments_per_unit(axis: &Axis) -> f64 {
-    axis.config.scaling.map_or(1.0, |scaling| {
+fn increments_per_unit(axis: &AxisConfig) -> f64 {
+    axis.scaling.map_or(1.0, |scaling| {
         f64::from(scaling.increments()) / f64::from(scaling.units())
     })
 }
 
 /// In increments/scan^2.
-fn deceleration(axis: &Axis, setup: &Cia402Setup, cycle_ns: i64) -> f64 {
-    let rate = setup.deceleration.unwrap_or(axis.config.limits.deceleration);
+fn deceleration(axis: &AxisConfig, setup: &Cia402Setup, cycle_ns: i64) -> f64 {
+    let rate = setup.deceleration.unwrap_or(axis.limits.deceleration);
     let cycle = cycle_ns as f64 / 1e9;
     rate * increments_per_unit(axis) * cycle * cycle
 }
 
-impl Drive for ScriptDrive {
+impl Drive for SimulatedDrive {
     fn read(&mut self, now_ns: i64) -> DriveFeedback {
         let mut feedback = match &mut self.kind {
             Kind::Ideal(drive) => drive.read(now_ns),

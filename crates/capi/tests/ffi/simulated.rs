@@ -1,0 +1,215 @@
+//! What simulated drives can have, and what befalls them.
+
+use crate::host::Host;
+use crate::{inputs, outputs, velocity};
+use standstill_capi::*;
+use std::ffi::CStr;
+use std::mem::MaybeUninit;
+
+const TICK: i64 = 1_000_000;
+
+/// Bytes of the drive's structure in the first header.
+const FIRST: u32 = 96;
+
+fn fault_of(host: &Host) -> (String, f64) {
+    let mut fault = MaybeUninit::<ConfigFault>::zeroed();
+    // SAFETY: numbers all, and the size is set; the key ends in 0.
+    unsafe {
+        fault.assume_init_mut().size = size_of::<ConfigFault>() as u32;
+        assert_eq!(standstill_config_error(host.runtime, fault.as_mut_ptr()), 0);
+        let fault = fault.assume_init();
+        let key = CStr::from_ptr(fault.key.as_ptr()).to_str().unwrap();
+        (key.to_owned(), fault.value)
+    }
+}
+
+/// A host compiled with the first header knows nothing of what came behind it: it is neither read nor written.
+#[test]
+fn the_drive_of_the_first_header_is_served() {
+    let host = Host::new(1, 4);
+    let (axis, mut drive) = Host::setup();
+    drive.size = FIRST - 1;
+    assert_eq!(host.add(&axis, &drive), Err(Code::StructSize as i32));
+    // Behind the old structure stands something else of the host's, here an axis that would be refused.
+    drive.size = FIRST;
+    (drive.limit_switches, drive.limit_switch_negative) = (1, f64::NAN);
+    drive.delay = 7;
+    // SAFETY: as its size says, and more.
+    assert_eq!(unsafe { standstill_drive_defaults(&mut drive) }, 0);
+    assert_eq!((drive.size, drive.delay, drive.limit_switches), (FIRST, 0, 1));
+    assert!(drive.limit_switch_negative.is_nan());
+    assert_eq!(host.add(&axis, &drive), Ok(1));
+    // Exactly those bytes are enough.
+    let bytes = vec![0_u64; FIRST as usize / 8].into_boxed_slice();
+    let old = Box::into_raw(bytes).cast::<DriveSetup>();
+    let other = Host::new(1, 4);
+    // SAFETY: the memory is as long as the size in front says, and freed once.
+    unsafe {
+        old.cast::<u32>().write(FIRST);
+        assert_eq!(standstill_drive_defaults(old), 0);
+        let mut number = 0;
+        assert_eq!(standstill_axis_add(other.runtime, &axis, old, &mut number), 0);
+        drop(Box::from_raw(std::ptr::slice_from_raw_parts_mut(
+            old.cast::<u64>(),
+            FIRST as usize / 8,
+        )));
+    }
+}
+
+#[test]
+fn what_a_drive_cannot_have_is_named() {
+    let host = Host::new(1, 4);
+    let (mut axis, ideal) = Host::setup();
+    let refused = |axis: &AxisSetup, drive: &DriveSetup| {
+        assert_eq!(host.add(axis, drive), Err(Code::BadConfig as i32));
+        fault_of(&host)
+    };
+    let mut drive = ideal;
+    (
+        drive.limit_switches,
+        drive.limit_switch_negative,
+        drive.limit_switch_positive,
+    ) = (1, 5.0, 4.0);
+    assert_eq!(
+        refused(&axis, &drive),
+        ("drive.limit_switch_positive".to_owned(), 4.0)
+    );
+    drive = ideal;
+    (drive.home_switch, drive.home_switch_from) = (1, f64::NEG_INFINITY);
+    assert_eq!(refused(&axis, &drive).0, "drive.home_switch_from");
+    drive = ideal;
+    (drive.marker, drive.marker_every) = (1, -1.0);
+    assert_eq!(refused(&axis, &drive), ("drive.marker_every".to_owned(), -1.0));
+    drive.marker_at = f64::NAN;
+    assert_eq!(refused(&axis, &drive).0, "drive.marker_at");
+    drive = ideal;
+    drive.kind = 2;
+    assert_eq!(refused(&axis, &drive).0, "scaling_increments");
+    axis.scaling_increments = 1000;
+    drive.homing_velocity = -1.0;
+    assert_eq!(refused(&axis, &drive).0, "drive.homing_velocity");
+    (drive.homing_velocity, drive.homing_direction) = (1.0, 2);
+    assert_eq!(refused(&axis, &drive), ("drive.homing_direction".to_owned(), 2.0));
+    (drive.homing_direction, drive.rated_torque) = (0, 2.0);
+    assert_eq!(refused(&axis, &drive).0, "drive.inertia");
+    (drive.inertia, drive.torque_max) = (0.1, 100.0);
+    assert_eq!(refused(&axis, &drive), ("drive.torque_max".to_owned(), 100.0));
+    drive.torque_max = 0.0;
+    drive.deceleration = f64::NAN;
+    assert_eq!(refused(&axis, &drive).0, "drive.deceleration");
+    drive = ideal;
+    (drive.kind, drive.inertia, drive.stop_stiffness) = (3, 0.1, -1.0);
+    (drive.stop_negative, drive.stop_positive) = (-5.0, 5.0);
+    assert_eq!(refused(&axis, &drive).1, -1.0);
+    (drive.stop_stiffness, drive.gain_position) = (0.0, -3.0);
+    assert_eq!(refused(&axis, &drive).1, -3.0);
+    drive.gain_position = f64::NAN;
+    assert_eq!(host.add(&axis, &drive), Ok(1), "all of that was the values'");
+}
+
+#[test]
+fn inputs_probes_and_pushes_have_their_ranges_and_their_time() {
+    let host = Host::powered();
+    let rt = host.runtime;
+    // SAFETY: a handle.
+    let input = |axis, number| unsafe { standstill_simulate_input(rt, axis, number, 1) };
+    // SAFETY: a handle.
+    let probe = |axis, number, at| unsafe { standstill_simulate_probe(rt, axis, number, at, 1) };
+    // SAFETY: a handle.
+    let push = |axis, distance| unsafe { standstill_simulate_push(rt, axis, distance) };
+    let (bad, unknown) = (Code::BadValue as i32, Code::UnknownAxis as i32);
+    assert_eq!(
+        [input(1, 31), input(1, 32), input(2, 0), input(0, 0)],
+        [0, bad, unknown, unknown]
+    );
+    assert_eq!(
+        [
+            probe(1, 1, 0.0),
+            probe(1, 2, 1.0),
+            probe(1, 0, 0.5),
+            probe(1, 3, 0.5)
+        ],
+        [0, 0, bad, bad]
+    );
+    assert_eq!(
+        [probe(1, 1, -0.1), probe(1, 1, 1.1), probe(1, 1, f64::NAN)],
+        [bad; 3]
+    );
+    assert_eq!(push(1, f64::NAN), bad);
+    assert_eq!(
+        push(1, 1.0),
+        Code::NotOff as i32,
+        "an ideal drive with torque holds its place"
+    );
+    assert_eq!(host.begin(0), 0);
+    assert_eq!(
+        [input(1, 0), probe(1, 1, 0.5), push(1, 1.0)],
+        [Code::InTick as i32; 3]
+    );
+    assert_eq!(host.end(), 0);
+    // Pushed while it is off, the axis is somewhere else.
+    assert_eq!(host.stop(), 0);
+    for scan in 1..4 {
+        assert_eq!((host.begin(scan * TICK), host.end()), (0, 0));
+    }
+    assert_eq!(push(1, 2.5), 0);
+    assert_eq!((host.begin(4 * TICK), host.end()), (0, 0));
+    assert_eq!(host.status().actual_position, 2.5);
+    // Of a host's own drive nothing is simulated.
+    let own = Host::new(1, 1);
+    let (axis, mut drive) = Host::setup();
+    drive.kind = 0;
+    assert_eq!(own.add(&axis, &drive), Ok(1));
+    // SAFETY: a handle.
+    unsafe {
+        let wrong = Code::WrongDrive as i32;
+        assert_eq!(standstill_simulate_input(own.runtime, 1, 0, 1), wrong);
+        assert_eq!(standstill_simulate_probe(own.runtime, 1, 1, 0.5, 1), wrong);
+        assert_eq!(standstill_simulate_push(own.runtime, 1, 1.0), wrong);
+        assert_eq!(standstill_simulate(own.runtime, 1, 4, 1), wrong);
+    }
+}
+
+/// A limit switch of the drive stops an axis that runs into it; CLEAR and what only a CiA 402 node knows have their codes.
+#[test]
+fn a_limit_switch_stops_and_an_axis_fails() {
+    let host = Host::new(2, 4);
+    let (mut axis, mut drive) = Host::setup();
+    axis.start_powered = 1;
+    (
+        drive.limit_switches,
+        drive.limit_switch_negative,
+        drive.limit_switch_positive,
+    ) = (1, -1.0, 0.5);
+    assert_eq!(host.add(&axis, &drive), Ok(1));
+    axis.scaling_increments = 1000;
+    drive.kind = 2;
+    assert_eq!(host.add(&axis, &drive), Ok(2));
+    // SAFETY: a handle.
+    let simulate = |axis, mishap| unsafe { standstill_simulate(host.runtime, axis, mishap, 77) };
+    for only_a_node in 5..=8 {
+        assert_eq!(simulate(1, only_a_node), Code::WrongDrive as i32);
+        assert_eq!(simulate(2, only_a_node), 0);
+    }
+    let (mut key, mut out) = (0, outputs());
+    for scan in 0..400 {
+        assert_eq!(host.begin(scan * TICK), 0);
+        assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
+        assert_eq!(host.end(), 0);
+    }
+    let status = host.status();
+    assert_eq!((out.error, status.state, status.velocity), (1, 7, 0.0));
+    assert_eq!(status.error_id, out.error_id.into());
+    assert!(
+        status.position > 0.5 && status.position < 1.1,
+        "it stopped behind the switch"
+    );
+    // The axis itself fails, and its cause goes.
+    let host = Host::powered();
+    // SAFETY: a handle.
+    assert_eq!(unsafe { standstill_simulate(host.runtime, 1, 4, 77) }, 0);
+    assert_eq!((host.begin(0), host.end()), (0, 0));
+    assert_eq!((host.status().state, host.status().error_code), (7, 77));
+    // SAFETY: a handle.
+    assert_eq!(unsafe { standstill_simulate(host.runtime, 1, 0, 0) }, 0);
+}
