@@ -8,6 +8,7 @@ mod common;
 
 use common::*;
 use standstill_export::Target;
+use standstill_trace::Trace;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
@@ -100,28 +101,119 @@ fn prog_st_as_a_guest() {
         command.extend(["--target=wasm32-wasi", "-nostartfiles", "-nodefaultlibs", "-lc"].map(str::to_owned));
         command.push(format!("--sysroot={}", text(&sysroot)));
     } else {
-        let options = [
-            "--target=wasm32",
-            "-ffreestanding",
-            "-mbulk-memory",
-            "-nostdlib",
-            "-nostdlibinc",
-        ];
-        command.extend(options.map(str::to_owned));
-        command.extend(["-I".to_owned(), text(&folder().join("freestanding"))]);
+        command.extend(freestanding());
     }
-    command.push("-Wl,--no-entry".to_owned());
-    for (name, _) in VARIABLES.iter().chain(&[("Start", ""), ("Stop", "")]) {
-        command.push(format!("-Wl,--export=CONFIG0__{}", name.to_ascii_uppercase()));
-    }
+    command.extend(exports());
     for file in ["Res0.c", "Config0.c", "standstill_matiec_main.c"] {
         command.push(text(&out.join(file)));
     }
     command.extend(["-o".to_owned(), text(&out.join("prog.wasm"))]);
     run("clang", command);
+    hold("matiec, as a guest", &guest(&out), None);
+}
+
+/// A guest without any C library.
+fn freestanding() -> Vec<String> {
+    let include = format!("-I{}", folder().join("freestanding").display());
+    let options = [
+        "--target=wasm32",
+        "-ffreestanding",
+        "-mbulk-memory",
+        "-nostdlib",
+        "-nostdlibinc",
+        &include,
+    ];
+    options.map(str::to_owned).to_vec()
+}
+
+/// What the script of a guest of matiec reads and writes.
+fn exports() -> Vec<String> {
+    let names = VARIABLES.iter().map(|(name, _)| *name).chain(["Start", "Stop"]);
+    let exports = names.map(|name| format!("-Wl,--export=CONFIG0__{}", name.to_ascii_uppercase()));
+    ["-Wl,--no-entry".to_owned()].into_iter().chain(exports).collect()
+}
+
+/// The run of `prog.wasm` in the folder.
+fn guest(out: &Path) -> Trace {
     for file in ["cell.machine.json", "matiec.scan.json"] {
         fs::copy(folder().join(file), out.join(file)).unwrap();
     }
-    let trace = of_guest(&out.join("matiec.scan.json"), str::to_owned);
-    hold("matiec, as a guest", &trace, None);
+    of_guest(&out.join("matiec.scan.json"), str::to_owned)
+}
+
+/// The blocks of the shim that `prog.st` uses, as matiec would have them in C: a structure and a body each.
+fn blocks_of_the_shim(shim: &str) -> String {
+    let mut out = String::new();
+    for block in [
+        "STANDSTILL_R_TRIG",
+        "STANDSTILL_TON",
+        "MC_Power",
+        "MC_MoveAbsolute",
+        "MC_Stop",
+        "MC_ReadStatus",
+    ] {
+        let begin = format!("\nFUNCTION_BLOCK {block}\n");
+        let (_, rest) = shim.split_once(&begin).unwrap();
+        let (head, rest) = rest.split_once("\n  {{\n").unwrap();
+        let (body, _) = rest.split_once("\n  }}\n").unwrap();
+        let name = block.to_ascii_uppercase();
+        out += "typedef struct {\n";
+        for line in head.lines() {
+            if let Some((variable, ty)) = line.trim().split_once(" : ") {
+                let ty = ty.split([';', ' ']).next().unwrap();
+                out += &format!("    __IEC_{ty}_t {};\n", variable.to_ascii_uppercase());
+            }
+        }
+        out += &format!("}} {name};\nstatic void {name}_body__({name} *data__) {{\n{body}\n}}\n\n");
+    }
+    out
+}
+
+/// What CI has of the way through matiec: the shim and the file that runs a program, under a program in matiec's shape.
+#[test]
+fn a_program_in_the_shape_of_matiec_linked_and_as_a_guest() {
+    let out = scratch("feed-and-place-matiec-shape");
+    exported(Target::StMatiec, &out);
+    let shim = fs::read_to_string(out.join("standstill_matiec.st")).unwrap();
+    fs::write(out.join("blocks.c"), blocks_of_the_shim(&shim)).unwrap();
+    let shape = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/matiec_shape");
+    let sources = [
+        text(&shape.join("program.c")),
+        text(&out.join("standstill_matiec_main.c")),
+    ];
+    let options = [
+        "-O2",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-include",
+        "standstill_shim.h",
+        "-I",
+    ];
+    let mut common = options.map(str::to_owned).to_vec();
+    common.extend([text(&shape), "-I".to_owned(), text(&out)]);
+    if has("cc") {
+        let program = out.join("feed_and_place");
+        let mut command = common.clone();
+        command.extend(sources.clone());
+        command.extend([
+            "-DMATIEC".to_owned(),
+            text(&folder().join("host.c")),
+            text(&library()),
+        ]);
+        command.extend(["-o", program.to_str().unwrap(), "-lpthread", "-ldl", "-lm"].map(str::to_owned));
+        run("cc", command);
+        let printed = run(&program, [""; 0]);
+        let trace = of_lines(&String::from_utf8(printed.stdout).unwrap());
+        hold("the shape of matiec, linked", &trace, None);
+    }
+    if has("clang") && has("wasm-ld") {
+        let mut command = common;
+        command.extend(freestanding());
+        command.extend(exports());
+        command.extend(sources);
+        command.extend(["-o".to_owned(), text(&out.join("prog.wasm"))]);
+        run("clang", command);
+        hold("the shape of matiec, as a guest", &guest(&out), None);
+    }
 }
