@@ -100,8 +100,10 @@ pub struct Symbol {
     pub name: String,
     /// BOOL, INT, WORD, DWORD, LREAL or TIME.
     pub ty: PinType,
-    /// Where it stands; where the guest exports a variable of this name if absent.
+    /// Where it stands; where the guest exports it if absent.
     pub address: Option<u32>,
+    /// What the guest exports it as; by its name if absent.
+    pub export: Option<String>,
 }
 
 /// Where a value comes from.

@@ -202,6 +202,7 @@ fn parts() -> Vec<(String, Value)> {
 fn program_key(key: &str) -> Value {
     let symbol = |key: &str| match key {
         "type" => json!({"enum": SYMBOL_TYPES}),
+        "export" => text(),
         _ => of("count"),
     };
     match key {

@@ -2,7 +2,7 @@
 //!
 //! Scripts here are as small as the rule they show; motion has its tests in `scan-tests`.
 
-use standstill_script::{Outcome, RunError, read, run};
+use standstill_script::{Outcome, RunError, read, read_with_programs, run};
 use standstill_trace::Cell;
 
 /// A script of so many scans of 1 ms with a powered axis X and these further keys.
@@ -267,4 +267,40 @@ fn an_undefined_enum_number_is_traced_as_its_number_and_refused_with_a_note() {
 fn the_same_script_gives_the_same_trace() {
     let digest = |outcome: &Outcome| standstill_trace::digest::whole(&outcome.trace);
     assert_eq!(digest(&short_move("{}")), digest(&short_move("{}")));
+}
+
+#[test]
+fn a_symbol_is_found_under_the_name_that_the_guest_exports() {
+    const GUEST: &str = r#"(module
+        (memory (export "memory") 1)
+        (global (export "elsewhere") i32 (i32.const 8))
+        (func (export "plc_scan") (param i32 i64)
+            (i32.store8 (i32.const 9) (i32.load8_u (i32.const 8)))))"#;
+    let read = |symbols: &str| {
+        let text = script(
+            4,
+            &format!(
+                r#""blocks": [], "programs": {{"main": {{"wasm": "main.wat", "symbols": {{{symbols}}}}}}},
+                   "steps": [{{"at": 2, "set": {{"main.here": true}}}}]"#
+            ),
+        );
+        let mut guest = |_: &str| Ok(GUEST.as_bytes().to_vec());
+        read_with_programs(
+            &text,
+            "test.scan.json",
+            &[],
+            &mut |_| Err(String::new()),
+            &mut guest,
+        )
+    };
+    let found =
+        read(r#""here": {"type": "BOOL", "export": "elsewhere"}, "copy": {"type": "BOOL", "address": 9}"#);
+    let outcome = run(&found.unwrap()).unwrap();
+    assert_eq!(words(&outcome, "main.here"), "0 0 1 1");
+    assert_eq!(words(&outcome, "main.copy"), "0 0 1 1");
+    // By its own name it is not there, and at two places it cannot be.
+    let told = run(&read(r#""here": "BOOL""#).unwrap()).unwrap_err();
+    assert!(told.to_string().contains("exports no variable `here`"), "{told}");
+    let told = read(r#""here": {"type": "BOOL", "export": "elsewhere", "address": 8}"#).unwrap_err();
+    assert!(told.to_string().contains("not both"), "{told}");
 }

@@ -110,6 +110,7 @@ impl Reader {
             name: FAULT.to_owned(),
             ty: PinType::Bool,
             address: None,
+            export: None,
         })];
         let members = match fields.get("symbols") {
             None => None,
@@ -151,16 +152,25 @@ impl Reader {
     }
 
     fn symbol(&mut self, name: &str, node: &Node) -> Option<Symbol> {
-        let (ty, address) = match &node.json {
+        let (ty, address, export) = match &node.json {
             Json::Map(_) => {
                 let fields = self.fields(node, &shape::SYMBOL)?;
                 let address = match fields.get("address") {
                     None => None,
                     Some(node) => Some(self.whole(node, "`address`", 0..=i64::from(u32::MAX))?),
                 };
-                (self.require(&fields, "type", "a symbol")?, address)
+                let export = match fields.get("export") {
+                    None => None,
+                    Some(node) => Some((node, self.text(node, "`export`")?.to_owned())),
+                };
+                if let (Some(_), Some((node, _))) = (address, &export) {
+                    let message = "a symbol stands at an `address` or where an `export` says, not both";
+                    self.report(Diagnostic::new(Code::BadValue, node.span, message));
+                }
+                let export = export.map(|(_, name)| name);
+                (self.require(&fields, "type", "a symbol")?, address, export)
             }
-            _ => (node, None),
+            _ => (node, None, None),
         };
         let text = self.text(ty, "the type of a symbol")?;
         let Some(found) = symbol_type(text) else {
@@ -173,6 +183,7 @@ impl Reader {
             name: name.to_owned(),
             ty: found,
             address: address.and_then(|address| u32::try_from(address).ok()),
+            export,
         })
     }
 

@@ -212,7 +212,7 @@ pub(crate) const PROGRAM: Shape = shape(
     "a program",
     &["wasm", "task", "fuel", "memory", "symbols", "may_fault", "note"],
 );
-pub(crate) const SYMBOL: Shape = shape("a symbol", &["type", "address", "note"]);
+pub(crate) const SYMBOL: Shape = shape("a symbol", &["type", "address", "export", "note"]);
 
 pub(crate) const STEP: Shape = shape(
     "a step",

@@ -131,7 +131,7 @@ fn start(program: &Program) -> Result<Running, RunError> {
         let address = match symbol.address {
             Some(address) => address,
             None => guest
-                .address_of(&symbol.name)
+                .address_of(symbol.export.as_ref().unwrap_or(&symbol.name))
                 .map_err(|error| wrong(error.to_string()))?,
         };
         Ok(Symbol {

@@ -1,0 +1,219 @@
+//! `prog.st` through matiec: linked to the C library, and as a guest, with the digest of the other hosts.
+//!
+//! matiec is in no package registry and not in Debian, so CI cannot install it and these tests say SKIP there; what CI holds
+//! of this path is said in `docs/porting.md`. Here it is found as `iec2c` on the PATH, its library in `MATIEC_LIB`, or beside
+//! it; a C library for WebAssembly in `WASI_SYSROOT`, or where Debian puts it.
+
+mod common;
+
+use common::*;
+use standstill_export::Target;
+use standstill_trace::Trace;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs};
+
+/// Where `iec2c` has its standard functions in Structured Text; the headers are in `C` below it.
+fn library_of_matiec() -> Option<PathBuf> {
+    if Command::new("iec2c").arg("-v").output().is_err() {
+        eprintln!(
+            "SKIP: there is no iec2c; matiec is in no package registry, so nothing installs it (docs/porting.md)"
+        );
+        return None;
+    }
+    let path = env::var_os("PATH").unwrap_or_default();
+    let mut beside: Vec<_> = env::split_paths(&path)
+        .filter(|folder| folder.join("iec2c").exists())
+        .flat_map(|folder| {
+            ["lib", "../lib", "../lib/matiec", "../share/matiec/lib"].map(|lib| folder.join(lib))
+        })
+        .collect();
+    beside.splice(0..0, env::var_os("MATIEC_LIB").map(PathBuf::from));
+    let found = beside.into_iter().find(|lib| lib.join("ieclib.txt").exists());
+    Some(found.expect("iec2c is here, but not its library: set MATIEC_LIB to the folder with ieclib.txt"))
+}
+
+fn text(path: &Path) -> String {
+    path.to_str().unwrap().to_owned()
+}
+
+/// Translates `prog.st`, with the shim before it, into the folder; `None` without matiec.
+fn translated(name: &str) -> Option<(PathBuf, PathBuf)> {
+    let matiec = library_of_matiec()?;
+    let out = scratch(name);
+    exported(Target::StMatiec, &out);
+    let shim = fs::read_to_string(out.join("standstill_matiec.st")).unwrap();
+    let program = fs::read_to_string(folder().join("prog.st")).unwrap();
+    fs::write(out.join("all.st"), shim + &program).unwrap();
+    let all = text(&out.join("all.st"));
+    run("iec2c", ["-I", &text(&matiec), "-p", "-T", &text(&out), &all]);
+    Some((out, matiec.join("C")))
+}
+
+/// What matiec's own text is compiled with: it has its own ideas of warnings.
+fn of_matiec(out: &Path, headers: &Path) -> Vec<String> {
+    let shim = "standstill_shim.h";
+    let options = ["-O2", "-w", "-DGLOBAL_CAST=", "-include", shim, "-I"];
+    let mut options = options.map(str::to_owned).to_vec();
+    options.extend([text(headers), "-I".to_owned(), text(out)]);
+    options
+}
+
+#[test]
+fn prog_st_linked_to_the_library() {
+    let Some((out, headers)) = translated("feed-and-place-matiec") else {
+        return;
+    };
+    if !has("cc") {
+        return;
+    }
+    let program = out.join("feed_and_place");
+    let mut command = of_matiec(&out, &headers);
+    command.push("-DMATIEC".to_owned());
+    for file in ["Res0.c", "Config0.c", "standstill_matiec_main.c"] {
+        command.push(text(&out.join(file)));
+    }
+    command.extend([text(&folder().join("host.c")), text(&library())]);
+    command.extend(["-o", program.to_str().unwrap(), "-lpthread", "-ldl", "-lm"].map(str::to_owned));
+    run("cc", command);
+    let printed = run(&program, [""; 0]);
+    hold(
+        "matiec, linked",
+        &of_lines(&String::from_utf8(printed.stdout).unwrap()),
+        None,
+    );
+}
+
+#[test]
+fn prog_st_as_a_guest() {
+    let Some((out, headers)) = translated("feed-and-place-matiec-guest") else {
+        return;
+    };
+    if !has("clang") || !has("wasm-ld") {
+        return;
+    }
+    let mut command = of_matiec(&out, &headers);
+    // Older headers of matiec want those of a C library. Nothing of it is called, so nothing of WASI is imported.
+    let sysroot = env::var_os("WASI_SYSROOT").map(PathBuf::from);
+    let sysroot = sysroot
+        .or_else(|| Some(PathBuf::from("/usr")).filter(|usr| usr.join("include/wasm32-wasi").exists()));
+    if let Some(sysroot) = sysroot {
+        command.extend(["--target=wasm32-wasi", "-nostartfiles", "-nodefaultlibs", "-lc"].map(str::to_owned));
+        command.push(format!("--sysroot={}", text(&sysroot)));
+    } else {
+        command.extend(freestanding());
+    }
+    command.extend(exports());
+    for file in ["Res0.c", "Config0.c", "standstill_matiec_main.c"] {
+        command.push(text(&out.join(file)));
+    }
+    command.extend(["-o".to_owned(), text(&out.join("prog.wasm"))]);
+    run("clang", command);
+    hold("matiec, as a guest", &guest(&out), None);
+}
+
+/// A guest without any C library.
+fn freestanding() -> Vec<String> {
+    let include = format!("-I{}", folder().join("freestanding").display());
+    let options = [
+        "--target=wasm32",
+        "-ffreestanding",
+        "-mbulk-memory",
+        "-nostdlib",
+        "-nostdlibinc",
+        &include,
+    ];
+    options.map(str::to_owned).to_vec()
+}
+
+/// What the script of a guest of matiec reads and writes.
+fn exports() -> Vec<String> {
+    let names = VARIABLES.iter().map(|(name, _)| *name).chain(["Start", "Stop"]);
+    let exports = names.map(|name| format!("-Wl,--export=CONFIG0__{}", name.to_ascii_uppercase()));
+    ["-Wl,--no-entry".to_owned()].into_iter().chain(exports).collect()
+}
+
+/// The run of `prog.wasm` in the folder.
+fn guest(out: &Path) -> Trace {
+    for file in ["cell.machine.json", "matiec.scan.json"] {
+        fs::copy(folder().join(file), out.join(file)).unwrap();
+    }
+    of_guest(&out.join("matiec.scan.json"), str::to_owned)
+}
+
+/// The blocks of the shim that `prog.st` uses, as matiec would have them in C: a structure and a body each.
+fn blocks_of_the_shim(shim: &str) -> String {
+    let mut out = String::new();
+    for block in [
+        "STANDSTILL_R_TRIG",
+        "STANDSTILL_TON",
+        "MC_Power",
+        "MC_MoveAbsolute",
+        "MC_Stop",
+        "MC_ReadStatus",
+    ] {
+        let begin = format!("\nFUNCTION_BLOCK {block}\n");
+        let (_, rest) = shim.split_once(&begin).unwrap();
+        let (head, rest) = rest.split_once("\n  {{\n").unwrap();
+        let (body, _) = rest.split_once("\n  }}\n").unwrap();
+        let name = block.to_ascii_uppercase();
+        out += "typedef struct {\n";
+        for line in head.lines() {
+            if let Some((variable, ty)) = line.trim().split_once(" : ") {
+                let ty = ty.split([';', ' ']).next().unwrap();
+                out += &format!("    __IEC_{ty}_t {};\n", variable.to_ascii_uppercase());
+            }
+        }
+        out += &format!("}} {name};\nstatic void {name}_body__({name} *data__) {{\n{body}\n}}\n\n");
+    }
+    out
+}
+
+/// What CI has of the way through matiec: the shim and the file that runs a program, under a program in matiec's shape.
+#[test]
+fn a_program_in_the_shape_of_matiec_linked_and_as_a_guest() {
+    let out = scratch("feed-and-place-matiec-shape");
+    exported(Target::StMatiec, &out);
+    let shim = fs::read_to_string(out.join("standstill_matiec.st")).unwrap();
+    fs::write(out.join("blocks.c"), blocks_of_the_shim(&shim)).unwrap();
+    let shape = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/matiec_shape");
+    let sources = [
+        text(&shape.join("program.c")),
+        text(&out.join("standstill_matiec_main.c")),
+    ];
+    let options = [
+        "-O2",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-include",
+        "standstill_shim.h",
+        "-I",
+    ];
+    let mut common = options.map(str::to_owned).to_vec();
+    common.extend([text(&shape), "-I".to_owned(), text(&out)]);
+    if has("cc") {
+        let program = out.join("feed_and_place");
+        let mut command = common.clone();
+        command.extend(sources.clone());
+        command.extend([
+            "-DMATIEC".to_owned(),
+            text(&folder().join("host.c")),
+            text(&library()),
+        ]);
+        command.extend(["-o", program.to_str().unwrap(), "-lpthread", "-ldl", "-lm"].map(str::to_owned));
+        run("cc", command);
+        let printed = run(&program, [""; 0]);
+        let trace = of_lines(&String::from_utf8(printed.stdout).unwrap());
+        hold("the shape of matiec, linked", &trace, None);
+    }
+    if has("clang") && has("wasm-ld") {
+        let mut command = common;
+        command.extend(freestanding());
+        command.extend(exports());
+        command.extend(sources);
+        command.extend(["-o".to_owned(), text(&out.join("prog.wasm"))]);
+        run("clang", command);
+        hold("the shape of matiec, as a guest", &guest(&out), None);
+    }
+}
