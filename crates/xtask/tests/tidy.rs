@@ -121,7 +121,6 @@ fn the_top_level_holds_what_a_newcomer_expects() {
         "blocks",
         "crates",
         "docs",
-        "examples",
         "scan-tests",
         "soak-failures",
         "target",

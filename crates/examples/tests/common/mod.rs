@@ -166,7 +166,7 @@ pub fn run(program: impl AsRef<OsStr>, arguments: impl IntoIterator<Item = impl 
 
 /// The static C library, which the tests of `standstill-capi` build in the same place.
 pub fn library() -> PathBuf {
-    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/capi/Cargo.toml");
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../capi/Cargo.toml");
     let mut cargo = Command::new(env!("CARGO"));
     cargo
         .args(["build", "--offline", "--quiet", "--lib", "--message-format=json"])
