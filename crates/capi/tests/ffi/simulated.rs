@@ -199,7 +199,7 @@ fn a_limit_switch_stops_and_an_axis_fails() {
     }
     let status = host.status();
     assert_eq!((out.error, status.state, status.velocity), (1, 7, 0.0));
-    assert_eq!(status.error_id, out.error_id.into());
+    assert_eq!(status.error_id, u32::from(out.error_id));
     assert!(
         status.position > 0.5 && status.position < 1.1,
         "it stopped behind the switch"
