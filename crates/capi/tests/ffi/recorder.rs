@@ -150,8 +150,10 @@ fn it_keeps_the_last_scans_and_freezes_after_an_error_stop() {
 
     // The same text whatever the pieces.
     let texts = [0, 1, 2].map(|form| whole(&host, form, 1 << 16));
+    // Every piece makes its line anew, which Miri takes long for.
+    let rooms: &[usize] = if cfg!(miri) { &[2000] } else { &[7, 100] };
     for (form, expected) in (0..).zip(&texts) {
-        for room in [7, 100] {
+        for &room in rooms {
             assert_eq!(whole(&host, form, room), *expected, "form {form}, {room} bytes");
         }
     }
@@ -201,7 +203,7 @@ fn it_keeps_the_last_scans_and_freezes_after_an_error_stop() {
 fn what_a_resting_block_was_given_is_recorded() {
     let host = Host::powered();
     let mut key = make(&host, c"MC_MoveVelocity").unwrap();
-    let _memory = init(&host, &keep(500, 0), &[entry(key, 0, "go", "")]).unwrap();
+    let _memory = init(&host, &keep(4, 0), &[entry(key, 0, "go", "")]).unwrap();
     tick(&host, &mut key, 0, 300);
     // Without an edge a new velocity is nothing to the block.
     let (mut out, other) = (outputs(), 3.25);
@@ -222,7 +224,7 @@ fn what_a_resting_block_was_given_is_recorded() {
         Some(standstill_trace::Cell::Real(value)) => value,
         found => panic!("{found:?}"),
     };
-    assert_eq!([real(299), real(300), real(301)], [10.0, other, 0.0]);
+    assert_eq!([real(1), real(2), real(3)], [10.0, other, 0.0]);
     assert_eq!(trace.header().axes[0].name, "axis1");
 }
 

@@ -192,7 +192,7 @@ fn a_limit_switch_stops_and_an_axis_fails() {
         assert_eq!(simulate(2, only_a_node), 0);
     }
     let (mut key, mut out) = (0, outputs());
-    for scan in 0..400 {
+    for scan in 0..250 {
         assert_eq!(host.begin(scan * TICK), 0);
         assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
         assert_eq!(host.end(), 0);
