@@ -50,6 +50,7 @@ pub extern "C" fn standstill_result_text(result: i32) -> *const c_char {
         -18 => c"an axis is switched on or moving",
         -19 => c"the resource was stopped",
         -20 => c"a defect of the library was caught; the resource was stopped",
+        -21 => c"no flight recorder was set up",
         _ => c"not a result of this library",
     };
     text.as_ptr()

@@ -35,7 +35,7 @@ unsafe fn call<B: Block + Described>(
     find: impl Fn(&mut BlockInstance) -> Option<&mut Instance<B>> + Copy,
 ) -> i32 {
     let look = |inner: &mut Inner| {
-        running(inner)?;
+        let recorded = running(inner)?;
         if key.is_null() {
             return Err(Code::NullPointer);
         }
@@ -53,7 +53,7 @@ unsafe fn call<B: Block + Described>(
         }
         // SAFETY: not null; its place may be odd.
         let number = unsafe { key.read_unaligned() };
-        if number == 0 {
+        if number == 0 || recorded {
             return Ok(false);
         }
         let (instance, mut context) = inner.instance(number, find)?;

@@ -229,17 +229,16 @@ fn caught<T>(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<T, Code>
     work(inner)
 }
 
-/// Refuses to call a block in a resource that was stopped.
+/// Refuses to call a block in a resource that was stopped. Whether the call is recorded, so that it has to take all of its
+/// inputs.
 #[inline(always)]
-pub(crate) fn running(inner: &Inner) -> Result<(), Code> {
-    if inner.mode == Mode::Running {
-        return Ok(());
+pub(crate) fn running(inner: &Inner) -> Result<bool, Code> {
+    match inner.mode {
+        Mode::Running => Ok(false),
+        Mode::Recorded => Ok(true),
+        Mode::Stopped => Err(Code::Stopped),
+        Mode::Broken => Err(Code::Internal),
     }
-    Err(if inner.mode == Mode::Stopped {
-        Code::Stopped
-    } else {
-        Code::Internal
-    })
 }
 
 #[cfg(all(test, feature = "std"))]
@@ -291,7 +290,7 @@ mod tests {
         for scan in 1..10 {
             assert_eq!(with(When::Outside, &mut |inner| inner.begin(scan * 1_000_000)), 0);
             assert_eq!(
-                with(When::InTick, &mut |inner| running(inner)),
+                with(When::InTick, &mut |inner| running(inner).map(|_| ())),
                 Code::Internal as i32
             );
             assert_eq!(
@@ -346,7 +345,7 @@ mod tests {
             assert_eq!(call(false), Code::NotInTick as i32, "the tick has ended");
             assert_eq!(begin(), 0, "the runtime is free, but");
             // SAFETY: the runtime made above.
-            let after = unsafe { enter(runtime, When::InTick, |inner| running(inner)) };
+            let after = unsafe { enter(runtime, When::InTick, |inner| running(inner).map(|_| ())) };
             assert_eq!(after, Code::Internal as i32, "it stays stopped");
         }
     }

@@ -16,17 +16,20 @@
 compile_error!("the C library is for little-endian processors: pins would cross the border turned round");
 
 mod api;
+mod api_record;
 mod blocks;
 mod config;
 mod drive;
 mod enter;
 mod events;
 mod raw;
+mod recorder;
 mod runtime;
 mod storage;
 mod types;
 
 pub use api::*;
+pub use api_record::*;
 pub use blocks::*;
 pub use runtime::Runtime;
 pub use types::*;

@@ -26,7 +26,10 @@ sized!(
     Feedback,
     Command,
     AxisStatus,
-    ConfigFault
+    ConfigFault,
+    RecorderConfig,
+    RecorderStatus,
+    Dump
 );
 
 // SAFETY: as those above. It grew: switches, homing, a motor, stops and gains came behind its first 96 bytes.

@@ -2,8 +2,9 @@
 
 use crate::config::refused;
 use crate::drive::AnyDrive;
+use crate::recorder::{Order, Recorder};
 use crate::storage::List;
-use crate::{AxisSetup, AxisStatus, Code, ConfigFault, DriveSetup, Mishap, raw};
+use crate::{AxisSetup, AxisStatus, Code, ConfigFault, DriveSetup, Mishap, RecorderConfig, raw};
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicU32, AtomicUsize};
 use standstill_axis::{
@@ -63,6 +64,8 @@ pub(crate) const MAGIC: u32 = 0x5453_5453;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mode {
     Running,
+    /// Running, and a flight recorder wants the inputs of every call.
+    Recorded,
     Stopped,
     /// A panic was caught; without `std` none can be.
     #[cfg_attr(not(feature = "std"), allow(dead_code))]
@@ -85,7 +88,7 @@ pub(crate) struct Inner {
     pub log: Log,
     /// The records of the arrays of the block being called.
     pub cells: [f64; CELLS],
-    cycle_ns: i64,
+    pub cycle_ns: i64,
     pub scan: u64,
     pub now_ns: i64,
     /// The first tick has begun.
@@ -96,6 +99,8 @@ pub(crate) struct Inner {
     /// Axes are to be switched off in the next tick.
     pub off_pending: bool,
     pub fault: ConfigFault,
+    /// The flight recorder, if there is one.
+    pub recorder: List<Recorder>,
 }
 
 impl Inner {
@@ -126,6 +131,38 @@ impl Inner {
                 value: 0.0,
                 key: [0; crate::NAME],
             },
+            recorder: List::none(),
+        }
+    }
+
+    /// The flight recorder.
+    pub fn recorder(&mut self) -> Result<&mut Recorder, Code> {
+        self.recorder.slice_mut().first_mut().ok_or(Code::NoRecorder)
+    }
+
+    /// What a flight recorder of this runtime is to be made of.
+    pub fn recorder_order(&self, config: RecorderConfig) -> Order<'_> {
+        Order {
+            config,
+            axes: self.axes.slice(),
+            slots: self.slots.slice(),
+        }
+    }
+
+    /// Takes a flight recorder, or gives its storage back.
+    pub fn set_recorder(&mut self, recorder: Option<List<Recorder>>) {
+        self.recorder = recorder.unwrap_or(List::none());
+        if matches!(self.mode, Mode::Running | Mode::Recorded) {
+            self.mode = self.at_work();
+        }
+    }
+
+    /// The mode in which blocks are called.
+    fn at_work(&self) -> Mode {
+        if self.recorder.len() == 0 {
+            Mode::Running
+        } else {
+            Mode::Recorded
         }
     }
 
@@ -257,17 +294,23 @@ impl Inner {
 
     /// Ends a tick: motion advances by one cycle, drives are written.
     pub fn end(&mut self) {
+        if let Some(recorder) = self.recorder.slice_mut().first_mut() {
+            recorder.observe(self.axes.slice());
+        }
         for axis in self.axes.slice_mut() {
             axis.advance(self.scan, &mut self.log);
         }
         steps::publish(self.axes.slice_mut(), self.drives.slice_mut(), self.now_ns);
+        if let Some(recorder) = self.recorder.slice_mut().first_mut() {
+            recorder.record(self.scan, self.axes.slice(), self.slots.slice(), &self.log);
+        }
         self.scan = self.scan.wrapping_add(1);
         self.ticking = false;
     }
 
     /// Calls no block any more, and switches axes off.
     pub fn stop(&mut self) {
-        if self.mode == Mode::Running {
+        if matches!(self.mode, Mode::Running | Mode::Recorded) {
             self.mode = Mode::Stopped;
             self.switch_off();
         }
@@ -292,11 +335,11 @@ impl Inner {
     /// Lets blocks be called again.
     pub fn start(&mut self) -> Result<(), Code> {
         match self.mode {
-            Mode::Running => Ok(()),
+            Mode::Running | Mode::Recorded => Ok(()),
             Mode::Broken => Err(Code::Internal),
             Mode::Stopped => {
                 self.check_off()?;
-                self.mode = Mode::Running;
+                self.mode = self.at_work();
                 Ok(())
             }
         }

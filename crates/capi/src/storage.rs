@@ -25,8 +25,17 @@ impl<T> List<T> {
     ///
     /// # Safety
     /// `at` is aligned for `T`, has room for `capacity` of them, and nothing else uses it while the list lives.
-    unsafe fn new(at: *mut T, capacity: usize) -> Self {
+    pub unsafe fn new(at: *mut T, capacity: usize) -> Self {
         Self { at, len: 0, capacity }
+    }
+
+    /// A list of no capacity.
+    pub const fn none() -> Self {
+        Self {
+            at: ptr::dangling_mut(),
+            len: 0,
+            capacity: 0,
+        }
     }
 
     pub fn len(&self) -> usize {

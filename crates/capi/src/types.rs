@@ -51,6 +51,8 @@ pub enum Code {
     Stopped = -19,
     /// A defect of the library was caught. It has stopped the resource as stop does, and stays stopped.
     Internal = -20,
+    /// No flight recorder was set up.
+    NoRecorder = -21,
 }
 
 /// Sizes of a runtime, fixed for its life.
@@ -472,6 +474,79 @@ impl Mishap {
     ];
 }
 
+/// How much a flight recorder keeps, and when it stops.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct RecorderConfig {
+    /// sizeof this structure.
+    pub size: u32,
+    /// Scans that are kept: the last ones, and after a freeze those around the trigger. 1 to 2^24.
+    pub scans: u32,
+    /// Of these, scans after that of the trigger; less than scans.
+    pub after: u32,
+    /// Records (plans, refusals, faults) that are kept, up to 2^24; older ones give way.
+    pub records: u32,
+    /// What freezes it: 0 an axis that goes into ErrorStop, or recorder_trip; 1 only recorder_trip.
+    pub trigger: i32,
+    /// 0.
+    pub reserved: u32,
+}
+
+/// Bytes of a unit's label.
+pub const UNIT: usize = 16;
+
+/// One of the things a flight recorder has names for: a block instance, which is recorded, or an axis, which is anyway.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Recorded {
+    /// Key of the instance, of an entry that is no axis.
+    pub key: u64,
+    /// Number of the axis; 0: it is an instance.
+    pub axis: i32,
+    /// 0.
+    pub reserved: u32,
+    /// What columns of the trace are called: an IEC identifier, ended by 0. An axis without an entry is axis1, ..
+    pub name: [c_char; NAME],
+    /// Label of the axis' unit, or empty; ended by 0.
+    pub unit: [c_char; UNIT],
+}
+
+/// A flight recorder as it stands.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct RecorderStatus {
+    /// sizeof this structure.
+    pub size: u32,
+    /// 0 keeps the last scans, 1 has tripped, 2 frozen.
+    pub state: i32,
+    /// Number of the first scan that is there.
+    pub first: u64,
+    /// Scans that are there.
+    pub scans: u64,
+    /// The scan that tripped it; if it has.
+    pub tripped_at: u64,
+    /// The axis that went into ErrorStop then; 0: the host tripped it.
+    pub axis: i32,
+    /// Scans until it freezes; if it has tripped.
+    pub left: u32,
+}
+
+/// How far the text of a flight recorder has been read.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Dump {
+    /// sizeof this structure.
+    pub size: u32,
+    /// Which text: 0 JSON Lines, all in one; 1 CSV, 2 the header that stands in NAME.csv.meta.json beside it.
+    pub form: i32,
+    /// The line to go on with; 0 before the first piece, and so the others.
+    pub line: u64,
+    /// Bytes of it that were there already.
+    pub skip: u64,
+    /// What the recorder was at the first piece.
+    pub stamp: u64,
+}
+
 // No gap a compiler might fill otherwise: every byte belongs to a field.
 const _: () = assert!(size_of::<RuntimeConfig>() == 24);
 const _: () = assert!(size_of::<AxisSetup>() == 264);
@@ -481,3 +556,7 @@ const _: () = assert!(size_of::<Command>() == 80);
 const _: () = assert!(size_of::<AxisStatus>() == 72);
 const _: () = assert!(size_of::<Record>() == 96);
 const _: () = assert!(size_of::<ConfigFault>() == 48);
+const _: () = assert!(size_of::<RecorderConfig>() == 24);
+const _: () = assert!(size_of::<Recorded>() == 64);
+const _: () = assert!(size_of::<RecorderStatus>() == 40);
+const _: () = assert!(size_of::<Dump>() == 32);

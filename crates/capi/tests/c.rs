@@ -11,7 +11,13 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 use std::{env, fs};
 
-const EXAMPLES: [&str; 4] = ["single_axis", "own_drive", "diagnostics", "home_and_latch"];
+const EXAMPLES: [&str; 5] = [
+    "single_axis",
+    "own_drive",
+    "diagnostics",
+    "home_and_latch",
+    "recorder",
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).to_owned()
@@ -249,6 +255,50 @@ fn c_homes_and_latches_by_the_bits_of_a_scan_script() {
             "gate.Value",
         ],
     );
+}
+
+/// What the recorder in memory of a C host dumps is a trace: its files are read by what `explain`, `report` and `compare`
+/// read with, written again they are the same, and its rows are those of the scan script.
+#[test]
+fn the_dump_of_a_c_host_is_a_trace() {
+    if !has("cc") {
+        return;
+    }
+    let folder = scratch("c-recorder");
+    let program = folder.join("recorder");
+    let source = root().join("examples/recorder.c");
+    compile(&C, &source, &root().join("include"), &libraries().0, &program);
+    let (table, lines) = (folder.join("recorded.csv"), folder.join("recorded.jsonl"));
+    let told = text(&run(&program, &[table.as_os_str()]));
+    assert_eq!(told, "scans 501 to 800, axis 1 in scan 700\n");
+    fs::write(&lines, run(&program, &[]).stdout).unwrap();
+    let loaded = standstill_trace::file::load(&table).unwrap();
+    assert!(loaded.lacks.is_empty(), "{:?}", loaded.lacks);
+    let trace = &loaded.trace;
+    for path in [&table, &lines] {
+        let again = folder.join("again").with_extension(path.extension().unwrap());
+        standstill_trace::file::save(trace, &again).unwrap();
+        assert_eq!(
+            fs::read_to_string(path).unwrap(),
+            fs::read_to_string(&again).unwrap()
+        );
+    }
+    let meta = |path| fs::read_to_string(standstill_trace::csv::meta_path(path)).unwrap();
+    assert_eq!(meta(&table), meta(&folder.join("again.csv")));
+
+    let path = root().join("../../scan-tests/embedding/a_drive_fails_on_the_way.scan.json");
+    let script = standstill_script::read(&fs::read_to_string(&path).unwrap(), "fails", &[]).unwrap();
+    let outcome = standstill_script::run(&script).unwrap();
+    assert_eq!(trace.scans(), 300);
+    let names = |trace: &standstill_trace::Trace| -> Vec<String> {
+        trace.columns().iter().map(|column| column.name.clone()).collect()
+    };
+    assert_eq!(names(trace), names(&outcome.trace));
+    for scan in 0..trace.scans() {
+        let (ours, theirs): (Vec<_>, Vec<_>) =
+            (trace.row(scan).collect(), outcome.trace.row(501 + scan).collect());
+        assert_eq!(ours, theirs, "scan {scan}");
+    }
 }
 
 #[test]

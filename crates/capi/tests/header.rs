@@ -44,6 +44,10 @@ STANDSTILL_ASSERT(command, sizeof(standstill_command) == 80);
 STANDSTILL_ASSERT(axis_status, sizeof(standstill_axis_status) == 72);
 STANDSTILL_ASSERT(record, sizeof(standstill_record) == 96);
 STANDSTILL_ASSERT(config_fault, sizeof(standstill_config_fault) == 48);
+STANDSTILL_ASSERT(recorder_config, sizeof(standstill_recorder_config) == 24);
+STANDSTILL_ASSERT(recorded, sizeof(standstill_recorded) == 64);
+STANDSTILL_ASSERT(recorder_status, sizeof(standstill_recorder_status) == 40);
+STANDSTILL_ASSERT(dump, sizeof(standstill_dump) == 32);
 #endif
 "#;
 
@@ -54,7 +58,7 @@ fn crate_folder() -> PathBuf {
 /// The sources, with the names of functions as cbindgen reads them: it does not evaluate macros in attributes.
 fn sources() -> String {
     let mut text = String::new();
-    for file in ["types.rs", "api.rs"] {
+    for file in ["types.rs", "api.rs", "api_record.rs"] {
         text += &fs::read_to_string(crate_folder().join("src").join(file)).unwrap();
     }
     text += "pub const ABI_VERSION: u32 = 1;\npub struct Runtime { of: Opaque }\n";
@@ -123,9 +127,14 @@ fn header() -> String {
         ("Record", "standstill_record"),
         ("ConfigFault", "standstill_config_fault"),
         ("Mishap", "standstill_mishap"),
+        ("RecorderConfig", "standstill_recorder_config"),
+        ("Recorded", "standstill_recorded"),
+        ("RecorderStatus", "standstill_recorder_status"),
+        ("Dump", "standstill_dump"),
         ("Runtime", "standstill_runtime"),
         ("ABI_VERSION", "STANDSTILL_ABI_VERSION"),
         ("NAME", "STANDSTILL_NAME"),
+        ("UNIT", "STANDSTILL_UNIT"),
     ];
     let rename = names.map(|(from, to)| (from.to_owned(), to.to_owned()));
     config.export.rename = rename.into_iter().collect();

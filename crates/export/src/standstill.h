@@ -26,6 +26,11 @@
  */
 #define STANDSTILL_NAME 32
 
+/**
+ * Bytes of a unit's label.
+ */
+#define STANDSTILL_UNIT 16
+
 #define STANDSTILL_ABI_VERSION 1
 
 /**
@@ -123,6 +128,10 @@ enum standstill_result
    * A defect of the library was caught. It has stopped the resource as stop does, and stays stopped.
    */
   STANDSTILL_INTERNAL = -20,
+  /**
+   * No flight recorder was set up.
+   */
+  STANDSTILL_NO_RECORDER = -21,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -886,6 +895,122 @@ typedef struct standstill_record {
   char name[STANDSTILL_NAME];
 } standstill_record;
 
+/**
+ * How much a flight recorder keeps, and when it stops.
+ */
+typedef struct standstill_recorder_config {
+  /**
+   * sizeof this structure.
+   */
+  uint32_t size;
+  /**
+   * Scans that are kept: the last ones, and after a freeze those around the trigger. 1 to 2^24.
+   */
+  uint32_t scans;
+  /**
+   * Of these, scans after that of the trigger; less than scans.
+   */
+  uint32_t after;
+  /**
+   * Records (plans, refusals, faults) that are kept, up to 2^24; older ones give way.
+   */
+  uint32_t records;
+  /**
+   * What freezes it: 0 an axis that goes into ErrorStop, or recorder_trip; 1 only recorder_trip.
+   */
+  int32_t trigger;
+  /**
+   * 0.
+   */
+  uint32_t reserved;
+} standstill_recorder_config;
+
+/**
+ * One of the things a flight recorder has names for: a block instance, which is recorded, or an axis, which is anyway.
+ */
+typedef struct standstill_recorded {
+  /**
+   * Key of the instance, of an entry that is no axis.
+   */
+  uint64_t key;
+  /**
+   * Number of the axis; 0: it is an instance.
+   */
+  int32_t axis;
+  /**
+   * 0.
+   */
+  uint32_t reserved;
+  /**
+   * What columns of the trace are called: an IEC identifier, ended by 0. An axis without an entry is axis1, ..
+   */
+  char name[STANDSTILL_NAME];
+  /**
+   * Label of the axis' unit, or empty; ended by 0.
+   */
+  char unit[STANDSTILL_UNIT];
+} standstill_recorded;
+
+/**
+ * A flight recorder as it stands.
+ */
+typedef struct standstill_recorder_status {
+  /**
+   * sizeof this structure.
+   */
+  uint32_t size;
+  /**
+   * 0 keeps the last scans, 1 has tripped, 2 frozen.
+   */
+  int32_t state;
+  /**
+   * Number of the first scan that is there.
+   */
+  uint64_t first;
+  /**
+   * Scans that are there.
+   */
+  uint64_t scans;
+  /**
+   * The scan that tripped it; if it has.
+   */
+  uint64_t tripped_at;
+  /**
+   * The axis that went into ErrorStop then; 0: the host tripped it.
+   */
+  int32_t axis;
+  /**
+   * Scans until it freezes; if it has tripped.
+   */
+  uint32_t left;
+} standstill_recorder_status;
+
+/**
+ * How far the text of a flight recorder has been read.
+ */
+typedef struct standstill_dump {
+  /**
+   * sizeof this structure.
+   */
+  uint32_t size;
+  /**
+   * Which text: 0 JSON Lines, all in one; 1 CSV, 2 the header that stands in NAME.csv.meta.json beside it.
+   */
+  int32_t form;
+  /**
+   * The line to go on with; 0 before the first piece, and so the others.
+   */
+  uint64_t line;
+  /**
+   * Bytes of it that were there already.
+   */
+  uint64_t skip;
+  /**
+   * What the recorder was at the first piece.
+   */
+  uint64_t stamp;
+} standstill_dump;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -1071,6 +1196,91 @@ int32_t standstill_log_read(struct standstill_runtime *runtime,
                             uint32_t room,
                             uint32_t *copied);
 
+/**
+ * The bytes of storage that a flight recorder needs: of all axes of the runtime, and of the block instances in the
+ * list `recorded` of `count` entries, each of `recorded_size` bytes, sizeof(standstill_recorded).
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE, UNKNOWN_KEY, BAD_VALUE (a number of the configuration).
+ */
+int32_t standstill_recorder_size(struct standstill_runtime *runtime,
+                                 const struct standstill_recorder_config *config,
+                                 const struct standstill_recorded *recorded,
+                                 uint32_t recorded_size,
+                                 uint32_t count,
+                                 size_t *bytes);
+
+/**
+ * Sets a flight recorder up in `storage`, which is aligned to 16 bytes, has what recorder_size tells, and belongs to the
+ * runtime until recorder_end or runtime_close. From now on every tick_end keeps a scan. Axes that are added later are not
+ * recorded.
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, STORAGE, UNKNOWN_AXIS, UNKNOWN_KEY, NO_ROOM (there is
+ * one already), BAD_VALUE (also: a name is no IEC identifier, is not ended by 0, or stands twice; a unit with quotes).
+ */
+int32_t standstill_recorder_init(struct standstill_runtime *runtime,
+                                 void *storage,
+                                 size_t bytes,
+                                 const struct standstill_recorder_config *config,
+                                 const struct standstill_recorded *recorded,
+                                 uint32_t recorded_size,
+                                 uint32_t count);
+
+/**
+ * Takes the flight recorder away; its storage belongs to the host again.
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, NO_RECORDER.
+ */
+int32_t standstill_recorder_end(struct standstill_runtime *runtime);
+
+/**
+ * Trips the flight recorder in the tick that is open or comes next, for a reason of the host's; without effect on one
+ * that has tripped.
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, NO_RECORDER.
+ */
+int32_t standstill_recorder_trip(struct standstill_runtime *runtime);
+
+/**
+ * The flight recorder forgets everything and waits for the next trigger.
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, NO_RECORDER.
+ */
+int32_t standstill_recorder_arm(struct standstill_runtime *runtime);
+
+/**
+ * Where the flight recorder stands.
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE, NO_RECORDER.
+ */
+int32_t standstill_recorder_state(struct standstill_runtime *runtime, struct standstill_recorder_status *status);
+
+/**
+ * Copies the next piece of the flight recorder's text to `buffer`, which has `room` bytes, and tells how many they are: 0
+ * after the last one. `dump` says which text and how far it is: all 0 but its size and form before the first call. The
+ * text is a trace, as `standstill explain`, `report` and `compare` read it; no 0 ends it.
+ *
+ * A line that does not fit is begun anew in the next call, so a buffer of some kilobytes is quicker than one of some bytes.
+ * Between the pieces no scan may be kept: dump a recorder that is frozen, or between two ticks.
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, NO_RECORDER, BAD_VALUE (no such form; or scans were
+ * kept since the first piece).
+ */
+int32_t standstill_recorder_read(struct standstill_runtime *runtime,
+                                 struct standstill_dump *dump,
+                                 char *buffer,
+                                 size_t room,
+                                 size_t *length);
+
+/**
+ * Makes an instance of the block of this IEC name before it is first called, and sets its key; for a flight recorder, which
+ * wants keys. A call with a key of 0 does the same.
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, BAD_VALUE (no block has this name), NO_ROOM.
+ */
+int32_t standstill_instance_make(struct standstill_runtime *runtime,
+                                 const char *block,
+                                 uint64_t *key);
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
@@ -1098,4 +1308,8 @@ STANDSTILL_ASSERT(command, sizeof(standstill_command) == 80);
 STANDSTILL_ASSERT(axis_status, sizeof(standstill_axis_status) == 72);
 STANDSTILL_ASSERT(record, sizeof(standstill_record) == 96);
 STANDSTILL_ASSERT(config_fault, sizeof(standstill_config_fault) == 48);
+STANDSTILL_ASSERT(recorder_config, sizeof(standstill_recorder_config) == 24);
+STANDSTILL_ASSERT(recorded, sizeof(standstill_recorded) == 64);
+STANDSTILL_ASSERT(recorder_status, sizeof(standstill_recorder_status) == 40);
+STANDSTILL_ASSERT(dump, sizeof(standstill_dump) == 32);
 #endif

@@ -1,62 +1,10 @@
-//! The ring of scans and the trigger that freezes it.
+//! The recorder of hosts with a heap.
 
-use crate::word;
+use crate::ring::{AXIS_WORDS, Ring, Setup, State, write_axis, write_pins};
 use alloc::string::String;
 use alloc::vec::Vec;
 use standstill_axis::{Axis, AxisConfig, AxisState, Log, Planner, Record};
 use standstill_fb::{AnyInstance, BlockInfo};
-
-/// Words of an axis in a row: its state, and the numbers of a trace.
-pub(crate) const AXIS_WORDS: usize = 7;
-
-/// How much a recorder keeps, and when it stops.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Setup {
-    /// Scans that are kept: the last ones, and after a freeze those around the trigger. At least 1.
-    pub scans: usize,
-    /// Of these, scans after that of the trigger. Less than `scans`.
-    pub after: usize,
-    /// Records of axes (plans, refusals, faults) that are kept; older ones give way.
-    pub records: usize,
-    /// What freezes it.
-    pub trigger: Trigger,
-}
-
-impl Default for Setup {
-    /// 2000 scans, 500 of them after an axis went into ErrorStop, and 256 records.
-    fn default() -> Self {
-        Self {
-            scans: 2000,
-            after: 500,
-            records: 256,
-            trigger: Trigger::ErrorStop,
-        }
-    }
-}
-
-/// What freezes a recorder.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Trigger {
-    /// An axis goes into ErrorStop, or [`Recorder::trip`].
-    #[default]
-    ErrorStop,
-    /// Only [`Recorder::trip`].
-    Host,
-}
-
-/// Where a recorder stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
-    /// It keeps the last scans.
-    Armed,
-    /// The trigger was seen; so many scans are still to come.
-    Tripped {
-        /// Scans until it freezes.
-        left: usize,
-    },
-    /// What is there stays, until [`Recorder::arm`].
-    Frozen,
-}
 
 /// What is recorded: axes and block instances, by name.
 #[derive(Clone, Debug, Default)]
@@ -119,9 +67,7 @@ impl Pins<'_> {
         let Some((own, rest)) = core::mem::take(&mut self.row).split_at_mut_checked(count) else {
             return;
         };
-        for (place, word) in own.iter_mut().enumerate() {
-            *word = instance.get(place).map_or(0, word::of);
-        }
+        write_pins(own, instance);
         self.row = rest;
     }
 }
@@ -132,73 +78,34 @@ impl Pins<'_> {
 #[derive(Clone, Debug)]
 pub struct Recorder {
     signals: Signals,
-    setup: Setup,
+    ring: Ring,
     width: usize,
-    /// Rows one after the other; the one of scan `n` since arming is at `n % scans`.
+    /// Rows one after the other, at the places of the ring.
     words: Vec<u64>,
     /// States after all blocks were called, before the motion step.
     states: Vec<AxisState>,
-    /// Scans since arming.
-    seen: u64,
-    /// Number of the first scan since arming.
-    first: u64,
-    state: State,
-    tripped: Option<Tripped>,
     records: Vec<Record>,
-    /// Records since arming.
-    recorded: u64,
-    /// Records of the log taken so far.
-    taken: u64,
-}
-
-/// What tripped a recorder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Tripped {
-    /// The scan, counted from arming.
-    at: u64,
-    /// Place of the axis; none if the host did.
-    axis: Option<usize>,
 }
 
 impl Recorder {
     /// A recorder of these signals. A `setup` of no scans counts as one of 1, and `after` is at most one less than the
     /// scans.
     pub fn new(setup: Setup, signals: Signals) -> Self {
-        let scans = setup.scans.max(1);
-        let setup = Setup {
-            scans,
-            after: setup.after.min(scans - 1),
-            ..setup
-        };
+        let ring = Ring::new(setup);
         let width = signals.width();
         Self {
             width,
-            words: alloc::vec![0; width.saturating_mul(scans)],
+            words: alloc::vec![0; width.saturating_mul(ring.setup().scans)],
             states: alloc::vec![AxisState::Disabled; signals.axes.len()],
-            seen: 0,
-            first: 0,
-            state: State::Armed,
-            tripped: None,
             records: Vec::with_capacity(setup.records),
-            recorded: 0,
-            taken: 0,
-            setup,
+            ring,
             signals,
         }
     }
 
     /// The states of the axes, to be told after all blocks were called and before the motion step.
     pub fn observe<P: Planner>(&mut self, axes: &[Axis<P>]) {
-        let entered = |(state, axis): (&AxisState, &Axis<P>)| {
-            axis.state() == AxisState::ErrorStop && *state != AxisState::ErrorStop
-        };
-        let found = self.states.iter().zip(axes).position(entered);
-        for (state, axis) in self.states.iter_mut().zip(axes) {
-            *state = axis.state();
-        }
-        if let (Some(axis), Trigger::ErrorStop) = (found, self.setup.trigger) {
-            self.trip_by(Some(axis));
-        }
+        self.ring.observe(&mut self.states, axes);
     }
 
     /// The end of a scan: set-points are those the drives were given. `pins` adds every instance of the signals.
@@ -209,80 +116,48 @@ impl Recorder {
         log: &Log,
         pins: impl FnOnce(&mut Pins<'_>),
     ) {
-        if self.state == State::Frozen {
-            self.taken = log.total();
+        let Some(place) = self.ring.begin(scan, log) else {
             return;
-        }
-        if self.seen == 0 {
-            self.first = scan;
-        }
-        let place = (self.seen % self.setup.scans as u64) as usize * self.width;
+        };
+        let place = place * self.width;
         let row = self.words.get_mut(place..place + self.width).unwrap_or_default();
         let Some((own, rest)) = row.split_at_mut_checked(self.states.len() * AXIS_WORDS) else {
             return;
         };
         for ((words, state), axis) in own.chunks_exact_mut(AXIS_WORDS).zip(&self.states).zip(axes) {
-            let setpoint = axis.setpoint();
-            let numbers = [
-                setpoint.position,
-                setpoint.velocity,
-                setpoint.acceleration,
-                setpoint.jerk,
-                setpoint.snap,
-                axis.actual_position(),
-            ];
-            let all = core::iter::once(*state as u64).chain(numbers.map(f64::to_bits));
-            for (word, value) in words.iter_mut().zip(all) {
-                *word = value;
-            }
+            write_axis(words, *state, axis);
         }
         pins(&mut Pins { row: rest });
-        for record in log.since(self.taken) {
-            self.keep(*record);
+        for record in log.since(self.ring.taken()) {
+            match self.ring.keep() {
+                Some(place) if place == self.records.len() => self.records.push(*record),
+                Some(place) => {
+                    if let Some(slot) = self.records.get_mut(place) {
+                        *slot = *record;
+                    }
+                }
+                None => {}
+            }
         }
-        self.taken = log.total();
-        self.seen += 1;
-        self.state = match self.state {
-            State::Tripped { left: 0 } => State::Frozen,
-            State::Tripped { left } => State::Tripped { left: left - 1 },
-            other => other,
-        };
-    }
-
-    /// Keeps a record; the oldest gives way.
-    fn keep(&mut self, record: Record) {
-        if self.records.len() < self.setup.records {
-            self.records.push(record);
-        } else if let Some(place) = self.recorded.checked_rem(self.setup.records as u64)
-            && let Some(slot) = self.records.get_mut(place as usize)
-        {
-            *slot = record;
-        }
-        self.recorded += 1;
+        self.ring.end(log);
     }
 
     /// Trips the recorder in the scan whose end comes next, for a reason of the host's; without effect on one that has
     /// tripped.
     pub fn trip(&mut self) {
-        self.trip_by(None);
-    }
-
-    fn trip_by(&mut self, axis: Option<usize>) {
-        if self.state == State::Armed {
-            self.state = State::Tripped {
-                left: self.setup.after,
-            };
-            self.tripped = Some(Tripped { at: self.seen, axis });
-        }
+        self.ring.trip(None);
     }
 
     /// Forgets everything and waits for the next trigger.
     pub fn arm(&mut self) {
-        self.seen = 0;
-        self.state = State::Armed;
-        self.tripped = None;
+        self.ring.arm();
         self.records.clear();
-        self.recorded = 0;
+    }
+
+    /// Where rows and records stand.
+    #[cfg(feature = "std")]
+    pub(crate) const fn ring(&self) -> &Ring {
+        &self.ring
     }
 
     /// What it records.
@@ -292,19 +167,17 @@ impl Recorder {
 
     /// Where it stands.
     pub const fn state(&self) -> State {
-        self.state
+        self.ring.state()
     }
 
     /// The scan that tripped it, and the place of the axis that went into ErrorStop; no axis if the host did.
     pub fn tripped(&self) -> Option<(u64, Option<usize>)> {
-        let tripped = self.tripped?;
-        Some((self.first + tripped.at, tripped.axis))
+        self.ring.tripped()
     }
 
     /// The number of the first scan that is there, and how many are.
     pub fn scans(&self) -> (u64, usize) {
-        let kept = self.seen.min(self.setup.scans as u64);
-        (self.first + (self.seen - kept), kept as usize)
+        self.ring.scans()
     }
 
     /// The words of the scans that are there, oldest first, for a host without `std` to send elsewhere. Of every axis:
@@ -313,21 +186,14 @@ impl Recorder {
     /// sign.
     pub fn rows(&self) -> impl Iterator<Item = &[u64]> {
         let (_, kept) = self.scans();
-        let oldest = self.seen - kept as u64;
-        (oldest..self.seen).map(|scan| {
-            let place = (scan % self.setup.scans as u64) as usize * self.width;
-            self.words.get(place..place + self.width).unwrap_or_default()
+        (0..kept).filter_map(|row| {
+            let place = self.ring.row(row)? * self.width;
+            self.words.get(place..place + self.width)
         })
     }
 
     /// The records that are there, oldest first.
     pub fn records(&self) -> impl Iterator<Item = &Record> {
-        let split = match self.records.len() as u64 {
-            0 => 0,
-            full if self.recorded > full => (self.recorded % full) as usize,
-            _ => 0,
-        };
-        let (newer, older) = self.records.split_at(split);
-        older.iter().chain(newer)
+        self.ring.records().filter_map(|place| self.records.get(place))
     }
 }

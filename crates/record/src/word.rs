@@ -1,10 +1,7 @@
 //! Values of pins as words of 64 bits, and back.
 
-#[cfg(feature = "std")]
 use standstill_axis::AxisId;
-use standstill_fb::Value;
-#[cfg(feature = "std")]
-use standstill_fb::{PinType, TableRef};
+use standstill_fb::{PinType, TableRef, Value};
 
 /// The value as a word; its type stands elsewhere.
 pub(crate) const fn of(value: Value) -> u64 {
@@ -22,7 +19,6 @@ pub(crate) const fn of(value: Value) -> u64 {
 }
 
 /// The value of this type behind a word that [`of`] made.
-#[cfg(feature = "std")]
 pub(crate) fn value(ty: PinType, word: u64) -> Value {
     match ty {
         PinType::Bool => Value::Bool(word != 0),
@@ -40,7 +36,7 @@ pub(crate) fn value(ty: PinType, word: u64) -> Value {
     }
 }
 
-#[cfg(all(test, feature = "std"))]
+#[cfg(test)]
 mod tests {
     use super::*;
 

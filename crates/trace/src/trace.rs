@@ -143,27 +143,31 @@ impl Trace {
     /// A row of wrong length, a cell of a wrong kind, or a name with a control character; the trace is
     /// then as it was before.
     pub fn push_row(&mut self, cells: &[Cell<'_>]) -> Result<(), RowError> {
-        self.check_row(cells)?;
-        for cell in cells {
-            let word = match *cell {
-                Cell::Bool(value) => u64::from(value),
-                Cell::Real(value) => canonical_bits(value),
-                Cell::Integer(value) => value.cast_unsigned(),
-                Cell::Name(value) => self.names.index(value),
-            };
-            self.bits.push(word);
-        }
-        Ok(())
+        self.push_cells(cells.iter().copied())
     }
 
-    fn check_row(&self, cells: &[Cell<'_>]) -> Result<(), RowError> {
-        if cells.len() != self.columns.len() {
-            return Err(RowError::Length {
-                expected: self.columns.len(),
-                found: cells.len(),
-            });
+    /// As [`Trace::push_row`], of cells that nobody has to put into a list. It takes memory only where
+    /// [`Trace::reserve`] has made no room, and for names that were never there before.
+    ///
+    /// # Errors
+    /// Those of [`Trace::push_row`].
+    pub fn push_cells<'c>(&mut self, cells: impl IntoIterator<Item = Cell<'c>>) -> Result<(), RowError> {
+        let before = self.bits.len();
+        let pushed = self.push_checked(cells.into_iter());
+        if pushed.is_err() {
+            self.bits.truncate(before);
         }
-        for (cell, column) in cells.iter().zip(&self.columns) {
+        pushed
+    }
+
+    fn push_checked<'c>(&mut self, cells: impl Iterator<Item = Cell<'c>>) -> Result<(), RowError> {
+        let mut found = 0;
+        for cell in cells {
+            found += 1;
+            // The rest of a row that is too long is only counted.
+            let Some(column) = self.columns.get(found - 1) else {
+                continue;
+            };
             if cell.kind() != column.kind {
                 return Err(RowError::Kind {
                     column: column.name.clone(),
@@ -171,13 +175,26 @@ impl Trace {
                     found: cell.kind(),
                 });
             }
-            if matches!(cell, Cell::Name(text) if text.chars().any(char::is_control)) {
-                return Err(RowError::ControlCharacter {
-                    column: column.name.clone(),
-                });
-            }
+            let word = match cell {
+                Cell::Bool(value) => u64::from(value),
+                Cell::Real(value) => canonical_bits(value),
+                Cell::Integer(value) => value.cast_unsigned(),
+                Cell::Name(text) if text.chars().any(char::is_control) => {
+                    return Err(RowError::ControlCharacter {
+                        column: column.name.clone(),
+                    });
+                }
+                Cell::Name(text) => self.names.index(text),
+            };
+            self.bits.push(word);
         }
-        Ok(())
+        if found == self.columns.len() {
+            return Ok(());
+        }
+        Err(RowError::Length {
+            expected: self.columns.len(),
+            found,
+        })
     }
 
     /// The value of a column in a scan; `None` outside the trace.

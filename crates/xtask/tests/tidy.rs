@@ -177,6 +177,7 @@ fn layers_depend_only_downwards() {
                 "standstill-blocks",
                 "standstill-drives",
                 "standstill-fb",
+                "standstill-record",
             ],
         ),
         (

@@ -46,6 +46,14 @@ mod bare_metal {
         keep::<unsafe extern "C" fn(_, _, _, _, _) -> _>(c::standstill_simulate_probe);
         keep::<unsafe extern "C" fn(_, _, _) -> _>(c::standstill_simulate_push);
         keep::<unsafe extern "C" fn(_, _, _, _, _, _) -> _>(c::standstill_log_read);
+        keep::<unsafe extern "C" fn(_, _, _, _, _, _) -> _>(c::standstill_recorder_size);
+        keep::<unsafe extern "C" fn(_, _, _, _, _, _, _) -> _>(c::standstill_recorder_init);
+        keep::<unsafe extern "C" fn(_) -> _>(c::standstill_recorder_end);
+        keep::<unsafe extern "C" fn(_) -> _>(c::standstill_recorder_trip);
+        keep::<unsafe extern "C" fn(_) -> _>(c::standstill_recorder_arm);
+        keep::<unsafe extern "C" fn(_, _) -> _>(c::standstill_recorder_state);
+        keep::<unsafe extern "C" fn(_, _, _, _, _) -> _>(c::standstill_recorder_read);
+        keep::<unsafe extern "C" fn(_, _, _) -> _>(c::standstill_instance_make);
         standstill_blocks::for_every_block!(keep_blocks);
         #[cfg(feature = "reachable-panic")]
         assert!(black_box(true), "on purpose");

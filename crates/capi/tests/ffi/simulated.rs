@@ -192,14 +192,14 @@ fn a_limit_switch_stops_and_an_axis_fails() {
         assert_eq!(simulate(2, only_a_node), 0);
     }
     let (mut key, mut out) = (0, outputs());
-    for scan in 0..400 {
+    for scan in 0..250 {
         assert_eq!(host.begin(scan * TICK), 0);
         assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
         assert_eq!(host.end(), 0);
     }
     let status = host.status();
     assert_eq!((out.error, status.state, status.velocity), (1, 7, 0.0));
-    assert_eq!(status.error_id, out.error_id.into());
+    assert_eq!(status.error_id, u32::from(out.error_id));
     assert!(
         status.position > 0.5 && status.position < 1.1,
         "it stopped behind the switch"

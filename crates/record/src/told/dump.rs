@@ -1,13 +1,14 @@
 //! A recorder's rows as a trace.
 
-use crate::recorder::{AXIS_WORDS, Recorder};
+use crate::recorder::Recorder;
+use crate::ring::AXIS_WORDS;
+use crate::text::standing;
 use crate::told::{self, Cells, Names, note};
 use crate::word;
 use standstill_axis::AxisState;
 use standstill_fb::PinType;
 use standstill_trace::{Cell, Header, Note, RowError, Trace};
-use std::format;
-use std::string::ToString;
+use std::string::{String, ToString};
 use std::vec::Vec;
 
 impl Recorder {
@@ -54,7 +55,6 @@ impl Recorder {
             let pins = pins.iter().map(|(ty, value)| cells.cell(*ty, *value));
             trace.push_row(&axes.chain(pins).collect::<Vec<_>>())?;
         }
-        trace.push_note(self.standing());
         let (first, kept) = self.scans();
         let names = Names {
             axes: signals.axes().map(|(name, ..)| name.to_string()).collect(),
@@ -63,6 +63,7 @@ impl Recorder {
                 .map(|(name, number, _)| (number, name.to_string()))
                 .collect(),
         };
+        trace.push_note(self.standing(&names));
         for record in self.records() {
             let row = record.scan.checked_sub(first).filter(|row| *row < kept as u64);
             if let Some(row) = row.and_then(|row| usize::try_from(row).ok()) {
@@ -73,24 +74,14 @@ impl Recorder {
     }
 
     /// Which scans these are, and why there are no more.
-    fn standing(&self) -> Note {
-        let (first, kept) = self.scans();
-        let last = first + (kept as u64).saturating_sub(1);
-        let name = |place: usize| self.signals().axes().nth(place).map_or("", |(name, ..)| name);
-        let why = self.tripped().map(|(scan, axis)| {
-            let row = scan.saturating_sub(first);
-            let cause = axis.map_or("the host".to_string(), |axis| {
-                format!("ErrorStop of {}", name(axis))
-            });
-            format!("; tripped by {cause} in scan {scan}, here {row}")
-        });
+    fn standing(&self, names: &Names) -> Note {
+        let mut text = String::new();
+        // A string takes whatever is written to it.
+        standing(&mut text, self.ring(), names).unwrap_or_default();
         Note {
             scan: 0,
             subject: "recorder".to_string(),
-            text: format!(
-                "scans {first} to {last} of the machine{}",
-                why.unwrap_or_default()
-            ),
+            text,
         }
     }
 }

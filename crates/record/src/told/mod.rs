@@ -5,7 +5,7 @@ mod dump;
 mod notes;
 
 pub use cells::{Cells, enum_number};
-pub use notes::{Names, note, shift};
+pub use notes::{Names, note};
 
 use standstill_axis::{AxisConfig, Order};
 use standstill_fb::{BlockInfo, Direction};

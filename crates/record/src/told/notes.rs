@@ -1,15 +1,13 @@
 //! What the axes recorded, as notes in a trace.
 
-use standstill_axis::{Event, Excess, Goal, Order, Record, Setpoint, StandardPlan};
+use crate::text::{Called, happened, subject};
+use standstill_axis::{Event, Order, Record, Setpoint, StandardPlan};
 use standstill_trace::{Note, shortest};
 use std::borrow::ToOwned;
 use std::collections::BTreeMap;
 use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
-
-/// What the note of a shift begins with.
-const SHIFTED: &str = "coordinates moved by ";
 
 /// What axes and block instances are called.
 #[derive(Clone, Debug, Default)]
@@ -20,13 +18,13 @@ pub struct Names {
     pub instances: BTreeMap<u16, String>,
 }
 
-impl Names {
-    fn axis(&self, record: &Record) -> &str {
-        self.axes.get(record.axis.index()).map_or("", String::as_str)
+impl Called for Names {
+    fn axis(&self, place: usize) -> &str {
+        self.axes.get(place).map_or("", String::as_str)
     }
 
-    fn instance(&self, record: &Record) -> Option<&str> {
-        self.instances.get(&record.instance.0).map(String::as_str)
+    fn instance(&self, number: u16) -> Option<&str> {
+        self.instances.get(&number).map(String::as_str)
     }
 }
 
@@ -39,118 +37,15 @@ pub fn note(names: &Names, record: &Record, scan: usize, plan: Option<&StandardP
     }
 }
 
-/// By how much the coordinates of its subject moved (u), if this is what the text of a note tells.
-#[must_use]
-pub fn shift(text: &str) -> Option<f64> {
-    text.strip_prefix(SHIFTED)?.parse().ok()
-}
-
-/// Whose line the note stands under: what a program asked for under its instance, what the axis did under
-/// the axis.
-fn subject<'n>(names: &'n Names, record: &Record) -> &'n str {
-    match record.event {
-        Event::Refused { .. }
-        | Event::PointRefused { .. }
-        | Event::Clamped { .. }
-        | Event::Raised { .. }
-        | Event::Superimposed { .. }
-        | Event::RoomAwaited => names.instance(record).unwrap_or_else(|| names.axis(record)),
-        Event::Unavoidable(_)
-        | Event::Planned { .. }
-        | Event::Paused { .. }
-        | Event::Fault { .. }
-        | Event::Shifted { .. } => names.axis(record),
-    }
-}
-
-fn limit_text(limit: f64) -> String {
-    if limit.is_nan() {
-        String::new()
-    } else {
-        format!(", limit {}", shortest(limit))
-    }
-}
-
 fn text(names: &Names, record: &Record, plan: Option<&StandardPlan>) -> String {
-    match record.event {
-        Event::Refused {
-            pin,
-            value,
-            limit,
-            error,
-        } => {
-            let number = error.number();
-            let value = match pin {
-                "" => String::new(),
-                // Numbers of an enumeration.
-                "BufferMode" | "Direction" | "ExecutionMode" => format!(", {pin} {value}"),
-                pin => format!(", {pin} {}", shortest(value)),
-            };
-            let limit = limit_text(limit);
-            format!("refused: {number} {}{value}{limit}", error.name())
-        }
-        Event::PointRefused {
-            point,
-            what,
-            value,
-            limit,
-            error,
-        } => {
-            let (number, name) = (error.number(), error.name());
-            let (value, limit) = (shortest(value), limit_text(limit));
-            format!("refused: {number} {name}, point {point}, {what} {value}{limit}")
-        }
-        Event::Clamped { pin, value, limit } => {
-            format!("clamped: {pin} {} to {}", shortest(value), shortest(limit))
-        }
-        Event::Raised { pin, value, limit } => {
-            format!("raised: {pin} {} to {}", shortest(value), shortest(limit))
-        }
-        Event::Unavoidable(excess) => format!("unavoidable: {}", excess_text(&excess)),
-        Event::Planned { goal, scans } => {
-            let goal = match goal {
-                Goal::Position(position) => format!("position {}", shortest(position)),
-                Goal::Velocity(velocity) => format!("velocity {}", shortest(velocity)),
-                Goal::Passing { position, velocity } => {
-                    format!("velocity {} at {}", shortest(velocity), shortest(position))
-                }
-            };
-            let by = names
-                .instance(record)
-                .map_or_else(String::new, |name| format!(" for {name}"));
-            let how = plan.map_or_else(String::new, |plan| format!("; {}", plan_text(plan)));
-            format!("plan{by} to {goal} in {scans} scans{how}")
-        }
-        Event::Superimposed {
-            distance: Some(distance),
-            scans,
-        } => format!("superimposes {} in {scans} scans", shortest(distance)),
-        Event::Superimposed {
-            distance: None,
-            scans,
-        } => {
-            format!("superimposed motion to rest in {scans} scans")
-        }
-        Event::RoomAwaited => "waits for room below the axis limits".to_owned(),
-        Event::Paused { error } => format!("pauses: {} {}", error.number(), error.name()),
-        Event::Shifted { by } => format!("{SHIFTED}{}", shortest(by)),
-        Event::Fault { error, code } => {
-            format!("fault {} {}, code {code}", error.number(), error.name())
-        }
+    let mut text = String::new();
+    // A string takes whatever is written to it.
+    happened(&mut text, names, record).unwrap_or_default();
+    if let (Event::Planned { .. }, Some(plan)) = (record.event, plan) {
+        text += "; ";
+        text += &plan_text(plan);
     }
-}
-
-fn excess_text(excess: &Excess) -> String {
-    let parts = [
-        ("velocity", excess.velocity),
-        ("acceleration", excess.acceleration),
-        ("jerk", excess.jerk),
-    ];
-    let told = parts
-        .iter()
-        .filter(|(_, value)| *value != 0.0)
-        .map(|(name, value)| format!("{name} {} above its limit", shortest(*value)));
-    told.collect::<Vec<_>>().join(", ")
+    text
 }
 
 /// Everything a plan is made of, to the bit.

@@ -225,17 +225,17 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// The row of this scan.
+    /// The row of this scan. It goes into the trace cell by cell, so that nothing is taken from the heap for it.
     fn push_row(&mut self, machine: &ScriptMachine) {
         let instances = &self.values.instances;
-        let pins: Vec<_> = instances
-            .iter()
-            .flat_map(|instance| (0..).map_while(|pin| instance.get(pin)))
-            .zip(&self.types)
-            .map(|(value, ty)| (*ty, value))
-            .collect();
-        for (ty, value) in &pins {
-            self.cells.prepare(*ty, *value);
+        let pins = || {
+            let pins = instances
+                .iter()
+                .flat_map(|instance| (0..).map_while(|pin| instance.get(pin)));
+            self.types.iter().copied().zip(pins)
+        };
+        for (ty, value) in pins() {
+            self.cells.prepare(ty, value);
         }
         let axes = machine.axes().iter().zip(&self.states).flat_map(|(axis, state)| {
             let setpoint = axis.setpoint();
@@ -255,11 +255,11 @@ impl<'a> Bench<'a> {
             .variables
             .iter()
             .map(|value| named.cell(PinType::Lreal, *value));
-        let pins = pins.iter().map(|(ty, value)| named.cell(*ty, *value));
+        let pins = pins().map(|(ty, value)| named.cell(ty, value));
         let symbols = self.values.symbols.iter().flatten();
         let symbols = symbols.map(|value| named.cell(cells::type_of(*value), *value));
-        let row: Vec<_> = axes.chain(variables).chain(pins).chain(symbols).collect();
-        if let Err(error) = self.trace.push_row(&row) {
+        let row = axes.chain(variables).chain(pins).chain(symbols);
+        if let Err(error) = self.trace.push_cells(row) {
             self.stop(RunError::Internal(error.to_string()));
         }
     }
@@ -268,7 +268,7 @@ impl<'a> Bench<'a> {
 impl Programs<Standard, SimulatedDrive> for Bench<'_> {
     fn latch(&mut self, time: ScanTime, machine: &mut ScriptMachine) {
         let script = self.script;
-        for index in self.schedule.take(time.scan) {
+        while let Some(index) = self.schedule.take(time.scan) {
             let actions = script.steps.get(index).map_or(&[][..], |step| &step.actions);
             for action in actions {
                 self.apply(index, action, time, machine);

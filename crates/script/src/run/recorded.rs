@@ -5,7 +5,7 @@ use super::rows::{Rows, Shift};
 use super::{Outcome, told};
 use crate::claims;
 use crate::model::{AxisNumber, ClaimKind, Comparison, Condition, Point, Script, Signal, Test};
-use standstill_record::told::shift;
+use standstill_record::text::shift;
 use standstill_trace::Trace;
 use std::collections::BTreeSet;
 

@@ -3,7 +3,7 @@
 use super::cells;
 use super::layout::Layout;
 use crate::model::{AxisNumber, Comparison, Condition, Point, Script, Signal, Test};
-use standstill_fb::PinType;
+use standstill_fb::{PinType, Value};
 use standstill_record::told::enum_number;
 use standstill_trace::{Cell, Trace};
 
@@ -163,8 +163,20 @@ impl<'a> Rows<'a> {
                 _ => number(cell).is_some_and(|value| same(value, *wanted)),
             },
             Test::Named(wanted) => {
-                let text = cells::value_text(self.script, self.pin_type(signal), *wanted);
-                matches!(cell, Cell::Name(name) if name == text)
+                let Cell::Name(name) = cell else {
+                    return false;
+                };
+                // What has a name is compared without making its text.
+                match (*wanted, self.pin_type(signal)) {
+                    (Value::Enum(number), Some(PinType::Enum(info))) if info.name_of(number).is_some() => {
+                        info.name_of(number) == Some(name)
+                    }
+                    (Value::Axis(id), _) => {
+                        let axis = self.script.axes.get(id.index());
+                        name == axis.map_or("", |axis| axis.name.as_str())
+                    }
+                    (wanted, ty) => name == cells::value_text(self.script, ty, wanted),
+                }
             }
             Test::Compare(comparisons) => comparisons
                 .iter()

@@ -2,34 +2,36 @@
 
 use super::rows::Rows;
 use crate::model::{Script, When};
-use std::collections::{BTreeMap, BTreeSet};
 
 /// The steps to come, and which of the conditional ones wait for their conditions.
 #[derive(Clone, Debug)]
 pub(crate) struct Schedule {
-    /// Indices of the steps per scan; a set, because steps of one scan apply in file order.
-    due: BTreeMap<u64, BTreeSet<usize>>,
+    /// Scans and the indices of the steps that apply then, the last one first; steps of one scan apply in file order.
+    due: Vec<(u64, usize)>,
     /// Per step: it applies when its conditions hold next.
     armed: Vec<bool>,
 }
 
 impl Schedule {
     pub(crate) fn new(script: &Script) -> Self {
-        let mut due: BTreeMap<u64, BTreeSet<usize>> = BTreeMap::new();
-        for (index, step) in script.steps.iter().enumerate() {
-            if let When::At(scan) = step.when {
-                due.entry(scan).or_default().insert(index);
-            }
-        }
+        let steps = (0..).zip(&script.steps);
+        // With room for every step to come, so that a scan takes no memory for them.
+        let mut due = Vec::with_capacity(2 * script.steps.len());
+        due.extend(steps.filter_map(|(index, step)| match step.when {
+            When::At(scan) => Some((scan, index)),
+            When::Holds { .. } => None,
+        }));
+        due.sort_unstable_by(|one, other| other.cmp(one));
         Self {
             due,
             armed: vec![true; script.steps.len()],
         }
     }
 
-    /// The steps of this scan, in file order.
-    pub(crate) fn take(&mut self, scan: u64) -> BTreeSet<usize> {
-        self.due.remove(&scan).unwrap_or_default()
+    /// The next step of this scan, in file order; each is given once.
+    pub(crate) fn take(&mut self, scan: u64) -> Option<usize> {
+        let (_, index) = self.due.pop_if(|(due, _)| *due <= scan)?;
+        Some(index)
     }
 
     /// Looks at the row of `scan`: conditions that hold on it bring their step `after` scans later than the
@@ -51,7 +53,10 @@ impl Schedule {
             let holds = rows.hold(conditions, scan);
             if holds && *armed {
                 let apply = scan.saturating_add(1).saturating_add(*after);
-                self.due.entry(apply).or_default().insert(index);
+                let entry = (apply, index);
+                if let Err(place) = self.due.binary_search_by(|other| entry.cmp(other)) {
+                    self.due.insert(place, entry);
+                }
             }
             *armed = !holds;
         }

@@ -69,13 +69,16 @@ impl Values {
 
     /// What a wire carries; a logical wire carries nothing if one of its points is no BOOL.
     pub(crate) fn wire(&self, wire: &Wire) -> Option<Value> {
-        let all: &dyn Fn(&[Point]) -> Option<Vec<bool>> =
-            &|points| points.iter().map(|point| self.bool(*point)).collect();
+        // How many are TRUE; none if one of them is no BOOL.
+        let count = |points: &[Point]| {
+            let mut flags = points.iter().map(|point| self.bool(*point));
+            flags.try_fold(0, |count, flag| Some(count + usize::from(flag?)))
+        };
         match wire {
             Wire::From(point) => self.read(*point),
             Wire::Not(point) => Some(Value::Bool(!self.bool(*point)?)),
-            Wire::Any(points) => Some(Value::Bool(all(points)?.contains(&true))),
-            Wire::All(points) => Some(Value::Bool(!all(points)?.contains(&false))),
+            Wire::Any(points) => Some(Value::Bool(count(points)? > 0)),
+            Wire::All(points) => Some(Value::Bool(count(points)? == points.len())),
         }
     }
 

@@ -1,0 +1,243 @@
+//! Where the last scans stand in memory of whatever kind, and the trigger that freezes them.
+
+use crate::word;
+use standstill_axis::{Axis, AxisState, Log, Planner};
+use standstill_fb::AnyInstance;
+
+/// Words of an axis in a row: its state, and the numbers of a trace.
+pub const AXIS_WORDS: usize = 7;
+
+/// How much a recorder keeps, and when it stops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Setup {
+    /// Scans that are kept: the last ones, and after a freeze those around the trigger. At least 1.
+    pub scans: usize,
+    /// Of these, scans after that of the trigger. Less than `scans`.
+    pub after: usize,
+    /// Records of axes (plans, refusals, faults) that are kept; older ones give way.
+    pub records: usize,
+    /// What freezes it.
+    pub trigger: Trigger,
+}
+
+impl Default for Setup {
+    /// 2000 scans, 500 of them after an axis went into ErrorStop, and 256 records.
+    fn default() -> Self {
+        Self {
+            scans: 2000,
+            after: 500,
+            records: 256,
+            trigger: Trigger::ErrorStop,
+        }
+    }
+}
+
+/// What freezes a recorder.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Trigger {
+    /// An axis goes into ErrorStop, or [`Recorder::trip`].
+    #[default]
+    ErrorStop,
+    /// Only [`Recorder::trip`].
+    Host,
+}
+
+/// Where a recorder stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// It keeps the last scans.
+    Armed,
+    /// The trigger was seen; so many scans are still to come.
+    Tripped {
+        /// Scans until it freezes.
+        left: usize,
+    },
+    /// What is there stays, until [`Recorder::arm`].
+    Frozen,
+}
+
+/// What tripped a recorder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Tripped {
+    /// The scan, counted from arming.
+    at: u64,
+    /// Place of the axis; none if the host did.
+    axis: Option<usize>,
+}
+
+/// The places of rows and records in lists of fixed length, and when to stop writing there.
+///
+/// It has no rows itself: [`Recorder`](crate::Recorder) keeps them on the heap, others in memory they were given.
+#[derive(Clone, Copy, Debug)]
+pub struct Ring {
+    setup: Setup,
+    /// Scans since arming.
+    seen: u64,
+    /// Number of the first scan since arming.
+    first: u64,
+    state: State,
+    tripped: Option<Tripped>,
+    /// Records since arming.
+    recorded: u64,
+    /// Records of the log taken so far.
+    taken: u64,
+}
+
+impl Ring {
+    /// Armed. A `setup` of no scans counts as one of 1, and `after` is at most one less than the scans.
+    pub fn new(setup: Setup) -> Self {
+        let scans = setup.scans.max(1);
+        Self {
+            setup: Setup {
+                scans,
+                after: setup.after.min(scans - 1),
+                ..setup
+            },
+            seen: 0,
+            first: 0,
+            state: State::Armed,
+            tripped: None,
+            recorded: 0,
+            taken: 0,
+        }
+    }
+
+    /// How much it keeps.
+    pub const fn setup(&self) -> &Setup {
+        &self.setup
+    }
+
+    /// The states of the axes after all blocks were called and before the motion step; `states` are those of the scan
+    /// before, and become these.
+    pub fn observe<P: Planner>(&mut self, states: &mut [AxisState], axes: &[Axis<P>]) {
+        let entered = |(state, axis): (&AxisState, &Axis<P>)| {
+            axis.state() == AxisState::ErrorStop && *state != AxisState::ErrorStop
+        };
+        let found = states.iter().zip(axes).position(entered);
+        for (state, axis) in states.iter_mut().zip(axes) {
+            *state = axis.state();
+        }
+        if let (Some(axis), Trigger::ErrorStop) = (found, self.setup.trigger) {
+            self.trip(Some(axis));
+        }
+    }
+
+    /// The end of `scan`: the place of its row, or none if it is not to be kept.
+    pub fn begin(&mut self, scan: u64, log: &Log) -> Option<usize> {
+        if self.state == State::Frozen {
+            self.taken = log.total();
+            return None;
+        }
+        if self.seen == 0 {
+            self.first = scan;
+        }
+        Some(self.place(self.seen, self.setup.scans))
+    }
+
+    /// The number of the first record of the log that was not taken yet.
+    pub const fn taken(&self) -> u64 {
+        self.taken
+    }
+
+    /// The place of one more record; none if none are kept.
+    pub fn keep(&mut self) -> Option<usize> {
+        let number = self.recorded;
+        self.recorded += 1;
+        (self.setup.records > 0).then(|| self.place(number, self.setup.records))
+    }
+
+    /// The row and the records are there.
+    pub fn end(&mut self, log: &Log) {
+        self.taken = log.total();
+        self.seen += 1;
+        self.state = match self.state {
+            State::Tripped { left: 0 } => State::Frozen,
+            State::Tripped { left } => State::Tripped { left: left - 1 },
+            other => other,
+        };
+    }
+
+    /// Trips in the scan whose end comes next, because of an axis at this place or for a reason of the host's; without
+    /// effect on one that has tripped.
+    pub fn trip(&mut self, axis: Option<usize>) {
+        if self.state == State::Armed {
+            self.state = State::Tripped {
+                left: self.setup.after,
+            };
+            self.tripped = Some(Tripped { at: self.seen, axis });
+        }
+    }
+
+    /// Forgets everything and waits for the next trigger.
+    pub fn arm(&mut self) {
+        self.seen = 0;
+        self.state = State::Armed;
+        self.tripped = None;
+        self.recorded = 0;
+    }
+
+    /// Where it stands.
+    pub const fn state(&self) -> State {
+        self.state
+    }
+
+    /// The scan that tripped it, and the place of the axis that went into ErrorStop; no axis if the host did.
+    pub fn tripped(&self) -> Option<(u64, Option<usize>)> {
+        let tripped = self.tripped?;
+        Some((self.first + tripped.at, tripped.axis))
+    }
+
+    /// The number of the first scan that is there, and how many are.
+    pub fn scans(&self) -> (u64, usize) {
+        let kept = self.seen.min(self.setup.scans as u64);
+        (self.first + (self.seen - kept), kept as usize)
+    }
+
+    /// The place of the row of the scan that is the `row`th of those that are there.
+    pub fn row(&self, row: usize) -> Option<usize> {
+        let (_, kept) = self.scans();
+        let oldest = self.seen - kept as u64;
+        (row < kept).then(|| self.place(oldest + row as u64, self.setup.scans))
+    }
+
+    /// The places of the records that are there, oldest first.
+    pub fn records(&self) -> impl Iterator<Item = usize> + use<> {
+        let ring = *self;
+        let kept = ring.recorded.min(ring.setup.records as u64);
+        (ring.recorded - kept..ring.recorded).map(move |number| ring.place(number, ring.setup.records))
+    }
+
+    /// A number that rises with every scan that is kept, and when it is armed.
+    pub const fn stamp(&self) -> u64 {
+        self.first.wrapping_add(self.seen)
+    }
+
+    fn place(&self, number: u64, room: usize) -> usize {
+        number.checked_rem(room as u64).unwrap_or_default() as usize
+    }
+}
+
+/// Writes an axis into its words of a row: the place of its state in [`AxisState::ALL`], then the bits of its numbers.
+/// `state` is that before the motion step, set-points are those the drive was given.
+pub fn write_axis<P: Planner>(words: &mut [u64], state: AxisState, axis: &Axis<P>) {
+    let setpoint = axis.setpoint();
+    let numbers = [
+        setpoint.position,
+        setpoint.velocity,
+        setpoint.acceleration,
+        setpoint.jerk,
+        setpoint.snap,
+        axis.actual_position(),
+    ];
+    let all = core::iter::once(state as u64).chain(numbers.map(f64::to_bits));
+    for (word, value) in words.iter_mut().zip(all) {
+        *word = value;
+    }
+}
+
+/// Writes the pins of an instance into its words of a row.
+pub fn write_pins(words: &mut [u64], instance: &dyn AnyInstance) {
+    for (place, word) in words.iter_mut().enumerate() {
+        *word = instance.get(place).map_or(0, word::of);
+    }
+}

@@ -1,0 +1,415 @@
+//! A recorder's scans as the text of a trace, line by line, without a heap.
+//!
+//! The text is that which `standstill-trace` writes of the same rows; a test of the C library, which has a recorder in
+//! memory of its host, holds the two against each other.
+
+mod number;
+mod sentence;
+
+pub use number::{integer, real, whole};
+pub use sentence::{Called, happened, shift, standing, subject};
+
+use crate::ring::{AXIS_WORDS, Ring};
+use crate::word;
+use core::fmt::{self, Write};
+use standstill_axis::{AxisConfig, AxisState, Order, Record};
+use standstill_fb::{BlockInfo, Direction, PinType, TableRef, Value};
+
+/// A recorder: what it recorded, and where that stands.
+pub trait Recorded: Called {
+    /// Where rows and records stand.
+    fn ring(&self) -> &Ring;
+
+    /// Label of the unit and configuration of the axis at a place; none behind the last one.
+    fn axis_setup(&self, place: usize) -> Option<(&str, &AxisConfig)>;
+
+    /// Name and block of the instance at a place; none behind the last one.
+    fn instance_setup(&self, place: usize) -> Option<(&str, &'static BlockInfo)>;
+
+    /// The words at a place of the ring: of every axis, then of every instance.
+    fn row(&self, place: usize) -> &[u64];
+
+    /// The record at a place of the ring.
+    fn record(&self, place: usize) -> Option<&Record>;
+}
+
+/// The forms of a trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// JSON Lines: the header, then an object a scan.
+    JsonLines,
+    /// A table: the names of the columns, then a line a scan.
+    Csv,
+    /// What stands beside a table: the header.
+    Meta,
+}
+
+impl Form {
+    /// Lines there are of a recorder.
+    pub fn lines(self, recorded: &impl Recorded) -> u64 {
+        match self {
+            Self::JsonLines | Self::Csv => 1 + recorded.ring().scans().1 as u64,
+            Self::Meta => 1,
+        }
+    }
+}
+
+/// Writes line `line` of a form, from 0, and its end; nothing behind the last one. `cycle_ns` is the time between two scans
+/// (ns).
+///
+/// Cost: as the number of signals, or for a header also as that of records.
+///
+/// # Errors
+/// Those of `out`.
+pub fn line(
+    out: &mut impl Write,
+    form: Form,
+    line: u64,
+    recorded: &impl Recorded,
+    title: &str,
+    cycle_ns: u64,
+) -> fmt::Result {
+    if line >= form.lines(recorded) {
+        return Ok(());
+    }
+    match (form, line.checked_sub(1)) {
+        (Form::Csv, None) => names(out, recorded)?,
+        (_, None) => header(out, recorded, title, cycle_ns)?,
+        (_, Some(scan)) => row(out, form, scan, recorded, cycle_ns)?,
+    }
+    out.write_str("\n")
+}
+
+/// The columns of every axis, in the order of its words.
+const SIGNALS: [&str; AXIS_WORDS] = [
+    "State",
+    "Position",
+    "Velocity",
+    "Acceleration",
+    "Jerk",
+    "Snap",
+    "ActualPosition",
+];
+
+fn axes(recorded: &impl Recorded) -> impl Iterator<Item = (&str, &str, &AxisConfig)> {
+    (0..).map_while(|place| {
+        let (unit, config) = recorded.axis_setup(place)?;
+        Some((recorded.axis(place), unit, config))
+    })
+}
+
+fn instances(recorded: &impl Recorded) -> impl Iterator<Item = (&str, &'static BlockInfo)> {
+    (0..).map_while(|place| recorded.instance_setup(place))
+}
+
+fn names(out: &mut impl Write, recorded: &impl Recorded) -> fmt::Result {
+    out.write_str("scan,time_ns")?;
+    let mut column = |of: &str, signal: &str| {
+        for part in [",", of, ".", signal] {
+            out.write_str(part)?;
+        }
+        Ok(())
+    };
+    for (axis, ..) in axes(recorded) {
+        for signal in SIGNALS {
+            column(axis, signal)?;
+        }
+    }
+    for (instance, block) in instances(recorded) {
+        for pin in block.pins() {
+            column(instance, pin.name)?;
+        }
+    }
+    Ok(())
+}
+
+fn row(out: &mut impl Write, form: Form, scan: u64, recorded: &impl Recorded, cycle_ns: u64) -> fmt::Result {
+    let is_json = form == Form::JsonLines;
+    out.write_str(if is_json { "{\"scan\":" } else { "" })?;
+    whole(out, scan)?;
+    out.write_str(if is_json { ",\"time_ns\":" } else { "," })?;
+    whole(out, scan.wrapping_mul(cycle_ns))?;
+    let place = usize::try_from(scan)
+        .ok()
+        .and_then(|scan| recorded.ring().row(scan));
+    let mut words = place.map_or(&[][..], |place| recorded.row(place)).iter().copied();
+    let mut cell = |of: &str, signal: &str, value: Cell<'_>| {
+        out.write_str(",")?;
+        if is_json {
+            for part in ["\"", of, ".", signal, "\":"] {
+                out.write_str(part)?;
+            }
+        }
+        value.write(out, is_json)
+    };
+    for (axis, ..) in axes(recorded) {
+        for signal in SIGNALS {
+            let word = words.next().unwrap_or_default();
+            let value = if signal == "State" {
+                Cell::Name(state(word))
+            } else {
+                Cell::Real(f64::from_bits(word))
+            };
+            cell(axis, signal, value)?;
+        }
+    }
+    for (instance, block) in instances(recorded) {
+        for pin in block.pins() {
+            let value = word::value(pin.ty, words.next().unwrap_or_default());
+            cell(instance, pin.name, Cell::of(pin.ty, value, recorded))?;
+        }
+    }
+    out.write_str(if is_json { "}" } else { "" })
+}
+
+fn state(word: u64) -> &'static str {
+    let found = AxisState::ALL.iter().find(|known| **known as u64 == word);
+    found.map_or("", |known| known.name())
+}
+
+/// A value as a trace shows it.
+enum Cell<'a> {
+    Bool(bool),
+    Integer(i64),
+    Real(f64),
+    Name(&'a str),
+    /// A number where a name would stand.
+    Nameless(i32),
+    Records(u16),
+}
+
+impl<'a> Cell<'a> {
+    fn of(ty: PinType, value: Value, names: &'a impl Called) -> Self {
+        match value {
+            Value::Bool(value) => Self::Bool(value),
+            Value::Int(value) => Self::Integer(value.into()),
+            Value::Lreal(value) => Self::Real(value),
+            Value::Word(value) => Self::Integer(value.into()),
+            Value::Dword(value) => Self::Integer(value.into()),
+            Value::Time(ns) => Self::Integer(ns),
+            Value::Table(TableRef { records, .. }) => Self::Records(records),
+            Value::Axis(id) => Self::Name(names.axis(id.index())),
+            Value::Enum(number) => match ty {
+                PinType::Enum(info) => info.name_of(number).map_or(Self::Nameless(number), Self::Name),
+                _ => Self::Nameless(number),
+            },
+        }
+    }
+
+    fn write(&self, out: &mut impl Write, is_json: bool) -> fmt::Result {
+        let is_quoted = is_json
+            && match self {
+                Self::Bool(_) | Self::Integer(_) => false,
+                Self::Real(value) => !value.is_finite(),
+                Self::Name(_) | Self::Nameless(_) | Self::Records(_) => true,
+            };
+        let quote = if is_quoted { "\"" } else { "" };
+        out.write_str(quote)?;
+        match *self {
+            Self::Bool(value) => out.write_str(match (value, is_json) {
+                (true, true) => "true",
+                (true, false) => "TRUE",
+                (false, true) => "false",
+                (false, false) => "FALSE",
+            })?,
+            Self::Integer(value) => integer(out, value)?,
+            Self::Real(value) => real(out, value)?,
+            Self::Name(text) => out.write_str(text)?,
+            Self::Nameless(number) => integer(out, number.into())?,
+            Self::Records(records) => {
+                whole(out, records.into())?;
+                out.write_str(if records == 1 { " record" } else { " records" })?;
+            }
+        }
+        out.write_str(quote)
+    }
+}
+
+/// The members of a JSON object, one after the other.
+struct Members<'w, W> {
+    out: &'w mut W,
+    is_first: bool,
+}
+
+impl<W: Write> Members<'_, W> {
+    fn key(&mut self, key: &str) -> fmt::Result {
+        if !core::mem::take(&mut self.is_first) {
+            self.out.write_str(",")?;
+        }
+        for part in ["\"", key, "\":"] {
+            self.out.write_str(part)?;
+        }
+        Ok(())
+    }
+
+    fn raw(&mut self, key: &str, value: &str) -> fmt::Result {
+        self.key(key)?;
+        self.out.write_str(value)
+    }
+
+    /// A text in which nothing has to be escaped.
+    fn text(&mut self, key: &str, value: &str) -> fmt::Result {
+        self.key(key)?;
+        for part in ["\"", value, "\""] {
+            self.out.write_str(part)?;
+        }
+        Ok(())
+    }
+
+    fn whole(&mut self, key: &str, value: u64) -> fmt::Result {
+        self.key(key)?;
+        whole(self.out, value)
+    }
+
+    /// A limit; none if it is not finite.
+    fn limit(&mut self, key: &str, value: Option<f64>) -> fmt::Result {
+        match value.filter(|value| value.is_finite()) {
+            None => Ok(()),
+            Some(value) => {
+                self.key(key)?;
+                real(self.out, value)
+            }
+        }
+    }
+
+    /// A list or an object, by whoever writes it.
+    fn nested<'s>(&'s mut self, key: &str) -> Result<&'s mut W, fmt::Error> {
+        self.key(key)?;
+        Ok(self.out)
+    }
+}
+
+fn object<W: Write>(out: &mut W, write: impl FnOnce(&mut Members<'_, W>) -> fmt::Result) -> fmt::Result {
+    out.write_str("{")?;
+    write(&mut Members { out, is_first: true })?;
+    out.write_str("}")
+}
+
+fn list<W: Write, T>(
+    out: &mut W,
+    items: impl Iterator<Item = T>,
+    mut write: impl FnMut(&mut W, T) -> fmt::Result,
+) -> fmt::Result {
+    out.write_str("[")?;
+    let mut is_first = true;
+    for item in items {
+        if !core::mem::take(&mut is_first) {
+            out.write_str(",")?;
+        }
+        write(out, item)?;
+    }
+    out.write_str("]")
+}
+
+fn header<W: Write>(out: &mut W, recorded: &impl Recorded, title: &str, cycle_ns: u64) -> fmt::Result {
+    object(out, |header| {
+        header.whole("standstill_trace", 1)?;
+        header.text("runtime", env!("CARGO_PKG_VERSION"))?;
+        header.text("title", title)?;
+        header.raw("covers", "[]")?;
+        header.text("script_hash", "")?;
+        header.whole("cycle_ns", cycle_ns)?;
+        list(
+            header.nested("axes")?,
+            axes(recorded),
+            |out, (name, unit, config)| axis(out, name, unit, config),
+        )?;
+        header.raw("inputs", "[]")?;
+        list(
+            header.nested("instances")?,
+            instances(recorded),
+            |out, (name, block)| instance(out, name, block),
+        )?;
+        header.raw("claims", "[]")?;
+        let out = header.nested("notes")?;
+        out.write_str("[")?;
+        note(out, 0, "recorder", |out| standing(out, recorded.ring(), recorded))?;
+        let (first, kept) = recorded.ring().scans();
+        for record in recorded
+            .ring()
+            .records()
+            .filter_map(|place| recorded.record(place))
+        {
+            let row = record.scan.checked_sub(first).filter(|row| *row < kept as u64);
+            if let Some(row) = row {
+                out.write_str(",")?;
+                note(out, row, subject(recorded, record), |out| {
+                    happened(out, recorded, record)
+                })?;
+            }
+        }
+        out.write_str("]")
+    })
+}
+
+fn axis<W: Write>(out: &mut W, name: &str, unit: &str, config: &AxisConfig) -> fmt::Result {
+    let limits = &config.limits;
+    object(out, |axis| {
+        axis.text("name", name)?;
+        axis.text("unit", unit)?;
+        axis.whole(
+            "order",
+            match limits.order() {
+                Order::Two => 2,
+                Order::Three => 3,
+                Order::Four => 4,
+            },
+        )?;
+        object(axis.nested("limits")?, |told| {
+            told.limit("position_min", config.software_limits.map(|(min, _)| min))?;
+            told.limit("position_max", config.software_limits.map(|(_, max)| max))?;
+            told.limit("velocity", Some(limits.velocity))?;
+            told.limit("acceleration", Some(limits.acceleration))?;
+            told.limit("deceleration", Some(limits.deceleration))?;
+            told.limit("jerk", Some(limits.jerk))?;
+            told.limit("snap", Some(limits.snap))
+        })?;
+        axis.limit("modulo", config.modulo)?;
+        let Some(scaling) = config.scaling else {
+            return Ok(());
+        };
+        object(axis.nested("scaling")?, |told| {
+            told.whole("increments", scaling.increments().into())?;
+            told.whole("units", scaling.units().into())?;
+            told.raw("invert", if scaling.invert() { "true" } else { "false" })?;
+            told.limit("offset", Some(scaling.offset()))
+        })
+    })
+}
+
+fn instance<W: Write>(out: &mut W, name: &str, block: &'static BlockInfo) -> fmt::Result {
+    object(out, |told| {
+        told.text("name", name)?;
+        told.text("type", block.name)?;
+        list(told.nested("pins")?, block.pins(), |out, pin| {
+            object(out, |told| {
+                told.text("name", pin.name)?;
+                told.text("type", pin.ty.iec_name())?;
+                told.text(
+                    "direction",
+                    match pin.direction {
+                        Direction::InOut => "in_out",
+                        Direction::Input => "input",
+                        Direction::Output => "output",
+                    },
+                )
+            })
+        })
+    })
+}
+
+fn note<W: Write>(
+    out: &mut W,
+    scan: u64,
+    subject: &str,
+    text: impl FnOnce(&mut W) -> fmt::Result,
+) -> fmt::Result {
+    object(out, |note| {
+        note.whole("scan", scan)?;
+        note.text("subject", subject)?;
+        let out = note.nested("text")?;
+        out.write_str("\"")?;
+        text(out)?;
+        out.write_str("\"")
+    })
+}

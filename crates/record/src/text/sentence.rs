@@ -1,0 +1,221 @@
+//! What the axes recorded, and where a recorder stands, in words.
+
+use super::number::{integer, real, whole};
+use crate::ring::Ring;
+use core::fmt::{self, Write};
+use standstill_axis::{Event, Excess, Goal, Record};
+
+/// What axes and block instances are called.
+pub trait Called {
+    /// The axis at a place; empty if there is none.
+    fn axis(&self, place: usize) -> &str;
+
+    /// The instance of a number in records.
+    fn instance(&self, number: u16) -> Option<&str>;
+}
+
+/// Whose line a record stands under: what a program asked for under its instance, what the axis did under the axis.
+pub fn subject<'n>(names: &'n impl Called, record: &Record) -> &'n str {
+    let axis = names.axis(record.axis.index());
+    match record.event {
+        Event::Refused { .. }
+        | Event::PointRefused { .. }
+        | Event::Clamped { .. }
+        | Event::Raised { .. }
+        | Event::Superimposed { .. }
+        | Event::RoomAwaited => names.instance(record.instance.0).unwrap_or(axis),
+        Event::Unavoidable(_)
+        | Event::Planned { .. }
+        | Event::Paused { .. }
+        | Event::Fault { .. }
+        | Event::Shifted { .. } => axis,
+    }
+}
+
+/// What the sentence of a shift begins with.
+const SHIFTED: &str = "coordinates moved by ";
+
+/// By how much the coordinates of its subject moved (u), if this is what a sentence tells.
+#[must_use]
+pub fn shift(sentence: &str) -> Option<f64> {
+    sentence.strip_prefix(SHIFTED)?.parse().ok()
+}
+
+/// What happened.
+///
+/// # Errors
+/// Those of `out`.
+pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> fmt::Result {
+    match record.event {
+        Event::Refused {
+            pin,
+            value,
+            limit,
+            error,
+        } => {
+            refusal(out, error.number(), error.name())?;
+            if !pin.is_empty() {
+                out.write_str(", ")?;
+                out.write_str(pin)?;
+                out.write_str(" ")?;
+                match pin {
+                    // Numbers of an enumeration.
+                    "BufferMode" | "Direction" | "ExecutionMode" => integer(out, value as i64)?,
+                    _ => real(out, value)?,
+                }
+            }
+            limited(out, limit)
+        }
+        Event::PointRefused {
+            point,
+            what,
+            value,
+            limit,
+            error,
+        } => {
+            refusal(out, error.number(), error.name())?;
+            out.write_str(", point ")?;
+            whole(out, point.into())?;
+            out.write_str(", ")?;
+            out.write_str(what)?;
+            out.write_str(" ")?;
+            real(out, value)?;
+            limited(out, limit)
+        }
+        Event::Clamped { pin, value, limit } => changed(out, "clamped: ", pin, value, limit),
+        Event::Raised { pin, value, limit } => changed(out, "raised: ", pin, value, limit),
+        Event::Unavoidable(excess) => {
+            out.write_str("unavoidable: ")?;
+            unavoidable(out, &excess)
+        }
+        Event::Planned { goal, scans } => {
+            out.write_str("plan")?;
+            if let Some(name) = names.instance(record.instance.0) {
+                out.write_str(" for ")?;
+                out.write_str(name)?;
+            }
+            match goal {
+                Goal::Position(position) => {
+                    out.write_str(" to position ")?;
+                    real(out, position)?;
+                }
+                Goal::Velocity(velocity) => {
+                    out.write_str(" to velocity ")?;
+                    real(out, velocity)?;
+                }
+                Goal::Passing { position, velocity } => {
+                    out.write_str(" to velocity ")?;
+                    real(out, velocity)?;
+                    out.write_str(" at ")?;
+                    real(out, position)?;
+                }
+            }
+            in_scans(out, scans)
+        }
+        Event::Superimposed { distance, scans } => {
+            match distance {
+                Some(distance) => {
+                    out.write_str("superimposes ")?;
+                    real(out, distance)?;
+                }
+                None => out.write_str("superimposed motion to rest")?,
+            }
+            in_scans(out, scans)
+        }
+        Event::RoomAwaited => out.write_str("waits for room below the axis limits"),
+        Event::Paused { error } => {
+            out.write_str("pauses: ")?;
+            whole(out, error.number().into())?;
+            out.write_str(" ")?;
+            out.write_str(error.name())
+        }
+        Event::Shifted { by } => {
+            out.write_str(SHIFTED)?;
+            real(out, by)
+        }
+        Event::Fault { error, code } => {
+            out.write_str("fault ")?;
+            whole(out, error.number().into())?;
+            out.write_str(" ")?;
+            out.write_str(error.name())?;
+            out.write_str(", code ")?;
+            whole(out, code.into())
+        }
+    }
+}
+
+/// Which scans of the machine a recorder has, and why there are no more.
+///
+/// # Errors
+/// Those of `out`.
+pub fn standing(out: &mut impl Write, ring: &Ring, names: &impl Called) -> fmt::Result {
+    let (first, kept) = ring.scans();
+    out.write_str("scans ")?;
+    whole(out, first)?;
+    out.write_str(" to ")?;
+    whole(out, first + (kept as u64).saturating_sub(1))?;
+    out.write_str(" of the machine")?;
+    let Some((scan, axis)) = ring.tripped() else {
+        return Ok(());
+    };
+    out.write_str("; tripped by ")?;
+    match axis {
+        None => out.write_str("the host")?,
+        Some(axis) => {
+            out.write_str("ErrorStop of ")?;
+            out.write_str(names.axis(axis))?;
+        }
+    }
+    out.write_str(" in scan ")?;
+    whole(out, scan)?;
+    out.write_str(", here ")?;
+    whole(out, scan.saturating_sub(first))
+}
+
+fn refusal(out: &mut impl Write, number: u16, name: &str) -> fmt::Result {
+    out.write_str("refused: ")?;
+    whole(out, number.into())?;
+    out.write_str(" ")?;
+    out.write_str(name)
+}
+
+fn limited(out: &mut impl Write, limit: f64) -> fmt::Result {
+    if limit.is_nan() {
+        return Ok(());
+    }
+    out.write_str(", limit ")?;
+    real(out, limit)
+}
+
+fn changed(out: &mut impl Write, how: &str, pin: &str, from: f64, to: f64) -> fmt::Result {
+    out.write_str(how)?;
+    out.write_str(pin)?;
+    out.write_str(" ")?;
+    real(out, from)?;
+    out.write_str(" to ")?;
+    real(out, to)
+}
+
+fn in_scans(out: &mut impl Write, scans: u32) -> fmt::Result {
+    out.write_str(" in ")?;
+    whole(out, scans.into())?;
+    out.write_str(" scans")
+}
+
+fn unavoidable(out: &mut impl Write, excess: &Excess) -> fmt::Result {
+    let parts = [
+        ("velocity ", excess.velocity),
+        ("acceleration ", excess.acceleration),
+        ("jerk ", excess.jerk),
+    ];
+    let mut is_first = true;
+    for (name, value) in parts.into_iter().filter(|(_, value)| *value != 0.0) {
+        if !core::mem::take(&mut is_first) {
+            out.write_str(", ")?;
+        }
+        out.write_str(name)?;
+        real(out, value)?;
+        out.write_str(" above its limit")?;
+    }
+    Ok(())
+}
