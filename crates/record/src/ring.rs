@@ -35,10 +35,10 @@ impl Default for Setup {
 /// What freezes a recorder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Trigger {
-    /// An axis goes into ErrorStop, or [`Recorder::trip`].
+    /// An axis goes into ErrorStop, or [`Ring::trip`].
     #[default]
     ErrorStop,
-    /// Only [`Recorder::trip`].
+    /// Only [`Ring::trip`].
     Host,
 }
 
@@ -52,7 +52,7 @@ pub enum State {
         /// Scans until it freezes.
         left: usize,
     },
-    /// What is there stays, until [`Recorder::arm`].
+    /// What is there stays, until [`Ring::arm`].
     Frozen,
 }
 

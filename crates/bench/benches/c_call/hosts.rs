@@ -1,42 +1,15 @@
-//! A block through the C library beside the same block in Rust.
-//!
-//! Both are what a host does in every scan: it fills in the inputs, calls, and looks at the outputs.
+//! The two hosts: one in C, a program of its own, and one in Rust.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Comms, ConfigError, DriveFeedback, DrivePosition, DriveSignals, InstanceId,
     Log, Standard, StartState,
 };
-use standstill_blocks::BlockInstance;
-use standstill_capi as c;
-use standstill_fb::Context;
-use std::hint::black_box;
-use std::mem::MaybeUninit;
-use std::ptr::{from_mut, from_ref, null_mut};
-
 use standstill_bench::{CYCLE, LIMITS, TARGET};
-
-/// How a host in C sees the function of a block.
-type Call = unsafe extern "C" fn(*mut c::Runtime, *mut u64, *const u8, *mut u8) -> i32;
-
-/// What the program of a host knows.
-#[derive(Clone, Copy, Debug)]
-pub struct Wishes {
-    /// Execute.
-    pub execute: bool,
-    /// Where to.
-    pub position: f64,
-    /// How fast.
-    pub velocity: f64,
-}
-
-impl Wishes {
-    /// The move of all measures.
-    pub const MOVE: Self = Self {
-        execute: true,
-        position: TARGET,
-        velocity: LIMITS.velocity,
-    };
-}
+use standstill_blocks::BlockInstance;
+use standstill_fb::Context;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 /// A host in Rust that has its instances in a list, as one that reads its program from somewhere does.
 #[derive(Debug)]
@@ -44,15 +17,14 @@ pub struct RustHost {
     axes: [Axis; 1],
     log: Log,
     blocks: Vec<BlockInstance>,
-    scan: u64,
 }
 
 impl RustHost {
-    /// A powered axis in the first scan of the move.
+    /// A powered axis, and an instance of the block of this name.
     ///
     /// # Errors
     /// None with these constants.
-    pub fn in_motion() -> Result<Self, ConfigError> {
+    pub fn new(block: &str) -> Result<Self, ConfigError> {
         let config = AxisConfig {
             start: StartState::Standstill,
             ..AxisConfig::new(LIMITS)
@@ -68,159 +40,122 @@ impl RustHost {
             signals: DriveSignals::default(),
         };
         axis.follow_feedback(&feedback, 0, &mut log);
-        let mut host = Self {
+        Ok(Self {
             axes: [axis],
             log,
-            blocks: BlockInstance::new("MC_MoveAbsolute").into_iter().collect(),
-            scan: 0,
-        };
-        host.call(&Wishes::MOVE, 0);
-        Ok(host)
+            blocks: BlockInstance::new(block).into_iter().collect(),
+        })
     }
 
-    /// One call: whether the move is in progress.
+    /// What blocks are called with, and the instance at a place.
     #[inline(always)]
-    pub fn call(&mut self, wishes: &Wishes, place: usize) -> Option<(bool, bool, bool)> {
-        let Some(BlockInstance::McMoveAbsolute(instance)) = self.blocks.get_mut(place) else {
-            return None;
-        };
-        let inputs = &mut instance.inputs;
-        *inputs = Default::default();
-        inputs.axis = AxisId::new(0);
-        inputs.execute = wishes.execute;
-        inputs.position = wishes.position;
-        inputs.velocity = wishes.velocity;
-        let mut context = Context {
+    pub fn parts(&mut self, place: usize) -> (Option<&mut BlockInstance>, Context<'_>) {
+        let context = Context {
             now_ns: 0,
-            scan: self.scan,
+            scan: 0,
             instance: InstanceId(1),
             axes: &mut self.axes,
             log: &mut self.log,
             tables: &[],
         };
-        instance.call(&mut context);
-        let outputs = &instance.outputs;
-        Some((outputs.done, outputs.active, outputs.error))
+        (self.blocks.get_mut(place), context)
     }
 }
 
-/// MC_MoveAbsolute as `standstill_blocks.h` lays it out.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C)]
-struct In {
-    size: u32,
-    axis: i32,
-    execute: u8,
-    continuous_update: u8,
-    reserved: [u8; 6],
-    position: f64,
-    velocity: f64,
-    acceleration: f64,
-    deceleration: f64,
-    jerk: f64,
-    direction: i32,
-    buffer_mode: i32,
-    snap: f64,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C)]
-struct Out {
-    size: u32,
-    done: u8,
-    busy: u8,
-    active: u8,
-    command_aborted: u8,
-    error: u8,
-    reserved: u8,
-    error_id: u16,
-    rest: u32,
-}
-
-/// A host of the C library, with a tick open.
+/// The host in C as it runs: `host.c`, compiled by `cc -O2` and linked with the static library.
 #[derive(Debug)]
 pub struct CHost {
-    runtime: *mut c::Runtime,
-    function: Call,
-    key: u64,
-    /// Kept from scan to scan, as the instance of the host in Rust keeps its own.
-    out: Out,
-    _storage: Vec<u128>,
+    child: Child,
+    asked: ChildStdin,
+    answers: BufReader<ChildStdout>,
 }
 
 impl CHost {
-    /// As [`RustHost::in_motion`]; none if a function of the library says anything but OK.
-    pub fn in_motion() -> Option<Self> {
-        let config = c::RuntimeConfig {
-            size: size_of::<c::RuntimeConfig>() as u32,
-            axes: 1,
-            instances: 16,
-            reserved: 0,
-            cycle_ns: 1_000_000,
-        };
-        let mut bytes = 0;
-        // SAFETY: all pointers lead to what their types say, sizes are set, and the storage lives in the host.
-        unsafe {
-            if c::standstill_runtime_size(&config, &mut bytes) != 0 {
-                return None;
-            }
-            let mut storage = vec![0_u128; bytes.div_ceil(16)];
-            let mut runtime = null_mut();
-            let at = storage.as_mut_ptr().cast();
-            if c::standstill_runtime_init(c::ABI_VERSION, at, bytes, &config, &mut runtime) != 0 {
-                return None;
-            }
-            let mut axis = MaybeUninit::<c::AxisSetup>::zeroed().assume_init();
-            axis.size = size_of::<c::AxisSetup>() as u32;
-            c::standstill_axis_defaults(&mut axis);
-            axis.start_powered = 1;
-            (axis.velocity, axis.acceleration) = (LIMITS.velocity, LIMITS.acceleration);
-            (axis.jerk, axis.snap) = (LIMITS.jerk, LIMITS.snap);
-            let mut drive = MaybeUninit::<c::DriveSetup>::zeroed().assume_init();
-            drive.size = size_of::<c::DriveSetup>() as u32;
-            c::standstill_drive_defaults(&mut drive);
-            let mut number = 0;
-            let good = c::standstill_axis_add(runtime, &axis, &drive, &mut number) == 0
-                && c::standstill_tick_begin(runtime, 0) == 0;
-            let mut host = Self {
-                runtime,
-                // Hidden from the compiler: in C no call of the library is put in line.
-                function: black_box(c::mc_move_absolute),
-                key: 0,
-                out: Out {
-                    size: size_of::<Out>() as u32,
-                    ..Out::default()
-                },
-                _storage: storage,
-            };
-            good.then(|| {
-                host.call(&Wishes::MOVE);
-                host
-            })
+    /// Builds the library and the host and starts it.
+    ///
+    /// # Errors
+    /// What cannot be built or started, for people.
+    pub fn start() -> Result<Self, String> {
+        let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let capi = here.join("../capi");
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_call");
+        let library = library(&capi, &folder)?;
+        let program = folder.join("host");
+        let mut cc = Command::new("cc");
+        cc.args(["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror", "-I"])
+            .arg(capi.join("include"))
+            .arg(here.join("benches/c_call/host.c"))
+            .arg("-o")
+            .arg(&program)
+            .arg(library)
+            .args(["-lpthread", "-ldl", "-lm"]);
+        let output = cc.output().map_err(|error| format!("cc: {error}"))?;
+        if !output.status.success() {
+            return Err(String::from_utf8_lossy(&output.stderr).into_owned());
         }
+        let limits = [
+            LIMITS.velocity,
+            LIMITS.acceleration,
+            LIMITS.jerk,
+            LIMITS.snap,
+            TARGET,
+        ];
+        let mut child = Command::new(&program)
+            .args(limits.map(|limit| format!("{limit:?}")))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .map_err(|error| format!("{}: {error}", program.display()))?;
+        let (Some(asked), Some(answers)) = (child.stdin.take(), child.stdout.take()) else {
+            return Err("the host in C has no pipes".to_owned());
+        };
+        Ok(Self {
+            child,
+            asked,
+            answers: BufReader::new(answers),
+        })
     }
 
-    /// One call, as a host in C makes it.
-    #[inline(always)]
-    pub fn call(&mut self, wishes: &Wishes) -> Option<(bool, bool, bool)> {
-        let given = In {
-            size: size_of::<In>() as u32,
-            axis: 1,
-            execute: wishes.execute.into(),
-            position: wishes.position,
-            velocity: wishes.velocity,
-            ..In::default()
-        };
-        // SAFETY: all pointers lead to what their types say, and sizes are set.
-        let code = unsafe {
-            (self.function)(
-                self.runtime,
-                &mut self.key,
-                from_ref(&given).cast(),
-                from_mut(&mut self.out).cast(),
-            )
-        };
-        let out = &self.out;
-        (code == 0).then_some((out.done != 0, out.active != 0, out.error != 0))
+    /// Nanoseconds a call of this measure took, of so many; none if the host has ended.
+    pub fn time(&mut self, measure: &str, calls: u64) -> Option<f64> {
+        writeln!(self.asked, "{measure} {calls}").ok()?;
+        let mut line = String::new();
+        self.answers.read_line(&mut line).ok()?;
+        line.trim().parse().ok()
     }
+
+    /// Lets it end.
+    pub fn end(self) -> bool {
+        let Self {
+            mut child,
+            asked,
+            answers,
+        } = self;
+        drop((asked, answers));
+        child.wait().is_ok_and(|status| status.success())
+    }
+}
+
+/// The static library, as it is shipped.
+fn library(capi: &Path, folder: &Path) -> Result<PathBuf, String> {
+    let output = Command::new(env!("CARGO"))
+        .args([
+            "rustc",
+            "--offline",
+            "--quiet",
+            "--release",
+            "--lib",
+            "--crate-type",
+            "staticlib",
+        ])
+        .arg("--manifest-path")
+        .arg(capi.join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(folder)
+        .output()
+        .map_err(|error| format!("cargo: {error}"))?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned());
+    }
+    Ok(folder.join("release/libstandstill_capi.a"))
 }

@@ -1,17 +1,22 @@
-//! One call of a block through the C library as a multiple of the same call in Rust, in the same run.
-
-// Only to call the library.
-#![allow(unsafe_code)]
+//! One call of a block by a host in C as a multiple of the same call by a host in Rust, in the same run.
+//!
+//! Both are what a host does in every scan: it writes inputs, calls, and looks at the outputs. Without a C compiler
+//! there is nothing to measure, and it says so.
 
 mod hosts;
 
-use hosts::{CHost, RustHost, Wishes};
+use hosts::{CHost, RustHost};
+use standstill_axis::AxisId;
+use standstill_bench::{LIMITS, TARGET};
+use standstill_blocks::BlockInstance;
+use standstill_fb::Time;
 use std::hint::black_box;
+use std::process::{Command, ExitCode};
 use std::time::Instant;
 
 const ROUNDS: usize = 301;
 const CALLS: u64 = 2000;
-/// The most calls in Rust a call through the library may take.
+/// The most calls in Rust a call in C may take.
 const BAR: f64 = 1.5;
 
 fn time(mut run: impl FnMut()) -> f64 {
@@ -27,62 +32,133 @@ fn median(values: &mut [f64]) -> f64 {
     values[values.len() / 2]
 }
 
-/// Takes both by turns, so that a busy machine slows both.
-fn compare(name: &str, mut rust: impl FnMut(u64), mut c: impl FnMut(u64)) {
+/// Takes both by turns, so that a busy machine slows both; none if the host in C has ended.
+fn compare(name: &str, host: &mut CHost, measure: &str, mut rust: impl FnMut(u64)) -> Option<()> {
     let (mut in_rust, mut in_c, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
     let mut number = 0;
+    let mut take = || {
+        time(|| {
+            number += 1;
+            rust(number);
+        })
+    };
+    host.time(measure, CALLS)?;
     for _ in 0..ROUNDS {
-        let before = time(|| {
-            number += 1;
-            rust(number);
-        });
-        let took = time(|| {
-            number += 1;
-            c(number);
-        });
-        let after = time(|| {
-            number += 1;
-            rust(number);
-        });
+        let before = take();
+        let took = host.time(measure, CALLS)?;
+        let after = take();
         in_rust.push(0.5 * (before + after));
         in_c.push(took);
         ratios.push(took / (0.5 * (before + after)));
     }
     let ratio = median(&mut ratios);
     println!(
-        "{name:<34} {:>8.2} {:>8.2} {ratio:>6.2} {BAR:>5}{}",
+        "{name:<62} {:>8.2} {:>8.2} {ratio:>6.2} {BAR:>5}{}",
         median(&mut in_rust),
         median(&mut in_c),
         if ratio > BAR { "  ABOVE" } else { "" }
     );
+    Some(())
 }
 
-fn main() {
-    println!(
-        "{:<34} {:>8} {:>8} {:>6} {:>5}",
-        "one call of MC_MoveAbsolute", "Rust ns", "C ns", "ratio", "bar"
-    );
-    let (mut rust, mut c) = (
-        RustHost::in_motion().expect("valid"),
-        CHost::in_motion().expect("valid"),
-    );
-    compare(
-        "in progress",
-        |_| assert!(black_box(rust.call(black_box(&Wishes::MOVE), black_box(0))).is_some_and(|out| out.1)),
-        |_| assert!(black_box(c.call(black_box(&Wishes::MOVE))).is_some_and(|out| out.1)),
-    );
-    let (mut rust, mut c) = (
-        RustHost::in_motion().expect("valid"),
-        CHost::in_motion().expect("valid"),
-    );
-    // Every second call gives a command, which is planned at once.
-    let wishes = |number: u64| Wishes {
-        execute: number.is_multiple_of(2),
-        ..Wishes::MOVE
+/// Compares calls of a block: the inputs that are always the same, the one that may change, and what the outputs are. By hosts
+/// that make all inputs anew in every scan, and by hosts that write what may change.
+macro_rules! measure {
+    (
+        $host:ident, $what:literal, $name:literal, $measure:literal, $block:ident,
+        $inputs:ident => $same:block, $number:ident => $change:block, $outputs:ident => $good:expr
+    ) => {
+        for (is_anew, how, measure) in [
+            (true, "all inputs", $measure),
+            (true, "all from _in_default()", concat!($measure, "_default")),
+            (false, "one", concat!($measure, "_kept")),
+        ] {
+            let mut rust = RustHost::new($name).expect("valid");
+            if let (Some(BlockInstance::$block(instance)), _) = rust.parts(0) {
+                let $inputs = &mut instance.inputs;
+                $same
+            }
+            compare(&format!("{}, {how}", $what), $host, measure, |$number| {
+                let (block, mut context) = rust.parts(black_box(0));
+                let Some(BlockInstance::$block(instance)) = block else {
+                    unreachable!("it was made above");
+                };
+                let $inputs = &mut instance.inputs;
+                if is_anew {
+                    *$inputs = Default::default();
+                    $same
+                }
+                $change
+                instance.call(&mut context);
+                let $outputs = &instance.outputs;
+                assert!(black_box($good));
+            })?;
+        }
     };
-    compare(
-        "commanded in every second call",
-        |number| assert!(black_box(rust.call(black_box(&wishes(number)), black_box(0))).is_some()),
-        |number| assert!(black_box(c.call(black_box(&wishes(number)))).is_some()),
+}
+
+fn measures(host: &mut CHost) -> Option<()> {
+    let axis = AxisId::new(0);
+    let (velocity, target) = (black_box(LIMITS.velocity), black_box(TARGET));
+    measure!(
+        host, "MC_MoveAbsolute in its move", "MC_MoveAbsolute", "move", McMoveAbsolute,
+        inputs => { (inputs.axis, inputs.position, inputs.velocity) = (axis, target, velocity); },
+        _number => { inputs.execute = true; },
+        outputs => outputs.active && !outputs.error
     );
+    measure!(
+        host, "the same, commanded every second time", "MC_MoveAbsolute", "command", McMoveAbsolute,
+        inputs => { (inputs.axis, inputs.position, inputs.velocity) = (axis, target, velocity); },
+        number => { inputs.execute = number.is_multiple_of(2); },
+        outputs => !outputs.error
+    );
+    measure!(
+        host, "MC_MoveVelocity in motion", "MC_MoveVelocity", "turn", McMoveVelocity,
+        inputs => { (inputs.axis, inputs.velocity) = (axis, velocity); },
+        _number => { inputs.execute = true; },
+        outputs => outputs.active && !outputs.error
+    );
+    measure!(
+        host, "MC_Power of a powered axis", "MC_Power", "power", McPower,
+        inputs => { (inputs.axis, inputs.enable_positive, inputs.enable_negative) = (axis, true, true); },
+        _number => { inputs.enable = true; },
+        outputs => outputs.status && !outputs.error
+    );
+    measure!(
+        host, "MC_ReadStatus", "MC_ReadStatus", "status", McReadStatus,
+        inputs => { inputs.axis = axis; },
+        _number => { inputs.enable = true; },
+        outputs => outputs.valid && !outputs.error
+    );
+    measure!(
+        host, "TON that runs", "TON", "timer", Ton,
+        inputs => { inputs.pt = Time(1_000_000_000); },
+        _number => { inputs.input = true; },
+        outputs => !outputs.q
+    );
+    Some(())
+}
+
+fn main() -> ExitCode {
+    if Command::new("cc").arg("--version").output().is_err() {
+        println!("SKIP: there is no C compiler `cc`, so there is no host in C to measure");
+        return ExitCode::SUCCESS;
+    }
+    let mut host = match CHost::start() {
+        Ok(host) => host,
+        Err(why) => {
+            eprintln!("{why}");
+            return ExitCode::FAILURE;
+        }
+    };
+    println!(
+        "{:<62} {:>8} {:>8} {:>6} {:>5}",
+        "one call of .. by a host that writes ..", "Rust ns", "C ns", "ratio", "bar"
+    );
+    let all = measures(&mut host);
+    if all.is_none() || !host.end() {
+        eprintln!("the host in C ended before it was asked to");
+        return ExitCode::FAILURE;
+    }
+    ExitCode::SUCCESS
 }
