@@ -1,11 +1,10 @@
 //! The functions a guest imports, done on its memory and on instances that stand here.
 
 use crate::Fault;
-use crate::engine::Call;
 use standstill_axis::{InstanceId, Planner};
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::flat::{Flat, Layout, Pointer, read_record, read_table};
-use standstill_fb::{AnyInstance, BlockInfo, Context, PinType, TableRef, Value};
+use standstill_fb::{AnyInstance, Block, BlockInfo, Context, Instance, PinType, TableRef, Value};
 use std::sync::LazyLock;
 
 /// Most block instances of a guest.
@@ -58,9 +57,8 @@ pub enum Told {
 }
 
 /// What can be imported.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Import {
-    #[default]
     Log,
     /// A block, by its place in the registry.
     Block(usize),
@@ -174,24 +172,7 @@ impl Host {
         std::mem::take(&mut self.told)
     }
 
-    /// Does what a guest called. Without a context it is not in a scan.
-    pub(crate) fn answer<P: Planner>(
-        &mut self,
-        call: Call,
-        memory: &mut [u8],
-        context: Option<&mut Context<'_, P>>,
-    ) -> Result<i32, Fault> {
-        let [first, second, third] = call.arguments;
-        match call.import {
-            Import::Log => self.log(memory, first, second).map(|()| 0),
-            Import::Block(block) => {
-                let outcome = self.block(block, memory, [first, second, third], context)?;
-                Ok(outcome.map_or_else(|code| code as i32, |()| Code::Ok as i32))
-            }
-        }
-    }
-
-    fn log(&mut self, memory: &[u8], address: u32, bytes: u32) -> Result<(), Fault> {
+    pub(crate) fn log(&mut self, memory: &[u8], address: u32, bytes: u32) -> Result<(), Fault> {
         let text = Place {
             function: "log",
             what: "text",
@@ -212,18 +193,16 @@ impl Host {
         Ok(())
     }
 
-    fn block<P: Planner>(
+    /// One call of a block in a scan: any block, whatever is wrong with the call.
+    pub(crate) fn block<P: Planner>(
         &mut self,
         block: usize,
         memory: &mut [u8],
         [key, inputs, outputs]: [u32; 3],
-        context: Option<&mut Context<'_, P>>,
+        context: &mut Context<'_, P>,
     ) -> Result<Result<(), Code>, Fault> {
         let (Some(shape), Some(&function)) = (SHAPES.get(block), NAMES.get(block)) else {
             return Ok(Err(Code::UnknownKey));
-        };
-        let Some(context) = context else {
-            return Ok(Err(Code::NotInTick));
         };
         if key == 0 || inputs == 0 || outputs == 0 {
             return Ok(Err(Code::NullPointer));
@@ -282,6 +261,24 @@ impl Host {
         instance.call(&mut inner);
         instance.put_flat(place("out", outputs, shape.outputs.size).of_mut(memory)?);
         Ok(Ok(()))
+    }
+
+    /// The instance with this key and its number in records, as a block of one kind: nothing if there is no such, or
+    /// the key is 0.
+    #[inline(always)]
+    pub(crate) fn find<B>(
+        &mut self,
+        number: u64,
+        as_block: impl Fn(&mut BlockInstance) -> Option<&mut Instance<B>>,
+    ) -> Option<(InstanceId, &mut Instance<B>)>
+    where
+        B: Block,
+    {
+        let index = usize::try_from(number).ok()?.checked_sub(1)?;
+        let (_, instance) = self.slots.get_mut(index)?;
+        // At most INSTANCES_MOST.
+        let id = InstanceId(self.first.saturating_add(index as u16));
+        Some((id, as_block(instance)?))
     }
 
     /// A new instance; gives its key.

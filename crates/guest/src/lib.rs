@@ -17,6 +17,7 @@ mod error;
 mod guest;
 mod host;
 mod symbol;
+mod tick;
 
 pub use error::{Fault, LoadError};
 pub use guest::{Guest, Program, Settings, Snapshot};
