@@ -62,6 +62,10 @@ fn signature(import: Import) -> (FuncType, &'static str) {
             FuncType::new([ValType::I32; 2], []),
             "a function (i32, i32) without results",
         ),
+        Import::LogRead => (
+            FuncType::new([ValType::I32; 5], [ValType::I32]),
+            "a function (i32, i32, i32, i32, i32) -> i32",
+        ),
         Import::Block(_) => (
             FuncType::new([ValType::I32; 3], [ValType::I32]),
             "a function (i32, i32, i32) -> i32",
@@ -342,13 +346,25 @@ fn link(program: &Program) -> Result<Linker<Own>, LoadError> {
                         .map_err(|fault| stop(Box::new(fault)))
                 },
             ),
+            Import::LogRead => linker.func_wrap(
+                from,
+                name,
+                |mut caller: Caller<'_, Own>, next: u32, records: u32, size: u32, room: u32, copied: u32| {
+                    let (memory, host) = open(&mut caller);
+                    tick::log_read(host, memory, [next, records, size, room, copied])
+                        .map(|code| code as i32)
+                        .map_err(stop)
+                },
+            ),
             Import::Block(block) => {
                 let Some(&function) = tick::FUNCTIONS.get(block) else {
                     continue;
                 };
                 let wrapped = move |mut caller: Caller<'_, Own>, key: u32, inputs: u32, outputs: u32| {
                     let (memory, host) = open(&mut caller);
-                    function(host, memory, [key, inputs, outputs]).map_err(stop)
+                    function(host, memory, [key, inputs, outputs])
+                        .map(|code| code as i32)
+                        .map_err(stop)
                 };
                 linker.func_wrap(from, name, wrapped)
             }

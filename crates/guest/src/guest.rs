@@ -130,10 +130,7 @@ impl Guest {
             return Err(Fault::Over);
         }
         let fuel = self.program.settings.fuel;
-        // A tick is the number of the scan, as far as 32 bits go.
-        let (tick, now_ns) = (context.scan as i32, context.now_ns);
-        let machine = &mut self.machine;
-        match tick::during(context, move || machine.scan(tick, now_ns, fuel)) {
+        match tick::scan(&mut self.machine, context, fuel) {
             Ok(used) => {
                 self.fuel_used = used;
                 Ok(used)
@@ -173,10 +170,11 @@ impl Guest {
         symbol.read(self.machine.memory())
     }
 
-    /// Writes a variable; `value` must be of its type.
+    /// Writes a variable; `value` is of the type of its signal ([`SymbolType::signal`](crate::SymbolType::signal)). One
+    /// that the variable cannot hold becomes the nearest that it can.
     ///
     /// # Errors
-    /// [`SymbolError::Outside`].
+    /// [`SymbolError::Outside`], [`SymbolError::Type`].
     pub fn write(&mut self, symbol: &Symbol, value: Value) -> Result<(), SymbolError> {
         symbol.write(self.machine.memory_mut(), value)
     }

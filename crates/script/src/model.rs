@@ -195,8 +195,10 @@ pub struct Program {
 pub struct Symbol {
     /// Name as written.
     pub name: String,
-    /// BOOL, INT, WORD, DWORD, LREAL or TIME.
+    /// Type of its signal.
     pub ty: PinType,
+    /// Its own type, which that of its signal holds.
+    pub own: standstill_guest::SymbolType,
     /// Where it stands; where the guest exports a variable of this name if absent.
     pub address: Option<u32>,
 }
