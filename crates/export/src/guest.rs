@@ -5,7 +5,7 @@ use crate::c::{NOTICE, types};
 use crate::names::{Prefix, function};
 use standstill_blocks::REGISTRY;
 use standstill_fb::flat::{Layout, Pointer, Scalar};
-use standstill_fb::{Pin, PinType};
+use standstill_fb::{Pin, PinType, ring};
 use std::fmt::Write as _;
 
 pub(crate) fn files(prefix: &Prefix) -> Vec<File> {
@@ -42,7 +42,51 @@ fn header(prefix: &Prefix) -> String {
     }
     out += "/** Tells the host something: `bytes` bytes of UTF-8. */\n\
             STANDSTILL_IMPORT(log) void standstill_log(const char *text, uint32_t bytes);\n\n";
+    out += &ring();
     out + "#ifdef __cplusplus\n}\n#endif\n\n#endif /* STANDSTILL_GUEST_H */\n"
+}
+
+/// The diagnostic ring in C: the record is that of `standstill.h`.
+fn ring() -> String {
+    let mut out = "/** One entry of the diagnostic ring, which keeps the last 64. */\ntypedef struct standstill_record {\n"
+        .to_owned();
+    for (name, ty, doc, _) in ring::FIELDS {
+        let ty = match ty {
+            "f64" => "double",
+            "u64" => "uint64_t",
+            "u32" => "uint32_t",
+            "i32" => "int32_t",
+            _ => "char",
+        };
+        let many = if ty == "char" {
+            format!("[{}]", ring::NAME_SIZE)
+        } else {
+            String::new()
+        };
+        let mut lines = vec![String::new()];
+        for word in doc.split(' ') {
+            if lines.last().is_some_and(|line| line.len() + word.len() > 100) {
+                lines.push(String::new());
+            }
+            if let Some(line) = lines.last_mut() {
+                *line += word;
+                line.push(' ');
+            }
+        }
+        let doc = lines.join("\n     *  ").replace(" \n", "\n");
+        let _ = writeln!(out, "    /** {doc}*/\n    {ty} {name}{many};");
+    }
+    let _ = write!(
+        out,
+        "}} standstill_record;\n_Static_assert(sizeof(standstill_record) == {}, \"standstill_record\");\n\n\
+         /** Copies records of the diagnostic ring, oldest first, from number `*next` on; `*next` becomes the number to go\n \
+         *  on from, and `*copied` how many there are. Records that were overwritten meanwhile are left out.\n \
+         *  `record_size` is sizeof(standstill_record), `room` how many records fit. */\n\
+         STANDSTILL_IMPORT(log_read) int32_t standstill_log_read(uint64_t *next, standstill_record *records,\n    \
+         uint32_t record_size, uint32_t room, uint32_t *copied);\n\n",
+        ring::RECORD_SIZE
+    );
+    out
 }
 
 const fn scalar_name(scalar: Scalar) -> &'static str {
@@ -63,7 +107,8 @@ fn imports(prefix: &Prefix) -> String {
         "{{\n  \"abi_version\": 1,\n  \"module\": \"{}\",\n  \"exports\": {{\n    \
          \"plc_init\": {{\"params\": [], \"results\": []}},\n    \
          \"plc_scan\": {{\"params\": [\"i32\", \"i64\"], \"results\": []}}\n  }},\n  \"imports\": [\n    \
-         {{\"name\": \"log\", \"params\": [\"i32\", \"i32\"], \"results\": []}}",
+         {{\"name\": \"log\", \"params\": [\"i32\", \"i32\"], \"results\": []}},\n    \
+         {{\"name\": \"log_read\", \"params\": [\"i32\", \"i32\", \"i32\", \"i32\", \"i32\"], \"results\": [\"i32\"]}}",
         prefix.lower()
     );
     for info in REGISTRY {
@@ -93,7 +138,19 @@ fn imports(prefix: &Prefix) -> String {
         members(&mut out, table.fields, &layout);
         out += "]}";
     }
-    out + "\n  ]\n}\n"
+    let _ = write!(
+        out,
+        "\n  ],\n  \"log_record\": {{\"size\": {}, \"fields\": [",
+        ring::RECORD_SIZE
+    );
+    for (index, (name, ty, _, offset)) in ring::FIELDS.into_iter().enumerate() {
+        let _ = write!(
+            out,
+            "{}\n    {{\"name\": \"{name}\", \"offset\": {offset}, \"type\": \"{ty}\"}}",
+            if index > 0 { "," } else { "" },
+        );
+    }
+    out + "]}\n}\n"
 }
 
 fn structure(out: &mut String, name: &str, pins: &[Pin]) {

@@ -179,7 +179,7 @@ fn the_imports_are_json_and_name_every_block() {
     let json = files.iter().find(|file| file.name.ends_with(".json")).unwrap();
     let value: serde_json::Value = serde_json::from_str(&json.text).unwrap();
     let imports = value["imports"].as_array().unwrap();
-    assert_eq!(imports.len(), standstill_blocks::REGISTRY.len() + 1);
+    assert_eq!(imports.len(), standstill_blocks::REGISTRY.len() + 2);
     let absolute = imports
         .iter()
         .find(|import| import["name"] == "mc_move_absolute")

@@ -13,6 +13,7 @@ mod enable;
 mod execute;
 pub mod flat;
 mod pins;
+pub mod ring;
 mod table;
 mod update;
 

@@ -1,15 +1,14 @@
 //! The interpreter. Nothing outside this module names it.
 //!
-//! A host function needs what a block may touch, which is borrowed for one call only, and what the interpreter holds
-//! lives longer. So every import suspends the guest: the call comes out of the interpreter, is done here, and the guest
-//! is resumed with its result.
+//! A host function needs what a block may touch, which is borrowed for one scan only, and what the interpreter holds
+//! lives longer. So the scan lends it to [`crate::tick`], where the functions find it.
 
-use crate::host::Import;
-use crate::{Fault, LoadError, MODULE_MOST, PAGE, Program, Settings};
+use crate::host::{Host, Import};
+use crate::{Fault, LoadError, MODULE_MOST, PAGE, Program, Settings, tick};
 use std::fmt;
 use wasmi::{
-    CompilationMode, Config, EnforcedLimits, Engine, Error, ExternType, FuncType, Linker, Memory,
-    ResumableCall, Store, StoreLimits, StoreLimitsBuilder, TrapCode, Val, ValType,
+    Caller, CompilationMode, Config, EnforcedLimits, Engine, Error, ExternType, FuncType, Linker, Memory,
+    Store, StoreLimits, StoreLimitsBuilder, TrapCode, TypedFunc, Val, ValType,
 };
 
 const SCAN: &str = "a function (i32, i64), called in every execution of the task";
@@ -20,26 +19,52 @@ const NOTHING: &str = "a function without parameters and results";
 #[derive(Clone, Debug)]
 pub(crate) struct Module(wasmi::Module);
 
-/// A call that came out of the guest.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Call {
-    pub(crate) import: Import,
-    pub(crate) arguments: [u32; 3],
-}
+/// A fault on its way out of the interpreter.
+#[derive(Debug)]
+struct Stop(Box<Fault>);
 
-impl fmt::Display for Call {
+impl fmt::Display for Stop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a block is called, which is possible in plc_init and plc_scan only")
+        self.0.fmt(f)
     }
 }
 
-impl wasmi::errors::HostError for Call {}
+impl wasmi::errors::HostError for Stop {}
+
+#[cold]
+fn stop(fault: Box<Fault>) -> Error {
+    Error::host(Stop(fault))
+}
+
+/// What the interpreter keeps for the functions of a guest.
+struct Own {
+    limits: StoreLimits,
+    host: Host,
+    /// There is none only while the guest is made, when it cannot call.
+    memory: Option<Memory>,
+}
+
+/// The guest's memory, and what its functions work on.
+#[inline(always)]
+fn open<'c>(caller: &'c mut Caller<'_, Own>) -> (&'c mut [u8], &'c mut Host) {
+    match caller.data().memory {
+        Some(memory) => {
+            let (memory, own) = memory.data_and_store_mut(caller);
+            (memory, &mut own.host)
+        }
+        None => (&mut [], &mut caller.data_mut().host),
+    }
+}
 
 fn signature(import: Import) -> (FuncType, &'static str) {
     match import {
         Import::Log => (
             FuncType::new([ValType::I32; 2], []),
             "a function (i32, i32) without results",
+        ),
+        Import::LogRead => (
+            FuncType::new([ValType::I32; 5], [ValType::I32]),
+            "a function (i32, i32, i32, i32, i32) -> i32",
         ),
         Import::Block(_) => (
             FuncType::new([ValType::I32; 3], [ValType::I32]),
@@ -145,9 +170,10 @@ fn hint(module: &str, settings: &Settings) -> String {
 
 /// An instance of a module.
 pub(crate) struct Machine {
-    store: Store<StoreLimits>,
+    store: Store<Own>,
     instance: wasmi::Instance,
     memory: Memory,
+    scan: TypedFunc<(i32, i64), ()>,
 }
 
 impl fmt::Debug for Machine {
@@ -180,45 +206,39 @@ impl Machine {
             .instances(1)
             .build();
         let wrong = |error: &dyn fmt::Display| LoadError::Module(error.to_string());
-        let mut store = Store::new(module.engine(), limits);
-        store.limiter(|limits| limits);
+        let own = Own {
+            limits,
+            host: Host::new(settings.first_instance),
+            memory: None,
+        };
+        let mut store = Store::new(module.engine(), own);
+        store.limiter(|own| &mut own.limits);
         store.set_fuel(settings.fuel).map_err(|error| wrong(&error))?;
-        let mut linker = Linker::new(module.engine());
-        let mut linked = Vec::new();
-        for wanted in module.imports() {
-            let Some(import) = Import::find(wanted.name()) else {
-                continue;
-            };
-            if linked.contains(&import) {
-                continue;
-            }
-            linked.push(import);
-            let suspend = move |_: wasmi::Caller<'_, StoreLimits>, given: &[Val], _: &mut [Val]| {
-                let mut call = Call {
-                    import,
-                    ..Call::default()
-                };
-                for (place, value) in call.arguments.iter_mut().zip(given) {
-                    *place = value.i32().unwrap_or_default().cast_unsigned();
-                }
-                Err(Error::host(call))
-            };
-            linker
-                .func_new(&settings.module, wanted.name(), signature(import).0, suspend)
-                .map_err(|error| wrong(&error))?;
-        }
-        let instance = linker
+        let instance = link(program)?
             .instantiate_and_start(&mut store, module)
             .map_err(|error| wrong(&error))?;
         let memory = instance.get_memory(&store, "memory").ok_or(LoadError::Export {
             name: "memory",
             wanted: MEMORY,
         })?;
+        store.data_mut().memory = Some(memory);
+        let scan = instance
+            .get_typed_func(&store, "plc_scan")
+            .map_err(|error| wrong(&error))?;
         Ok(Self {
             store,
             instance,
             memory,
+            scan,
         })
+    }
+
+    pub(crate) fn host(&self) -> &Host {
+        &self.store.data().host
+    }
+
+    pub(crate) fn host_mut(&mut self) -> &mut Host {
+        &mut self.store.data_mut().host
     }
 
     pub(crate) fn memory(&self) -> &[u8] {
@@ -278,52 +298,87 @@ impl Machine {
         }
     }
 
-    /// Calls an export with a budget of `fuel`; every call that comes out goes to `answer` with the guest's memory.
-    /// Gives the fuel that was used; nothing if there is no such export.
-    pub(crate) fn run(
-        &mut self,
-        name: &str,
-        arguments: Option<(i32, i64)>,
-        fuel: u64,
-        mut answer: impl FnMut(Call, &mut [u8]) -> Result<i32, Fault>,
-    ) -> Result<Option<u64>, Fault> {
+    /// Calls a function without parameters with a budget of `fuel`, if the guest exports it.
+    pub(crate) fn start(&mut self, name: &str, fuel: u64) -> Result<(), Fault> {
         let Some(function) = self.instance.get_func(&self.store, name) else {
-            return Ok(None);
+            return Ok(());
         };
-        let other = |error: Error| fault(&error, fuel);
-        self.store.set_fuel(fuel).map_err(other)?;
-        let values = arguments.map(|(tick, now_ns)| [Val::I32(tick), Val::I64(now_ns)]);
-        let values = values.as_ref().map_or(&[][..], |values| values);
-        let mut state = function
-            .call_resumable(&mut self.store, values, &mut [])
-            .map_err(other)?;
-        loop {
-            match state {
-                ResumableCall::Finished => {
-                    let left = self.store.get_fuel().map_err(other)?;
-                    return Ok(Some(fuel.saturating_sub(left)));
-                }
-                ResumableCall::OutOfFuel(_) => return Err(Fault::Fuel { most: fuel }),
-                ResumableCall::HostTrap(suspended) => {
-                    let Some(call) = suspended.host_error().downcast_ref::<Call>().copied() else {
-                        return Err(fault(suspended.host_error(), fuel));
-                    };
-                    let result = answer(call, self.memory.data_mut(&mut self.store))?;
-                    let result = [Val::I32(result)];
-                    let results = match call.import {
-                        Import::Log => &[][..],
-                        Import::Block(_) => &result[..],
-                    };
-                    state = suspended
-                        .resume(&mut self.store, results, &mut [])
-                        .map_err(other)?;
-                }
-            }
+        let outcome = self.store.set_fuel(fuel);
+        outcome
+            .and_then(|()| tick::before(|| function.call(&mut self.store, &[], &mut [])))
+            .map_err(|error| fault(&error, fuel))
+    }
+
+    /// Calls `plc_scan` with a budget of `fuel`. Gives the fuel that was used.
+    #[inline]
+    pub(crate) fn scan(&mut self, tick: i32, now_ns: i64, fuel: u64) -> Result<u64, Box<Fault>> {
+        let mut run = || {
+            self.store.set_fuel(fuel)?;
+            self.scan.call(&mut self.store, (tick, now_ns))?;
+            self.store.get_fuel()
+        };
+        match run() {
+            Ok(left) => Ok(fuel.saturating_sub(left)),
+            Err(error) => Err(Box::new(fault(&error, fuel))),
         }
     }
 }
 
+/// The functions that a guest may import.
+fn link(program: &Program) -> Result<Linker<Own>, LoadError> {
+    let Module(module) = &program.module;
+    let from = program.settings.module.as_str();
+    let mut linker = Linker::new(module.engine());
+    let mut linked = Vec::new();
+    for wanted in module.imports() {
+        let name = wanted.name();
+        let Some(import) = Import::find(name).filter(|import| !linked.contains(import)) else {
+            continue;
+        };
+        linked.push(import);
+        let outcome = match import {
+            Import::Log => linker.func_wrap(
+                from,
+                name,
+                |mut caller: Caller<'_, Own>, text: u32, bytes: u32| -> Result<(), Error> {
+                    let (memory, host) = open(&mut caller);
+                    host.log(memory, text, bytes)
+                        .map_err(|fault| stop(Box::new(fault)))
+                },
+            ),
+            Import::LogRead => linker.func_wrap(
+                from,
+                name,
+                |mut caller: Caller<'_, Own>, next: u32, records: u32, size: u32, room: u32, copied: u32| {
+                    let (memory, host) = open(&mut caller);
+                    tick::log_read(host, memory, [next, records, size, room, copied])
+                        .map(|code| code as i32)
+                        .map_err(stop)
+                },
+            ),
+            Import::Block(block) => {
+                let Some(&function) = tick::FUNCTIONS.get(block) else {
+                    continue;
+                };
+                let wrapped = move |mut caller: Caller<'_, Own>, key: u32, inputs: u32, outputs: u32| {
+                    let (memory, host) = open(&mut caller);
+                    function(host, memory, [key, inputs, outputs])
+                        .map(|code| code as i32)
+                        .map_err(stop)
+                };
+                linker.func_wrap(from, name, wrapped)
+            }
+        };
+        outcome.map_err(|error| LoadError::Module(error.to_string()))?;
+    }
+    Ok(linker)
+}
+
+#[cold]
 fn fault(error: &Error, most: u64) -> Fault {
+    if let Some(Stop(fault)) = error.downcast_ref() {
+        return Fault::clone(fault);
+    }
     match error.as_trap_code() {
         Some(TrapCode::OutOfFuel) => Fault::Fuel { most },
         Some(code) => Fault::Trap(code.trap_message()),

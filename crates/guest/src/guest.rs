@@ -3,7 +3,7 @@
 use crate::engine::{Globals, Machine, Module};
 use crate::host::{Host, Told};
 use crate::symbol::SymbolError;
-use crate::{Fault, LoadError, MODULE, Symbol};
+use crate::{Fault, LoadError, MODULE, Symbol, tick};
 use standstill_axis::Planner;
 use standstill_fb::{Context, Value};
 
@@ -43,7 +43,6 @@ pub struct Program {
 pub struct Guest {
     program: Program,
     machine: Machine,
-    host: Host,
     fuel_used: u64,
     faulted: bool,
 }
@@ -80,12 +79,10 @@ impl Program {
     /// [`LoadError`]: memory that is not there, or a fault of these two.
     pub fn start(&self) -> Result<Guest, LoadError> {
         let mut guest = self.raw()?;
-        let Guest { machine, host, .. } = &mut guest;
         for name in ["_initialize", "plc_init"] {
-            machine
-                .run(name, None, self.settings.fuel, |call, memory| {
-                    host.answer::<standstill_axis::Standard>(call, memory, None)
-                })
+            guest
+                .machine
+                .start(name, self.settings.fuel)
                 .map_err(|fault| LoadError::Init { name, fault })?;
         }
         Ok(guest)
@@ -107,7 +104,7 @@ impl Program {
         }
         memory.copy_from_slice(&snapshot.memory);
         guest.machine.set_globals(&snapshot.globals);
-        guest.host.clone_from(&snapshot.host);
+        guest.machine.host_mut().clone_from(&snapshot.host);
         guest.fuel_used = snapshot.fuel_used;
         guest.faulted = snapshot.faulted;
         Ok(guest)
@@ -116,7 +113,6 @@ impl Program {
     fn raw(&self) -> Result<Guest, LoadError> {
         Ok(Guest {
             machine: Machine::new(self)?,
-            host: Host::new(self.settings.first_instance),
             program: self.clone(),
             fuel_used: 0,
             faulted: false,
@@ -133,18 +129,17 @@ impl Guest {
         if self.faulted {
             return Err(Fault::Over);
         }
-        let Self { machine, host, .. } = self;
-        // A tick is the number of the scan, as far as 32 bits go.
-        let arguments = (context.scan as i32, context.now_ns);
-        let outcome = machine.run(
-            "plc_scan",
-            Some(arguments),
-            self.program.settings.fuel,
-            |call, memory| host.answer(call, memory, Some(context)),
-        );
-        self.faulted = outcome.is_err();
-        self.fuel_used = outcome?.unwrap_or(0);
-        Ok(self.fuel_used)
+        let fuel = self.program.settings.fuel;
+        match tick::scan(&mut self.machine, context, fuel) {
+            Ok(used) => {
+                self.fuel_used = used;
+                Ok(used)
+            }
+            Err(fault) => {
+                self.faulted = true;
+                Err(*fault)
+            }
+        }
     }
 
     /// The fuel that the last scan used.
@@ -155,7 +150,7 @@ impl Guest {
 
     /// What it told since the last call of this.
     pub fn take_told(&mut self) -> Vec<Told> {
-        self.host.take_told()
+        self.machine.host_mut().take_told()
     }
 
     /// The address of a variable that the guest exports.
@@ -175,10 +170,11 @@ impl Guest {
         symbol.read(self.machine.memory())
     }
 
-    /// Writes a variable; `value` must be of its type.
+    /// Writes a variable; `value` is of the type of its signal ([`SymbolType::signal`](crate::SymbolType::signal)). One
+    /// that the variable cannot hold becomes the nearest that it can.
     ///
     /// # Errors
-    /// [`SymbolError::Outside`].
+    /// [`SymbolError::Outside`], [`SymbolError::Type`].
     pub fn write(&mut self, symbol: &Symbol, value: Value) -> Result<(), SymbolError> {
         symbol.write(self.machine.memory_mut(), value)
     }
@@ -189,7 +185,7 @@ impl Guest {
         Snapshot {
             memory: self.machine.memory().to_vec(),
             globals: self.machine.globals(),
-            host: self.host.clone(),
+            host: self.machine.host().clone(),
             fuel_used: self.fuel_used,
             faulted: self.faulted,
         }

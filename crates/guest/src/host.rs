@@ -1,11 +1,11 @@
 //! The functions a guest imports, done on its memory and on instances that stand here.
 
 use crate::Fault;
-use crate::engine::Call;
-use standstill_axis::{InstanceId, Planner};
+use standstill_axis::{InstanceId, Log, Planner};
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::flat::{Flat, Layout, Pointer, read_record, read_table};
-use standstill_fb::{AnyInstance, BlockInfo, Context, PinType, TableRef, Value};
+use standstill_fb::ring::{FlatRecord, RECORD_SIZE};
+use standstill_fb::{AnyInstance, Block, BlockInfo, Context, Instance, PinType, TableRef, Value};
 use std::sync::LazyLock;
 
 /// Most block instances of a guest.
@@ -27,7 +27,7 @@ pub enum Code {
     NullPointer = -1,
     /// The size in front of a structure is smaller than the structure.
     StructSize = -2,
-    /// A block was called in `plc_init`.
+    /// A block or `log_read` was called in `plc_init`.
     NotInTick = -7,
     /// No instance has this key.
     UnknownKey = -10,
@@ -58,10 +58,11 @@ pub enum Told {
 }
 
 /// What can be imported.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Import {
-    #[default]
     Log,
+    /// Records of the diagnostic ring.
+    LogRead,
     /// A block, by its place in the registry.
     Block(usize),
 }
@@ -77,8 +78,10 @@ standstill_blocks::for_every_block!(names);
 
 impl Import {
     pub(crate) fn find(name: &str) -> Option<Self> {
-        if name == "log" {
-            return Some(Self::Log);
+        match name {
+            "log" => return Some(Self::Log),
+            "log_read" => return Some(Self::LogRead),
+            _ => {}
         }
         NAMES.iter().position(|known| *known == name).map(Self::Block)
     }
@@ -174,24 +177,7 @@ impl Host {
         std::mem::take(&mut self.told)
     }
 
-    /// Does what a guest called. Without a context it is not in a scan.
-    pub(crate) fn answer<P: Planner>(
-        &mut self,
-        call: Call,
-        memory: &mut [u8],
-        context: Option<&mut Context<'_, P>>,
-    ) -> Result<i32, Fault> {
-        let [first, second, third] = call.arguments;
-        match call.import {
-            Import::Log => self.log(memory, first, second).map(|()| 0),
-            Import::Block(block) => {
-                let outcome = self.block(block, memory, [first, second, third], context)?;
-                Ok(outcome.map_or_else(|code| code as i32, |()| Code::Ok as i32))
-            }
-        }
-    }
-
-    fn log(&mut self, memory: &[u8], address: u32, bytes: u32) -> Result<(), Fault> {
+    pub(crate) fn log(&mut self, memory: &[u8], address: u32, bytes: u32) -> Result<(), Fault> {
         let text = Place {
             function: "log",
             what: "text",
@@ -212,18 +198,66 @@ impl Host {
         Ok(())
     }
 
-    fn block<P: Planner>(
+    /// Copies records of the ring, from number `*next` on; the arguments are those of the C library's `log_read`.
+    pub(crate) fn log_read(
+        &self,
+        memory: &mut [u8],
+        [next, records, stride, room, copied]: [u32; 5],
+        log: &Log,
+    ) -> Result<Code, Fault> {
+        if next == 0 || copied == 0 || (records == 0 && room > 0) {
+            return Ok(Code::NullPointer);
+        }
+        if (stride as usize) < RECORD_SIZE {
+            return Ok(Code::StructSize);
+        }
+        let place = |what, address, bytes| Place {
+            function: "log_read",
+            what,
+            address,
+            bytes,
+        };
+        let next = place("next", next, 8);
+        let copied = place("copied", copied, 4);
+        // Both fit into 64 bits, and what a processor of 32 bits cannot count lies outside.
+        let bytes = usize::try_from(u64::from(stride) * u64::from(room)).unwrap_or(usize::MAX);
+        let records = place("records", records, bytes);
+        let from = u64::read(next.of(memory)?, 0);
+        copied.of(memory)?;
+        let rows = records.of_mut(memory)?.chunks_exact_mut(stride as usize);
+        // What is not held any more is skipped.
+        let total = log.total();
+        let first = total.saturating_sub(log.since(from).count() as u64);
+        let mut count = 0_u32;
+        for (row, record) in rows.zip(log.since(from)) {
+            let number = first + u64::from(count);
+            FlatRecord::new(number, self.key_of(record.instance), record).put_flat(row);
+            count += 1;
+        }
+        (first + u64::from(count)).write(next.of_mut(memory)?, 0);
+        count.write(copied.of_mut(memory)?, 0);
+        Ok(Code::Ok)
+    }
+
+    /// The key of an instance with this number in records; 0 if the guest has none.
+    fn key_of(&self, id: InstanceId) -> u32 {
+        let index = id.0.checked_sub(self.first).map(usize::from);
+        match index {
+            Some(index) if index < self.slots.len() => index as u32 + 1,
+            _ => 0,
+        }
+    }
+
+    /// One call of a block in a scan: any block, whatever is wrong with the call.
+    pub(crate) fn block<P: Planner>(
         &mut self,
         block: usize,
         memory: &mut [u8],
         [key, inputs, outputs]: [u32; 3],
-        context: Option<&mut Context<'_, P>>,
+        context: &mut Context<'_, P>,
     ) -> Result<Result<(), Code>, Fault> {
         let (Some(shape), Some(&function)) = (SHAPES.get(block), NAMES.get(block)) else {
             return Ok(Err(Code::UnknownKey));
-        };
-        let Some(context) = context else {
-            return Ok(Err(Code::NotInTick));
         };
         if key == 0 || inputs == 0 || outputs == 0 {
             return Ok(Err(Code::NullPointer));
@@ -282,6 +316,24 @@ impl Host {
         instance.call(&mut inner);
         instance.put_flat(place("out", outputs, shape.outputs.size).of_mut(memory)?);
         Ok(Ok(()))
+    }
+
+    /// The instance with this key and its number in records, as a block of one kind: nothing if there is no such, or
+    /// the key is 0.
+    #[inline(always)]
+    pub(crate) fn find<B>(
+        &mut self,
+        number: u64,
+        as_block: impl Fn(&mut BlockInstance) -> Option<&mut Instance<B>>,
+    ) -> Option<(InstanceId, &mut Instance<B>)>
+    where
+        B: Block,
+    {
+        let index = usize::try_from(number).ok()?.checked_sub(1)?;
+        let (_, instance) = self.slots.get_mut(index)?;
+        // At most INSTANCES_MOST.
+        let id = InstanceId(self.first.saturating_add(index as u16));
+        Some((id, as_block(instance)?))
     }
 
     /// A new instance; gives its key.

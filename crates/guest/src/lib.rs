@@ -1,7 +1,8 @@
 //! Guests: control programs in WebAssembly that call the function blocks.
 //!
 //! A guest exports `plc_scan(tick: i32, now_ns: i64)`, `memory` and, if it likes, `plc_init()`; it imports functions of
-//! blocks, `(key, in, out) -> result` of addresses in its memory, and `log(text, bytes)`. Nothing else can be imported.
+//! blocks, `(key, in, out) -> result` of addresses in its memory, `log(text, bytes)`, and `log_read`, which copies records
+//! of the diagnostic ring. Nothing else can be imported.
 //! `standstill export wasm` writes all of them out, with the layout of every structure.
 //!
 //! A guest is not trusted. It is checked and compiled before it runs; every call of it has a budget of instructions,
@@ -17,11 +18,12 @@ mod error;
 mod guest;
 mod host;
 mod symbol;
+mod tick;
 
 pub use error::{Fault, LoadError};
 pub use guest::{Guest, Program, Settings, Snapshot};
 pub use host::{Code, INSTANCES_MOST, Told};
-pub use symbol::{Symbol, SymbolError, symbol_type};
+pub use symbol::{Symbol, SymbolError, SymbolType};
 
 /// Most bytes of a module.
 pub const MODULE_MOST: usize = 16 << 20;

@@ -1,8 +1,8 @@
 //! Guests in text form under the executor: motion, snapshots, and everything a hostile one may try.
 
 use standstill_axis::{AxisConfig, AxisState, DrivePosition, IdealDrive, Limits, Standard};
-use standstill_fb::{Context, PinType, Value};
-use standstill_guest::{Fault, Guest, LoadError, Program, Settings, Symbol, SymbolError, Told};
+use standstill_fb::{Context, Value};
+use standstill_guest::{Fault, Guest, LoadError, Program, Settings, Symbol, SymbolError, SymbolType, Told};
 use standstill_scan::{Executor, Machine, Mode, ProgramConfig, ProgramFault, ProgramId, Programs};
 use std::fs;
 use std::path::Path;
@@ -73,19 +73,19 @@ impl Bench {
         )
     }
 
-    fn symbol(&self, name: &str, ty: PinType) -> Symbol {
+    fn symbol(&self, name: &str, ty: SymbolType) -> Symbol {
         Symbol {
             ty,
             address: self.host.guest.address_of(name).unwrap(),
         }
     }
 
-    fn set(&mut self, name: &str, value: Value, ty: PinType) {
+    fn set(&mut self, name: &str, value: Value, ty: SymbolType) {
         let symbol = self.symbol(name, ty);
         self.host.guest.write(&symbol, value).unwrap();
     }
 
-    fn get(&self, name: &str, ty: PinType) -> Value {
+    fn get(&self, name: &str, ty: SymbolType) -> Value {
         self.host.guest.read(&self.symbol(name, ty)).unwrap()
     }
 }
@@ -117,11 +117,11 @@ fn a_guest_moves_an_axis_and_uses_the_same_fuel_in_every_scan_at_rest() {
         fuel[0] > 0 && fuel.iter().all(|used| *used == fuel[0]),
         "{fuel:?}"
     );
-    assert_eq!(bench.get("status", PinType::Bool), Value::Bool(true));
-    bench.set("target", Value::Lreal(3.5), PinType::Lreal);
-    bench.set("go", Value::Bool(true), PinType::Bool);
+    assert_eq!(bench.get("status", SymbolType::Bool), Value::Bool(true));
+    bench.set("target", Value::Lreal(3.5), SymbolType::Lreal);
+    bench.set("go", Value::Bool(true), SymbolType::Bool);
     let mut moving = 0;
-    while bench.get("done", PinType::Bool) != Value::Bool(true) {
+    while bench.get("done", SymbolType::Bool) != Value::Bool(true) {
         moving += u64::from(bench.scan().0 == AxisState::DiscreteMotion);
         assert!(moving < 5_000);
     }
@@ -133,7 +133,7 @@ fn a_guest_moves_an_axis_and_uses_the_same_fuel_in_every_scan_at_rest() {
 fn a_snapshot_between_scans_goes_on_as_the_original_does() {
     let program = compile(MOVE).unwrap();
     let mut bench = Bench::new(program.start().unwrap());
-    bench.set("go", Value::Bool(true), PinType::Bool);
+    bench.set("go", Value::Bool(true), SymbolType::Bool);
     for _ in 0..100 {
         bench.scan();
     }
@@ -153,8 +153,8 @@ fn a_snapshot_between_scans_goes_on_as_the_original_does() {
     assert_eq!(first, second);
     assert_eq!(first.last().map(|row| row.0), Some(AxisState::Standstill));
     assert_eq!(
-        bench.get("scans", PinType::Dword),
-        other.get("scans", PinType::Dword)
+        bench.get("scans", SymbolType::Dword),
+        other.get("scans", SymbolType::Dword)
     );
 }
 
@@ -255,7 +255,7 @@ fn a_guest_that_fails_at_work_stops_the_resource_and_the_axis_ramps_down() {
     ] {
         let text = hostile(instructions);
         let mut bench = Bench::new(compile(&text).unwrap().start().unwrap());
-        bench.set("go", Value::Bool(true), PinType::Bool);
+        bench.set("go", Value::Bool(true), SymbolType::Bool);
         while bench.executor.mode() == Mode::Running {
             bench.scan();
             assert!(bench.scan < 100, "{instructions}");
@@ -313,7 +313,7 @@ fn wrong_calls_get_a_code_and_nan_the_error_of_the_block() {
             bench.scan();
         }
         assert_eq!(
-            bench.get("code", PinType::Dword),
+            bench.get("code", SymbolType::Dword),
             Value::Dword(i32::cast_unsigned(code)),
             "{call}"
         );
@@ -328,18 +328,18 @@ fn wrong_calls_get_a_code_and_nan_the_error_of_the_block() {
     );
     let bench = Bench::new(compile(&text).unwrap().start().unwrap());
     assert_eq!(
-        bench.get("code", PinType::Dword),
+        bench.get("code", SymbolType::Dword),
         Value::Dword((-7_i32).cast_unsigned())
     );
     // NaN is refused by the block, and the axis stays where it is.
     let mut bench = Bench::new(compile(MOVE).unwrap().start().unwrap());
-    bench.set("target", Value::Lreal(f64::NAN), PinType::Lreal);
-    bench.set("go", Value::Bool(true), PinType::Bool);
+    bench.set("target", Value::Lreal(f64::NAN), SymbolType::Lreal);
+    bench.set("go", Value::Bool(true), SymbolType::Bool);
     for _ in 0..100 {
         bench.scan();
     }
     let error = Symbol {
-        ty: PinType::Bool,
+        ty: SymbolType::Bool,
         address: 192,
     };
     assert_eq!(bench.host.guest.read(&error), Ok(Value::Bool(true)));
@@ -360,7 +360,7 @@ fn memory_grows_up_to_its_limit_and_not_beyond() {
     let mut sizes = Vec::new();
     for _ in 0..3 {
         bench.scan();
-        sizes.push(bench.get("size", PinType::Dword));
+        sizes.push(bench.get("size", SymbolType::Dword));
     }
     assert_eq!(
         sizes,
@@ -369,12 +369,12 @@ fn memory_grows_up_to_its_limit_and_not_beyond() {
     // A grown memory is restored, too.
     let restored = program.restore(&bench.host.guest.snapshot()).unwrap();
     let far = Symbol {
-        ty: PinType::Lreal,
+        ty: SymbolType::Lreal,
         address: (11 << 16) - 8,
     };
     assert_eq!(restored.read(&far), Ok(Value::Lreal(0.0)));
     let outside = Symbol {
-        ty: PinType::Lreal,
+        ty: SymbolType::Lreal,
         address: (11 << 16) - 7,
     };
     assert!(matches!(
@@ -418,13 +418,13 @@ fn rows_of(program: &Program) -> Vec<(AxisState, u64, u64)> {
     let mut rows = Vec::new();
     for scan in 0..700 {
         if scan == 20 {
-            bench.set("target", Value::Lreal(2.5), PinType::Lreal);
-            bench.set("go", Value::Bool(true), PinType::Bool);
+            bench.set("target", Value::Lreal(2.5), SymbolType::Lreal);
+            bench.set("go", Value::Bool(true), SymbolType::Bool);
         }
         let (state, position, velocity, _) = bench.scan();
         rows.push((state, position, velocity));
     }
-    assert_eq!(bench.get("done", PinType::Bool), Value::Bool(true));
+    assert_eq!(bench.get("done", SymbolType::Bool), Value::Bool(true));
     rows
 }
 

@@ -98,8 +98,10 @@ pub struct Program {
 pub struct Symbol {
     /// Name as written.
     pub name: String,
-    /// BOOL, INT, WORD, DWORD, LREAL or TIME.
+    /// Type of its signal.
     pub ty: PinType,
+    /// Its own type, which that of its signal holds.
+    pub own: standstill_guest::SymbolType,
     /// Where it stands; where the guest exports it if absent.
     pub address: Option<u32>,
     /// What the guest exports it as; by its name if absent.

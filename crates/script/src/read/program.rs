@@ -8,8 +8,8 @@ use super::{Reader, is_note, shape};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::model::Point;
 use crate::model::{Claim, ClaimKind, Condition, Program, Range, Signal, Span, Symbol, Task, Test};
-use standstill_fb::PinType;
-use standstill_guest::{INSTANCES_MOST, Settings, symbol_type};
+use standstill_fb::{PinType, Value};
+use standstill_guest::{INSTANCES_MOST, Settings, SymbolType};
 
 /// Most guest programs of a script; their instances have numbers of 16 bits with those of the script.
 pub(crate) const PROGRAMS_MAX: usize = 16;
@@ -24,7 +24,15 @@ pub(crate) const FUEL_MAX: i64 = 1_000_000_000;
 pub(crate) const MEMORY_MAX: i64 = 1 << 32;
 
 /// Types of symbols.
-pub(crate) const SYMBOL_TYPES: [&str; 6] = ["BOOL", "INT", "WORD", "DWORD", "LREAL", "TIME"];
+pub(crate) const SYMBOL_TYPES: [&str; SymbolType::ALL.len()] = {
+    let mut names = [""; SymbolType::ALL.len()];
+    let mut index = 0;
+    while index < names.len() {
+        names[index] = SymbolType::ALL[index].iec_name();
+        index += 1;
+    }
+    names
+};
 
 /// The signal of a program that the runtime writes.
 pub(crate) const FAULT: &str = "Fault";
@@ -109,6 +117,7 @@ impl Reader {
         let mut symbols = vec![Some(Symbol {
             name: FAULT.to_owned(),
             ty: PinType::Bool,
+            own: SymbolType::Bool,
             address: None,
             export: None,
         })];
@@ -125,7 +134,7 @@ impl Reader {
             let mut names = vec![FAULT.to_ascii_uppercase()];
             for (key, node) in members.iter() {
                 if is_note(key, node)
-                    && symbol_type(match &node.json {
+                    && SymbolType::find(match &node.json {
                         Json::Text(text) => text,
                         _ => "",
                     })
@@ -173,7 +182,7 @@ impl Reader {
             _ => (node, None, None),
         };
         let text = self.text(ty, "the type of a symbol")?;
-        let Some(found) = symbol_type(text) else {
+        let Some(own) = SymbolType::find(text) else {
             let message = format!("a symbol cannot be of type {}", quoted(text));
             let help = format!("one of {}", SYMBOL_TYPES.join(", "));
             self.report(Diagnostic::new(Code::BadValue, ty.span, message).help(help));
@@ -181,10 +190,33 @@ impl Reader {
         };
         Some(Symbol {
             name: name.to_owned(),
-            ty: found,
+            ty: own.signal(),
+            own,
             address: address.and_then(|address| u32::try_from(address).ok()),
             export,
         })
+    }
+
+    /// Whether the variable at a point holds a value; a report if not.
+    pub(super) fn symbol_holds(&mut self, point: Point, value: Value, span: Span, what: &str) -> bool {
+        let Point::Symbol(program, symbol) = point else {
+            return true;
+        };
+        let program = self.programs.get(program).and_then(Option::as_ref);
+        let Some(symbol) = program.and_then(|program| program.symbols.get(symbol)) else {
+            return true;
+        };
+        let (own, Some((least, most))) = (symbol.own, symbol.own.narrow()) else {
+            return true;
+        };
+        if !own.holds(value) {
+            let message = format!(
+                "{what} must be a whole number from {least} to {most}: its variable is a {}",
+                own.iec_name()
+            );
+            self.report(Diagnostic::new(Code::BadValue, span, message));
+        }
+        own.holds(value)
     }
 
     /// The tasks of the programs, in their order.

@@ -159,7 +159,9 @@ impl Reader {
             return None;
         }
         let what = format!("{} ({})", quoted(name), ty.iec_name());
-        self.value(node, ty, &what).map(|value| Action::Set(point, value))
+        let value = self.value(node, ty, &what)?;
+        self.symbol_holds(point, value, node.span, &quoted(name))
+            .then_some(Action::Set(point, value))
     }
 
     fn fault(&mut self, node: &Node) -> Option<Action> {

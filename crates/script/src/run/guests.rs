@@ -135,7 +135,7 @@ fn start(program: &Program) -> Result<Running, RunError> {
                 .map_err(|error| wrong(error.to_string()))?,
         };
         Ok(Symbol {
-            ty: symbol.ty,
+            ty: symbol.own,
             address,
         })
     };

@@ -209,6 +209,14 @@ impl<'a> Session<'a> {
         let (value, json) = self
             .parse(point, text.trim())
             .map_err(|why| format!("{name}: {why}"))?;
+        if let Point::Symbol(program, symbol) = point
+            && let Some(symbol) =
+                (self.script.programs.get(program)).and_then(|program| program.symbols.get(symbol))
+            && !symbol.own.holds(value)
+        {
+            let ty = symbol.own.iec_name();
+            return Err(format!("{name}: a {ty} does not hold `{}`", text.trim()));
+        }
         self.bench.change(point, value);
         self.changes.push(Change {
             scan: self.scans,

@@ -8,4 +8,5 @@ mod every_key;
 mod format;
 mod include;
 mod mutations;
+mod programs;
 mod schema;

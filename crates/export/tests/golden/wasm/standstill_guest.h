@@ -2102,6 +2102,41 @@ STANDSTILL_IMPORT(tp) int32_t standstill_tp(uint64_t *key,
 /** Tells the host something: `bytes` bytes of UTF-8. */
 STANDSTILL_IMPORT(log) void standstill_log(const char *text, uint32_t bytes);
 
+/** One entry of the diagnostic ring, which keeps the last 64. */
+typedef struct standstill_record {
+    /** Its number, from 0 since the start. */
+    uint64_t number;
+    /** The scan it happened in, from 0. */
+    uint64_t scan;
+    /** The axis. */
+    int32_t axis;
+    /** The key of the block instance whose command it was; 0: none of the reader's. */
+    uint32_t instance;
+    /** 1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position,
+     *  8 planned to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13
+     *  fault. */
+    int32_t event;
+    /** ErrorID, 0 without one. */
+    uint32_t error_id;
+    /** Scans of a plan, number of a point, or code of a drive. */
+    uint64_t count;
+    /** What was asked for; the excess of velocity; where to; the velocity. */
+    double value;
+    /** What was used instead, or the limit; the excess of acceleration; the velocity when passing. */
+    double limit;
+    /** The excess of jerk. */
+    double third;
+    /** Name of the pin or field, ending in 0; empty: the axis state decided. */
+    char name[32];
+} standstill_record;
+_Static_assert(sizeof(standstill_record) == 96, "standstill_record");
+
+/** Copies records of the diagnostic ring, oldest first, from number `*next` on; `*next` becomes the number to go
+ *  on from, and `*copied` how many there are. Records that were overwritten meanwhile are left out.
+ *  `record_size` is sizeof(standstill_record), `room` how many records fit. */
+STANDSTILL_IMPORT(log_read) int32_t standstill_log_read(uint64_t *next, standstill_record *records,
+    uint32_t record_size, uint32_t room, uint32_t *copied);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,239 @@
+//! Records of the diagnostic ring as numbers and bytes: the one form in which hosts in other languages read them. The C
+//! library and WebAssembly guests take it from here.
+
+use crate::axis_number;
+use crate::flat::Flat;
+use standstill_axis::{Event, Goal, Record};
+
+/// Bytes of a record.
+pub const RECORD_SIZE: usize = 96;
+
+/// Bytes of the name in a record, the 0 at its end among them.
+pub const NAME_SIZE: usize = 32;
+
+/// The fields of a record: what they are called, their type, what they mean, and where they begin.
+pub const FIELDS: [(&str, &str, &str, usize); 11] = [
+    ("number", "u64", "Its number, from 0 since the start.", 0),
+    ("scan", "u64", "The scan it happened in, from 0.", 8),
+    ("axis", "i32", "The axis.", 16),
+    (
+        "instance",
+        "u32",
+        "The key of the block instance whose command it was; 0: none of the reader's.",
+        20,
+    ),
+    (
+        "event",
+        "i32",
+        "1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position, 8 planned \
+         to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault.",
+        24,
+    ),
+    ("error_id", "u32", "ErrorID, 0 without one.", 28),
+    (
+        "count",
+        "u64",
+        "Scans of a plan, number of a point, or code of a drive.",
+        32,
+    ),
+    (
+        "value",
+        "f64",
+        "What was asked for; the excess of velocity; where to; the velocity.",
+        40,
+    ),
+    (
+        "limit",
+        "f64",
+        "What was used instead, or the limit; the excess of acceleration; the velocity when passing.",
+        48,
+    ),
+    ("third", "f64", "The excess of jerk.", 56),
+    (
+        "name",
+        "char[32]",
+        "Name of the pin or field, ending in 0; empty: the axis state decided.",
+        64,
+    ),
+];
+
+/// A record as the numbers of its fields; [`FIELDS`] says what they mean.
+#[allow(missing_docs)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FlatRecord {
+    pub number: u64,
+    pub scan: u64,
+    pub axis: i32,
+    pub instance: u32,
+    pub event: i32,
+    pub error_id: u32,
+    pub count: u64,
+    pub value: f64,
+    pub limit: f64,
+    pub third: f64,
+    pub name: &'static str,
+}
+
+impl FlatRecord {
+    /// Record `number` of the ring, for a reader who calls its instance so.
+    pub fn new(number: u64, instance: u32, from: &Record) -> Self {
+        let mut record = Self {
+            number,
+            scan: from.scan,
+            axis: axis_number(from.axis),
+            instance,
+            ..Self::default()
+        };
+        match from.event {
+            Event::Refused {
+                pin,
+                value,
+                limit,
+                error,
+            } => {
+                record.event = 1;
+                record.error_id = error.number().into();
+                (record.value, record.limit) = (value, limit);
+                record.name = pin;
+            }
+            Event::PointRefused {
+                point,
+                what,
+                value,
+                limit,
+                error,
+            } => {
+                record.event = 2;
+                record.error_id = error.number().into();
+                record.count = point.into();
+                (record.value, record.limit) = (value, limit);
+                record.name = what;
+            }
+            Event::Clamped { pin, value, limit } => {
+                record.event = 3;
+                (record.value, record.limit) = (value, limit);
+                record.name = pin;
+            }
+            Event::Raised { pin, value, limit } => {
+                record.event = 4;
+                (record.value, record.limit) = (value, limit);
+                record.name = pin;
+            }
+            Event::Unavoidable(excess) => {
+                record.event = 5;
+                record.value = excess.velocity;
+                record.limit = excess.acceleration;
+                record.third = excess.jerk;
+            }
+            Event::Shifted { by } => {
+                record.event = 6;
+                record.value = by;
+            }
+            Event::Planned { goal, scans } => {
+                record.count = scans.into();
+                match goal {
+                    Goal::Position(position) => (record.event, record.value) = (7, position),
+                    Goal::Velocity(velocity) => (record.event, record.value) = (8, velocity),
+                    Goal::Passing { position, velocity } => {
+                        (record.event, record.value, record.limit) = (9, position, velocity);
+                    }
+                }
+            }
+            Event::Superimposed { distance, scans } => {
+                record.event = 10;
+                record.count = scans.into();
+                record.value = distance.unwrap_or_default();
+            }
+            Event::RoomAwaited => record.event = 11,
+            Event::Paused { error } => {
+                record.event = 12;
+                record.error_id = error.number().into();
+            }
+            Event::Fault { error, code } => {
+                record.event = 13;
+                record.error_id = error.number().into();
+                record.count = code.into();
+            }
+        }
+        record
+    }
+
+    /// Writes it to [`RECORD_SIZE`] bytes; what does not fit into fewer is left out.
+    pub fn put_flat(&self, flat: &mut [u8]) {
+        self.number.write(flat, 0);
+        self.scan.write(flat, 8);
+        self.axis.write(flat, 16);
+        self.instance.write(flat, 20);
+        self.event.write(flat, 24);
+        self.error_id.write(flat, 28);
+        self.count.write(flat, 32);
+        self.value.write(flat, 40);
+        self.limit.write(flat, 48);
+        self.third.write(flat, 56);
+        let name = flat.get_mut(64..).unwrap_or_default();
+        name.iter_mut().take(NAME_SIZE).for_each(|byte| *byte = 0);
+        for (to, from) in name.iter_mut().zip(self.name.bytes().take(NAME_SIZE - 1)) {
+            *to = from;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use standstill_axis::{AxisId, ErrorId, InstanceId};
+
+    #[test]
+    fn a_record_stands_where_its_fields_say() {
+        let from = Record {
+            scan: 7,
+            axis: AxisId::new(1),
+            instance: InstanceId(40),
+            event: Event::PointRefused {
+                point: 3,
+                what: "Velocity",
+                value: 80.0,
+                limit: 50.0,
+                error: ErrorId::AxisUnknown,
+            },
+        };
+        let mut flat = [0xA5; RECORD_SIZE + 1];
+        FlatRecord::new(9, 5, &from).put_flat(&mut flat);
+        let at = |name| {
+            FIELDS
+                .iter()
+                .find(|field| field.0 == name)
+                .map_or(0, |field| field.3)
+        };
+        assert_eq!(u64::read(&flat, at("number")), 9);
+        assert_eq!(u64::read(&flat, at("scan")), 7);
+        assert_eq!(i32::read(&flat, at("axis")), 2);
+        assert_eq!(u32::read(&flat, at("instance")), 5);
+        assert_eq!(i32::read(&flat, at("event")), 2);
+        assert_eq!(
+            u32::read(&flat, at("error_id")),
+            u32::from(ErrorId::AxisUnknown.number())
+        );
+        assert_eq!(u64::read(&flat, at("count")), 3);
+        assert_eq!(f64::read(&flat, at("value")), 80.0);
+        assert_eq!(f64::read(&flat, at("limit")), 50.0);
+        assert_eq!(f64::read(&flat, at("third")), 0.0);
+        assert_eq!(flat[at("name")..][..9], *b"Velocity\0");
+        assert_eq!(flat[RECORD_SIZE - 1..], [0, 0xA5]);
+    }
+
+    #[test]
+    fn fields_follow_each_other_to_the_end() {
+        let mut end = 0;
+        for (name, ty, _, offset) in FIELDS {
+            assert_eq!(offset, end, "{name}");
+            end += match ty {
+                "u64" | "f64" => 8,
+                "i32" | "u32" => 4,
+                _ => NAME_SIZE,
+            };
+        }
+        assert_eq!(end, RECORD_SIZE);
+        FlatRecord::default().put_flat(&mut [0; 3]);
+    }
+}

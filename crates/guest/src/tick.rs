@@ -1,0 +1,248 @@
+//! A scan, where the functions of a guest find what blocks may touch.
+//!
+//! The interpreter keeps its functions for as long as the guest, and a scan lends its axes for one call of the guest. So
+//! they stand in a variable of the thread for as long as that call, without their planner, which functions do not know.
+
+use crate::Fault;
+use crate::engine::Machine;
+use crate::host::{Code, Host};
+use scoped_tls_hkt::scoped_thread_local;
+use standstill_axis::Planner;
+use standstill_blocks::BlockInstance;
+use standstill_fb::flat::{Flat, Layout, Pointer};
+use standstill_fb::{Block, Context, Described, Instance, Pins};
+use std::cell::Cell;
+use std::marker::PhantomData;
+
+scoped_thread_local!(static TICK: for<'a> &'a (dyn Tick + 'a));
+
+/// What a scan lends; taken out while a block has it.
+struct Lent<'l, 'c, P: Planner>(Cell<Option<&'l mut Context<'c, P>>>);
+
+/// No scan: what stands there while a guest starts.
+struct NoTick;
+
+/// Whether blocks can be called while `work` is at it: not.
+pub(crate) fn before<R>(work: impl FnOnce() -> R) -> R {
+    TICK.set(&NoTick, work)
+}
+
+/// One execution of a guest, to whose functions `context` is lent meanwhile.
+#[inline]
+pub(crate) fn scan<P: Planner>(
+    machine: &mut Machine,
+    context: &mut Context<'_, P>,
+    fuel: u64,
+) -> Result<u64, Box<Fault>> {
+    // A tick is the number of the scan, as far as 32 bits go.
+    let (tick, now_ns) = (context.scan as i32, context.now_ns);
+    during(&Lent(Cell::new(Some(context))), machine, tick, now_ns, fuel)
+}
+
+/// The same for every planner, so that it stands beside the variable and reaches it without a detour.
+fn during(
+    lent: &dyn Tick,
+    machine: &mut Machine,
+    tick: i32,
+    now_ns: i64,
+    fuel: u64,
+) -> Result<u64, Box<Fault>> {
+    TICK.set(lent, || machine.scan(tick, now_ns, fuel))
+}
+
+/// The function of a block: a call with the addresses of key, inputs and outputs. Its result, or a fault that ends the
+/// guest.
+pub(crate) type Function = fn(&mut Host, &mut [u8], [u32; 3]) -> Answer;
+
+/// A code, of 64 bits so that it comes back in a register; or a fault that ends the guest.
+pub(crate) type Answer = Result<i64, Box<Fault>>;
+
+/// What `log_read` does.
+pub(crate) fn log_read(host: &mut Host, memory: &mut [u8], given: [u32; 5]) -> Answer {
+    let outcome = TICK.with(|tick| tick.log_read(host, memory, given));
+    outcome.map(|code| code as i64).map_err(Box::new)
+}
+
+/// The structure at an address: so many of its bytes, if they are there and the size in front is as large.
+#[inline(always)]
+fn structure(memory: &[u8], address: u32, size: usize) -> Option<&[u8]> {
+    let bytes = memory.get(address as usize..)?.get(..size)?;
+    (address != 0 && u32::read(bytes, 0) as usize >= size).then_some(bytes)
+}
+
+/// Bytes of the structures of `B`.
+struct Sizes<B>(PhantomData<B>);
+
+impl<B: Block> Sizes<B> {
+    const INPUTS: usize = Layout::of_pins(<B::Inputs as Pins>::PINS, Pointer::Bits32).size;
+    const OUTPUTS: usize = Layout::of_pins(<B::Outputs as Pins>::PINS, Pointer::Bits32).size;
+}
+
+/// Finds the instance of one kind of block.
+type Find<B> = fn(&mut BlockInstance) -> Option<&mut Instance<B>>;
+
+/// What a guest does in almost every scan: a call with good addresses of an instance that is there and has nothing to do.
+/// If there is anything else about it, nothing happened.
+#[inline(always)]
+fn glance<B: Block + Described, P: Planner>(
+    host: &mut Host,
+    memory: &mut [u8],
+    [key, inputs, outputs]: [u32; 3],
+    context: &mut Context<'_, P>,
+    own: Find<B>,
+) -> Option<()> {
+    if key == 0 || const { B::INFO.has_tables() } {
+        return None;
+    }
+    structure(memory, outputs, Sizes::<B>::OUTPUTS)?;
+    let flat = structure(memory, inputs, Sizes::<B>::INPUTS)?;
+    let (instance, mut context) = instance(host, memory, key, context, own)?;
+    if !instance.rests_with(flat, Pointer::Bits32, &mut context) {
+        return None;
+    }
+    let shown = memory
+        .get_mut(outputs as usize..)?
+        .get_mut(..Sizes::<B>::OUTPUTS)?;
+    instance.outputs.put_flat(shown);
+    Some(())
+}
+
+/// The same of an instance that has something to do. Apart, so that a glance keeps nothing on the stack for it.
+#[inline(never)]
+fn wake<B: Block + Described, P: Planner>(
+    host: &mut Host,
+    memory: &mut [u8],
+    [key, inputs, outputs]: [u32; 3],
+    context: &mut Context<'_, P>,
+    own: Find<B>,
+) -> Option<()> {
+    if key == 0 || const { B::INFO.has_tables() } {
+        return None;
+    }
+    structure(memory, outputs, Sizes::<B>::OUTPUTS)?;
+    let flat = structure(memory, inputs, Sizes::<B>::INPUTS)?;
+    let (instance, mut context) = instance(host, memory, key, context, own)?;
+    instance.wake(flat, Pointer::Bits32, &mut context);
+    let shown = memory
+        .get_mut(outputs as usize..)?
+        .get_mut(..Sizes::<B>::OUTPUTS)?;
+    instance.outputs.put_flat(shown);
+    Some(())
+}
+
+/// The instance with the key at an address, and what it may touch.
+#[inline(always)]
+fn instance<'h, B: Block, P: Planner>(
+    host: &'h mut Host,
+    memory: &[u8],
+    key: u32,
+    context: &'h mut Context<'_, P>,
+    own: Find<B>,
+) -> Option<(&'h mut Instance<B>, Context<'h, P>)> {
+    let number = memory.get(key as usize..)?.first_chunk()?;
+    let (id, instance) = host.find(u64::from_le_bytes(*number), own)?;
+    let context = Context {
+        now_ns: context.now_ns,
+        scan: context.scan,
+        instance: id,
+        axes: &mut *context.axes,
+        log: &mut *context.log,
+        tables: &[],
+    };
+    Some((instance, context))
+}
+
+/// A call that is no glance.
+#[inline(never)]
+fn rest<B: Block + Described, P: Planner>(
+    block: usize,
+    host: &mut Host,
+    memory: &mut [u8],
+    addresses: [u32; 3],
+    context: &mut Context<'_, P>,
+    own: Find<B>,
+) -> Answer {
+    match wake(host, memory, addresses, context, own) {
+        Some(()) => Ok(0),
+        None => look(block, host, memory, addresses, context),
+    }
+}
+
+/// A call with whatever there may be about it.
+fn look<P: Planner>(
+    block: usize,
+    host: &mut Host,
+    memory: &mut [u8],
+    addresses: [u32; 3],
+    context: &mut Context<'_, P>,
+) -> Answer {
+    let outcome = host.block(block, memory, addresses, context)?;
+    Ok(outcome.map_or_else(|code| code as i64, |()| 0))
+}
+
+macro_rules! functions {
+    ($($group:ident :: $name:ident :: $block:ident)*) => {
+        /// The scan of some planner, and what can be called in it.
+        trait Tick {
+            fn log_read(&self, _: &mut Host, _: &mut [u8], _: [u32; 5]) -> Result<Code, Fault> {
+                Ok(Code::NotInTick)
+            }
+
+            $(fn $name(&self, _: &mut Host, _: &mut [u8], _: [u32; 3]) -> Answer {
+                Ok(Code::NotInTick as i64)
+            })*
+        }
+
+        impl Tick for NoTick {}
+
+        impl<P: Planner> Tick for Lent<'_, '_, P> {
+            fn log_read(&self, host: &mut Host, memory: &mut [u8], given: [u32; 5]) -> Result<Code, Fault> {
+                let Some(context) = self.0.take() else {
+                    return Ok(Code::NotInTick);
+                };
+                let outcome = host.log_read(memory, given, context.log);
+                self.0.set(Some(context));
+                outcome
+            }
+
+            $(fn $name(
+                &self,
+                host: &mut Host,
+                memory: &mut [u8],
+                addresses: [u32; 3],
+            ) -> Answer {
+                fn own(block: &mut BlockInstance) -> Option<&mut Instance<standstill_blocks::$group::$name::$block>> {
+                    match block {
+                        BlockInstance::$block(instance) => Some(instance),
+                        _ => None,
+                    }
+                }
+                let Some(context) = self.0.take() else {
+                    return Ok(Code::NotInTick as i64);
+                };
+                let done = glance(host, memory, addresses, context, own);
+                let outcome = match done {
+                    Some(()) => Ok(0),
+                    None => rest(Place::$name as usize, host, memory, addresses, context, own),
+                };
+                self.0.set(Some(context));
+                outcome
+            })*
+        }
+
+        /// Places in the registry.
+        #[allow(non_camel_case_types)]
+        enum Place {
+            $($name),*
+        }
+
+        /// The functions of the blocks, in the order of the registry.
+        pub(crate) const FUNCTIONS: &[Function] = &[$(
+            |host, memory, addresses| {
+                TICK.with(|tick| tick.$name(host, memory, addresses))
+            }
+        ),*];
+    };
+}
+
+standstill_blocks::for_every_block!(functions);
