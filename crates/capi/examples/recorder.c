@@ -1,7 +1,7 @@
-/* A flight recorder in production: it keeps the last 300 ticks and freezes 100 ticks after an axis went into ErrorStop, here
- * because its drive fails in the middle of a move. The dump is a trace as any other: `standstill explain`, `report` and
- * `compare` read it. With a file's name, NAME.csv, it is written there with its header beside it, NAME.csv.meta.json;
- * without one as JSON Lines to standard output. */
+/* A flight recorder in production: it keeps the last 300 ticks and freezes 100 ticks after an axis went into ErrorStop,
+ * here because its drive fails in the middle of a move. The dump is a trace as any other: `standstill explain`,
+ * `report` and `compare` read it. With a file's name, NAME.csv, it is written there with its header beside it,
+ * NAME.csv.meta.json; without one as JSON Lines to standard output. */
 
 #include "standstill_blocks.h"
 #include <inttypes.h>

@@ -1161,8 +1161,8 @@ int32_t standstill_simulate(struct standstill_runtime *runtime, int32_t axis, in
 int32_t standstill_simulate_input(struct standstill_runtime *runtime, int32_t axis, uint32_t number, uint8_t level);
 
 /**
- * Sets the input of touch probe `number`, 1 or 2, of the simulated drive under `axis` to `level`, from the part `at` (0 to 1)
- * of the cycle on that ends with the next tick_begin. Up to four changes before a tick are kept.
+ * Sets the input of touch probe `number`, 1 or 2, of the simulated drive under `axis` to `level`, from the part `at`
+ * (0 to 1) of the cycle on that ends with the next tick_begin. Up to four changes before a tick are kept.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
  */
@@ -1176,11 +1176,10 @@ int32_t standstill_simulate_probe(struct standstill_runtime *runtime,
  * Somebody pushes the axis by `distance` while the power stage of its simulated drive is off: in units, with a CiA 402
  * drive and an ideal one that counts in increments.
  *
- * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE, NOT_OFF (it has torque).
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE, NOT_OFF (it has
+ * torque).
  */
-int32_t standstill_simulate_push(struct standstill_runtime *runtime,
-                                 int32_t axis,
-                                 double distance);
+int32_t standstill_simulate_push(struct standstill_runtime *runtime, int32_t axis, double distance);
 
 /**
  * Copies records of the diagnostic ring, oldest first, from number `*next` on; `*next` becomes the number to go on
@@ -1210,12 +1209,13 @@ int32_t standstill_recorder_size(struct standstill_runtime *runtime,
                                  size_t *bytes);
 
 /**
- * Sets a flight recorder up in `storage`, which is aligned to 16 bytes, has what recorder_size tells, and belongs to the
- * runtime until recorder_end or runtime_close. From now on every tick_end keeps a scan. Axes that are added later are not
- * recorded.
+ * Sets a flight recorder up in `storage`, which is aligned to 16 bytes, has what recorder_size tells, and belongs to
+ * the runtime until recorder_end or runtime_close. From now on every tick_end keeps a scan. Axes that are added later
+ * are not recorded.
  *
- * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, STORAGE, UNKNOWN_AXIS, UNKNOWN_KEY, NO_ROOM (there is
- * one already), BAD_VALUE (also: a name is no IEC identifier, is not ended by 0, or stands twice; a unit with quotes).
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, STORAGE, UNKNOWN_AXIS, UNKNOWN_KEY, NO_ROOM
+ * (there is one already), BAD_VALUE (also: a name is no IEC identifier, is not ended by 0, or stands twice; a unit
+ * with quotes).
  */
 int32_t standstill_recorder_init(struct standstill_runtime *runtime,
                                  void *storage,
@@ -1255,15 +1255,15 @@ int32_t standstill_recorder_arm(struct standstill_runtime *runtime);
 int32_t standstill_recorder_state(struct standstill_runtime *runtime, struct standstill_recorder_status *status);
 
 /**
- * Copies the next piece of the flight recorder's text to `buffer`, which has `room` bytes, and tells how many they are: 0
- * after the last one. `dump` says which text and how far it is: all 0 but its size and form before the first call. The
- * text is a trace, as `standstill explain`, `report` and `compare` read it; no 0 ends it.
+ * Copies the next piece of the flight recorder's text to `buffer`, which has `room` bytes, and tells how many they
+ * are: 0 after the last one. `dump` says which text and how far it is: all 0 but its size and form before the first
+ * call. The text is a trace, as `standstill explain`, `report` and `compare` read it; no 0 ends it.
  *
- * A line that does not fit is begun anew in the next call, so a buffer of some kilobytes is quicker than one of some bytes.
- * Between the pieces no scan may be kept: dump a recorder that is frozen, or between two ticks.
+ * A line that does not fit is begun anew in the next call, so a buffer of some kilobytes is quicker than one of some
+ * bytes. Between the pieces no scan may be kept: dump a recorder that is frozen, or between two ticks.
  *
- * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, NO_RECORDER, BAD_VALUE (no such form; or scans were
- * kept since the first piece).
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, NO_RECORDER, BAD_VALUE (no such form; or scans
+ * were kept since the first piece).
  */
 int32_t standstill_recorder_read(struct standstill_runtime *runtime,
                                  struct standstill_dump *dump,
@@ -1272,14 +1272,12 @@ int32_t standstill_recorder_read(struct standstill_runtime *runtime,
                                  size_t *length);
 
 /**
- * Makes an instance of the block of this IEC name before it is first called, and sets its key; for a flight recorder, which
- * wants keys. A call with a key of 0 does the same.
+ * Makes an instance of the block of this IEC name before it is first called, and sets its key; for a flight recorder,
+ * which wants keys. A call with a key of 0 does the same.
  *
  * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, BAD_VALUE (no block has this name), NO_ROOM.
  */
-int32_t standstill_instance_make(struct standstill_runtime *runtime,
-                                 const char *block,
-                                 uint64_t *key);
+int32_t standstill_instance_make(struct standstill_runtime *runtime, const char *block, uint64_t *key);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -408,8 +408,8 @@ pub unsafe extern "C" fn standstill_simulate_input(
     }
 }
 
-/// Sets the input of touch probe `number`, 1 or 2, of the simulated drive under `axis` to `level`, from the part `at` (0 to 1)
-/// of the cycle on that ends with the next tick_begin. Up to four changes before a tick are kept.
+/// Sets the input of touch probe `number`, 1 or 2, of the simulated drive under `axis` to `level`, from the part `at`
+/// (0 to 1) of the cycle on that ends with the next tick_begin. Up to four changes before a tick are kept.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
 ///
@@ -442,7 +442,8 @@ pub unsafe extern "C" fn standstill_simulate_probe(
 /// Somebody pushes the axis by `distance` while the power stage of its simulated drive is off: in units, with a CiA 402
 /// drive and an ideal one that counts in increments.
 ///
-/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE, NOT_OFF (it has torque).
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE, NOT_OFF (it has
+/// torque).
 ///
 /// # Safety
 /// `runtime` is null or a handle whose storage is still there.

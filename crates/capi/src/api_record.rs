@@ -71,12 +71,13 @@ pub unsafe extern "C" fn standstill_recorder_size(
     }
 }
 
-/// Sets a flight recorder up in `storage`, which is aligned to 16 bytes, has what recorder_size tells, and belongs to the
-/// runtime until recorder_end or runtime_close. From now on every tick_end keeps a scan. Axes that are added later are not
-/// recorded.
+/// Sets a flight recorder up in `storage`, which is aligned to 16 bytes, has what recorder_size tells, and belongs to
+/// the runtime until recorder_end or runtime_close. From now on every tick_end keeps a scan. Axes that are added later
+/// are not recorded.
 ///
-/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, STORAGE, UNKNOWN_AXIS, UNKNOWN_KEY, NO_ROOM (there is
-/// one already), BAD_VALUE (also: a name is no IEC identifier, is not ended by 0, or stands twice; a unit with quotes).
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, STORAGE, UNKNOWN_AXIS, UNKNOWN_KEY, NO_ROOM
+/// (there is one already), BAD_VALUE (also: a name is no IEC identifier, is not ended by 0, or stands twice; a unit
+/// with quotes).
 ///
 /// # Safety
 /// Pointers are null or lead to what their types say, `storage` to so many bytes, `recorded` to `count` entries.
@@ -181,15 +182,15 @@ pub unsafe extern "C" fn standstill_recorder_state(
     }
 }
 
-/// Copies the next piece of the flight recorder's text to `buffer`, which has `room` bytes, and tells how many they are: 0
-/// after the last one. `dump` says which text and how far it is: all 0 but its size and form before the first call. The
-/// text is a trace, as `standstill explain`, `report` and `compare` read it; no 0 ends it.
+/// Copies the next piece of the flight recorder's text to `buffer`, which has `room` bytes, and tells how many they
+/// are: 0 after the last one. `dump` says which text and how far it is: all 0 but its size and form before the first
+/// call. The text is a trace, as `standstill explain`, `report` and `compare` read it; no 0 ends it.
 ///
-/// A line that does not fit is begun anew in the next call, so a buffer of some kilobytes is quicker than one of some bytes.
-/// Between the pieces no scan may be kept: dump a recorder that is frozen, or between two ticks.
+/// A line that does not fit is begun anew in the next call, so a buffer of some kilobytes is quicker than one of some
+/// bytes. Between the pieces no scan may be kept: dump a recorder that is frozen, or between two ticks.
 ///
-/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, NO_RECORDER, BAD_VALUE (no such form; or scans were
-/// kept since the first piece).
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STRUCT_SIZE, NO_RECORDER, BAD_VALUE (no such form; or scans
+/// were kept since the first piece).
 ///
 /// # Safety
 /// Pointers are null or lead to what their types say, `buffer` to `room` bytes.
@@ -241,8 +242,8 @@ pub unsafe extern "C" fn standstill_recorder_read(
     }
 }
 
-/// Makes an instance of the block of this IEC name before it is first called, and sets its key; for a flight recorder, which
-/// wants keys. A call with a key of 0 does the same.
+/// Makes an instance of the block of this IEC name before it is first called, and sets its key; for a flight recorder,
+/// which wants keys. A call with a key of 0 does the same.
 ///
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, BAD_VALUE (no block has this name), NO_ROOM.
 ///

@@ -229,8 +229,8 @@ fn caught<T>(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<T, Code>
     work(inner)
 }
 
-/// Refuses to call a block in a resource that was stopped. Whether the call is recorded, so that it has to take all of its
-/// inputs.
+/// Refuses to call a block in a resource that was stopped. Whether the call is recorded, so that it has to take all of
+/// its inputs.
 #[inline(always)]
 pub(crate) fn running(inner: &Inner) -> Result<bool, Code> {
     match inner.mode {

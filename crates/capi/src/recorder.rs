@@ -188,8 +188,8 @@ impl Order<'_> {
     /// Makes the recorder in its storage; the list has it.
     ///
     /// # Safety
-    /// `storage` is not null, `bytes` bytes can be read and written there, and nothing but the recorder uses them as long
-    /// as it is there.
+    /// `storage` is not null, `bytes` bytes can be read and written there, and nothing but the recorder uses them as
+    /// long as it is there.
     pub unsafe fn make(
         &self,
         given: impl Iterator<Item = Recorded> + Clone,
@@ -203,8 +203,8 @@ impl Order<'_> {
         let ring = Ring::new(self.setup()?);
         let scans = ring.setup().scans;
         let count = given.clone().filter(|recorded| recorded.axis == 0).count();
-        // SAFETY: the plan's places lie inside the storage, disjoint, each aligned for its type relative to a start that
-        // is aligned to at least the largest alignment; nothing else uses the storage.
+        // SAFETY: the plan's places lie inside the storage, disjoint, each aligned for its type relative to a start
+        // that is aligned to at least the largest alignment; nothing else uses the storage.
         let mut recorder = unsafe {
             Recorder {
                 ring,

@@ -257,8 +257,8 @@ fn c_homes_and_latches_by_the_bits_of_a_scan_script() {
     );
 }
 
-/// What the recorder in memory of a C host dumps is a trace: its files are read by what `explain`, `report` and `compare`
-/// read with, written again they are the same, and its rows are those of the scan script.
+/// What the recorder in memory of a C host dumps is a trace: its files are read by what `explain`, `report` and
+/// `compare` read with, written again they are the same, and its rows are those of the scan script.
 #[test]
 fn the_dump_of_a_c_host_is_a_trace() {
     if !has("cc") {

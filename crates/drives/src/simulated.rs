@@ -1,7 +1,7 @@
 //! The simulated drives with all they can have: motion, switches along the travel, digital inputs and outputs, probes.
 //!
-//! What stands here: how a drive is described in the units of its axis, and the drive made of that. What does not: how its
-//! parts behave, which stands in the modules they are from. Scan scripts and the C library have these drives.
+//! What stands here: how a drive is described in the units of its axis, and the drive made of that. What does not: how
+//! its parts behave, which stands in the modules they are from. Scan scripts and the C library have these drives.
 
 use crate::cia402::{Cia402Drive, MotorLoad, NodeHoming, Reaction, Settings, TorqueScale};
 use crate::mechanism::{Gains, Mechanism, MechanismError, Plant, PlantDrive, Servo, Stops};

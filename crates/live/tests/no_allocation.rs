@@ -1,5 +1,5 @@
-//! A paced scan takes nothing from the heap, its row in the trace included; only what is worth a note does, and a word that
-//! the trace never had before. And the trace is that of `run`.
+//! A paced scan takes nothing from the heap, its row in the trace included; only what is worth a note does, and a word
+//! that the trace never had before. And the trace is that of `run`.
 //!
 //! The one place with unsafe code in this crate: an allocator has to be an unsafe trait.
 #![allow(unsafe_code)]

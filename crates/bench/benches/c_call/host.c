@@ -1,6 +1,6 @@
-/* A host in C, as a program: reads `MEASURE CALLS` from standard input, makes so many calls, and prints the nanoseconds that
- * one took. Every call is what a program does in a scan: it writes inputs, calls, and looks at the outputs. Compiled and
- * driven by main.rs. */
+/* A host in C, as a program: reads `MEASURE CALLS` from standard input, makes so many calls, and prints the nanoseconds
+ * that one took. Every call is what a program does in a scan: it writes inputs, calls, and looks at the outputs.
+ * Compiled and driven by main.rs. */
 
 #define _POSIX_C_SOURCE 199309L
 #include "standstill_blocks.h"

@@ -61,8 +61,8 @@ fn compare(name: &str, host: &mut CHost, measure: &str, mut rust: impl FnMut(u64
     Some(())
 }
 
-/// Compares calls of a block: the inputs that are always the same, the one that may change, and what the outputs are. By hosts
-/// that make all inputs anew in every scan, and by hosts that write what may change.
+/// Compares calls of a block: the inputs that are always the same, the one that may change, and what the outputs are.
+/// By hosts that make all inputs anew in every scan, and by hosts that write what may change.
 macro_rules! measure {
     (
         $host:ident, $what:literal, $name:literal, $measure:literal, $block:ident,

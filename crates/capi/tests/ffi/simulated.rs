@@ -170,7 +170,8 @@ fn inputs_probes_and_pushes_have_their_ranges_and_their_time() {
     }
 }
 
-/// A limit switch of the drive stops an axis that runs into it; CLEAR and what only a CiA 402 node knows have their codes.
+/// A limit switch of the drive stops an axis that runs into it; CLEAR and what only a CiA 402 node knows have their
+/// codes.
 #[test]
 fn a_limit_switch_stops_and_an_axis_fails() {
     let host = Host::new(2, 4);

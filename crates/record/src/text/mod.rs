@@ -54,8 +54,8 @@ impl Form {
     }
 }
 
-/// Writes line `line` of a form, from 0, and its end; nothing behind the last one. `cycle_ns` is the time between two scans
-/// (ns).
+/// Writes line `line` of a form, from 0, and its end; nothing behind the last one. `cycle_ns` is the time between two
+/// scans (ns).
 ///
 /// Cost: as the number of signals, or for a header also as that of records.
 ///

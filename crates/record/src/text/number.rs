@@ -5,8 +5,8 @@ use core::fmt::{self, Write};
 /// Significant digits of a number, and then some: the longest text of `ryu` has 24 bytes.
 const DIGITS: usize = 24;
 
-/// The shortest text that reads back as the same number, as `standstill_trace::shortest` gives it: NaN and infinities as
-/// words, -0.0 as `0.0`.
+/// The shortest text that reads back as the same number, as `standstill_trace::shortest` gives it: NaN and infinities
+/// as words, -0.0 as `0.0`.
 ///
 /// # Errors
 /// Those of `out`.
