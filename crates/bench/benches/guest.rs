@@ -11,7 +11,7 @@ use standstill_scan::{Executor, Machine, ProgramConfig, ProgramFault, ProgramId,
 use std::time::Instant;
 
 /// Rounds of each program, in turn.
-const ROUNDS: usize = 400;
+const ROUNDS: usize = 4_000;
 const SCANS: i64 = 2_000;
 
 /// Key at 104, inputs at 112, outputs at 184; the target is beyond what the bench reaches.

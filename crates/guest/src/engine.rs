@@ -4,8 +4,10 @@
 //! lives longer. So the scan lends it to [`crate::tick`], where the functions find it.
 
 use crate::host::{Host, Import};
+use crate::tick::TICK;
 use crate::{Fault, LoadError, MODULE_MOST, PAGE, Program, Settings, tick};
 use std::fmt;
+use wasmi::errors::LinkerError;
 use wasmi::{
     Caller, CompilationMode, Config, EnforcedLimits, Engine, Error, ExternType, FuncType, Linker, Memory,
     Store, StoreLimits, StoreLimitsBuilder, TrapCode, TypedFunc, Val, ValType,
@@ -324,6 +326,25 @@ impl Machine {
     }
 }
 
+macro_rules! blocks {
+    ($($group:ident :: $name:ident :: $block:ident)*) => {
+        /// What makes the functions of the blocks known, in the order of the registry: a closure for each, which calls
+        /// its block without a detour.
+        const LINK: &[Link] = &[$(|linker, from, name| {
+            let function = |mut caller: Caller<'_, Own>, key: u32, inputs: u32, outputs: u32| {
+                let (memory, host) = open(&mut caller);
+                let answer = TICK.with(|tick| tick.$name(host, memory, key, inputs, outputs));
+                answer.map(|code| code as i32).map_err(stop)
+            };
+            linker.func_wrap(from, name, function)
+        }),*];
+    };
+}
+
+type Link = for<'l> fn(&'l mut Linker<Own>, &str, &str) -> Result<&'l mut Linker<Own>, LinkerError>;
+
+standstill_blocks::for_every_block!(blocks);
+
 /// The functions that a guest may import.
 fn link(program: &Program) -> Result<Linker<Own>, LoadError> {
     let Module(module) = &program.module;
@@ -356,18 +377,10 @@ fn link(program: &Program) -> Result<Linker<Own>, LoadError> {
                         .map_err(stop)
                 },
             ),
-            Import::Block(block) => {
-                let Some(&function) = tick::FUNCTIONS.get(block) else {
-                    continue;
-                };
-                let wrapped = move |mut caller: Caller<'_, Own>, key: u32, inputs: u32, outputs: u32| {
-                    let (memory, host) = open(&mut caller);
-                    function(host, memory, [key, inputs, outputs])
-                        .map(|code| code as i32)
-                        .map_err(stop)
-                };
-                linker.func_wrap(from, name, wrapped)
-            }
+            Import::Block(block) => match LINK.get(block) {
+                Some(link) => link(&mut linker, from, name),
+                None => continue,
+            },
         };
         outcome.map_err(|error| LoadError::Module(error.to_string()))?;
     }

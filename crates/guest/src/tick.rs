@@ -14,7 +14,7 @@ use standstill_fb::{Block, Context, Described, Instance, Pins};
 use std::cell::Cell;
 use std::marker::PhantomData;
 
-scoped_thread_local!(static TICK: for<'a> &'a (dyn Tick + 'a));
+scoped_thread_local!(pub(crate) static TICK: for<'a> &'a (dyn Tick + 'a));
 
 /// What a scan lends; taken out while a block has it.
 struct Lent<'l, 'c, P: Planner>(Cell<Option<&'l mut Context<'c, P>>>);
@@ -49,10 +49,6 @@ fn during(
 ) -> Result<u64, Box<Fault>> {
     TICK.set(lent, || machine.scan(tick, now_ns, fuel))
 }
-
-/// The function of a block: a call with the addresses of key, inputs and outputs. Its result, or a fault that ends the
-/// guest.
-pub(crate) type Function = fn(&mut Host, &mut [u8], [u32; 3]) -> Answer;
 
 /// A code, of 64 bits so that it comes back in a register; or a fault that ends the guest.
 pub(crate) type Answer = Result<i64, Box<Fault>>;
@@ -183,12 +179,12 @@ fn look<P: Planner>(
 macro_rules! functions {
     ($($group:ident :: $name:ident :: $block:ident)*) => {
         /// The scan of some planner, and what can be called in it.
-        trait Tick {
+        pub(crate) trait Tick {
             fn log_read(&self, _: &mut Host, _: &mut [u8], _: [u32; 5]) -> Result<Code, Fault> {
                 Ok(Code::NotInTick)
             }
 
-            $(fn $name(&self, _: &mut Host, _: &mut [u8], _: [u32; 3]) -> Answer {
+            $(fn $name(&self, _: &mut Host, _: &mut [u8], _: u32, _: u32, _: u32) -> Answer {
                 Ok(Code::NotInTick as i64)
             })*
         }
@@ -209,7 +205,9 @@ macro_rules! functions {
                 &self,
                 host: &mut Host,
                 memory: &mut [u8],
-                addresses: [u32; 3],
+                key: u32,
+                inputs: u32,
+                outputs: u32,
             ) -> Answer {
                 fn own(block: &mut BlockInstance) -> Option<&mut Instance<standstill_blocks::$group::$name::$block>> {
                     match block {
@@ -220,6 +218,7 @@ macro_rules! functions {
                 let Some(context) = self.0.take() else {
                     return Ok(Code::NotInTick as i64);
                 };
+                let addresses = [key, inputs, outputs];
                 let done = glance(host, memory, addresses, context, own);
                 let outcome = match done {
                     Some(()) => Ok(0),
@@ -235,13 +234,6 @@ macro_rules! functions {
         enum Place {
             $($name),*
         }
-
-        /// The functions of the blocks, in the order of the registry.
-        pub(crate) const FUNCTIONS: &[Function] = &[$(
-            |host, memory, addresses| {
-                TICK.with(|tick| tick.$name(host, memory, addresses))
-            }
-        ),*];
     };
 }
 
