@@ -1,7 +1,7 @@
 //! A function for every block of the registry. Their declarations stand in `standstill_blocks.h`.
 
 use crate::enter::{in_tick, running};
-use crate::runtime::{Inner, Runtime};
+use crate::runtime::{Inner, Mode, Runtime};
 use crate::{Code, raw};
 use core::marker::PhantomData;
 use core::slice;
@@ -34,52 +34,48 @@ unsafe fn call<B: Block + Described>(
     make: impl Fn(Instance<B>) -> BlockInstance + Copy,
     find: impl Fn(&mut BlockInstance) -> Option<&mut Instance<B>> + Copy,
 ) -> i32 {
-    let look = |inner: &mut Inner| {
-        let recorded = running(inner)?;
-        if key.is_null() {
-            return Err(Code::NullPointer);
+    let glance = |inner: &mut Inner| {
+        // A flight recorder wants the inputs of every call, and arrays are copied in every call.
+        if inner.mode != Mode::Running || const { B::INFO.has_tables() } || key.is_null() {
+            return false;
         }
         // SAFETY: null, or long enough for a size, by the contract.
-        unsafe {
-            raw::check_size(inputs, Sizes::<B>::INPUTS)?;
-            raw::check_size(outputs, Sizes::<B>::OUTPUTS)?;
+        let fit = unsafe {
+            raw::check_size(inputs, Sizes::<B>::INPUTS).is_ok()
+                && raw::check_size(outputs, Sizes::<B>::OUTPUTS).is_ok()
+        };
+        if !fit {
+            return false;
         }
         // SAFETY: not null, and as long as its size told. Nothing writes there while it is used: the outputs are
         // written later.
         let flat = unsafe { slice::from_raw_parts(inputs, Sizes::<B>::INPUTS) };
-        if const { B::INFO.has_tables() } {
-            // SAFETY: the contract says that arrays are as long as their counts.
-            unsafe { load_tables::<B>(inner, inputs, flat)? };
-        }
         // SAFETY: not null; its place may be odd.
         let number = unsafe { key.read_unaligned() };
-        if number == 0 || recorded {
-            return Ok(false);
-        }
-        let (instance, mut context) = inner.instance(number, find)?;
-        if const { B::INFO.has_tables() } {
-            set_tables(instance, flat);
-        }
+        let Ok((instance, mut context)) = inner.instance(number, find) else {
+            return false;
+        };
         if !instance.rests_with(flat, Pointer::NATIVE, &mut context) {
-            return Ok(false);
+            return false;
         }
         // SAFETY: not null, and as long as its size told; the inputs are not used any more, should they overlap.
         let shown = unsafe { raw::bytes_mut(outputs, Sizes::<B>::OUTPUTS) };
         instance.outputs.put_flat(shown);
-        Ok(true)
+        true
     };
     let rest = move |inner: &mut Inner, key, inputs, outputs| {
-        // SAFETY: `look` checked the pointers and sizes, and nothing happened since.
+        // SAFETY: passed on.
         unsafe { wake(inner, key, inputs, outputs, make, find) }
     };
     // SAFETY: passed on.
-    unsafe { in_tick(runtime, key, inputs, outputs, look, rest) }
+    unsafe { in_tick(runtime, key, inputs, outputs, glance, rest) }
 }
 
-/// The rest of a call of a block that does not rest, or is called for the first time.
+/// A call with whatever there may be about it: a block that does not rest, is called for the first time, or cannot be
+/// called at all.
 ///
 /// # Safety
-/// No pointer is null, and all is as long as its size has to be.
+/// As [`call`].
 #[inline(always)]
 unsafe fn wake<B: Block + Described>(
     inner: &mut Inner,
@@ -89,9 +85,23 @@ unsafe fn wake<B: Block + Described>(
     make: impl Fn(Instance<B>) -> BlockInstance,
     find: impl Fn(&mut BlockInstance) -> Option<&mut Instance<B>>,
 ) -> Result<(), Code> {
-    // SAFETY: by the contract; the outputs are written when this is not used any more.
+    running(inner)?;
+    if key.is_null() {
+        return Err(Code::NullPointer);
+    }
+    // SAFETY: null, or long enough for a size, by the contract.
+    unsafe {
+        raw::check_size(inputs, Sizes::<B>::INPUTS)?;
+        raw::check_size(outputs, Sizes::<B>::OUTPUTS)?;
+    }
+    // SAFETY: not null, and as long as its size told. Nothing writes there while it is used: the outputs are written
+    // later.
     let flat = unsafe { slice::from_raw_parts(inputs, Sizes::<B>::INPUTS) };
-    // SAFETY: by the contract; its place may be odd.
+    if const { B::INFO.has_tables() } {
+        // SAFETY: the contract says that arrays are as long as their counts.
+        unsafe { load_tables::<B>(inner, inputs, flat)? };
+    }
+    // SAFETY: not null; its place may be odd.
     let mut number = unsafe { key.read_unaligned() };
     if number == 0 {
         number = inner.create(make(Instance::default()))?;
@@ -103,7 +113,7 @@ unsafe fn wake<B: Block + Described>(
         set_tables(instance, flat);
     }
     instance.wake(flat, Pointer::NATIVE, &mut context);
-    // SAFETY: by the contract; the inputs are not used any more, should they overlap.
+    // SAFETY: not null, and as long as its size told; the inputs are not used any more, should they overlap.
     let shown = unsafe { raw::bytes_mut(outputs, Sizes::<B>::OUTPUTS) };
     instance.outputs.put_flat(shown);
     Ok(())

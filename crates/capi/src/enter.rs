@@ -154,9 +154,9 @@ unsafe fn try_enter(
     result
 }
 
-/// Does `look` on the runtime at `runtime` if it has a tick of this thread open, and `rest` if that is not all there is to
-/// do. Both are guarded against panics; `rest` stands in a function of its own, and is handed the pointers, so that it
-/// need not capture anything.
+/// Does `glance` on the runtime at `runtime` if it has a tick of this thread open, and `rest` unless that was all there is
+/// to do; every reason why not is found there, once more and by name. Both are guarded against panics; `rest` stands in a
+/// function of its own, which comes last, and is handed the pointers, so that it need not capture anything.
 ///
 /// # Safety
 /// As [`enter`].
@@ -166,8 +166,51 @@ pub(crate) unsafe fn in_tick(
     key: *mut u64,
     inputs: *const u8,
     outputs: *mut u8,
-    look: impl FnOnce(&mut Inner) -> Result<bool, Code>,
+    glance: impl FnOnce(&mut Inner) -> bool,
     rest: impl FnOnce(&mut Inner, *mut u64, *const u8, *mut u8) -> Result<(), Code>,
+) -> i32 {
+    // SAFETY: passed on.
+    if unsafe { glanced(runtime, glance) } {
+        return Code::Ok as i32;
+    }
+    // SAFETY: passed on.
+    unsafe { finish(runtime, key, inputs, outputs, rest) }
+}
+
+/// The first half of [`in_tick`].
+///
+/// # Safety
+/// As [`enter`].
+#[inline(always)]
+unsafe fn glanced(runtime: *mut Runtime, glance: impl FnOnce(&mut Inner) -> bool) -> bool {
+    // SAFETY: passed on.
+    let Ok(runtime) = (unsafe { there(runtime) }) else {
+        return false;
+    };
+    #[cfg(not(feature = "std"))]
+    let Ok(_busy) = Busy::new(runtime) else {
+        return false;
+    };
+    if runtime.owner.load(Relaxed) != me() {
+        return false;
+    }
+    // SAFETY: as in `try_enter`.
+    let inner = unsafe { &mut *runtime.inner.get() };
+    matches!(caught(inner, |inner| Ok(glance(inner))), Ok(true))
+}
+
+/// The second half of [`in_tick`].
+///
+/// # Safety
+/// As [`enter`].
+// As C calls, so that no panic comes out and it can be the last thing its caller does.
+#[inline(never)]
+unsafe extern "C" fn finish<W: FnOnce(&mut Inner, *mut u64, *const u8, *mut u8) -> Result<(), Code>>(
+    runtime: *mut Runtime,
+    key: *mut u64,
+    inputs: *const u8,
+    outputs: *mut u8,
+    rest: W,
 ) -> i32 {
     // SAFETY: passed on.
     let runtime = match unsafe { there(runtime) } {
@@ -184,30 +227,6 @@ pub(crate) unsafe fn in_tick(
         return not_in_tick(owner) as i32;
     }
     // SAFETY: as in `try_enter`.
-    let inner = unsafe { &mut *runtime.inner.get() };
-    match caught(inner, look) {
-        Ok(true) => Code::Ok as i32,
-        // SAFETY: the tick of this thread is still open.
-        Ok(false) => unsafe { finish(runtime, key, inputs, outputs, rest) },
-        Err(Code::Internal) => left(runtime, Code::Internal),
-        Err(code) => code as i32,
-    }
-}
-
-/// The second half of [`in_tick`].
-///
-/// # Safety
-/// This thread has a tick open, and uses nothing of the runtime's inner part.
-// As C calls, so that no panic comes out and it can be the last thing its caller does.
-#[inline(never)]
-unsafe extern "C" fn finish<W: FnOnce(&mut Inner, *mut u64, *const u8, *mut u8) -> Result<(), Code>>(
-    runtime: &Runtime,
-    key: *mut u64,
-    inputs: *const u8,
-    outputs: *mut u8,
-    rest: W,
-) -> i32 {
-    // SAFETY: by the contract nothing else uses it.
     let inner = unsafe { &mut *runtime.inner.get() };
     match caught(inner, |inner| rest(inner, key, inputs, outputs)) {
         Ok(()) => Code::Ok as i32,
@@ -259,13 +278,10 @@ fn caught<T>(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<T, Code>
     work(inner)
 }
 
-/// Refuses to call a block in a resource that was stopped. Whether the call is recorded, so that it has to take all of
-/// its inputs.
-#[inline(always)]
-pub(crate) fn running(inner: &Inner) -> Result<bool, Code> {
+/// Refuses to call a block in a resource that was stopped.
+pub(crate) fn running(inner: &Inner) -> Result<(), Code> {
     match inner.mode {
-        Mode::Running => Ok(false),
-        Mode::Recorded => Ok(true),
+        Mode::Running | Mode::Recorded => Ok(()),
         Mode::Stopped => Err(Code::Stopped),
         Mode::Broken => Err(Code::Internal),
     }
@@ -320,7 +336,7 @@ mod tests {
         for scan in 1..10 {
             assert_eq!(with(When::Outside, &mut |inner| inner.begin(scan * 1_000_000)), 0);
             assert_eq!(
-                with(When::InTick, &mut |inner| running(inner).map(|_| ())),
+                with(When::InTick, &mut |inner| running(inner)),
                 Code::Internal as i32
             );
             assert_eq!(
@@ -342,7 +358,7 @@ mod tests {
     /// A block's call has two halves, and neither lets a panic out or keeps the runtime for its thread.
     #[test]
     fn a_panic_in_either_half_of_a_call_ends_the_tick_and_stops_the_resource() {
-        for in_look in [true, false] {
+        for in_glance in [true, false] {
             let config = RuntimeConfig {
                 size: size_of::<RuntimeConfig>() as u32,
                 axes: 1,
@@ -356,26 +372,30 @@ mod tests {
             let runtime = unsafe { storage::init(memory.as_mut_ptr().cast(), bytes, &config) }.unwrap();
             let (key, inputs, outputs) = (core::ptr::null_mut(), core::ptr::null(), core::ptr::null_mut());
             let call = |rests: bool| {
-                let look = |_: &mut Inner| {
-                    assert!(!in_look, "on purpose");
-                    Ok(rests)
+                let glance = |_: &mut Inner| {
+                    assert!(!in_glance, "on purpose");
+                    rests
                 };
-                let rest = |_: &mut Inner, _, _, _| panic!("on purpose");
+                let rest = |inner: &mut Inner, _, _, _| {
+                    running(inner)?;
+                    assert!(in_glance, "on purpose");
+                    Ok(())
+                };
                 // SAFETY: the runtime made above; nothing uses the pointers.
-                unsafe { in_tick(runtime, key, inputs, outputs, look, rest) }
+                unsafe { in_tick(runtime, key, inputs, outputs, glance, rest) }
             };
             // SAFETY: the runtime made above.
             let begin = || unsafe { enter(runtime, When::Outside, |inner| inner.begin(0)) };
             assert_eq!(call(true), Code::NotInTick as i32);
             assert_eq!(begin(), 0);
-            if !in_look {
+            if !in_glance {
                 assert_eq!(call(true), 0, "the other half is not come to");
             }
             assert_eq!(call(false), Code::Internal as i32);
             assert_eq!(call(false), Code::NotInTick as i32, "the tick has ended");
             assert_eq!(begin(), 0, "the runtime is free, but");
             // SAFETY: the runtime made above.
-            let after = unsafe { enter(runtime, When::InTick, |inner| running(inner).map(|_| ())) };
+            let after = unsafe { enter(runtime, When::InTick, |inner| running(inner)) };
             assert_eq!(after, Code::Internal as i32, "it stays stopped");
         }
     }
