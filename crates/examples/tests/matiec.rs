@@ -16,9 +16,7 @@ use std::{env, fs};
 /// Where `iec2c` has its standard functions in Structured Text; the headers are in `C` below it.
 fn library_of_matiec() -> Option<PathBuf> {
     if Command::new("iec2c").arg("-v").output().is_err() {
-        eprintln!(
-            "SKIP: there is no iec2c; matiec is in no package registry, so nothing installs it (docs/porting.md)"
-        );
+        skip("there is no iec2c; matiec is in no package registry, so nothing installs it (docs/porting.md)");
         return None;
     }
     let path = env::var_os("PATH").unwrap_or_default();

@@ -20,8 +20,8 @@ fn text(path: &Path) -> String {
 /// STruC++.
 fn translated(name: &str) -> Option<(PathBuf, Vec<String>)> {
     if Command::new("strucpp").arg("--version").output().is_err() {
-        eprintln!(
-            "SKIP: there is no strucpp; STruC++ is in no package registry, so nothing installs it (docs/porting.md)"
+        skip(
+            "there is no strucpp; STruC++ is in no package registry, so nothing installs it (docs/porting.md)",
         );
         return None;
     }
@@ -100,7 +100,9 @@ fn prog_st_as_a_guest() {
     }
     let sysroot = env::var("WASI_SYSROOT").unwrap_or_else(|_| "/usr".to_owned());
     if !Path::new(&sysroot).join("include/wasm32-wasi/c++").exists() {
-        eprintln!("SKIP: there is no C++ library for WebAssembly in {sysroot}: set WASI_SYSROOT");
+        skip(&format!(
+            "there is no C++ library for WebAssembly in {sysroot}: set WASI_SYSROOT"
+        ));
         return;
     }
     command.extend(["--target=wasm32-wasi", "-mexec-model=reactor", "-fno-exceptions"].map(str::to_owned));

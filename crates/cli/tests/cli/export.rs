@@ -30,7 +30,7 @@ fn files_are_written_and_named() {
     assert!(
         fs::read_to_string(place.join("made/here/acme_rusty.c"))
             .unwrap()
-            .contains("acme_mc_move_absolute(acme_default")
+            .contains("acme_mc_move_absolute(ACME_RUNTIME &self->key")
     );
 }
 

@@ -2,6 +2,7 @@
 
 use standstill_trace::{Axis, Cell, Header, Input, Trace, digest};
 use std::ffi::OsStr;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::{env, fs};
@@ -138,12 +139,19 @@ pub fn scratch(name: &str) -> PathBuf {
     folder
 }
 
+/// Says that a test is skipped, and why: past the runner, which keeps what tests that pass print.
+pub fn skip(why: &str) {
+    let mut out = std::io::stderr();
+    // Without a place to say it there is nobody to be told.
+    let _told = writeln!(out, "SKIP: {why}");
+}
+
 /// Whether a tool can be run. Without it a test ends early, loudly, and not in CI.
 pub fn has(tool: &str) -> bool {
     let found = Command::new(tool).arg("--version").output().is_ok();
     if !found {
         assert!(env::var_os("CI").is_none(), "CI must have {tool}");
-        eprintln!("SKIP: there is no {tool}");
+        skip(&format!("there is no {tool}"));
     }
     found
 }
