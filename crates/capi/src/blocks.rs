@@ -1,6 +1,6 @@
 //! A function for every block of the registry. Their declarations stand in `standstill_blocks.h`.
 
-use crate::enter::{in_tick, running};
+use crate::enter::{Glance, in_tick, running};
 use crate::runtime::{Inner, Mode, Runtime};
 use crate::{Code, raw};
 use core::marker::PhantomData;
@@ -37,7 +37,7 @@ unsafe fn call<B: Block + Described>(
     let glance = |inner: &mut Inner| {
         // A flight recorder wants the inputs of every call, and arrays are copied in every call.
         if inner.mode != Mode::Running || const { B::INFO.has_tables() } || key.is_null() {
-            return false;
+            return Glance::Other;
         }
         // SAFETY: null, or long enough for a size, by the contract.
         let fit = unsafe {
@@ -45,7 +45,7 @@ unsafe fn call<B: Block + Described>(
                 && raw::check_size(outputs, Sizes::<B>::OUTPUTS).is_ok()
         };
         if !fit {
-            return false;
+            return Glance::Other;
         }
         // SAFETY: not null, and as long as its size told. Nothing writes there while it is used: the outputs are
         // written later.
@@ -53,19 +53,19 @@ unsafe fn call<B: Block + Described>(
         // SAFETY: not null; its place may be odd.
         let number = unsafe { key.read_unaligned() };
         let Ok((instance, mut context)) = inner.instance(number, find) else {
-            return false;
+            return Glance::Other;
         };
         if !instance.rests_with(flat, Pointer::NATIVE, &mut context) {
-            return false;
+            return Glance::Wakes;
         }
         // SAFETY: not null, and as long as its size told; the inputs are not used any more, should they overlap.
         let shown = unsafe { raw::bytes_mut(outputs, Sizes::<B>::OUTPUTS) };
         instance.outputs.put_flat(shown);
-        true
+        Glance::Done
     };
-    let rest = move |inner: &mut Inner, key, inputs, outputs| {
+    let rest = move |inner: &mut Inner, key, inputs, outputs, checked| {
         // SAFETY: passed on.
-        unsafe { wake(inner, key, inputs, outputs, make, find) }
+        unsafe { wake(inner, key, inputs, outputs, checked, make, find) }
     };
     // SAFETY: passed on.
     unsafe { in_tick(runtime, key, inputs, outputs, glance, rest) }
@@ -75,24 +75,27 @@ unsafe fn call<B: Block + Described>(
 /// called at all.
 ///
 /// # Safety
-/// As [`call`].
+/// As [`call`]; if `checked`, blocks are called, no pointer is null and all is as long as its size has to be.
 #[inline(always)]
 unsafe fn wake<B: Block + Described>(
     inner: &mut Inner,
     key: *mut u64,
     inputs: *const u8,
     outputs: *mut u8,
+    checked: bool,
     make: impl Fn(Instance<B>) -> BlockInstance,
     find: impl Fn(&mut BlockInstance) -> Option<&mut Instance<B>>,
 ) -> Result<(), Code> {
-    running(inner)?;
-    if key.is_null() {
-        return Err(Code::NullPointer);
-    }
-    // SAFETY: null, or long enough for a size, by the contract.
-    unsafe {
-        raw::check_size(inputs, Sizes::<B>::INPUTS)?;
-        raw::check_size(outputs, Sizes::<B>::OUTPUTS)?;
+    if !checked {
+        running(inner)?;
+        if key.is_null() {
+            return Err(Code::NullPointer);
+        }
+        // SAFETY: null, or long enough for a size, by the contract.
+        unsafe {
+            raw::check_size(inputs, Sizes::<B>::INPUTS)?;
+            raw::check_size(outputs, Sizes::<B>::OUTPUTS)?;
+        }
     }
     // SAFETY: not null, and as long as its size told. Nothing writes there while it is used: the outputs are written
     // later.

@@ -154,9 +154,21 @@ unsafe fn try_enter(
     result
 }
 
+/// What a glance at a call says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Glance {
+    /// That was all there is to do.
+    Done,
+    /// There is more to do, and nothing wrong with it.
+    Wakes,
+    /// It has to be looked at.
+    Other,
+}
+
 /// Does `glance` on the runtime at `runtime` if it has a tick of this thread open, and `rest` unless that was all there is
-/// to do; every reason why not is found there, once more and by name. Both are guarded against panics; `rest` stands in a
-/// function of its own, which comes last, and is handed the pointers, so that it need not capture anything.
+/// to do. `rest` is told whether the glance saw that nothing is wrong; if not it finds the reason, by name. Both are
+/// guarded against panics; `rest` stands in a function of its own, which comes last, and is handed the pointers, so that
+/// it need not capture anything.
 ///
 /// # Safety
 /// As [`enter`].
@@ -166,15 +178,17 @@ pub(crate) unsafe fn in_tick(
     key: *mut u64,
     inputs: *const u8,
     outputs: *mut u8,
-    glance: impl FnOnce(&mut Inner) -> bool,
-    rest: impl FnOnce(&mut Inner, *mut u64, *const u8, *mut u8) -> Result<(), Code>,
+    glance: impl FnOnce(&mut Inner) -> Glance,
+    rest: impl FnOnce(&mut Inner, *mut u64, *const u8, *mut u8, bool) -> Result<(), Code>,
 ) -> i32 {
     // SAFETY: passed on.
-    if unsafe { glanced(runtime, glance) } {
-        return Code::Ok as i32;
+    match unsafe { glanced(runtime, glance) } {
+        Glance::Done => Code::Ok as i32,
+        // SAFETY: passed on.
+        Glance::Wakes => unsafe { finish(runtime, key, inputs, outputs, true, rest) },
+        // SAFETY: passed on.
+        Glance::Other => unsafe { finish(runtime, key, inputs, outputs, false, rest) },
     }
-    // SAFETY: passed on.
-    unsafe { finish(runtime, key, inputs, outputs, rest) }
 }
 
 /// The first half of [`in_tick`].
@@ -182,53 +196,61 @@ pub(crate) unsafe fn in_tick(
 /// # Safety
 /// As [`enter`].
 #[inline(always)]
-unsafe fn glanced(runtime: *mut Runtime, glance: impl FnOnce(&mut Inner) -> bool) -> bool {
+unsafe fn glanced(runtime: *mut Runtime, glance: impl FnOnce(&mut Inner) -> Glance) -> Glance {
     // SAFETY: passed on.
     let Ok(runtime) = (unsafe { there(runtime) }) else {
-        return false;
+        return Glance::Other;
     };
     #[cfg(not(feature = "std"))]
     let Ok(_busy) = Busy::new(runtime) else {
-        return false;
+        return Glance::Other;
     };
     if runtime.owner.load(Relaxed) != me() {
-        return false;
+        return Glance::Other;
     }
     // SAFETY: as in `try_enter`.
     let inner = unsafe { &mut *runtime.inner.get() };
-    matches!(caught(inner, |inner| Ok(glance(inner))), Ok(true))
+    caught(inner, |inner| Ok(glance(inner))).unwrap_or(Glance::Other)
 }
 
 /// The second half of [`in_tick`].
 ///
 /// # Safety
-/// As [`enter`].
+/// As [`enter`]; if `checked`, this thread has a tick open.
 // As C calls, so that no panic comes out and it can be the last thing its caller does.
 #[inline(never)]
-unsafe extern "C" fn finish<W: FnOnce(&mut Inner, *mut u64, *const u8, *mut u8) -> Result<(), Code>>(
+unsafe extern "C" fn finish<W: FnOnce(&mut Inner, *mut u64, *const u8, *mut u8, bool) -> Result<(), Code>>(
     runtime: *mut Runtime,
     key: *mut u64,
     inputs: *const u8,
     outputs: *mut u8,
+    checked: bool,
     rest: W,
 ) -> i32 {
-    // SAFETY: passed on.
-    let runtime = match unsafe { there(runtime) } {
-        Ok(runtime) => runtime,
-        Err(code) => return code as i32,
+    let runtime = if checked {
+        // SAFETY: it has a tick open, so it is there.
+        unsafe { &*runtime }
+    } else {
+        // SAFETY: passed on.
+        match unsafe { there(runtime) } {
+            Ok(runtime) => runtime,
+            Err(code) => return code as i32,
+        }
     };
     #[cfg(not(feature = "std"))]
     let _busy = match Busy::new(runtime) {
         Ok(busy) => busy,
         Err(code) => return code as i32,
     };
-    let owner = runtime.owner.load(Relaxed);
-    if owner != me() {
-        return not_in_tick(owner) as i32;
+    if !checked {
+        let owner = runtime.owner.load(Relaxed);
+        if owner != me() {
+            return not_in_tick(owner) as i32;
+        }
     }
     // SAFETY: as in `try_enter`.
     let inner = unsafe { &mut *runtime.inner.get() };
-    match caught(inner, |inner| rest(inner, key, inputs, outputs)) {
+    match caught(inner, |inner| rest(inner, key, inputs, outputs, checked)) {
         Ok(()) => Code::Ok as i32,
         Err(code) => left(runtime, code),
     }
@@ -374,9 +396,9 @@ mod tests {
             let call = |rests: bool| {
                 let glance = |_: &mut Inner| {
                     assert!(!in_glance, "on purpose");
-                    rests
+                    if rests { Glance::Done } else { Glance::Other }
                 };
-                let rest = |inner: &mut Inner, _, _, _| {
+                let rest = |inner: &mut Inner, _, _, _, _| {
                     running(inner)?;
                     assert!(in_glance, "on purpose");
                     Ok(())
