@@ -77,15 +77,16 @@ impl<B: Block> Sizes<B> {
 /// Finds the instance of one kind of block.
 type Find<B> = fn(&mut BlockInstance) -> Option<&mut Instance<B>>;
 
-/// What a guest does in almost every scan: a call with good addresses of an instance that is there and has nothing to do.
-/// If there is anything else about it, nothing happened.
+/// A call with good addresses of an instance that is there. If there is anything else about it, nothing happened; nor if
+/// the instance has something to do, and `wakes` does not ask for that.
 #[inline(always)]
-fn glance<B: Block + Described, P: Planner>(
+fn call<B: Block + Described, P: Planner>(
     host: &mut Host,
     memory: &mut [u8],
     [key, inputs, outputs]: [u32; 3],
     context: &mut Context<'_, P>,
     own: Find<B>,
+    wakes: bool,
 ) -> Option<()> {
     if key == 0 || const { B::INFO.has_tables() } {
         return None;
@@ -93,32 +94,11 @@ fn glance<B: Block + Described, P: Planner>(
     structure(memory, outputs, Sizes::<B>::OUTPUTS)?;
     let flat = structure(memory, inputs, Sizes::<B>::INPUTS)?;
     let (instance, mut context) = instance(host, memory, key, context, own)?;
-    if !instance.rests_with(flat, Pointer::Bits32, &mut context) {
+    if wakes {
+        instance.wake(flat, Pointer::Bits32, &mut context);
+    } else if !instance.rests_with(flat, Pointer::Bits32, &mut context) {
         return None;
     }
-    let shown = memory
-        .get_mut(outputs as usize..)?
-        .get_mut(..Sizes::<B>::OUTPUTS)?;
-    instance.outputs.put_flat(shown);
-    Some(())
-}
-
-/// The same of an instance that has something to do. Apart, so that a glance keeps nothing on the stack for it.
-#[inline(never)]
-fn wake<B: Block + Described, P: Planner>(
-    host: &mut Host,
-    memory: &mut [u8],
-    [key, inputs, outputs]: [u32; 3],
-    context: &mut Context<'_, P>,
-    own: Find<B>,
-) -> Option<()> {
-    if key == 0 || const { B::INFO.has_tables() } {
-        return None;
-    }
-    structure(memory, outputs, Sizes::<B>::OUTPUTS)?;
-    let flat = structure(memory, inputs, Sizes::<B>::INPUTS)?;
-    let (instance, mut context) = instance(host, memory, key, context, own)?;
-    instance.wake(flat, Pointer::Bits32, &mut context);
     let shown = memory
         .get_mut(outputs as usize..)?
         .get_mut(..Sizes::<B>::OUTPUTS)?;
@@ -148,7 +128,7 @@ fn instance<'h, B: Block, P: Planner>(
     Some((instance, context))
 }
 
-/// A call that is no glance.
+/// A call that has something to do. Apart, so that a glance keeps nothing on the stack for it.
 #[inline(never)]
 fn rest<B: Block + Described, P: Planner>(
     block: usize,
@@ -158,7 +138,7 @@ fn rest<B: Block + Described, P: Planner>(
     context: &mut Context<'_, P>,
     own: Find<B>,
 ) -> Answer {
-    match wake(host, memory, addresses, context, own) {
+    match call(host, memory, addresses, context, own, true) {
         Some(()) => Ok(0),
         None => look(block, host, memory, addresses, context),
     }
@@ -219,8 +199,8 @@ macro_rules! functions {
                     return Ok(Code::NotInTick as i64);
                 };
                 let addresses = [key, inputs, outputs];
-                let done = glance(host, memory, addresses, context, own);
-                let outcome = match done {
+                // In almost every scan a block has nothing to do.
+                let outcome = match call(host, memory, addresses, context, own, false) {
                     Some(()) => Ok(0),
                     None => rest(Place::$name as usize, host, memory, addresses, context, own),
                 };
