@@ -1,8 +1,8 @@
 //! A scan uses no heap, whatever happens in it: commands, buffers, aborts, faults, resets, bad numbers.
-//!
-//! The one place with unsafe code in this crate: an allocator has to be an unsafe trait.
-#![allow(unsafe_code)]
 
+mod counting;
+
+use counting::allocations;
 use standstill::prelude::{BlockId, Blocks, Builder, Setup};
 use standstill_axis::{
     AxisConfig, AxisId, AxisState, DrivePosition, IdealDrive, InstanceId, Scaling, Standard, StartState,
@@ -13,42 +13,9 @@ use standstill_fb::{AnyInstance, Context, Direction, PinType, Value};
 use standstill_scan::{
     Executor, Machine, ProgramConfig, ProgramFault, ProgramId, Programs, ScanTime, TaskConfig,
 };
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 
 const AXES: u16 = 4;
 const SCANS: i64 = 5000;
-
-thread_local! {
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
-}
-
-/// The system's allocator, with a count for each thread.
-struct Counting;
-
-// SAFETY: every call is handed to the system's allocator unchanged; counting uses a constant thread-local
-// without a destructor, so it neither allocates nor unwinds.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
-        // SAFETY: the caller keeps the contract of `alloc`, which is that of `System`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: `pointer` came from `System` with this layout, because `alloc` and `realloc` take it there.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
-        // SAFETY: `pointer` came from `System` with this layout; the caller keeps the contract for `size`.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// Every block of the registry on every axis, with inputs that change at random.
 struct Monkey {
@@ -183,9 +150,9 @@ fn no_scan_uses_the_heap() {
     let mut executor = Executor::new(1_000_000, &tasks, &programs).expect("valid");
     let mut monkey = Monkey::new();
     for scan in 0..SCANS {
-        let before = ALLOCATIONS.get();
+        let before = allocations();
         let report = executor.scan(scan * 1_000_000, &mut monkey, &mut machine);
-        assert_eq!(ALLOCATIONS.get() - before, 0, "scan {scan}");
+        assert_eq!(allocations() - before, 0, "scan {scan}");
         assert!(report.is_ok());
     }
     // What was counted was worth counting.
@@ -201,18 +168,18 @@ fn no_scan_of_64_axes_in_mixed_motion_uses_the_heap() {
     for _ in 0..SCANS / IN_MOTION as i64 + 1 {
         let mut axes = ManyAxes::in_motion(None).expect("valid");
         for scan in 0..IN_MOTION {
-            let before = ALLOCATIONS.get();
+            let before = allocations();
             axes.scan();
-            assert_eq!(ALLOCATIONS.get() - before, 0, "scan {scan}");
+            assert_eq!(allocations() - before, 0, "scan {scan}");
         }
     }
 }
 
 #[test]
 fn the_count_sees_an_allocation() {
-    let before = ALLOCATIONS.get();
+    let before = allocations();
     drop(std::hint::black_box(Vec::<u8>::with_capacity(1)));
-    assert_eq!(ALLOCATIONS.get() - before, 1);
+    assert_eq!(allocations() - before, 1);
 }
 
 /// A runtime that records: built with the heap, then scanned, tripped and armed again without it.
@@ -254,7 +221,7 @@ fn a_runtime_with_a_recorder_scans_without_the_heap() {
         .blocks_mut()
         .set(go, "Velocity", Value::Lreal(1.0))
         .expect("a pin");
-    let before = ALLOCATIONS.get();
+    let before = allocations();
     let (mut frozen, mut errors) = (0, 0);
     for scan in 0..SCANS {
         let blocks = runtime.blocks_mut();
@@ -271,7 +238,7 @@ fn a_runtime_with_a_recorder_scans_without_the_heap() {
             recorder.arm();
         }
     }
-    assert_eq!(ALLOCATIONS.get() - before, 0, "a scan used the heap");
+    assert_eq!(allocations() - before, 0, "a scan used the heap");
     assert!(
         frozen > 0 && errors > 0,
         "{frozen} times frozen, {errors} scans with an error"

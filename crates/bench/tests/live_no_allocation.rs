@@ -1,48 +1,15 @@
-//! A paced scan takes nothing from the heap, its row in the trace included; only what is worth a note does, and a word
+//! A paced scan of `standstill live` takes nothing from the heap, its row in the trace included; only what is worth a note does, and a word
 //! that the trace never had before. And the trace is that of `run`.
-//!
-//! The one place with unsafe code in this crate: an allocator has to be an unsafe trait.
-#![allow(unsafe_code)]
 
+mod counting;
+
+use counting::allocations;
 use standstill_live::{Clock, Ended, OnOverrun, Timing, pace};
 use standstill_script::{Session, read, run};
-use standstill_trace::{Cell as TraceCell, Trace, digest};
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+use standstill_trace::{Cell, Trace, digest};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-
-thread_local! {
-    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
-}
-
-/// The system's allocator, with a count for each thread.
-struct Counting;
-
-// SAFETY: every call is handed to the system's allocator unchanged; counting uses a constant thread-local
-// without a destructor, so it neither allocates nor unwinds.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
-        // SAFETY: the caller keeps the contract of `alloc`, which is that of `System`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: `pointer` came from `System` with this layout, because `alloc` and `realloc` take it there.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
-        // SAFETY: `pointer` came from `System` with this layout; the caller keeps the contract for `size`.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// Writes down at every sleep what was taken so far.
 struct Watching {
@@ -57,7 +24,7 @@ impl Clock for Watching {
 
     fn sleep_until_ns(&mut self, instant_ns: u64) {
         self.now_ns = instant_ns;
-        self.taken.push(ALLOCATIONS.get());
+        self.taken.push(allocations());
     }
 }
 
@@ -67,7 +34,7 @@ fn new_words(trace: &Trace) -> BTreeSet<usize> {
     let mut scans = BTreeSet::new();
     for scan in 0..trace.scans() {
         for cell in trace.row(scan) {
-            if let TraceCell::Name(word) = cell
+            if let Cell::Name(word) = cell
                 && seen.insert(word.to_owned())
             {
                 scans.insert(scan);
@@ -107,7 +74,7 @@ fn a_paced_scan_uses_no_heap() {
             &mut timing,
         )
         .unwrap();
-        clock.taken.push(ALLOCATIONS.get());
+        clock.taken.push(allocations());
         assert_eq!(ended, Ended::Script);
         let trace = session.finish().trace;
         assert_eq!(digest::whole(&trace), digest::whole(&expected), "{name}");
