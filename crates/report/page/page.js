@@ -171,6 +171,9 @@ function drawOverview() {
   context.strokeRect(left + 0.5, 1.5, Math.max(right - left - 1, 3), height - 3);
 }
 
+// A name that may go on in the next line behind an underscore.
+const breakable = (name) => name.split(/(?<=_)/).flatMap((part, at) => (at > 0 ? [element('wbr'), part] : [part]));
+
 // The events in view, each a link to its scan.
 function listEvents() {
   const { min, max } = shared.view;
@@ -180,8 +183,8 @@ function listEvents() {
   const rows = inView.slice(0, EVENTS_SHOWN).map((event) => {
     const row = element('button', { className: 'event', type: 'button' },
       element('span', { className: 'scan', textContent: event.scan }),
-      element('span', { className: 'subject', style: shared.traces.length > 1 ? `color: var(--trace-${event.trace.index})` : '',
-        textContent: shared.traces.length > 1 ? `${event.trace.letter} ${event.subject}` : event.subject }),
+      element('span', { className: 'subject', style: shared.traces.length > 1 ? `color: var(--trace-${event.trace.index})` : '' },
+        ...breakable(shared.traces.length > 1 ? `${event.trace.letter} ${event.subject}` : event.subject)),
       element('span', { className: 'what', textContent: event.text }));
     row.event = event;
     row.addEventListener('click', () => setCursor(event.scan));
