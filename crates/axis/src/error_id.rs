@@ -226,6 +226,8 @@ error_ids! {
         "Call the instance while it is Busy.";
     PlanRefused = 903, "The planner refused inputs that the axis had accepted.",
         "This is a defect of standstill: please report the trace.";
+    SetpointStep = 904, "A plan gave a set-point further from the last one than the limits allow in one scan. It was not published.",
+        "This is a defect of standstill: please report the trace.";
 }
 
 /// Numbers that earlier versions showed and no version will show again, each with what it said.

@@ -1,6 +1,21 @@
 //! The bounds a plan keeps.
 
-use crate::{Field, PlanError};
+use crate::math::sqrt;
+use crate::{Field, PlanError, Setpoint};
+
+/// The part of a cycle in which a derivative comes to its bound at the soonest: no difference of set-points can
+/// tell a sooner one.
+const SOONEST: f64 = 1.0 / 1024.0;
+
+/// The scans in which it comes there at the latest: no plan has more.
+const LATEST: f64 = 2_147_483_648.0;
+
+/// A derivative that rises as steeply as it may and falls again stays below this many times the square root of its
+/// bound times that of the derivative it changes, from one bound to the other.
+const REACHED: f64 = 4.0;
+
+/// How many times the speed a motion may come to its velocity bound is at most.
+pub(crate) const REACH: f64 = 64.0;
 
 /// Largest magnitudes a plan may use; `f64::INFINITY` means no bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +96,73 @@ impl Limits {
             jerk: larger(self.jerk, before.jerk),
             snap: larger(self.snap, before.snap),
         }
+    }
+
+    /// The bounds that a plan with sample time `cycle` (s) uses: these, but none so high that it limits nothing
+    /// (docs/planner.md, eq. 39).
+    ///
+    /// The order is the same: an infinite bound stays infinite. Where these are larger, what is used is not lower.
+    pub fn acting(&self, cycle: f64) -> Self {
+        let (soonest, latest) = (SOONEST * cycle, LATEST * cycle);
+        // In a plan of the most scans no derivative gets higher than this.
+        let jerk = self.jerk.min(self.snap * latest);
+        let highest = jerk * latest;
+        let higher = self.acceleration.max(self.deceleration).min(highest);
+        let velocity = self.velocity.min(higher * latest);
+        // None need come to its bound sooner than this, nor higher than between the bounds of what it changes.
+        let highest = highest
+            .min(velocity / soonest)
+            .min(REACHED * sqrt(jerk) * sqrt(velocity));
+        let acceleration = self.acceleration.min(highest);
+        let deceleration = self.deceleration.min(highest);
+        let higher = acceleration.max(deceleration);
+        let jerk = jerk
+            .min(higher / soonest)
+            .min(REACHED * sqrt(self.snap) * sqrt(higher));
+        let snap = self.snap.min(jerk / soonest);
+        let acting = |given: f64, used: f64| {
+            if given.is_finite() {
+                used.max(f64::MIN_POSITIVE)
+            } else {
+                given
+            }
+        };
+        Self {
+            velocity: acting(self.velocity, velocity),
+            acceleration: acting(self.acceleration, acceleration),
+            deceleration: acting(self.deceleration, deceleration),
+            jerk: acting(self.jerk, jerk),
+            snap: acting(self.snap, snap),
+        }
+    }
+
+    /// As [`Limits::acting`], for a motion that begins in `start`, ends with the speed `end` (u/s) and, on its way to a
+    /// position, `distance` (u) from it. Speeds are judged by parts of the velocity bound, so one that such a motion
+    /// comes nowhere near is lowered to [`REACH`] times what it may come to (docs/planner.md, eq. 40).
+    pub(crate) fn acting_for(&self, start: &Setpoint, end: f64, distance: f64, cycle: f64) -> Self {
+        let Self {
+            acceleration,
+            deceleration,
+            jerk,
+            snap,
+            ..
+        } = self.acting(cycle);
+        let lower = acceleration.min(deceleration);
+        // Until acceleration and jerk are zero.
+        let rising = start.jerk.abs() / snap;
+        let steepest = start.acceleration.abs() + 0.5 * start.jerk.abs() * rising;
+        let settled = rising + steepest / jerk + 2.0 * sqrt(steepest / snap);
+        let speed = start.velocity.abs().max(end.abs()) + steepest * settled;
+        // Until it could be at rest, and from there to the position.
+        let stopped = speed / lower + 2.0 * sqrt(speed / jerk) + 2.0 * sqrt(lower / snap);
+        let reached = speed + sqrt(2.0 * lower * (distance.abs() + speed * (settled + stopped)));
+        let reached = if distance == 0.0 { speed } else { reached };
+        let velocity = if reached > 0.0 {
+            self.velocity.min(REACH * reached)
+        } else {
+            self.velocity
+        };
+        Self { velocity, ..*self }.acting(cycle)
     }
 
     /// Whether no bound is given at all.

@@ -164,7 +164,12 @@ fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, range: Option<(f64
     if state.snap.abs() > limits.snap * (1.0 + ROUNDING) {
         return false;
     }
-    let path = Path::<1>::follow(Order::Four, state, core::iter::once((length, state.snap)));
+    let path = Path::<1>::follow(
+        Order::Four,
+        state,
+        f64::INFINITY,
+        core::iter::once((length, state.snap)),
+    );
     if excess::excess(&path, 0.0, None, limits).is_some() {
         return false;
     }
@@ -205,6 +210,7 @@ pub(crate) fn room(part: Part<'_>, limits: &Limits, cycle: f64) -> Limits {
             let path = Path::<1>::follow(
                 Order::Four,
                 &walk.state,
+                f64::INFINITY,
                 core::iter::once((walk.left, walk.state.snap)),
             );
             path.extremes(f64::INFINITY, |state, _| {
@@ -265,7 +271,12 @@ pub(crate) fn ways(part: Part<'_>, cycle: f64) -> (f64, f64) {
                 position: 0.0,
                 ..walk.state
             };
-            let path = Path::<1>::follow(Order::Four, &start, core::iter::once((walk.left, start.snap)));
+            let path = Path::<1>::follow(
+                Order::Four,
+                &start,
+                f64::INFINITY,
+                core::iter::once((walk.left, start.snap)),
+            );
             let mut from = 0.0;
             let mut go = |to: f64| {
                 if to > from {

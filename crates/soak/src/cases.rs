@@ -228,6 +228,8 @@ pub struct Chain {
     cycle: f64,
     /// A length the limits make typical (u).
     way: f64,
+    /// The highest velocity a goal may have (u/s).
+    fastest: f64,
     /// What positions count from (u).
     origin: f64,
     start: Setpoint,
@@ -241,13 +243,19 @@ impl Chain {
         Self::of(Random::new(seed, number))
     }
 
-    /// The chain these numbers make.
+    /// The chain these numbers make. In every sixth some limits are what nobody reaches, or next to nothing.
     pub fn of(mut random: Random) -> Self {
         let order = [Order::Two, Order::Three, Order::Four][random.below(3) as usize];
-        let widest = limits(&mut random, order);
+        let typical = limits(&mut random, order);
         let change = [Change::Never, Change::Velocity, Change::All][random.below(3) as usize];
-        let time = widest.velocity / widest.acceleration;
-        let way = widest.velocity * time;
+        let time = typical.velocity / typical.acceleration;
+        let way = typical.velocity * time;
+        let cycle = time * random.log_between(0.001, 0.3);
+        let widest = if random.one_in(6) {
+            extreme(&mut random, &typical, cycle)
+        } else {
+            typical
+        };
         let origin = if random.one_in(8) {
             let far = way * random.log_between(1.0, 1e4);
             random.signed(far)
@@ -255,12 +263,13 @@ impl Chain {
             0.0
         };
         let mut chain = Self {
-            cycle: time * random.log_between(0.001, 0.3),
+            cycle,
             before: widest,
             random,
             widest,
             change,
             way,
+            fastest: typical.velocity,
             origin,
             start: Setpoint::default(),
             viable: true,
@@ -325,12 +334,13 @@ impl Chain {
         }
     }
 
-    /// A goal velocity (u/s), now and then exactly the limit.
+    /// A goal velocity (u/s), now and then exactly the limit, unless that is what nobody reaches.
     fn velocity(&mut self, limits: &Limits) -> f64 {
+        let most = limits.velocity.min(self.fastest);
         let speed = match self.random.below(4) {
-            0 => limits.velocity,
-            1 => limits.velocity * self.random.log_between(1e-6, 1.0),
-            _ => limits.velocity * self.random.between(0.0, 1.0),
+            0 => most,
+            1 => most * self.random.log_between(1e-6, 1.0),
+            _ => most * self.random.between(0.0, 1.0),
         };
         self.random.signed(speed)
     }
@@ -384,6 +394,37 @@ fn contains(outer: &Limits, inner: &Limits) -> bool {
         && inner.deceleration <= outer.deceleration
         && inner.jerk <= outer.jerk
         && inner.snap <= outer.snap
+}
+
+/// `typical`, with some of its limits what programs write for none, or anything from 1e-12 to the largest number.
+///
+/// The rates are at most 10^4 times apart in what they do: a ramp that changes between two such rates keeps the lower
+/// one to 1e-9 of the higher (docs/planner-ramps.md, section 7).
+fn extreme(random: &mut Random, typical: &Limits, cycle: f64) -> Limits {
+    let mut limits = *typical;
+    let bounds = [
+        &mut limits.velocity,
+        &mut limits.acceleration,
+        &mut limits.deceleration,
+        &mut limits.jerk,
+        &mut limits.snap,
+    ];
+    for bound in bounds {
+        if bound.is_finite() && random.one_in(3) {
+            *bound = match random.below(8) {
+                0 => f64::MAX,
+                1 => 1e30,
+                2 => 1e-12 * random.log_between(1.0, 1e300),
+                3 => *bound * random.log_between(1e-6, 1.0),
+                _ => (*bound * random.log_between(1.0, 1e30)).min(f64::MAX),
+            };
+        }
+    }
+    let done = |rate: f64| rate.min(65536.0 * typical.velocity / cycle);
+    let least = 1e-4 * done(limits.acceleration).max(done(limits.deceleration));
+    limits.acceleration = limits.acceleration.max(least);
+    limits.deceleration = limits.deceleration.max(least);
+    limits
 }
 
 /// Limits of the proportions servo axes have, in units of length and time a thousand times smaller to a

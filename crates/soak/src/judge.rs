@@ -14,6 +14,9 @@ const RELATIVE: f64 = 1e-9;
 /// (docs/planner-ramps.md, section 4), and either bound of the acceleration may hold.
 const STILL: f64 = 1e-9;
 
+/// A velocity limit this many times higher than a plan's speeds says nothing of them.
+const REACH: f64 = 1024.0 * 1024.0;
+
 /// What sums of positions resolve, relative to them.
 const RESOLVED: f64 = 32.0 * f64::EPSILON;
 
@@ -49,7 +52,18 @@ pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
     if let Some(what) = cut_short(plan) {
         return Err(what);
     }
-    let followed = follow(&case.start, &segments, order, STILL * case.limits.velocity);
+    // What a plan comes nowhere near is no measure of its speeds.
+    let end = match case.goal {
+        Goal::Grid(_) | Goal::Position(_) => 0.0,
+        Goal::Passing(_, velocity) | Goal::Velocity(velocity) => velocity,
+    };
+    let fastest = segments
+        .iter()
+        .fold(case.start.velocity.abs().max(end.abs()), |most, segment| {
+            most.max(segment.velocity.abs())
+        });
+    let still = STILL * case.limits.velocity.min(REACH * fastest);
+    let followed = follow(&case.start, &segments, order, still);
     let time = scan as f64 * case.cycle;
     let scale = Scale::new(case, &followed, time);
     let taken = state_at(&case.start, &segments, time);
@@ -65,6 +79,7 @@ pub fn judge(case: &Case, plan: &Plan, scan: u64) -> Result<Measured, String> {
         ..Measured::default()
     };
     limits(case, plan, &followed, &scale, &mut measured)?;
+    published(case, plan)?;
     ends(case, plan, order, &followed, &scale)?;
     let bounded = [
         ("velocity jumps", measured.jumps[0]),
@@ -113,7 +128,11 @@ impl Scale {
         let finite = |bound: f64, seen: f64| if bound.is_finite() { bound.max(seen) } else { seen };
         let tick = TICK * followed.duration.max(time);
         Self {
-            tick: [followed.acceleration(), followed.jerk, followed.snap].map(|rate| tick * rate),
+            tick: [
+                tick * followed.acceleration(),
+                tick * followed.jerk + TICK * followed.acceleration(),
+                tick * followed.snap,
+            ],
             way: case.limits.velocity.max(followed.speed()) * followed.duration.max(time),
             resolved: RESOLVED * (case.start.position.abs() + target.abs()),
             velocity: case.limits.velocity.max(followed.speed()),
@@ -275,6 +294,52 @@ fn limits(
     measured.untold = untold;
     if !(excess[3] <= RELATIVE) {
         return Err(format!("snap exceeds its limit by {:e}", excess[3]));
+    }
+    Ok(())
+}
+
+/// Scans at the start, in the middle and at the end of a plan whose set-points are looked at.
+const WINDOW: u64 = 8;
+
+/// Holds backward differences of published positions against the limits, where nothing forces the plan out of them and
+/// some limit is so far from the others that a piece of the plan is lost in its clock if it is not kept apart.
+fn published(case: &Case, plan: &Plan) -> Result<(), String> {
+    let limits = &case.limits;
+    let higher = limits.acceleration.max(limits.deceleration);
+    let sooner = |bound: f64, next: f64| next.is_finite() && bound < 1e-3 * case.cycle * next;
+    let is_extreme = sooner(limits.velocity, higher)
+        || sooner(higher, limits.jerk)
+        || sooner(limits.jerk.min(higher / case.cycle), limits.snap);
+    if !is_extreme || plan.excess().is_some() || limits != &case.before {
+        return Ok(());
+    }
+    let bounds = [limits.velocity, higher, limits.jerk, limits.snap];
+    let scans = u64::from(plan.scans());
+    for first in [0, scans / 2, scans.saturating_sub(WINDOW)] {
+        let mut values: Vec<f64> = (first..=first + WINDOW)
+            .map(|scan| plan.at(scan).position)
+            .collect();
+        // The end of the plan enters its last piece, which may be all of it.
+        let ends = plan.at(scans).position.abs().max(case.start.position.abs());
+        let largest = values.iter().fold(ends, |most, value| most.max(value.abs()));
+        // The clock resolves a position as a position does.
+        let clock = limits.velocity.min(largest / case.cycle) * case.cycle * (first + WINDOW) as f64;
+        let mut resolved = RESOLVED * (largest + clock);
+        for (degree, bound) in bounds.into_iter().enumerate() {
+            values = values
+                .windows(2)
+                .map(|pair| (pair[1] - pair[0]) / case.cycle)
+                .collect();
+            resolved = 2.0 * resolved / case.cycle;
+            let most = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            // A target that was passed on is behind the end of the plan.
+            if !(most <= bound * (1.0 + RELATIVE) + resolved) {
+                return Err(format!(
+                    "published difference {} is {most:e} near scan {first}",
+                    degree + 1
+                ));
+            }
+        }
     }
     Ok(())
 }

@@ -8,10 +8,6 @@ use super::{Axis, Source};
 use crate::{AboveLimit, Dynamics, ErrorId, Event, Log};
 use standstill_planner::{Limits, Planner};
 
-/// A derivative that is at its bound after less than this part of a cycle might as well jump there: no difference
-/// of set-points can tell. The stretches of a plan it would take are shorter than what its times resolve.
-const UNNOTICED: f64 = 1.0 / 1_048_576.0;
-
 /// Scans a rate may take to change what it changes from nothing to its limit. A lower rate is of no use, and a
 /// motion that could not be stopped in a number of scans that can be counted.
 const LONGEST: f64 = 268_435_456.0;
@@ -86,35 +82,18 @@ impl<P: Planner> Axis<P> {
             missing: None,
             above: ErrorId::SnapAboveLimit,
         };
-        Ok(self.noticeable(&Limits {
+        Ok(Limits {
             velocity: limits.velocity,
             acceleration: self.magnitude(&acceleration, source, log)?,
             deceleration: self.magnitude(&deceleration, source, log)?,
             jerk: self.magnitude(&jerk, source, log)?,
             snap: self.magnitude(&snap, source, log)?,
-        }))
+        })
     }
 
     /// Longest time (s) a rate may take to change what it changes from nothing to its limit.
     pub(super) fn longest(&self) -> f64 {
         LONGEST * self.planner.cycle()
-    }
-
-    /// `limits` without a jerk or snap so high that it limits nothing: the acceleration may as well jump from
-    /// bound to bound, or the jerk.
-    fn noticeable(&self, limits: &Limits) -> Limits {
-        let shortest = UNNOTICED * self.planner.cycle();
-        let higher = limits.acceleration.max(limits.deceleration);
-        let mut noticeable = *limits;
-        // From no acceleration to its bound takes a / j.
-        if limits.jerk * shortest > higher {
-            noticeable.jerk = f64::INFINITY;
-        }
-        // From no jerk to its bound takes j / s, and to half the acceleration at least sqrt(a / s).
-        if limits.snap * shortest > noticeable.jerk || limits.snap * shortest * shortest > higher {
-            noticeable.snap = f64::INFINITY;
-        }
-        noticeable
     }
 
     /// The velocity of a positioning move at `pin`: above 0, at most the axis limit.
@@ -173,11 +152,11 @@ impl<P: Planner> Axis<P> {
         let limits = self.config.limits;
         let deceleration = self.config.stop_deceleration.unwrap_or(limits.deceleration);
         let jerk = self.config.stop_jerk.unwrap_or(limits.jerk);
-        self.noticeable(&Limits {
+        Limits {
             deceleration,
             jerk,
             ..limits
-        })
+        }
     }
 
     fn magnitude(&self, pin: &Magnitude, source: Source, log: &mut Log) -> Result<f64, ErrorId> {

@@ -2,7 +2,7 @@
 //!
 //! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`inside`] keeps take-overs within the axis
-//! limits, [`superimposed`] adds a second motion, [`factors`] is the override, [`replan`] changes the owner's motion
+//! limits, [`superimposed`] adds a second motion, [`factors`] is the override, [`guard`] lets no set-point jump, [`replan`] changes the owner's motion
 //! while it runs, [`update`] gives it new values, [`jog`] checks what MC_Jog asks for, [`queued`] lets administrative
 //! commands wait, [`parameters`] has what can be written by number, [`torque`] holds torques, [`supervision`] watches the distance to the
 //! actual position, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges, [`profile`] moves along curves through points,
@@ -15,6 +15,7 @@ mod blend;
 mod coordinates;
 mod dynamics;
 mod factors;
+mod guard;
 mod homing;
 mod inside;
 mod jog;

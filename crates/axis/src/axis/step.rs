@@ -92,6 +92,8 @@ impl<P: Planner> Axis<P> {
         }
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
+        } else if !self.is_step(&next) {
+            self.fail(ErrorId::SetpointStep, scan, log);
         } else if self.watched && self.plan_would_leave() {
             self.fail(ErrorId::SoftwareLimitReached, scan, log);
         } else {
@@ -142,17 +144,23 @@ impl<P: Planner> Axis<P> {
     /// Enters ErrorStop and publishes the first set-point of the ramp, which starts at the last one published.
     #[cold]
     pub(super) fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
+        if self.state == AxisState::ErrorStop {
+            // The ramp itself is at fault, so nothing is left that could be trusted to move the axis.
+            self.motion = Motion::Hold;
+        }
         self.trip(error, 0, Reaction::Ramp, scan, log);
-        let next = match &mut self.motion {
+        let ramp = match &mut self.motion {
             Motion::Run { plan, elapsed, .. } => {
                 *elapsed = 1;
-                plan.at(1)
+                Some(plan.at(1))
             }
-            Motion::Follow | Motion::Hold | Motion::Torque { .. } => {
-                Setpoint::at_rest(self.setpoint.position)
-            }
+            Motion::Follow | Motion::Hold | Motion::Torque { .. } => None,
         };
-        self.publish(next);
+        let next = ramp.filter(|next| next.is_finite() && self.is_step(next));
+        if next.is_none() && ramp.is_some() {
+            self.motion = Motion::Hold;
+        }
+        self.publish(next.unwrap_or(Setpoint::at_rest(self.setpoint.position)));
     }
 
     /// Completion and hand-over, at the goal.

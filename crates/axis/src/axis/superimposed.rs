@@ -59,7 +59,7 @@ pub(super) struct Layer<Plan> {
     /// What of `added.position` the positions of `base` contain already (u).
     taken: f64,
     /// How `added` moves; never [`Motion::Follow`].
-    motion: Motion<Plan>,
+    pub(super) motion: Motion<Plan>,
     /// Limits of that motion.
     in_force: Limits,
     /// Limits of the one it took over from.
@@ -372,6 +372,8 @@ impl<P: Planner> Axis<P> {
         let next = layer.sum();
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
+        } else if !self.is_step(&next) {
+            self.fail(ErrorId::SetpointStep, scan, log);
         } else if self.parameters.software_limits.is_some() && self.would_leave(&next) {
             self.fail(ErrorId::SoftwareLimitReached, scan, log);
         } else {

@@ -55,6 +55,7 @@ impl OnlinePlan {
         let distance = target - start.position;
         let wanted = passage.wanted;
         check(start, target, 0.0, limits, before, cycle)?;
+        let limits = &limits.acting(cycle);
         if distance == 0.0 {
             return Ok(None);
         }
@@ -68,7 +69,7 @@ impl OnlinePlan {
             velocity: limits.velocity.max(wanted).max(arrested.min(before.velocity)),
             ..*limits
         };
-        let ramps = Ramps::new(&raised, &raised.or_larger(before));
+        let ramps = Ramps::new(&raised, &raised.or_larger(before).acting(cycle));
         let way = Way {
             start,
             target,
@@ -209,7 +210,8 @@ pub fn entry_speed(wanted: f64, distance: f64, exit: f64, limits: &Limits, cycle
     let limits = Limits {
         velocity: limits.velocity.max(wanted),
         ..*limits
-    };
+    }
+    .acting(cycle);
     let ramps = Ramps::new(&limits, &limits);
     let down_to = |exit| fastest_down_to(wanted, distance, exit, &ramps, cycle);
     let entry = down_to(exit);
@@ -231,7 +233,7 @@ fn fastest_down_to(wanted: f64, distance: f64, exit: f64, ramps: &Ramps, cycle: 
         };
         let heading = heading(&start, goal, ramps.velocity(), ramps.order());
         let ramp = ramps.ramp(&start, goal, heading, Course::Free);
-        let end = follow(ramps.order(), &start, &ramp.spans).position;
+        let end = follow(ramps, &start, &ramp.spans).position;
         Point {
             at: speed,
             value: end + ramps.inward(speed * cycle, 0) - way,

@@ -175,7 +175,11 @@ impl Climb<'_> {
             return false;
         }
         let path = &mut found.path;
-        let end = path.fill(&self.start, self.ramps.scale().outward(candidate));
+        let end = path.fill(
+            &self.start,
+            self.limits.lower_acceleration(),
+            self.ramps.scale().outward(candidate),
+        );
         path.pin(self.end_velocity);
         found.residual = self.distance - path.end_position().unwrap_or(0.0);
         let way = self.limits.velocity.max(self.start.velocity.abs()) * path.duration();
@@ -216,7 +220,12 @@ impl Climb<'_> {
     /// The excess of the first `count` of `spans`.
     fn excess_of(&self, spans: &Spans<RAMP_SPANS>, count: usize) -> Excess {
         let spans = self.ramps.scale().outward(spans).take(count);
-        let path = Path::<MAX_PIECES>::follow(self.ramps.order(), &self.start, spans);
+        let path = Path::<MAX_PIECES>::follow(
+            self.ramps.order(),
+            &self.start,
+            self.limits.lower_acceleration(),
+            spans,
+        );
         excess::excess(&path, 0.0, None, self.limits).unwrap_or_default()
     }
 
@@ -230,7 +239,11 @@ impl Climb<'_> {
     ) -> Result<(), PlanError> {
         let stop = self.search.ramp(&self.inward, 0.0);
         let path = &mut found.path;
-        let end = path.fill(&self.start, self.ramps.scale().outward(&stop));
+        let end = path.fill(
+            &self.start,
+            self.limits.lower_acceleration(),
+            self.ramps.scale().outward(&stop),
+        );
         path.pin(0.0);
         let rest = origin + path.end_position().unwrap_or(0.0);
         // Inputs are checked, so a grid plan is refused only for lengths and times beyond numbers.

@@ -120,7 +120,9 @@ impl OnlinePlan {
         cycle: f64,
     ) -> Result<Self, PlanError> {
         check(start, target, end_velocity, limits, before, cycle)?;
-        let wider = limits.or_larger(before);
+        let acting = |limits: &Limits| limits.acting_for(start, end_velocity, target - start.position, cycle);
+        let (given, wider) = (limits, acting(&limits.or_larger(before)));
+        let limits = &acting(limits);
         let mut plan = Self {
             start: *start,
             target,
@@ -129,11 +131,15 @@ impl OnlinePlan {
             scans: 0,
             found: Found::nothing(limits.order()),
         };
-        plan.climb(first, top, limits, &wider)?;
         let too_long = PlanError::TooLong {
             field: Field::Target,
             value: target,
         };
+        if end_velocity.abs() > limits.velocity {
+            return Err(too_long);
+        }
+        plan.climb(first, top.min(limits.velocity), limits, &wider)?;
+        plan.found.excess = plan.excess_over(given);
         let moving = ramp::scans(plan.found.path.duration(), cycle).ok_or(too_long)?;
         // Both counts are below 2^31, so the sum fits.
         plan.scans = moving + plan.found.tail.map_or(0, |tail| tail.grid.scans());
@@ -311,7 +317,7 @@ impl OnlinePlan {
     /// The stretches of constant highest derivative, in order of time; none of no length.
     pub fn segments(&self) -> impl Iterator<Item = Segment> {
         let path = self.found.path.stretches().map(|(stretch, first)| Segment {
-            duration: stretch.end - stretch.begin,
+            duration: stretch.duration,
             velocity: first.velocity,
             acceleration: first.acceleration,
             jerk: first.jerk,

@@ -4,10 +4,10 @@
 
 use core::cell::Cell;
 
+use crate::Setpoint;
 use crate::kernel::{MAX_STEPS, NOISE, Point, Spans, THIRD_SPANS, zero};
 use crate::ramp::path::Way;
 use crate::ramp::solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
-use crate::{Order, Setpoint};
 
 /// Most spans of a candidate: a ramp before it, a push, a cruise and a stop.
 pub(super) const CANDIDATE_SPANS: usize = 3 * RAMP_SPANS + 1;
@@ -121,7 +121,7 @@ impl<'a> Search<'a> {
         let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
         let top = side * self.top;
         let push = self.ramp(start, top);
-        let mut way = Way::new(self.ramps.order(), start);
+        let mut way = Way::new(self.ramps.order(), start, self.ramps.lower());
         let mut from = stop.ahead(0.0, side);
         let parts = if self.end_velocity == 0.0 { 1 } else { PARTS };
         for span in push.split(parts) {
@@ -158,7 +158,7 @@ impl<'a> Search<'a> {
         let top = side * self.top;
         let through = |peak: f64| {
             let ramp = self.ramp(start, peak);
-            let state = steady(&follow(self.ramps.order(), start, &ramp), peak);
+            let state = steady(&follow(self.ramps, start, &ramp), peak);
             (ramp, self.stop(&state))
         };
         let at = |peak: f64| {
@@ -186,7 +186,7 @@ impl<'a> Search<'a> {
         let bound = self.ramps.velocity();
         let velocity = self.ramps.arrested(start).max(-bound).min(bound);
         let ramp = self.ramp(start, velocity);
-        let state = steady(&follow(self.ramps.order(), start, &ramp), velocity);
+        let state = steady(&follow(self.ramps, start, &ramp), velocity);
         let mut spans = Spans::new();
         spans.extend(&ramp);
         spans.extend(&self.push_then_stop(&state));
@@ -200,7 +200,7 @@ impl<'a> Search<'a> {
     /// ramp from rest would end beyond the target, backwards. So nothing has to be met by a root.
     pub(super) fn rest_then_run_up(&self, start: &Setpoint) -> Candidate {
         let brake = self.ramp(start, 0.0);
-        let rest = steady(&follow(self.ramps.order(), start, &brake), 0.0);
+        let rest = steady(&follow(self.ramps, start, &brake), 0.0);
         let even = self.ramps.even();
         let search = Search::new(&even, self.target, self.end_velocity, self.top, self.resolution);
         let mut spans = Spans::new();
@@ -224,7 +224,7 @@ impl<'a> Search<'a> {
         let mut held = self.top;
         for _ in 0..HALVINGS {
             let first = self.ramp(rest, way * held);
-            let state = steady(&follow(self.ramps.order(), rest, &first), way * held);
+            let state = steady(&follow(self.ramps, rest, &first), way * held);
             let last = self.stop(&state);
             let left = -way * last.beyond;
             if left >= 0.0 {
@@ -274,7 +274,7 @@ impl<'a> Search<'a> {
 
     fn ramp_to(&self, start: &Setpoint, velocity: f64) -> Stop {
         let spans = self.ramp(start, velocity);
-        let end = follow(self.ramps.order(), start, &spans);
+        let end = follow(self.ramps, start, &spans);
         let added_up = start.position.abs() + self.target.abs() + spans.duration() * start.velocity.abs();
         Stop {
             beyond: end.position - self.target,
@@ -304,8 +304,8 @@ fn steady(state: &Setpoint, velocity: f64) -> Setpoint {
 }
 
 /// The end of `spans` from `start`.
-pub(super) fn follow<const N: usize>(order: Order, start: &Setpoint, spans: &Spans<N>) -> Setpoint {
-    let mut way = Way::new(order, start);
+pub(super) fn follow<const N: usize>(ramps: &Ramps, start: &Setpoint, spans: &Spans<N>) -> Setpoint {
+    let mut way = Way::new(ramps.order(), start, ramps.lower());
     way.follow(spans);
     way.state
 }

@@ -44,7 +44,10 @@ impl SampledPlan {
     /// # Errors
     /// As there and [`SampledPlan::new`].
     pub fn s_curve(start: f64, target: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
-        Self::new(SCurve::new(start, target, limits)?.profile(), cycle)
+        Self::new(
+            SCurve::new(start, target, &limits.acting(cycle))?.profile(),
+            cycle,
+        )
     }
 
     /// As [`Trapezoid::new`], from rest at `start` to rest at `target` (u).
@@ -52,7 +55,10 @@ impl SampledPlan {
     /// # Errors
     /// As there and [`SampledPlan::new`].
     pub fn trapezoid(start: f64, target: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
-        Self::new(Trapezoid::new(start, target, limits)?.profile(), cycle)
+        Self::new(
+            Trapezoid::new(start, target, &limits.acting(cycle))?.profile(),
+            cycle,
+        )
     }
 
     /// As [`ShortPath::new`] with the policy `Nearest`, from the position and velocity of `start` to rest at
@@ -62,7 +68,8 @@ impl SampledPlan {
     /// As there and [`SampledPlan::new`].
     pub fn short_path(start: &Setpoint, target: f64, limits: &Limits, cycle: f64) -> Result<Self, PlanError> {
         let policy = ShortPathPolicy::Nearest;
-        let plan = ShortPath::new(start.position, start.velocity, target, 0.0, limits, policy)?;
+        let limits = limits.acting(cycle);
+        let plan = ShortPath::new(start.position, start.velocity, target, 0.0, &limits, policy)?;
         Self::new(plan.profile(), cycle)
     }
 

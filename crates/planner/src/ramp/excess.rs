@@ -2,6 +2,7 @@
 
 use super::path::Path;
 use crate::kernel::ON_LIMIT;
+use crate::limits::REACH;
 use crate::{Limits, Order};
 
 /// What a 64-bit instant of a path resolves, relative to its duration.
@@ -76,14 +77,21 @@ pub(crate) fn excess<const N: usize>(
         return None;
     }
     let mut excess = Excess::default();
+    let peaks = peaks(path, goal);
     let scale = if limits.velocity.is_finite() {
-        limits.velocity
+        limits.velocity.min(REACH * peaks.velocity)
     } else {
-        peaks(path, goal).velocity
+        peaks.velocity
     };
     let small = ON_LIMIT * scale;
     // A piece that ends late by what the time since the start resolves goes on changing for as long.
     let tick = TICK * path.duration();
+    // A bound far below the other one is met by an acceleration that has changed by as much as the other.
+    let rounding = TICK
+        * limits
+            .acceleration
+            .max(limits.deceleration)
+            .min(peaks.acceleration);
     // With one bound for both directions nothing changes where the velocity passes zero.
     let sides_differ = limits.acceleration != limits.deceleration;
     let noticed = if sides_differ { small } else { f64::INFINITY };
@@ -107,7 +115,10 @@ pub(crate) fn excess<const N: usize>(
             Some(_) => limits.deceleration,
         };
         let over = state.acceleration.abs() - bound;
-        excess.acceleration = excess.acceleration.max(beyond(over, bound, tick * state.jerk));
+        excess.acceleration =
+            excess
+                .acceleration
+                .max(beyond(over, bound, tick * state.jerk.abs() + rounding));
         let over = state.jerk.abs() - limits.jerk;
         excess.jerk = excess.jerk.max(beyond(over, limits.jerk, tick * state.snap));
     });
@@ -163,7 +174,7 @@ mod tests {
                     )
                 })
                 .collect();
-            let end = path.fill(&start, spans.into_iter());
+            let end = path.fill(&start, f64::INFINITY, spans.into_iter());
             let peaks = peaks(&path, end.velocity);
             let mut bound = |peak: f64| peak * (1.0 + 0.3 * random.unit() + 1e-12);
             let bounds = [peaks.velocity, peaks.acceleration, peaks.jerk].map(&mut bound);

@@ -28,6 +28,9 @@ const MAX_SCANS: f64 = 2_147_483_647.0;
 /// How far `duration / cycle` may lie above a whole number, relative to itself, and still be that number.
 const GRID_SLACK: f64 = 1e-9;
 
+/// The same in scans: what a plan is cut short by at its end is not to be seen in its last set-point.
+const SCAN_SLACK: f64 = 1.0 / 4096.0;
+
 /// A plan from any state to a constant velocity: at most 20 pieces of constant snap (order 4), jerk (3) or
 /// acceleration (2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,9 +101,19 @@ impl RampPlan {
         cycle: f64,
     ) -> Result<Self, PlanError> {
         check(start, velocity, limits, before, cycle)?;
+        let acting = |limits: &Limits| limits.acting_for(start, velocity, 0.0, cycle);
+        let (given, wider) = (limits, acting(&limits.or_larger(before)));
+        let limits = &acting(limits);
+        let too_long = PlanError::TooLong {
+            field: Field::EndVelocity,
+            value: velocity,
+        };
+        if velocity.abs() > limits.velocity {
+            return Err(too_long);
+        }
         let order = limits.order();
         let heading = heading(start, velocity, limits.velocity, order);
-        let ramps = Ramps::new(limits, &limits.or_larger(before));
+        let ramps = Ramps::new(limits, &wider);
         let proposed = |course| {
             let Ramp {
                 spans, steps, viable, ..
@@ -112,7 +125,7 @@ impl RampPlan {
             );
             let fits = spans.len() <= MAX_PIECES;
             let mut path = Path::new(order);
-            let end = path.fill(start, ramps.scale().outward(&spans));
+            let end = path.fill(start, limits.lower_acceleration(), ramps.scale().outward(&spans));
             path.pin(velocity);
             let arrives = is_there(&end, velocity, (start, limits, path.duration()));
             // A ramp from a viable state exceeds nothing, which the tests see and this need not look for; a stop that
@@ -143,14 +156,10 @@ impl RampPlan {
                 })
                 .unwrap_or(kept)
             });
-        let too_long = PlanError::TooLong {
-            field: Field::EndVelocity,
-            value: velocity,
-        };
         if !arrives {
             return Err(too_long);
         }
-        Ok(Self {
+        let mut plan = Self {
             start: *start,
             carry: 0.0,
             goal: velocity,
@@ -159,7 +168,9 @@ impl RampPlan {
             steps,
             excess,
             path,
-        })
+        };
+        plan.excess = plan.excess_over(given);
+        Ok(plan)
     }
 
     /// Number of scans until the goal velocity; 0 if the start has it.
@@ -230,7 +241,7 @@ impl RampPlan {
             cycle,
             scans: 0,
             steps: 0,
-            path: Path::follow(order, &Setpoint::default(), core::iter::empty()),
+            path: Path::follow(order, &Setpoint::default(), f64::INFINITY, core::iter::empty()),
             excess: None,
         }
     }
@@ -272,7 +283,8 @@ impl RampPlan {
     /// sign and another bound holds on each side. Bounded by 20 pieces with at most two roots each.
     pub fn excess_over(&self, limits: &Limits) -> Option<Excess> {
         self.excess?;
-        let heading = heading(&self.start, self.goal, limits.velocity, self.path.order());
+        let acting = limits.acting_for(&self.start, self.goal, 0.0, self.cycle);
+        let heading = heading(&self.start, self.goal, acting.velocity, self.path.order());
         excess::excess(&self.path, self.goal, Some(heading), limits)
     }
 
@@ -294,7 +306,7 @@ impl RampPlan {
     /// The stretches of constant highest derivative, in order of time.
     pub fn segments(&self) -> impl Iterator<Item = Segment> {
         self.path.stretches().map(|(stretch, first)| Segment {
-            duration: stretch.end - stretch.begin,
+            duration: stretch.duration,
             velocity: first.velocity,
             acceleration: first.acceleration,
             jerk: first.jerk,
@@ -362,7 +374,7 @@ pub(crate) fn is_there(
 /// The least whole number of cycles that covers `duration`, but for [`GRID_SLACK`]; none if it is too large.
 pub(crate) fn scans(duration: f64, cycle: f64) -> Option<u32> {
     let exact = duration / cycle;
-    let needed = exact * (1.0 - GRID_SLACK);
+    let needed = exact - (exact * GRID_SLACK).min(SCAN_SLACK);
     if !(needed <= MAX_SCANS) {
         return None;
     }

@@ -8,7 +8,7 @@ use crate::{Order, Setpoint};
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// What an acceleration that is held at zero may be off by, relative to the largest one before. It is held
-/// either there or at a bound, so nothing else is as small.
+/// either there or at a bound, which may be as small beside a much larger one.
 const CRUISING: f64 = 1e-10;
 
 /// By how much, relative to itself, the time of a boundary added up from spans may be off.
@@ -22,9 +22,10 @@ fn latest(boundary: f64) -> f64 {
 /// A stretch of constant snap (order 4), jerk (3) or acceleration (2).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Piece {
-    /// When it ends, from the start of the plan (s).
-    end: f64,
-    /// The state at `anchor`.
+    /// How long it lasts (s). It is kept, because the difference of two ends would have few digits left of a short
+    /// piece late in a plan.
+    duration: f64,
+    /// The state at its start, of the last piece at its end.
     state: Setpoint,
 }
 
@@ -36,6 +37,9 @@ struct Current {
     end: f64,
     /// The instant its state belongs to (s).
     anchor: f64,
+    /// The times of the piece from there (s).
+    from: f64,
+    to: f64,
     course: Course,
     /// When the last piece ends (s): what stands with the others is seldom at hand.
     duration: f64,
@@ -47,6 +51,8 @@ impl Current {
         begin: 0.0,
         end: 0.0,
         anchor: 0.0,
+        from: 0.0,
+        to: 0.0,
         course: Course {
             state: Setpoint::at_rest(0.0),
             sixth_of_jerk: 0.0,
@@ -55,6 +61,14 @@ impl Current {
         },
         duration: 0.0,
     };
+}
+
+impl Current {
+    /// The time from its anchor (s), inside the piece: what rounding puts beyond its ends is not part of it.
+    #[inline(always)]
+    fn since(&self, time: f64) -> f64 {
+        (time - self.anchor).max(self.from).min(self.to)
+    }
 }
 
 /// A state with what its course at constant snap takes divisions for.
@@ -111,7 +125,7 @@ impl<const N: usize> Path<N> {
     /// No pieces.
     pub(crate) const fn new(order: Order) -> Self {
         const EMPTY: Piece = Piece {
-            end: 0.0,
+            duration: 0.0,
             state: Setpoint::at_rest(0.0),
         };
         Self {
@@ -123,34 +137,40 @@ impl<const N: usize> Path<N> {
     }
 
     /// Lays `spans` of (seconds, highest derivative) from `start` on to wherever they end; what does not fit in is
-    /// left out.
-    pub(crate) fn follow(order: Order, start: &Setpoint, spans: impl Iterator<Item = (f64, f64)>) -> Self {
+    /// left out. `bound` is the lowest one of acceleration (u/s^2).
+    pub(crate) fn follow(
+        order: Order,
+        start: &Setpoint,
+        bound: f64,
+        spans: impl Iterator<Item = (f64, f64)>,
+    ) -> Self {
         let mut path = Self::new(order);
-        path.fill(start, spans);
+        path.fill(start, bound, spans);
         path
     }
 
     /// As [`Path::follow`], on a path without pieces yet. The last piece is stored by the state at its end, which
     /// is given back.
-    pub(crate) fn fill(&mut self, start: &Setpoint, spans: impl Iterator<Item = (f64, f64)>) -> Setpoint {
-        let mut way = Way::new(self.order, start);
-        let mut time = 0.0;
+    pub(crate) fn fill(
+        &mut self,
+        start: &Setpoint,
+        bound: f64,
+        spans: impl Iterator<Item = (f64, f64)>,
+    ) -> Setpoint {
+        let mut way = Way::new(self.order, start, bound);
         for (duration, input) in spans {
             let state = way.begin(input);
-            let end = time + duration;
-            // A span too short to move the clock moves nothing else either.
-            if end > time
+            if duration > 0.0
                 && let Some(piece) = self.pieces.get_mut(self.len)
             {
-                *piece = Piece { end, state };
+                *piece = Piece { duration, state };
                 self.len += 1;
-                time = end;
             }
             way.go(duration);
         }
         let order = self.order;
         if let Some(last) = self.last_mut() {
-            // The input of its own: that of `way` may be that of a span too short to have a piece.
+            // The input of its own: that of `way` may be that of a span of no length.
             let input = match order {
                 Order::Four => last.state.snap,
                 Order::Three => last.state.jerk,
@@ -190,7 +210,10 @@ impl<const N: usize> Path<N> {
 
     /// When the last piece ends (s).
     pub(crate) fn duration(&self) -> f64 {
-        self.last().map_or(0.0, |piece| piece.end)
+        self.pieces
+            .iter()
+            .take(self.len)
+            .fold(0.0, |time, piece| time + piece.duration)
     }
 
     /// Position at the end of the last piece.
@@ -206,14 +229,8 @@ impl<const N: usize> Path<N> {
     /// rounding puts the boundary before `time`: of two motions that switch together none switches a scan early.
     #[inline]
     pub(crate) fn at(&self, time: f64) -> Option<Setpoint> {
-        let mut begin = 0.0;
-        for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
-            if time <= latest(piece.end) {
-                return Some(moved(&piece.state, time - self.anchor(index, begin, piece)));
-            }
-            begin = piece.end;
-        }
-        None
+        self.piece_at(time)
+            .map(|current| current.course.after(current.since(time)))
     }
 
     /// As [`Path::at`] with the part of the whole duration that is over, for one who asks again and again for times not far apart, above 0: the piece is looked for
@@ -236,58 +253,47 @@ impl<const N: usize> Path<N> {
     #[inline(always)]
     pub(crate) fn on_current(&self, time: f64) -> (Setpoint, f64) {
         let current = &self.current;
-        (
-            current.course.after(time - current.anchor),
-            time / current.duration,
-        )
+        (current.course.after(current.since(time)), time / current.duration)
     }
 
     #[inline(never)]
     fn piece_at(&self, time: f64) -> Option<Current> {
         let mut begin = 0.0;
-        for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
-            let end = latest(piece.end);
-            if time <= end {
+        for (stretch, _) in self.stretches() {
+            let end = begin + stretch.duration;
+            if time <= latest(end) {
+                let (anchor, from, to) = if stretch.is_last {
+                    (end, -stretch.duration, 0.0)
+                } else {
+                    (begin, 0.0, stretch.duration)
+                };
                 return Some(Current {
                     begin: latest(begin),
-                    end,
-                    anchor: self.anchor(index, begin, piece),
-                    course: Course::of(piece.state),
+                    end: latest(end),
+                    anchor,
+                    from,
+                    to,
+                    course: Course::of(stretch.state),
                     duration: self.duration(),
                 });
             }
-            begin = piece.end;
+            begin = end;
         }
         None
     }
 
-    /// The instant the stored state of a piece belongs to: its start, or the end of the last piece.
-    fn anchor(&self, index: usize, begin: f64, piece: &Piece) -> f64 {
-        if index + 1 == self.len { piece.end } else { begin }
-    }
-
-    /// Every piece with its bounds in time, and the state at its start.
+    /// Every piece, and the state at its start.
     pub(crate) fn stretches(&self) -> impl Iterator<Item = (Stretch, Setpoint)> {
-        let mut begin = 0.0;
-        self.pieces
-            .iter()
-            .take(self.len)
-            .enumerate()
-            .map(move |(index, piece)| {
-                let stretch = Stretch {
-                    begin,
-                    end: piece.end,
-                    anchor: self.anchor(index, begin, piece),
-                    state: piece.state,
-                };
-                begin = piece.end;
-                let first = if stretch.anchor == stretch.begin {
-                    stretch.state
-                } else {
-                    moved(&stretch.state, stretch.begin - stretch.anchor)
-                };
-                (stretch, first)
-            })
+        let pieces = self.pieces.iter().take(self.len).enumerate();
+        pieces.map(move |(index, piece)| {
+            let stretch = Stretch {
+                duration: piece.duration,
+                is_last: index + 1 == self.len,
+                state: piece.state,
+            };
+            let first = stretch.at(0.0);
+            (stretch, first)
+        })
     }
 
     /// The states that hold every extreme of velocity, acceleration and jerk: the ends of each piece, and
@@ -299,8 +305,8 @@ impl<const N: usize> Path<N> {
     /// acceleration change there.
     pub(crate) fn extremes(&self, small: f64, mut see: impl FnMut(&Setpoint, Option<f64>)) {
         for (stretch, first) in self.stretches() {
-            let length = stretch.end - stretch.begin;
-            let state = |time: f64| moved(&stretch.state, stretch.begin + time - stretch.anchor);
+            let length = stretch.duration;
+            let state = |time: f64| stretch.at(time);
             let within = |time: f64| if time > 0.0 && time < length { time } else { length };
             let last = state(length).velocity;
             let or = |velocity: f64, other: f64| if velocity.abs() > small { velocity } else { other };
@@ -332,7 +338,7 @@ impl<const N: usize> Path<N> {
     /// Whether the velocity towards `side` (1 or -1) never comes below `-small`.
     pub(crate) fn keeps_side(&self, side: f64, small: f64) -> bool {
         self.stretches().all(|(stretch, first)| {
-            let length = stretch.end - stretch.begin;
+            let length = stretch.duration;
             let within = |time: f64| if time > 0.0 && time < length { time } else { length };
             let [one, other] = zeros(first.acceleration, first.jerk, first.snap).map(within);
             [0.0, one, other, length]
@@ -367,7 +373,7 @@ impl<const N: usize> Path<N> {
             let top = match (passes, s == 0.0) {
                 (false, _) => v,
                 (true, true) => v - a * a / (2.0 * j),
-                (true, false) => v + a * (stretch.end - stretch.begin),
+                (true, false) => v + a * stretch.duration,
             };
             let is_decided = !(passes && turns) && within(v, a) && within(top, peak) && j.abs() <= jerk;
             if !is_decided {
@@ -387,15 +393,19 @@ impl<const N: usize> Path<N> {
 pub(crate) struct Way {
     pub(crate) state: Setpoint,
     order: Order,
+    /// The lowest bound of acceleration.
+    bound: f64,
     largest_acceleration: f64,
     largest_jerk: f64,
 }
 
 impl Way {
-    pub(crate) const fn new(order: Order, start: &Setpoint) -> Self {
+    /// From `start`; `bound` is the lowest one of acceleration on the way.
+    pub(crate) const fn new(order: Order, start: &Setpoint, bound: f64) -> Self {
         Self {
             state: *start,
             order,
+            bound,
             largest_acceleration: 0.0,
             largest_jerk: 0.0,
         }
@@ -412,7 +422,7 @@ impl Way {
         self.largest_jerk = self.largest_jerk.max(jerk.abs());
         if input == 0.0 && jerk.abs() <= ROUNDING * self.largest_jerk {
             *jerk = 0.0;
-            if acceleration.abs() <= CRUISING * self.largest_acceleration {
+            if acceleration.abs() <= (CRUISING * self.largest_acceleration).min(0.5 * self.bound) {
                 *acceleration = 0.0;
             }
         }
@@ -433,15 +443,23 @@ impl Way {
     }
 }
 
-/// A piece as it lies in time.
+/// A piece on its own.
 pub(crate) struct Stretch {
-    /// Start (s).
-    pub(crate) begin: f64,
-    /// End (s).
-    pub(crate) end: f64,
-    /// The instant `state` belongs to (s).
-    anchor: f64,
+    /// How long it lasts (s).
+    pub(crate) duration: f64,
+    is_last: bool,
     state: Setpoint,
+}
+
+impl Stretch {
+    /// The state `time` (s) after its start.
+    fn at(&self, time: f64) -> Setpoint {
+        if self.is_last {
+            moved(&self.state, time - self.duration)
+        } else {
+            moved(&self.state, time)
+        }
+    }
 }
 
 /// `state` with `input` as the derivative that `order` holds constant, and none above it.

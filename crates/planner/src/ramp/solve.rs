@@ -80,7 +80,7 @@ impl Ramps {
     /// The same with the lower one of acceleration and deceleration for both, in the same units: a ramp that
     /// passes zero velocity then has fewer spans.
     pub(crate) fn even(&self) -> Self {
-        let lower = self.acceleration.min(self.deceleration);
+        let lower = self.lower();
         Self {
             acceleration: lower,
             deceleration: lower,
@@ -111,6 +111,11 @@ impl Ramps {
     /// The deceleration bound in the kernel's units.
     pub(super) const fn deceleration(&self) -> f64 {
         self.deceleration
+    }
+
+    /// The lower one of both in the kernel's units.
+    pub(crate) const fn lower(&self) -> f64 {
+        self.acceleration.min(self.deceleration)
     }
 
     /// The jerk bound in the kernel's units.
@@ -201,7 +206,7 @@ impl Ramps {
     /// changes its sign on the way both do both, so the lower bound of the two holds on that side; `dips`
     /// says that it goes below zero on its way to a goal that is not.
     fn sides(&self, goal: f64, dips: bool) -> Sides {
-        let lower = self.acceleration.min(self.deceleration);
+        let lower = self.lower();
         let reverses = goal < 0.0;
         Sides {
             minus: if reverses { lower } else { self.deceleration },

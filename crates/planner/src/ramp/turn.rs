@@ -29,7 +29,7 @@ impl Ramps {
     /// The spans from `start`, which moves forwards, to `goal`, where the velocity changes its sign on the
     /// way; also the root steps taken.
     pub(super) fn turning(&self, start: &Setpoint, goal: f64) -> (Spans<TURN_SPANS>, u32) {
-        let mut legs = Legs::from(Way::new(self.order(), start));
+        let mut legs = Legs::from(Way::new(self.order(), start, self.lower()));
         if goal < 0.0 {
             self.turn(&mut legs, goal);
         } else if legs.until_zero(&self.plain(start, goal, self.forward())) {

@@ -1,0 +1,63 @@
+//! The last line of defence: no set-point of a plan is further from the last one than the limits allow in one scan.
+//!
+//! Plans are verified when they are made, and judged by tests from outside. What still goes wrong is not published:
+//! the axis stops from the last good state (ErrorID 904).
+
+use super::{Axis, Motion};
+use standstill_planner::{Excess, Limits, Planner, Setpoint};
+
+/// How far a limit may be exceeded, relative to it.
+const RELATIVE: f64 = 1e-9;
+
+/// The same at the end of a plan, whose last scan may be longer by this part.
+const LAST_SCAN: f64 = 1.0 / 2048.0;
+
+/// What a position is off by at most, relative to the largest one that enters it.
+const RESOLVED: f64 = 8.0 * f64::EPSILON;
+
+impl<P: Planner> Axis<P> {
+    /// Whether `next` may follow the set-point last published.
+    ///
+    /// Cost: three comparisons for a set-point within the limits in force; one that is not is held against those it
+    /// took over from, too, those of the axis, and what is recorded as unavoidable.
+    #[inline(always)]
+    pub(super) fn is_step(&self, next: &Setpoint) -> bool {
+        self.steps_within(next, &self.in_force, 1.0 + RELATIVE) || self.is_wider_step(next)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn is_wider_step(&self, next: &Setpoint) -> bool {
+        let layer = self
+            .layer
+            .as_ref()
+            .and_then(|layer| self.excess_of(&layer.motion));
+        let told = [self.excess_of(&self.motion), layer].map(Option::unwrap_or_default);
+        let excess = |part: fn(&Excess) -> f64| told.iter().map(part).fold(0.0, f64::max);
+        let wider = [self.before, self.config.limits, self.stop_limits()];
+        let widest = wider
+            .iter()
+            .fold(self.in_force, |widest, limits| widest.or_larger(limits));
+        let widest = Limits {
+            velocity: widest.velocity + excess(|told| told.velocity),
+            acceleration: widest.acceleration.max(widest.deceleration) + excess(|told| told.acceleration),
+            jerk: widest.jerk + excess(|told| told.jerk),
+            ..widest
+        };
+        let is_last = matches!(&self.motion, Motion::Run { elapsed, scans, .. } if elapsed >= scans);
+        let slack = if is_last { LAST_SCAN } else { RELATIVE };
+        self.steps_within(next, &widest, 1.0 + slack)
+    }
+
+    /// Whether position, velocity and acceleration change by no more than `limits` times `factor` allow in a scan.
+    #[inline(always)]
+    fn steps_within(&self, next: &Setpoint, limits: &Limits, factor: f64) -> bool {
+        let last = &self.setpoint;
+        let scan = factor * self.planner.cycle();
+        let resolved = RESOLVED * (last.position.abs() + next.position.abs());
+        let steepest = limits.acceleration.max(limits.deceleration);
+        (next.position - last.position).abs() <= limits.velocity * scan + resolved
+            && (next.velocity - last.velocity).abs() <= steepest * scan
+            && (next.acceleration - last.acceleration).abs() <= limits.jerk * scan
+    }
+}
