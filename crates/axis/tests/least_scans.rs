@@ -12,7 +12,8 @@ use standstill_axis::{
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-/// Puts an axis into `state` with the first ramp; from then on it is [`Standard`].
+/// Puts an axis into `state` with the first ramp, step by step as the axis lets a plan move it; from then on it is
+/// [`Standard`].
 #[derive(Clone, Debug)]
 struct Placing {
     state: Cell<Option<Setpoint>>,
@@ -22,35 +23,44 @@ struct Placing {
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::large_enum_variant, reason = "a plan is copied, so it is not boxed")]
 enum Placed {
-    At(Setpoint),
+    /// In equal steps from rest at its position to a state, in so many scans.
+    At(Setpoint, u64),
     Then(StandardPlan),
 }
 
 impl Plan for Placed {
     fn scans(&self) -> u32 {
         match self {
-            Self::At(_) => u32::MAX,
+            Self::At(..) => u32::MAX,
             Self::Then(plan) => plan.scans(),
         }
     }
 
     fn at(&self, scan: u64) -> Setpoint {
         match self {
-            Self::At(state) => *state,
+            Self::At(state, scans) if scan < *scans => {
+                let part = scan as f64 / *scans as f64;
+                Setpoint {
+                    velocity: part * state.velocity,
+                    acceleration: part * state.acceleration,
+                    ..Setpoint::at_rest(state.position)
+                }
+            }
+            Self::At(state, _) => *state,
             Self::Then(plan) => plan.at(scan),
         }
     }
 
     fn excess(&self) -> Option<Excess> {
         match self {
-            Self::At(_) => None,
+            Self::At(..) => None,
             Self::Then(plan) => plan.excess(),
         }
     }
 
     fn excess_over(&self, limits: &Limits) -> Option<Excess> {
         match self {
-            Self::At(_) => None,
+            Self::At(..) => None,
             Self::Then(plan) => plan.excess_over(limits),
         }
     }
@@ -75,7 +85,13 @@ impl Planner for Placing {
         before: &Limits,
     ) -> Result<Placed, PlanError> {
         match self.state.take() {
-            Some(state) => Ok(Placed::At(state)),
+            Some(state) => {
+                let steps = [
+                    state.velocity.abs() / (limits.acceleration * self.cycle()),
+                    state.acceleration.abs() / (limits.jerk * self.cycle()),
+                ];
+                Ok(Placed::At(state, 1 + steps[0].max(steps[1]).ceil() as u64))
+            }
             None => self
                 .standard
                 .ramp_to(start, velocity, limits, before)
@@ -184,6 +200,7 @@ impl Case {
     fn axis(&self, log: &mut Log) -> Axis<Placing> {
         let config = AxisConfig {
             start: StartState::Standstill,
+            position: self.start.position,
             ..AxisConfig::new(self.limits)
         };
         let planner = Placing {
@@ -194,9 +211,13 @@ impl Case {
         let there = self.velocity(self.limits.velocity);
         axis.command(&Request::aborting(there), Source::default(), log)
             .expect("taken");
-        axis.advance(0, log);
-        assert_eq!(axis.setpoint(), self.start);
-        axis
+        for scan in 0..100_000 {
+            axis.advance(scan, log);
+            if axis.setpoint() == self.start {
+                return axis;
+            }
+        }
+        panic!("not there: {:?}", axis.setpoint());
     }
 
     fn velocity(&self, velocity: f64) -> Command {

@@ -7,6 +7,9 @@ use standstill_planner::{
     UnequalPlan,
 };
 
+/// Most scans of a plan.
+const MOST_SCANS: f64 = 2_147_483_647.0;
+
 /// What a replan is to reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
@@ -79,6 +82,35 @@ impl Case {
                 RampPlan::new(start, velocity, limits, before, *cycle).map(Plan::Ramp)
             }
         }
+    }
+
+    /// Whether it may well take more scans than a plan counts: some time that no plan is much shorter than takes that
+    /// many.
+    pub fn is_long(&self) -> bool {
+        let (way, end) = match self.goal {
+            Goal::Grid(target) | Goal::Position(target) => (target - self.start.position, 0.0),
+            Goal::Passing(target, velocity) => (target - self.start.position, velocity),
+            Goal::Velocity(velocity) => (0.0, velocity),
+        };
+        let Limits {
+            velocity,
+            acceleration,
+            deceleration,
+            jerk,
+            snap,
+        } = self.limits;
+        let (way, change) = (way.abs(), self.start.velocity.abs() + end.abs());
+        let rate = acceleration.min(deceleration);
+        let longest = self.cycle * MOST_SCANS / 16.0;
+        let cubed = longest * longest * longest;
+        way / velocity >= longest
+            || change / rate >= longest
+            || change * change / (rate * velocity) >= longest
+            || way / rate >= longest * longest
+            || change / jerk >= longest * longest
+            || way / jerk >= cubed
+            || change / snap >= cubed
+            || way / snap >= cubed * longest
     }
 
     /// The line of `standstill plan` that plans the same.

@@ -19,7 +19,7 @@ pub fn s_curve(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusa
     let cycle = cycle(fields)?;
     let target = fields.required("target")?;
     check_limits(fields, &problem.limits, &ORDER_THREE, &[Field::LimitSnap])?;
-    let plan = SCurve::new(problem.start.position, target, &problem.limits)
+    let plan = SCurve::new(problem.start.position, target, &problem.limits.acting(cycle))
         .map_err(|error| Refusal::of_plan_error(fields, error))?;
     Ok(Planned {
         case: Some(plan.case().name()),
@@ -61,7 +61,7 @@ pub fn trapezoid(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refu
     )?;
     let start = problem.start.position;
     let plan = match duration {
-        None => Trapezoid::new(start, target, &problem.limits),
+        None => Trapezoid::new(start, target, &problem.limits.acting(cycle)),
         Some(duration) => Trapezoid::timed(start, target, duration, &problem.limits),
     };
     let plan = plan.map_err(|error| match error {
@@ -103,7 +103,7 @@ pub fn short_path(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Ref
         start.velocity,
         target,
         *end_velocity,
-        limits,
+        &limits.acting(cycle),
         policy,
     )
     .map_err(|error| Refusal::of_plan_error(fields, error))?;

@@ -29,6 +29,8 @@ pub struct Tally {
     miss: f64,
     sample: f64,
     peak: f64,
+    /// Replans refused because they take more scans than a plan counts.
+    pub long: u64,
     /// Replans that failed.
     pub failed: u64,
     /// The first of them for each kind of goal, as lines of `standstill plan`.
@@ -98,6 +100,7 @@ impl Tally {
         self.miss = self.miss.max(later.miss);
         self.sample = self.sample.max(later.sample);
         self.peak = self.peak.max(later.peak);
+        self.long += later.long;
         self.failed += later.failed;
         for (lines, later) in self.lines.iter_mut().zip(later.lines) {
             lines.extend(later);
@@ -150,6 +153,11 @@ impl fmt::Display for Tally {
             .zip(self.rungs)
             .map(|(rung, count)| format!("{count} {}", rung.name()));
         writeln!(f, "rungs           {}", rungs.collect::<Vec<_>>().join(", "))?;
+        writeln!(
+            f,
+            "refused         {} that take more scans than a plan counts",
+            self.long
+        )?;
         let [solves, steps, segments] = self.work;
         writeln!(
             f,

@@ -30,10 +30,10 @@ fn a_ramp_that_never_arrives_is_too_long() {
     }
 }
 
-/// A jerk that is built up in 1e-9 s, half a second after the start: the clock's last place moves it by more than a
-/// part in 1e-9, which is no excess.
+/// A jerk that is built up in 1e-9 s, half a second after the start, where the clock's last place is more than a part in
+/// 1e-9 of that: the piece keeps its duration, so the jerk keeps its bound.
 #[test]
-fn what_the_clock_resolves_is_no_excess() {
+fn a_piece_shorter_than_the_clock_resolves_keeps_its_bound() {
     let limits = Limits {
         velocity: 100.0,
         acceleration: 6e4,
@@ -41,7 +41,6 @@ fn what_the_clock_resolves_is_no_excess() {
         jerk: 2e6,
         snap: 6e15,
     };
-    let mut beyond = 0;
     for case in 0..1000 {
         let start = Setpoint {
             velocity: -60.0 - 0.01 * f64::from(case),
@@ -54,11 +53,10 @@ fn what_the_clock_resolves_is_no_excess() {
             ..limits
         };
         let plan = RampPlan::new(&start, 50.0, &slow, &limits, 0.001).unwrap();
-        beyond += u32::from(plan.peaks().jerk > limits.jerk * (1.0 + 1e-9));
+        assert!(plan.peaks().jerk <= limits.jerk * (1.0 + 1e-9), "{start:?}");
         assert_eq!(plan.excess(), None, "{start:?}");
         assert_eq!(plan.excess_over(&limits), None, "{start:?}");
     }
-    assert!(beyond > 0);
 }
 
 /// A start whose acceleration is fine while it brakes and too much behind zero velocity.

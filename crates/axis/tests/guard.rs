@@ -1,0 +1,117 @@
+//! The last line of defence (ErrorID 904): a planner that goes wrong moves nothing further than the limits allow.
+//!
+//! The planner here is the product's own, but one set-point of its plans is put elsewhere.
+
+mod double;
+
+use double::{Faulty, Wrong};
+use standstill_axis::{
+    Axis, AxisConfig, AxisId, AxisState, Command, Direction, Dynamics, ErrorId, Event, Limits, Log, Request,
+    Setpoint, Source, StartState,
+};
+
+const LIMITS: Limits = Limits {
+    velocity: 50.0,
+    acceleration: 200.0,
+    deceleration: 200.0,
+    jerk: 2000.0,
+    snap: 40_000.0,
+};
+
+const CYCLE: f64 = 0.001;
+
+/// Runs a plan that is wrong at scan 150 until the axis stands: the set-points, the axis and what was recorded.
+fn run(wrong: Wrong) -> (Vec<Setpoint>, Axis<Faulty>, Log) {
+    let config = AxisConfig {
+        start: StartState::Standstill,
+        ..AxisConfig::new(LIMITS)
+    };
+    let mut axis =
+        Axis::new(AxisId::new(0), config, Faulty::new(CYCLE, wrong)).expect("a good configuration");
+    let mut log = Log::default();
+    let go = Command::MoveVelocity {
+        dynamics: Dynamics {
+            velocity: 30.0,
+            ..Dynamics::default()
+        },
+        direction: Direction::Unset.into(),
+    };
+    axis.command(&Request::aborting(go), Source::default(), &mut log)
+        .expect("taken");
+    let mut published = vec![axis.setpoint()];
+    for scan in 0..2000 {
+        axis.advance(scan, &mut log);
+        published.push(axis.setpoint());
+    }
+    (published, axis, log)
+}
+
+/// Whether two set-points in a row are a scan apart at most.
+fn is_step(pair: &[Setpoint]) -> bool {
+    let near = |a: f64, b: f64, rate: f64| (a - b).abs() <= rate * CYCLE * (1.0 + 1e-8);
+    let [one, two] = pair else { return true };
+    near(one.position, two.position, LIMITS.velocity)
+        && near(one.velocity, two.velocity, LIMITS.acceleration)
+        && near(one.acceleration, two.acceleration, LIMITS.jerk)
+}
+
+#[test]
+fn a_step_of_position_velocity_or_acceleration_is_never_published() {
+    for wrong in [
+        Wrong::Position(1.0),
+        Wrong::Position(-0.2),
+        Wrong::Position(1e300),
+        Wrong::Velocity(5.0),
+        Wrong::Acceleration(-80.0),
+    ] {
+        let (published, axis, log) = run(wrong);
+        assert!(published.windows(2).all(is_step), "{wrong:?}");
+        assert_eq!(
+            (axis.state(), axis.error_id()),
+            (AxisState::ErrorStop, ErrorId::SetpointStep),
+            "{wrong:?}"
+        );
+        // The stop begins with the last good state and is a ramp, not a halt in one scan.
+        let stopped = published
+            .iter()
+            .rposition(|state| !state.is_at_rest())
+            .expect("a motion");
+        assert!(stopped > 250, "{wrong:?} {stopped}");
+        let fault = |event: &Event| {
+            matches!(
+                event,
+                Event::Fault {
+                    error: ErrorId::SetpointStep,
+                    ..
+                }
+            )
+        };
+        assert!(log.since(0).any(|record| fault(&record.event)), "{wrong:?}");
+    }
+}
+
+#[test]
+fn what_the_limits_allow_is_published() {
+    let (published, axis, _) = run(Wrong::Position(1e-12));
+    assert!(published.windows(2).all(is_step));
+    assert_eq!(
+        (axis.state(), axis.error_id()),
+        (AxisState::ContinuousMotion, ErrorId::None)
+    );
+}
+
+#[test]
+fn where_the_stop_ramp_is_wrong_too_the_axis_holds() {
+    let (published, axis, _) = run(Wrong::Always(1.0));
+    assert_eq!(axis.state(), AxisState::ErrorStop);
+    let last = published.last().expect("set-points");
+    assert!(
+        last.is_at_rest() && published.iter().all(|state| state.position.abs() < 50.0),
+        "{last:?}"
+    );
+    assert!(
+        published
+            .windows(2)
+            .all(|pair| (pair[0].position - pair[1].position).abs() <= LIMITS.velocity * CYCLE)
+    );
+}
