@@ -241,7 +241,7 @@ impl<P: Planner> Axis<P> {
         if homing.time_limit.is_some_and(|limit| search.scans > limit) {
             return self.trip(ErrorId::HomingTimedOut, 0, Reaction::Ramp, scan, log);
         }
-        if homing.distance_limit.is_some_and(|limit| search.way > limit) {
+        if homing.distance_limit.is_some_and(|limit| !(search.way <= limit)) {
             return self.trip(ErrorId::HomingTooFar, 0, Reaction::Ramp, scan, log);
         }
         let wanted = match homing.procedure {
