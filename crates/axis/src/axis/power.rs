@@ -164,6 +164,9 @@ impl<P: Planner> Axis<P> {
             feedback.comms
         };
         if let Err(error) = self.fresh_position() {
+            // A stage that was asked to go off while nothing tells whether it has counts as off: before it is enabled again
+            // the drive has to tell where it stands.
+            self.power.on &= self.drive_request() == DriveRequest::Enable;
             self.latch_nothing();
             self.trip(error, 0, Reaction::Ramp, scan, log);
         } else {
@@ -394,7 +397,7 @@ impl<P: Planner> Axis<P> {
 
     fn cause_known(&self) -> bool {
         self.cause_present
-            || self.power.comms != Comms::Ok
+            || self.is_silent()
             || !self.power.voltage
             || self.lags()
             || self.power.fault.is_some_and(|fault| fault.cause_present)
@@ -450,6 +453,11 @@ impl<P: Planner> Axis<P> {
         self.state == AxisState::ErrorStop && self.power.fault.is_some()
     }
 
+    /// Nothing is known of the drive.
+    fn is_silent(&self) -> bool {
+        self.power.comms != Comms::Ok
+    }
+
     /// What is asked of the power stage in this scan.
     #[inline]
     pub(super) fn drive_request(&self) -> DriveRequest {
@@ -464,6 +472,9 @@ impl<P: Planner> Axis<P> {
         } else if self.power.going_off && self.config.on_power_off == PowerOff::Drive {
             DriveRequest::QuickStop
         } else if self.power.going_off || self.power.tripped || !self.power.wanted {
+            DriveRequest::Off
+        } else if self.is_silent() && !self.power.on {
+            // Enabled now, it would step from wherever it is to where it was.
             DriveRequest::Off
         } else {
             DriveRequest::Enable
