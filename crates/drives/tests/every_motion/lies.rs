@@ -2,7 +2,10 @@
 
 use crate::rig::{Random, Rig, STEP, Told, Upset};
 use crate::{MOTIONS, begin};
-use standstill_axis::{AxisState, ErrorClass, ErrorId, Permission};
+use standstill_axis::{
+    AxisState, Command, Direction, DriveHoming, DrivePosition, DriveReport, Dynamics, ErrorClass, ErrorId,
+    Permission, Request, TorqueReport,
+};
 
 const NO_NUMBERS: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
@@ -28,6 +31,7 @@ fn lie(random: &mut Random, numbers: &[f64]) -> Told {
     Told {
         position: (kind != 1).then(|| one_of(random, numbers)),
         torque: (kind != 0).then(|| one_of(random, numbers)),
+        beside: None,
     }
 }
 
@@ -109,6 +113,91 @@ fn a_mixture_of_both() {
     for seed in 0..2000 {
         lying(seed, true, &all);
     }
+}
+
+/// Covers: R98
+#[test]
+fn every_number_of_a_report_is_looked_at() {
+    fn torque(actual: f64, most: f64) -> Option<TorqueReport> {
+        Some(TorqueReport {
+            actual,
+            most,
+            limited: false,
+        })
+    }
+    const NO_PLACE: DrivePosition = DrivePosition::Units(f64::NAN);
+    let no_numbers: [fn(&mut DriveReport); 8] = [
+        |report| report.torque = torque(f64::INFINITY, 1.0),
+        |report| report.torque = torque(0.0, f64::NAN),
+        |report| report.probes[0].latched = Some(NO_PLACE),
+        |report| report.probes[1].latched = Some(DrivePosition::Units(f64::INFINITY)),
+        |report| report.marker.latched = Some(NO_PLACE),
+        |report| report.homing = DriveHoming::Attained(NO_PLACE),
+        |report| report.homing = DriveHoming::Done(NO_PLACE),
+        |report| report.torque = torque(f64::NAN, f64::INFINITY),
+    ];
+    let numbers: [fn(&mut DriveReport); 3] = [
+        |report| report.torque = torque(0.0, f64::INFINITY),
+        |report| report.torque = torque(-1e300, 0.0),
+        |report| report.probes[0].latched = Some(DrivePosition::Increments(i64::MAX)),
+    ];
+    for (told, state) in no_numbers
+        .map(|told| (told, AxisState::ErrorStop))
+        .into_iter()
+        .chain(numbers.map(|told| (told, AxisState::Standstill)))
+    {
+        let mut rig = Rig::new(&mut Random(3), true);
+        rig.step(true, Permission::BOTH, |_, _, _| {});
+        rig.told = Told::beside(told);
+        rig.step(true, Permission::BOTH, |axis, _, _| {
+            assert_eq!(axis.state(), state)
+        });
+        // A drive that tells nothing of these leaves them alone.
+        rig.told = Told::beside(|report| {
+            (report.probes, report.marker) = (Default::default(), Default::default());
+            report.homing = DriveHoming::Off;
+        });
+        assert_eq!(rig.recovers(), Ok(()));
+    }
+}
+
+/// Under a torque the largest one may become less: what is ordered follows at once, and comes back along the ramp.
+#[test]
+fn a_drive_that_can_hold_less_is_ordered_less() {
+    fn most(report: &mut DriveReport, most: f64) {
+        if let Some(torque) = &mut report.torque {
+            torque.most = most;
+        }
+    }
+    let mut rig = Rig::new(&mut Random(3), true);
+    let command = Command::Torque {
+        torque: 8.0,
+        ramp: 1000.0,
+        dynamics: Dynamics::default(),
+        direction: Direction::Unset.into(),
+    };
+    rig.step(true, Permission::BOTH, |axis, source, log| {
+        assert!(axis.command(&Request::aborting(command), source, log).is_ok());
+    });
+    let mut ordered = |told: Told| {
+        rig.told = told;
+        rig.step(true, Permission::BOTH, |_, _, _| {});
+        rig.axis.order().torque.map(|order| order.torque)
+    };
+    for _ in 0..10 {
+        ordered(Told::default());
+    }
+    assert_eq!(ordered(Told::default()), Some(8.0));
+    assert_eq!(ordered(Told::beside(|report| most(report, 3.0))), Some(3.0));
+    assert_eq!(ordered(Told::default()), Some(4.0));
+    for none in [
+        Told::beside(|report| most(report, 0.0)),
+        Told::beside(|report| most(report, -5.0)),
+        Told::beside(|report| report.torque = None),
+    ] {
+        assert_eq!(ordered(none), Some(0.0), "a drive that only measures");
+    }
+    assert_eq!(ordered(Told::default()), Some(1.0));
 }
 
 /// The error is that of the first cause, and what is read tells the present one.

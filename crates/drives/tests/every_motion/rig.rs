@@ -69,20 +69,29 @@ pub enum Upset {
 pub struct Told {
     pub position: Option<f64>,
     pub torque: Option<f64>,
+    /// Something else in the report.
+    pub beside: Option<fn(&mut DriveReport)>,
 }
 
 impl Told {
     pub fn position(position: f64) -> Self {
         Self {
             position: Some(position),
-            torque: None,
+            ..Self::default()
         }
     }
 
     pub fn torque(torque: f64) -> Self {
         Self {
-            position: None,
             torque: Some(torque),
+            ..Self::default()
+        }
+    }
+
+    pub fn beside(change: fn(&mut DriveReport)) -> Self {
+        Self {
+            beside: Some(change),
+            ..Self::default()
         }
     }
 
@@ -97,6 +106,9 @@ impl Told {
         }
         if let (Some(told), Some(torque)) = (self.torque, &mut report.torque) {
             torque.actual = told;
+        }
+        if let Some(change) = self.beside {
+            change(report);
         }
     }
 }
@@ -314,7 +326,7 @@ impl Rig {
         assert!(command.velocity.is_finite(), "scan {scan}: {command:?}");
         assert!(self.axis.setpoint().is_finite(), "scan {scan}");
         if let Some(torque) = order.torque {
-            let most = self.axis.report().torque.map_or(0.0, |told| told.most);
+            let most = self.axis.report().torque.map_or(0.0, |told| told.most.max(0.0));
             let (least, largest) = torque.velocity;
             assert!(torque.torque.abs() <= most, "scan {scan}: {torque:?}");
             assert!(
