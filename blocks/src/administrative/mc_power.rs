@@ -26,7 +26,7 @@ pins! {
         Status => status: bool, "";
         /// Status can be relied on.
         Valid => valid: bool, "";
-        /// The block cannot do what its inputs ask; power is then not wanted.
+        /// The block cannot do what its inputs ask, or the drive has not done it in time; power is then not asked for.
         Error => error: bool, "";
         /// Why; 0 without an error.
         ErrorID => error_id: ErrorId, "";
@@ -59,10 +59,12 @@ impl Block for McPower {
             negative: inputs.enable_negative,
         };
         axis.set_power(inputs.enable, permitted, source, log);
+        let error = axis.power_error().filter(|_| inputs.enable);
         Outputs {
             status: axis.is_powered(),
-            valid: inputs.enable,
-            ..Outputs::default()
+            valid: inputs.enable && error.is_none(),
+            error: error.is_some(),
+            error_id: error.unwrap_or_default(),
         }
     }
 

@@ -95,6 +95,9 @@ pub struct AxisConfig {
     pub needs_homed: bool,
     /// Largest factor MC_SetOverride takes, at least 1; above 1 the limits hold all the same (V16).
     pub override_max: f64,
+    /// Scans from the first request for power to its confirmation by the drive, at least 1: one that takes longer is an error of
+    /// MC_Power (503), and power is asked for no longer. `None` if it may take for ever.
+    pub power_timeout: Option<u64>,
     /// Largest following error (u); a larger one is an axis error. `None` if it is not supervised.
     pub max_following_error: Option<f64>,
     /// A move to rest is done when the actual position has been in this window (V12d); `None` if the set position
@@ -128,6 +131,7 @@ impl AxisConfig {
             hardware_limits: true,
             needs_homed: false,
             override_max: 1.0,
+            power_timeout: None,
             max_following_error: None,
             in_position: None,
         }
@@ -190,6 +194,12 @@ impl AxisConfig {
         if !(self.override_max >= 1.0 && self.override_max.is_finite()) {
             return Err(ConfigError::OverrideMax {
                 value: self.override_max,
+            });
+        }
+        if self.power_timeout == Some(0) {
+            return Err(ConfigError::NotPositive {
+                key: "power_timeout",
+                value: 0.0,
             });
         }
         if !self.position.is_finite() {

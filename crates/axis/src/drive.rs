@@ -11,6 +11,17 @@ pub enum DrivePosition {
     Increments(i64),
 }
 
+impl DrivePosition {
+    /// Whether it is a number; increments always are.
+    #[inline]
+    pub const fn is_finite(&self) -> bool {
+        match self {
+            Self::Units(units) => units.is_finite(),
+            Self::Increments(_) => true,
+        }
+    }
+}
+
 /// State of the communication with the drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Comms {
@@ -19,6 +30,9 @@ pub enum Comms {
     Ok,
     /// No valid feedback; what is given is old.
     Lost,
+    /// Feedback came, and something in it is no number. An axis looks itself, so only a drive that drops such feedback has
+    /// to say so.
+    Invalid,
 }
 
 /// A fault a drive reports.
@@ -172,6 +186,22 @@ pub struct DriveReport {
     pub homing: DriveHoming,
     /// What it has.
     pub equipment: Equipment,
+}
+
+impl DriveReport {
+    /// Whether every number in it is one; only the largest torque may be infinite.
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        let reference = match self.homing {
+            DriveHoming::Attained(reference) | DriveHoming::Done(reference) => Some(reference),
+            DriveHoming::Off | DriveHoming::Busy | DriveHoming::Failed(_) => None,
+        };
+        let [first, second] = self.probes.map(|probe| probe.latched);
+        let places = [first, second, self.marker.latched, reference];
+        let torque = self.torque.as_ref();
+        places.iter().flatten().all(DrivePosition::is_finite)
+            && torque.is_none_or(|torque| torque.actual.is_finite() && !torque.most.is_nan())
+    }
 }
 
 /// The edge of a probe's input.

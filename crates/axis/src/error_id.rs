@@ -208,6 +208,8 @@ error_ids! {
         "Read the drive's own code, parameter 1000, remove the cause, then call MC_Reset.";
     PowerLost = 502, "The power stage went off without being asked to.",
         "Restore the power, then call MC_Reset.";
+    PowerNotConfirmed = 503, "The drive did not confirm its power within the power_timeout of the axis.",
+        "Look why the drive does not switch on, then give Enable of MC_Power a new rising edge, or call MC_Reset.";
     HomingSignalMissing = 510, "The homing of the axis needs a switch, a reference pulse or a mode that its drive does not have.",
         "Choose a homing the drive has the signals for, or give the drive what is missing.";
     DriveHomingFailed = 511, "The drive gave up its homing.",
@@ -219,6 +221,8 @@ error_ids! {
 
     CommunicationLost = 601, "The communication with the drive was lost.",
         "Restore it, then call MC_Reset.";
+    FeedbackInvalid = 602, "The drive told a position or torque that is NaN or infinite, or a position that means an infinite velocity.",
+        "Mend what makes such numbers, an encoder or a scaling in the drive's own code, then call MC_Reset.";
 
     SetpointBroken = 901, "A plan gave a set-point that is not finite.",
         "This is a defect of standstill: please report the trace.";

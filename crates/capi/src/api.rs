@@ -11,7 +11,7 @@ use crate::{
 };
 use core::ffi::{c_char, c_void};
 use core::sync::atomic::Ordering::Release;
-use standstill_axis::{DIGITAL, PROBES};
+use standstill_axis::{DIGITAL, DrivePosition, PROBES};
 use standstill_drives::simulated::DriveChange;
 
 /// The code of a result.
@@ -132,10 +132,7 @@ pub unsafe extern "C" fn standstill_runtime_close(runtime: *mut Runtime) -> i32 
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_axis_defaults"))]
 pub unsafe extern "C" fn standstill_axis_defaults(setup: *mut AxisSetup) -> i32 {
     // SAFETY: the caller's contract.
-    code(unsafe { raw::read(setup) }.map(|given| {
-        // SAFETY: it was read.
-        unsafe { setup.write_unaligned(AxisSetup::defaults(given.size)) }
-    }))
+    code(unsafe { raw::write_under(setup, AxisSetup::defaults) })
 }
 
 /// Describes an ideal drive: it follows every set-point in the next tick. `size` must be set before.
@@ -166,8 +163,8 @@ pub unsafe extern "C" fn standstill_axis_add(
     // SAFETY: the caller's contract, here and in all that follows.
     unsafe {
         enter(runtime, When::Outside, |inner| {
-            let setup = raw::read(setup)?;
             // What a host of the first header does not know of stays out.
+            let setup = raw::read_over(setup, AxisSetup::defaults(0))?;
             let drive = raw::read_over(drive, DriveSetup::defaults(0))?;
             if axis.is_null() {
                 return Err(Code::NullPointer);
@@ -458,6 +455,42 @@ pub unsafe extern "C" fn standstill_simulate_push(runtime: *mut Runtime, axis: i
             }
             let pushed = drive.change(DriveChange::Displace(distance));
             pushed.map_err(|_| Code::NotOff)
+        })
+    }
+}
+
+/// Has the simulated drive under `axis` tell `value` instead of what it measures, from the next tick_begin on until
+/// standstill_simulate clears the cause. `quantity` 0: its position, in increments if the axis has a scaling, else in units;
+/// 1: its actual torque, if it tells one. A number of units or torque may be NaN or infinite, one of increments is whole.
+///
+/// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
+///
+/// # Safety
+/// `runtime` is null or a handle whose storage is still there.
+#[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_simulate_report"))]
+pub unsafe extern "C" fn standstill_simulate_report(
+    runtime: *mut Runtime,
+    axis: i32,
+    quantity: i32,
+    value: f64,
+) -> i32 {
+    // SAFETY: the caller's contract.
+    unsafe {
+        enter(runtime, When::Outside, |inner| {
+            let counts = inner.counts_increments(axis)?;
+            let drive = inner.simulated(axis)?;
+            let whole = value as i64;
+            let change = match quantity {
+                // What does not fit is another number when it comes back.
+                0 if counts && whole as f64 != value => return Err(Code::BadValue),
+                0 if counts => DriveChange::ReportPosition(DrivePosition::Increments(whole)),
+                0 => DriveChange::ReportPosition(DrivePosition::Units(value)),
+                1 => DriveChange::ReportTorque(value),
+                _ => return Err(Code::BadValue),
+            };
+            // Only a push can be refused.
+            let _done = drive.change(change);
+            Ok(())
         })
     }
 }

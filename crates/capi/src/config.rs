@@ -61,6 +61,7 @@ impl AxisSetup {
             homing_block_scans: 0,
             homing_time_limit: 0,
             homing_distance_limit: 0.0,
+            power_timeout: 0,
         }
     }
 
@@ -118,6 +119,7 @@ impl AxisSetup {
             hardware_limits: self.hardware_limits != 0,
             needs_homed: self.needs_homed != 0,
             override_max: self.override_max,
+            power_timeout: (self.power_timeout != 0).then_some(self.power_timeout),
             max_following_error: given(self.max_following_error),
             in_position: given(self.in_position_window).map(|window| InPosition {
                 window,

@@ -15,12 +15,23 @@ pub(crate) enum AnyDrive {
     Simulated(SimulatedDrive),
 }
 
+/// What a host has told since the last tick began.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum News {
+    /// Nothing.
+    None,
+    /// Nothing but what was refused, because it is no number.
+    NoNumber,
+    /// Feedback.
+    Fresh,
+}
+
 /// Both sides of a drive the host carries: what it told, and what it is told.
 pub(crate) struct HostDrive {
     feedback: DriveFeedback,
     report: DriveReport,
-    /// Told since the last tick began.
-    fresh: bool,
+    /// What the host has told since the last tick began.
+    news: News,
     command: DriveCommand,
     order: DriveOrder,
 }
@@ -37,7 +48,7 @@ impl HostDrive {
                 signals: DriveSignals::default(),
             },
             report: DriveReport::default(),
-            fresh: false,
+            news: News::None,
             command: DriveCommand {
                 request: DriveRequest::Off,
                 position,
@@ -48,30 +59,26 @@ impl HostDrive {
         }
     }
 
-    /// Takes what the host tells; refused if a choice in it is none, or a position is no number.
+    /// Takes what the host tells; refused if a choice in it is none, or a number.
     pub fn tell(&mut self, told: &Feedback) -> Result<(), Code> {
         let counts = matches!(self.feedback.position, DrivePosition::Increments(_));
         let at = |units: f64, increments: i64| {
             if counts {
-                Ok(DrivePosition::Increments(increments))
-            } else if units.is_finite() {
-                Ok(DrivePosition::Units(units))
+                DrivePosition::Increments(increments)
             } else {
-                Err(Code::BadValue)
+                DrivePosition::Units(units)
             }
         };
-        let probe = |armed: u8, latched: u8, units: f64, increments: i64| -> Result<_, Code> {
-            Ok(ProbeReport {
-                armed: armed != 0,
-                latched: (latched != 0).then(|| at(units, increments)).transpose()?,
-            })
+        let probe = |armed: u8, latched: u8, units: f64, increments: i64| ProbeReport {
+            armed: armed != 0,
+            latched: (latched != 0).then(|| at(units, increments)),
         };
         let reference = at(told.home_position, told.home_increments);
         let homing = match told.homing {
             0 => DriveHoming::Off,
             1 => DriveHoming::Busy,
-            2 => DriveHoming::Attained(reference?),
-            3 => DriveHoming::Done(reference?),
+            2 => DriveHoming::Attained(reference),
+            3 => DriveHoming::Done(reference),
             4 => DriveHoming::Failed(told.fault_code),
             _ => return Err(Code::BadValue),
         };
@@ -80,9 +87,6 @@ impl HostDrive {
             most: told.torque_max,
             limited: told.torque_limited != 0,
         });
-        if torque.is_some_and(|torque| !torque.actual.is_finite() || torque.most.is_nan()) {
-            return Err(Code::BadValue);
-        }
         let [armed, other_armed] = told.probe_armed;
         let [latched, other_latched] = told.probe_latched;
         let [units, other_units] = told.probe_position;
@@ -92,15 +96,15 @@ impl HostDrive {
             inputs: told.inputs,
             outputs: told.outputs,
             probes: [
-                probe(armed, latched, units, increments)?,
-                probe(other_armed, other_latched, other_units, other_increments)?,
+                probe(armed, latched, units, increments),
+                probe(other_armed, other_latched, other_units, other_increments),
             ],
             marker: probe(
                 told.marker_armed,
                 told.marker_latched,
                 told.marker_position,
                 told.marker_increments,
-            )?,
+            ),
             homing,
             equipment: Equipment {
                 home_switch: told.has_home_switch != 0,
@@ -109,6 +113,13 @@ impl HostDrive {
                 homing: told.has_homing != 0,
             },
         };
+        let position = at(told.position, told.increments);
+        if !(position.is_finite() && report.is_finite()) {
+            if self.news == News::None {
+                self.news = News::NoNumber;
+            }
+            return Err(Code::BadValue);
+        }
         self.feedback = DriveFeedback {
             enabled: told.enabled != 0,
             voltage: told.voltage != 0,
@@ -116,7 +127,7 @@ impl HostDrive {
                 code: told.fault_code,
                 cause_present: told.cause_present != 0,
             }),
-            position: at(told.position, told.increments)?,
+            position,
             comms: if told.lost != 0 { Comms::Lost } else { Comms::Ok },
             signals: DriveSignals {
                 simulated: told.simulated != 0,
@@ -127,7 +138,7 @@ impl HostDrive {
             },
         };
         self.report = report;
-        self.fresh = true;
+        self.news = News::Fresh;
         Ok(())
     }
 
@@ -197,9 +208,10 @@ impl AnyDrive {
 
 impl Drive for HostDrive {
     fn read(&mut self, _now_ns: i64) -> DriveFeedback {
-        let fresh = core::mem::replace(&mut self.fresh, false);
-        if !fresh {
-            self.feedback.comms = Comms::Lost;
+        match core::mem::replace(&mut self.news, News::None) {
+            News::None => self.feedback.comms = Comms::Lost,
+            News::NoNumber => self.feedback.comms = Comms::Invalid,
+            News::Fresh => {}
         }
         self.feedback
     }

@@ -22,7 +22,6 @@ macro_rules! sized {
 
 sized!(
     RuntimeConfig,
-    AxisSetup,
     Feedback,
     Command,
     AxisStatus,
@@ -31,6 +30,11 @@ sized!(
     RecorderStatus,
     Dump
 );
+
+// SAFETY: as those above. It grew: power_timeout came behind its first 264 bytes.
+unsafe impl Sized32 for crate::AxisSetup {
+    const LEAST: usize = 264;
+}
 
 // SAFETY: as those above. It grew: switches, homing, a motor, stops and gains came behind its first 96 bytes.
 unsafe impl Sized32 for crate::DriveSetup {

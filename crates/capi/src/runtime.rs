@@ -220,6 +220,12 @@ impl Inner {
         drive.simulated()
     }
 
+    /// Whether the drive under an axis counts increments.
+    pub fn counts_increments(&self, axis: i32) -> Result<bool, Code> {
+        let axis = self.axes.slice().get(self.place(axis)?);
+        Ok(axis.is_some_and(|axis| axis.config().scaling.is_some()))
+    }
+
     /// Lets something befall an axis or the simulated drive under it.
     pub fn suffer(&mut self, axis: i32, mishap: Mishap, code: u16) -> Result<(), Code> {
         let place = self.place(axis)?;

@@ -158,6 +158,9 @@ pub struct AxisSetup {
     pub homing_time_limit: u64,
     /// Way the search may take (u); 0: any.
     pub homing_distance_limit: f64,
+    /// Scans the drive may take to confirm its power, then MC_Power shows error 503; 0: any. A structure that ends before
+    /// has 0.
+    pub power_timeout: u64,
 }
 
 /// The drive under an axis. drive_defaults gives an ideal one.
@@ -549,7 +552,7 @@ pub struct Dump {
 
 // No gap a compiler might fill otherwise: every byte belongs to a field.
 const _: () = assert!(size_of::<RuntimeConfig>() == 24);
-const _: () = assert!(size_of::<AxisSetup>() == 264);
+const _: () = assert!(size_of::<AxisSetup>() == 272);
 const _: () = assert!(size_of::<DriveSetup>() == 248);
 const _: () = assert!(size_of::<Feedback>() == 136);
 const _: () = assert!(size_of::<Command>() == 80);

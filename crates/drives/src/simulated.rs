@@ -135,6 +135,10 @@ pub enum DriveChange {
         /// What it shows from there on.
         level: bool,
     },
+    /// Its encoder is broken: from this scan on it tells this position, whatever the axis does, until its cause is cleared.
+    ReportPosition(DrivePosition),
+    /// The same of the actual torque; nothing for a drive that tells none.
+    ReportTorque(f64),
 }
 
 /// A drive, and what it has beside its motion.
@@ -147,6 +151,9 @@ pub struct SimulatedDrive {
     travel: Travel,
     /// As last fed back.
     position: DrivePosition,
+    /// Told instead of what it measures.
+    told_position: Option<DrivePosition>,
+    told_torque: Option<f64>,
     /// The last command in units.
     commanded: f64,
 }
@@ -244,6 +251,8 @@ impl SimulatedDrive {
             travel: Travel::new(switches, axis.scaling),
             peripherals: Peripherals::new(axis.modulo),
             commanded: axis.position,
+            told_position: None,
+            told_torque: None,
             position: position.map_or(DrivePosition::Units(axis.position), DrivePosition::Increments),
         })
     }
@@ -282,6 +291,7 @@ impl SimulatedDrive {
 
     /// The cause of whatever fault is gone.
     pub fn clear_cause(&mut self) {
+        (self.told_position, self.told_torque) = (None, None);
         match &mut self.kind {
             Kind::Ideal(drive) => drive.clear_cause(),
             Kind::Cia402(drive) => drive.node_mut().clear_cause(),
@@ -319,6 +329,14 @@ impl SimulatedDrive {
             }
             (_, DriveChange::Probe { number, at, level }) => {
                 self.peripherals.set_probe(number, at, level);
+                Ok(())
+            }
+            (_, DriveChange::ReportPosition(position)) => {
+                self.told_position = Some(position);
+                Ok(())
+            }
+            (_, DriveChange::ReportTorque(torque)) => {
+                self.told_torque = Some(torque);
                 Ok(())
             }
         }
@@ -361,11 +379,13 @@ impl Drive for SimulatedDrive {
             Kind::Cia402(drive) => drive.read(now_ns),
             Kind::Plant(drive) => drive.read(now_ns),
         };
-        self.position = feedback.position;
         if let Kind::Cia402(drive) = &self.kind {
             self.travel.drop_increments(drive.node().origin());
         }
+        // Switches stand where they stand, whatever the encoder says.
         self.travel.read(&mut feedback);
+        feedback.position = self.told_position.unwrap_or(feedback.position);
+        self.position = feedback.position;
         feedback
     }
 
@@ -391,6 +411,9 @@ impl Drive for SimulatedDrive {
             Kind::Ideal(drive) => drive.report(report),
             Kind::Cia402(drive) => drive.report(report),
             Kind::Plant(drive) => drive.report(report),
+        }
+        if let (Some(told), Some(torque)) = (self.told_torque, &mut report.torque) {
+            torque.actual = told;
         }
         self.travel.report(report);
     }

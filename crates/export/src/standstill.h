@@ -391,6 +391,11 @@ typedef struct standstill_axis_setup {
    * Way the search may take (u); 0: any.
    */
   double homing_distance_limit;
+  /**
+   * Scans the drive may take to confirm its power, then MC_Power shows error 503; 0: any. A structure that ends before
+   * has 0.
+   */
+  uint64_t power_timeout;
 } standstill_axis_setup;
 
 /**
@@ -1182,6 +1187,18 @@ int32_t standstill_simulate_probe(struct standstill_runtime *runtime,
 int32_t standstill_simulate_push(struct standstill_runtime *runtime, int32_t axis, double distance);
 
 /**
+ * Has the simulated drive under `axis` tell `value` instead of what it measures, from the next tick_begin on until
+ * standstill_simulate clears the cause. `quantity` 0: its position, in increments if the axis has a scaling, else in units;
+ * 1: its actual torque, if it tells one. A number of units or torque may be NaN or infinite, one of increments is whole.
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, BAD_VALUE, UNKNOWN_AXIS, WRONG_DRIVE.
+ */
+int32_t standstill_simulate_report(struct standstill_runtime *runtime,
+                                   int32_t axis,
+                                   int32_t quantity,
+                                   double value);
+
+/**
  * Copies records of the diagnostic ring, oldest first, from number `*next` on; `*next` becomes the number to go on
  * from, and `*copied` how many there are. Records that were overwritten meanwhile are left out: their numbers are.
  * `record_size` is sizeof(standstill_record), `room` how many records fit.
@@ -1299,7 +1316,7 @@ int32_t standstill_instance_make(struct standstill_runtime *runtime, const char 
 
 /* The library was compiled with these sizes. */
 STANDSTILL_ASSERT(runtime_config, sizeof(standstill_runtime_config) == 24);
-STANDSTILL_ASSERT(axis_setup, sizeof(standstill_axis_setup) == 264);
+STANDSTILL_ASSERT(axis_setup, sizeof(standstill_axis_setup) == 272);
 STANDSTILL_ASSERT(drive_setup, sizeof(standstill_drive_setup) == 248);
 STANDSTILL_ASSERT(feedback, sizeof(standstill_feedback) == 136);
 STANDSTILL_ASSERT(command, sizeof(standstill_command) == 80);

@@ -253,6 +253,7 @@ fn axis_key(key: &str) -> Value {
         "on_power_off" => words(&ON_POWER_OFF),
         "needs_homed" | "hardware_limits" => json!({"type": "boolean"}),
         "homing" => homing(),
+        "power_timeout" => any(&[integer(1, SCANS_MAX as i64), of("time_literal")]),
         "override_max" => any(&[json!({"type": "number", "minimum": 1}), of("parameter")]),
         "in_position" => required(
             &["window"],
@@ -489,6 +490,15 @@ fn step() -> Value {
             &["axis"],
             object(&shape::DRIVE_STEP, |key| match key {
                 "displace" => of("finite"),
+                "report" => {
+                    let mut report = object(&shape::DRIVE_REPORT, |_| of("number"));
+                    add(
+                        &mut report,
+                        "anyOf",
+                        json!([{"required": ["position"]}, {"required": ["torque"]}]),
+                    );
+                    report
+                }
                 "remote" | "warning" => json!({"type": "boolean"}),
                 "input" => required(
                     &["number", "value"],

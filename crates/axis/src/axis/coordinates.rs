@@ -108,7 +108,7 @@ impl<P: Planner> Axis<P> {
             _ => by,
         };
         let at = self.setpoint.position + by;
-        if !(at.is_finite() && (self.actual + by).is_finite()) {
+        if !(at.is_finite() && (self.actual + by).is_finite() && (self.shift + by).is_finite()) {
             return Err(ErrorId::PositionInvalid);
         }
         let before = (self.setpoint, self.layer);

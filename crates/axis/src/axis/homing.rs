@@ -12,6 +12,7 @@
 
 mod by_drive;
 
+use super::accept::refusal;
 use super::power::Reaction;
 use super::queue::Entry;
 use super::{Axis, Motion};
@@ -165,7 +166,7 @@ impl<P: Planner> Axis<P> {
         let before = self.limits_before(&entry.limits);
         match self.planner.ramp_to(start, velocity, &entry.limits, &before) {
             Ok(plan) => Ok(Motion::along(plan)),
-            Err(_) => Err(ErrorId::PlanRefused),
+            Err(error) => Err(refusal(error)),
         }
     }
 
@@ -241,7 +242,7 @@ impl<P: Planner> Axis<P> {
         if homing.time_limit.is_some_and(|limit| search.scans > limit) {
             return self.trip(ErrorId::HomingTimedOut, 0, Reaction::Ramp, scan, log);
         }
-        if homing.distance_limit.is_some_and(|limit| search.way > limit) {
+        if homing.distance_limit.is_some_and(|limit| !(search.way <= limit)) {
             return self.trip(ErrorId::HomingTooFar, 0, Reaction::Ramp, scan, log);
         }
         let wanted = match homing.procedure {
@@ -360,7 +361,7 @@ impl<P: Planner> Axis<P> {
         };
         match planned {
             Ok(plan) => self.adopt(owner, Motion::along(plan), scan, log),
-            Err(_) => self.trip(ErrorId::PlanRefused, 0, Reaction::Ramp, scan, log),
+            Err(error) => self.trip(refusal(error), 0, Reaction::Ramp, scan, log),
         }
     }
 
@@ -375,7 +376,7 @@ impl<P: Planner> Axis<P> {
             .ramp_to(&self.setpoint, velocity, &owner.limits, &self.in_force);
         match planned {
             Ok(plan) => self.adopt(owner, Motion::along(plan), scan, log),
-            Err(_) => self.trip(ErrorId::PlanRefused, 0, Reaction::Ramp, scan, log),
+            Err(error) => self.trip(refusal(error), 0, Reaction::Ramp, scan, log),
         }
     }
 

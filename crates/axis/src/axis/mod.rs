@@ -136,8 +136,12 @@ struct Power {
     on: bool,
     /// Switched off on request; the axis ramps down or waits for the power stage.
     going_off: bool,
-    /// Power was lost: it does not come back before a reset or a new rising Enable.
+    /// Power was lost, or not confirmed in time: it does not come back before a reset or a new rising Enable.
     tripped: bool,
+    /// It was not confirmed in time.
+    unconfirmed: bool,
+    /// Latches in a row that power was asked for and not confirmed; counted only if that has a time-out.
+    waited: u64,
     /// What the last MC_Power of this scan asked for, and which instance, unless that is the decider.
     overruled: Option<(bool, Permission, InstanceId)>,
     /// The directions MC_Power permits.
@@ -148,7 +152,7 @@ struct Power {
     voltage: bool,
     /// The fault last told; only in ErrorStop.
     fault: Option<Fault>,
-    /// State of the communication; lost only in ErrorStop.
+    /// State of the communication; other than Ok only in ErrorStop.
     comms: Comms,
 }
 
@@ -175,8 +179,12 @@ pub struct Outlook {
     pub power_on: bool,
     /// On the way to Disabled.
     pub going_off: bool,
-    /// Power was lost and does not come back by itself.
+    /// Power was lost, or not confirmed in time, and does not come back by itself.
     pub tripped: bool,
+    /// It was not confirmed in time.
+    pub unconfirmed: bool,
+    /// Scans that power has been asked for, if that has a time-out.
+    pub power_waited: u64,
     /// The axis error.
     pub error: ErrorId,
     /// Its cause persists.
@@ -352,6 +360,8 @@ impl<P: Planner> Axis<P> {
                 on: powered,
                 going_off: false,
                 tripped: false,
+                unconfirmed: false,
+                waited: 0,
                 overruled: None,
                 permitted: Permission::BOTH,
                 decider: None,
@@ -402,7 +412,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Actual position (u), as last latched.
+    /// Actual position (u), as last latched: while the communication is lost, or what the drive tells is no number, the last
+    /// good one.
     pub fn actual_position(&self) -> f64 {
         self.actual
     }
@@ -410,6 +421,12 @@ impl<P: Planner> Axis<P> {
     /// Operation is enabled (MC_Power.Status).
     pub fn is_powered(&self) -> bool {
         self.power.on
+    }
+
+    /// Why power that is wanted does not come: [`ErrorId::PowerNotConfirmed`] after the time-out of the axis, until MC_Power wants
+    /// it no longer or MC_Reset has it tried again.
+    pub fn power_error(&self) -> Option<ErrorId> {
+        self.power.unconfirmed.then_some(ErrorId::PowerNotConfirmed)
     }
 
     /// The set-point is the actual position, not one of ours: the axis is not in operation.
@@ -523,6 +540,8 @@ impl<P: Planner> Axis<P> {
             power_on: self.power.on,
             going_off: self.power.going_off,
             tripped: self.power.tripped,
+            unconfirmed: self.power.unconfirmed,
+            power_waited: self.power.waited,
             error: self.error,
             cause_present: self.cause_present,
             reset: self.reset.as_ref().map(|reset| reset.id),

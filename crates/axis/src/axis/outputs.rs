@@ -37,7 +37,7 @@ impl<P: Planner> Axis<P> {
     /// Digital input `number` as the drive told it in this scan.
     ///
     /// # Errors
-    /// [`ErrorId::DigitalNumberInvalid`], or [`ErrorId::CommunicationLost`] if what is known is old.
+    /// [`ErrorId::DigitalNumberInvalid`], or those of [`Axis::fresh_position`] if what is known is old.
     pub fn digital_input(&self, number: i16) -> Result<bool, ErrorId> {
         let bit = bit_of(number)?;
         self.told()?;

@@ -254,7 +254,7 @@ impl<P: Planner> Axis<P> {
     ///
     /// # Errors
     /// [`ErrorId::ParameterNumberInvalid`] if there is no such parameter, [`ErrorId::ParameterKindInvalid`] if it is a
-    /// BOOL, [`ErrorId::CommunicationLost`] if what it asks for is not fresh.
+    /// BOOL, those of [`Axis::fresh_position`] if what it asks for is not fresh.
     pub fn real_parameter(&self, number: i16) -> Result<f64, ErrorId> {
         match self.parameter(Parameter::of(number)?)? {
             ParameterValue::Real(value) => Ok(value),

@@ -10,6 +10,10 @@ use crate::{
 };
 use standstill_planner::Planner;
 
+/// The longest step (u) of the actual position that a calm axis takes without looking whether its velocity is a number; with any
+/// cycle from a nanosecond on it is. NaN and infinity are no such step.
+const USUAL_STEP: f64 = 1e290;
+
 /// Scans a drive may take to answer a fault reset before MC_Reset gives up.
 const RESET_PATIENCE: u32 = 1000;
 
@@ -41,19 +45,39 @@ impl<P: Planner> Axis<P> {
             && !on_switch
             && feedback.fault.is_none()
             && feedback.comms == Comms::Ok
+            && self.latch_usual(feedback.position)
         {
             debug_assert_eq!(self.calm, self.calmness());
-            match (feedback.position, &self.modulo) {
-                (DrivePosition::Units(units), None) => self.latch(units),
-                (DrivePosition::Increments(increments), None) => {
-                    self.latch(self.position_at_increment(increments));
-                }
-                (_, Some(_)) => self.latch_round(feedback),
-            }
             self.signals = feedback.signals;
             self.power.voltage = feedback.voltage;
         } else {
             self.follow_change(feedback, scan, log);
+        }
+    }
+
+    /// Takes over the actual position of a calm axis, which has nothing to mend. Returns FALSE, and takes nothing over, if it
+    /// needs a closer look.
+    #[inline(always)]
+    fn latch_usual(&mut self, told: DrivePosition) -> bool {
+        let position = match (told, &self.modulo) {
+            (DrivePosition::Units(units), None) => units,
+            (DrivePosition::Increments(increments), None) => self.position_at_increment(increments),
+            (_, Some(_)) => return self.latch_round(told),
+        };
+        let is_usual = (position - self.actual).abs() <= USUAL_STEP;
+        if is_usual {
+            self.latch(position);
+        }
+        is_usual
+    }
+
+    /// Latches the actual position, whatever came before. Returns FALSE, and latches nothing, if something the drive told is no
+    /// number (R98).
+    fn latch_told(&mut self, told: DrivePosition) -> bool {
+        let is_number = told.is_finite() && self.beside.report.is_finite();
+        is_number && {
+            let position = self.position_of(told);
+            self.latch_and_mend(position)
         }
     }
 
@@ -96,23 +120,27 @@ impl<P: Planner> Axis<P> {
         self.touch();
     }
 
-    /// The actual position (u).
-    fn position_of(&mut self, feedback: &DriveFeedback) -> f64 {
-        match (feedback.position, &mut self.modulo) {
+    /// The actual position (u), of a number.
+    fn position_of(&mut self, told: DrivePosition) -> f64 {
+        match (told, &mut self.modulo) {
             (DrivePosition::Units(units), None) => units,
             (DrivePosition::Increments(increments), None) => self.position_at_increment(increments),
             (position, Some(modulo)) => modulo.latch(&self.config, position, self.shift),
         }
     }
 
-    /// A modulo axis takes over this scan's actual position. Calm, it has nothing to mend.
+    /// [`Axis::latch_usual`] of a modulo axis, whose positions are never far apart.
     #[inline(never)]
-    fn latch_round(&mut self, feedback: &DriveFeedback) {
-        let position = self.position_of(feedback);
+    fn latch_round(&mut self, told: DrivePosition) -> bool {
+        if !told.is_finite() {
+            return false;
+        }
+        let position = self.position_of(told);
         self.latch(position);
         if let Some(modulo) = &self.modulo {
             self.past.come_round(position, modulo.length);
         }
+        true
     }
 
     #[inline(never)]
@@ -129,14 +157,21 @@ impl<P: Planner> Axis<P> {
         self.latch_signals(feedback.signals);
         self.power.voltage = feedback.voltage;
         self.power.fault = feedback.fault;
-        self.power.comms = feedback.comms;
-        if feedback.comms == Comms::Lost {
-            self.latch_nothing();
-            self.trip(ErrorId::CommunicationLost, 0, Reaction::Ramp, scan, log);
+        let is_known = feedback.comms == Comms::Ok;
+        self.power.comms = if is_known && !self.latch_told(feedback.position) {
+            Comms::Invalid
         } else {
-            let position = self.position_of(feedback);
-            self.latch_and_mend(position);
+            feedback.comms
+        };
+        if let Err(error) = self.fresh_position() {
+            // A stage that was asked to go off while nothing tells whether it has counts as off: before it is enabled again
+            // the drive has to tell where it stands.
+            self.power.on &= self.drive_request() == DriveRequest::Enable;
+            self.latch_nothing();
+            self.trip(error, 0, Reaction::Ramp, scan, log);
+        } else {
             self.follow_power(feedback, scan, log);
+            self.await_power(scan, log);
             self.follow_actual();
             self.supervise(scan, log);
             if self.is_homing() {
@@ -179,6 +214,25 @@ impl<P: Planner> Axis<P> {
                 self.enter(AxisEvent::PowerOff);
             }
             _ => {}
+        }
+    }
+
+    /// Power that is not confirmed in time is asked for no longer.
+    fn await_power(&mut self, scan: u64, log: &mut Log) {
+        let Some(timeout) = self.config.power_timeout else {
+            return;
+        };
+        let power = &mut self.power;
+        let waits = power.wanted && !power.on && !power.tripped && !power.going_off;
+        power.waited = if waits { power.waited.saturating_add(1) } else { 0 };
+        if power.waited >= timeout {
+            (power.tripped, power.unconfirmed, power.waited) = (true, true, 0);
+            let source = Source {
+                scan,
+                instance: power.decider.unwrap_or_default(),
+            };
+            let error = ErrorId::PowerNotConfirmed;
+            self.refuse("", f64::NAN, f64::NAN, error, source, log);
         }
     }
 
@@ -253,7 +307,7 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     fn switch_to_off(&mut self, source: Source, log: &mut Log) {
         self.stir();
-        self.power.tripped = false;
+        self.let_power_return();
         let idle = matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
         if idle || self.power.going_off {
             return;
@@ -343,7 +397,7 @@ impl<P: Planner> Axis<P> {
 
     fn cause_known(&self) -> bool {
         self.cause_present
-            || self.power.comms == Comms::Lost
+            || self.is_silent()
             || !self.power.voltage
             || self.lags()
             || self.power.fault.is_some_and(|fault| fault.cause_present)
@@ -374,7 +428,7 @@ impl<P: Planner> Axis<P> {
             if moving || unwanted || self.power.fault.is_some() {
                 return;
             }
-            self.power.tripped = false;
+            self.let_power_return();
             self.error = ErrorId::None;
             self.error_code = 0;
             self.enter(if self.power.on {
@@ -382,14 +436,26 @@ impl<P: Planner> Axis<P> {
             } else {
                 AxisEvent::ResetUnpowered
             });
+        } else if self.power.unconfirmed {
+            self.let_power_return();
         }
         self.reset = None;
         self.decide(id, Fate::Done);
     }
 
+    /// Whatever took the power away, it may be asked for again.
+    fn let_power_return(&mut self) {
+        (self.power.tripped, self.power.unconfirmed) = (false, false);
+    }
+
     #[cold]
     fn is_resetting_drive(&self) -> bool {
         self.state == AxisState::ErrorStop && self.power.fault.is_some()
+    }
+
+    /// Nothing is known of the drive.
+    fn is_silent(&self) -> bool {
+        self.power.comms != Comms::Ok
     }
 
     /// What is asked of the power stage in this scan.
@@ -406,6 +472,9 @@ impl<P: Planner> Axis<P> {
         } else if self.power.going_off && self.config.on_power_off == PowerOff::Drive {
             DriveRequest::QuickStop
         } else if self.power.going_off || self.power.tripped || !self.power.wanted {
+            DriveRequest::Off
+        } else if self.is_silent() && !self.power.on {
+            // Enabled now, it would step from wherever it is to where it was.
             DriveRequest::Off
         } else {
             DriveRequest::Enable

@@ -137,6 +137,10 @@ impl<P: Planner> Axis<P> {
     /// force until now.
     #[inline]
     pub fn follow_report(&mut self) {
+        if !self.beside.report.is_finite() {
+            // The latch that comes takes a closer look.
+            self.stir();
+        }
         if self.probes.waiting.iter().any(Option::is_some) {
             self.follow_probes();
         }
@@ -156,7 +160,8 @@ impl<P: Planner> Axis<P> {
             } else if let Some(latched) = told.latched.filter(|_| told.armed) {
                 let position = self.place_of(latched);
                 self.end_probing(probe);
-                if waiting.window.is_none_or(|window| is_inside(window, position)) {
+                // One that is no number is none; the axis fails for it, and the probe waits for the next.
+                if latched.is_finite() && waiting.window.is_none_or(|window| is_inside(window, position)) {
                     if let Some(slot) = self.probes.recorded.get_mut(probe) {
                         *slot = Some((waiting.id, position));
                     }

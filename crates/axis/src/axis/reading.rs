@@ -161,8 +161,10 @@ impl<P: Planner> Axis<P> {
         self.actual = position;
     }
 
-    /// The same, and what came before is called by names that fit.
-    pub(super) fn latch_and_mend(&mut self, position: f64) {
+    /// The same where what came before may need names that fit. Returns whether the velocity it means is a number; if not,
+    /// nothing is taken over.
+    pub(super) fn latch_and_mend(&mut self, position: f64) -> bool {
+        let before = (self.actual, self.past);
         self.latch(position);
         if self.past.seam.is_some() {
             self.past.mend(position);
@@ -170,6 +172,11 @@ impl<P: Planner> Axis<P> {
         if let Some(modulo) = &self.modulo {
             self.past.come_round(position, modulo.length);
         }
+        let is_number = self.latched_velocity().is_finite();
+        if !is_number {
+            (self.actual, self.past) = before;
+        }
+        is_number
     }
 
     /// The way the actual position has gone since the scan before (u).
@@ -200,11 +207,13 @@ impl<P: Planner> Axis<P> {
     /// The actual position (u) if it is fresh.
     ///
     /// # Errors
-    /// [`ErrorId::CommunicationLost`] if it was not latched in this scan.
+    /// If it was not latched in this scan: [`ErrorId::CommunicationLost`], or [`ErrorId::FeedbackInvalid`] if what the
+    /// drive told is no number.
     pub fn fresh_position(&self) -> Result<f64, ErrorId> {
         match self.power.comms {
             Comms::Ok => Ok(self.actual),
             Comms::Lost => Err(ErrorId::CommunicationLost),
+            Comms::Invalid => Err(ErrorId::FeedbackInvalid),
         }
     }
 
@@ -213,9 +222,15 @@ impl<P: Planner> Axis<P> {
     /// of the position is no motion. Resolution: that of the position, divided by the cycle.
     ///
     /// # Errors
-    /// [`ErrorId::CommunicationLost`] if the position was not latched in this scan.
+    /// As [`Axis::fresh_position`].
     pub fn actual_velocity(&self) -> Result<f64, ErrorId> {
-        Ok((self.fresh_position()? - self.past.before) / self.planner.cycle())
+        self.fresh_position()?;
+        Ok(self.latched_velocity())
+    }
+
+    /// The actual velocity (u/s) by the positions latched last.
+    fn latched_velocity(&self) -> f64 {
+        self.actual_step() / self.planner.cycle()
     }
 
     /// The actual velocity of the scan before (u/s).
@@ -234,8 +249,8 @@ impl<P: Planner> Axis<P> {
     ///   position hides.
     ///
     /// # Errors
-    /// [`ErrorId::SourceInvalid`] if the number names no source, [`ErrorId::CommunicationLost`] if actual values
-    /// are asked for and not fresh.
+    /// [`ErrorId::SourceInvalid`] if the number names no source, those of [`Axis::fresh_position`] if actual values are
+    /// asked for.
     pub fn motion_state(&self, source: Raw<ValueSource>) -> Result<MotionState, ErrorId> {
         match source.get().ok_or(ErrorId::SourceInvalid)? {
             ValueSource::Commanded => Ok(MotionState {

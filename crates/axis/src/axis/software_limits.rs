@@ -154,7 +154,7 @@ impl<P: Planner> Axis<P> {
             ..Setpoint::at_rest(position)
         };
         let rest = self.rest(&next, &self.stop_limits());
-        (rest > max && velocity > 0.0) || (rest < min && velocity < 0.0)
+        (velocity > 0.0 && !(rest <= max)) || (velocity < 0.0 && !(rest >= min))
     }
 
     /// Where a ramp to rest from `state` within `limits` ends (u).

@@ -39,11 +39,11 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The following error is larger than it may be.
+    /// The following error is larger than it may be, or no number.
     pub(super) fn lags(&self) -> bool {
         let lag = &self.parameters.lag;
         let is_led = self.power.on && !matches!(self.motion, Motion::Follow | Motion::Torque { .. });
-        lag.on && is_led && self.following_error().abs() > lag.most
+        lag.on && is_led && !(self.following_error().abs() <= lag.most)
     }
 
     /// After the latch: ErrorStop if the axis lags, or is about to leave the software limits under a torque.
@@ -60,7 +60,7 @@ impl<P: Planner> Axis<P> {
         let Some(window) = self.config.in_position else {
             return true;
         };
-        if self.following_error().abs() > window.window {
+        if !(self.following_error().abs() <= window.window) {
             self.inside_for = 0;
             return false;
         }

@@ -15,7 +15,7 @@ impl<P: Planner> Axis<P> {
     /// The actual torque, in the unit of the drive; positive towards larger positions.
     ///
     /// # Errors
-    /// [`ErrorId::TorqueUnknown`] if the drive does not tell it, [`ErrorId::CommunicationLost`] if what is known is old.
+    /// [`ErrorId::TorqueUnknown`] if the drive does not tell it, those of [`Axis::fresh_position`] if what is known is old.
     pub fn actual_torque(&self) -> Result<f64, ErrorId> {
         self.fresh_position()?;
         let report = self.beside.report.torque.ok_or(ErrorId::TorqueUnknown)?;
@@ -79,7 +79,7 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Under a torque, from the one that acts now; `plan` is the ramp of the velocity limit.
+    /// Under a torque, from the one that acts now, as far as the drive can hold it; `plan` is the ramp of the velocity limit.
     pub(super) fn under_torque(&self, plan: P::Plan) -> Motion<P::Plan> {
         let torque = match (&self.motion, &self.beside.report.torque) {
             (Motion::Torque { torque, .. }, _) => *torque,
@@ -89,8 +89,14 @@ impl<P: Planner> Axis<P> {
         Motion::Torque {
             plan,
             elapsed: 0,
-            torque,
+            torque: within(torque, self.most_torque()),
         }
+    }
+
+    /// The largest torque the drive says it can hold, now; 0 if it holds none.
+    fn most_torque(&self) -> f64 {
+        let told = self.beside.report.torque.map(|torque| torque.most);
+        told.filter(|most| *most > 0.0).unwrap_or(0.0)
     }
 
     /// After the latch: under a torque the set-point is the actual state.
@@ -108,7 +114,7 @@ impl<P: Planner> Axis<P> {
     #[cold]
     #[inline(never)]
     pub(super) fn step_torque(&mut self) {
-        let cycle = self.planner.cycle();
+        let (cycle, most_torque) = (self.planner.cycle(), self.most_torque());
         let Some(owner) = self.owner else { return };
         let (
             Work::Torque { ramp, .. },
@@ -125,11 +131,13 @@ impl<P: Planner> Axis<P> {
         let (goal, limit) = (torque_of(&owner), plan.at(*elapsed).velocity);
         let step = if ramp > 0.0 { ramp * cycle } else { f64::INFINITY };
         let left = goal - *torque;
-        *torque = if left.abs() <= step {
+        let next = if left.abs() <= step {
             goal
         } else {
             *torque + step.copysign(left)
         };
+        // What the drive can hold may have become less.
+        *torque = within(next, most_torque);
         let most = owner.limits.velocity;
         let velocity = if goal > 0.0 {
             (limit.min(-most), limit)
@@ -160,6 +168,19 @@ impl<P: Planner> Axis<P> {
         let goal = self.owner.as_ref().map(torque_of);
         let limited = self.beside.report.torque.is_some_and(|report| report.limited);
         goal == Some(torque) && !limited
+    }
+}
+
+/// `torque` as far as a drive holds it that can hold `most` (from 0); none if it is no number.
+fn within(torque: f64, most: f64) -> f64 {
+    if !torque.is_finite() {
+        0.0
+    } else if torque > most {
+        most
+    } else if torque < -most {
+        -most
+    } else {
+        torque
     }
 }
 

@@ -45,6 +45,7 @@ mod bare_metal {
         keep::<unsafe extern "C" fn(_, _, _, _) -> _>(c::standstill_simulate_input);
         keep::<unsafe extern "C" fn(_, _, _, _, _) -> _>(c::standstill_simulate_probe);
         keep::<unsafe extern "C" fn(_, _, _) -> _>(c::standstill_simulate_push);
+        keep::<unsafe extern "C" fn(_, _, _, _) -> _>(c::standstill_simulate_report);
         keep::<unsafe extern "C" fn(_, _, _, _, _, _) -> _>(c::standstill_log_read);
         keep::<unsafe extern "C" fn(_, _, _, _, _, _) -> _>(c::standstill_recorder_size);
         keep::<unsafe extern "C" fn(_, _, _, _, _, _, _) -> _>(c::standstill_recorder_init);

@@ -99,11 +99,15 @@ impl Host {
     }
 
     pub fn status(&self) -> AxisStatus {
+        self.status_of(1)
+    }
+
+    pub fn status_of(&self, axis: i32) -> AxisStatus {
         let mut status = MaybeUninit::<AxisStatus>::zeroed();
         // SAFETY: numbers all, and the size is set.
         unsafe {
             status.assume_init_mut().size = size_of::<AxisStatus>() as u32;
-            assert_eq!(standstill_axis_read(self.runtime, 1, status.as_mut_ptr()), 0);
+            assert_eq!(standstill_axis_read(self.runtime, axis, status.as_mut_ptr()), 0);
             status.assume_init()
         }
     }

@@ -583,9 +583,69 @@ fn a_host_that_goes_silent_loses_its_own_drive_and_the_axis_stops() {
             torque: f64::NAN,
             ..*feedback
         },
+        Feedback {
+            torque_known: 1,
+            torque: f64::NEG_INFINITY,
+            ..*feedback
+        },
+        Feedback {
+            probe_latched: [0, 1],
+            probe_position: [0.0, f64::NAN],
+            ..*feedback
+        },
+        Feedback {
+            marker_latched: 1,
+            marker_position: f64::INFINITY,
+            ..*feedback
+        },
+        Feedback {
+            homing: 3,
+            home_position: f64::NAN,
+            ..*feedback
+        },
     ] {
         assert_eq!(tell(&wrong), Code::BadValue as i32);
     }
+}
+
+/// Covers: R98
+#[test]
+fn a_feedback_that_is_no_number_is_refused_and_the_axis_tells_why_it_stops() {
+    let host = Host::new(1, 4);
+    let (mut axis, mut drive) = Host::setup();
+    (axis.start_powered, drive.kind) = (1, 0);
+    assert_eq!(host.add(&axis, &drive), Ok(1));
+    let mut feedback = MaybeUninit::<Feedback>::zeroed();
+    // SAFETY: numbers all.
+    let feedback = unsafe { feedback.assume_init_mut() };
+    feedback.size = size_of::<Feedback>() as u32;
+    (feedback.enabled, feedback.voltage) = (1, 1);
+    let wrong = Feedback {
+        position: f64::NAN,
+        ..*feedback
+    };
+    // SAFETY: as its size says.
+    let tell = |feedback: &Feedback| unsafe { standstill_feedback_write(host.runtime, 1, feedback) };
+    let bad = Code::BadValue as i32;
+    let mut now = 0;
+    let mut tick = || {
+        now += 1_000_000;
+        assert_eq!(host.begin(now), 0);
+        assert_eq!(host.end(), 0);
+        let status = host.status();
+        assert!(status.position == 0.0 && status.actual_position == 0.0);
+        (status.state, status.error_id)
+    };
+    // A refused one changes nothing beside one that was taken in the same tick, before or after it.
+    assert_eq!((tell(feedback), tell(&wrong)), (0, bad));
+    assert_eq!(tick(), (1, 0));
+    assert_eq!((tell(&wrong), tell(feedback)), (bad, 0));
+    assert_eq!(tick(), (1, 0));
+    // Alone it leaves the tick without feedback.
+    assert_eq!(tell(&wrong), bad);
+    assert_eq!(tick(), (7, 602));
+    // The first error stays, whatever comes then.
+    assert_eq!(tick(), (7, 602));
 }
 
 #[test]

@@ -56,6 +56,145 @@ fn the_drive_of_the_first_header_is_served() {
     }
 }
 
+/// Bytes of the first axis_setup.
+const FIRST_AXIS: u32 = 264;
+
+#[test]
+fn an_axis_of_the_first_header_has_no_power_timeout() {
+    let host = Host::new(1, 4);
+    let (mut axis, drive) = Host::setup();
+    axis.size = FIRST_AXIS;
+    axis.power_timeout = 7;
+    // SAFETY: as its size says, and more.
+    assert_eq!(unsafe { standstill_axis_defaults(&mut axis) }, 0);
+    assert_eq!((axis.size, axis.power_timeout), (FIRST_AXIS, 7), "behind its end");
+    (axis.velocity, axis.acceleration) = (10.0, 100.0);
+    let never = DriveSetup {
+        power_on: -1,
+        ..drive
+    };
+    assert_eq!(host.add(&axis, &never), Ok(1));
+    assert_eq!(switched_on(&host, 50), (0, 0), "it waits for ever");
+}
+
+#[test]
+fn power_that_is_not_confirmed_is_an_error_of_mc_power() {
+    let host = Host::new(1, 4);
+    let (axis, drive) = Host::setup();
+    let axis = AxisSetup {
+        power_timeout: 20,
+        ..axis
+    };
+    let never = DriveSetup {
+        power_on: -1,
+        ..drive
+    };
+    assert_eq!(host.add(&axis, &never), Ok(1));
+    // Asked for in the first tick, so that the last one in time is the twenty-first.
+    assert_eq!(switched_on(&host, 20), (0, 0));
+    let other = Host::new(1, 4);
+    assert_eq!(other.add(&axis, &never), Ok(1));
+    assert_eq!(switched_on(&other, 21), (503, 0), "the axis stays Disabled");
+}
+
+/// Calls MC_Power with Enable in so many ticks; its ErrorID and the state of the axis in the last.
+fn switched_on(host: &Host, ticks: i64) -> (u32, i32) {
+    #[repr(C)]
+    struct In {
+        size: u32,
+        axis: i32,
+        enable: u8,
+        enable_positive: u8,
+        enable_negative: u8,
+        reserved: [u8; 5],
+    }
+    #[repr(C)]
+    #[derive(Default)]
+    struct Out {
+        size: u32,
+        status: u8,
+        valid: u8,
+        error: u8,
+        reserved: u8,
+        error_id: u16,
+        reserved_2: [u8; 6],
+    }
+    let (mut key, mut out) = (0, Out::default());
+    out.size = size_of::<Out>() as u32;
+    let inputs = In {
+        size: size_of::<In>() as u32,
+        axis: 1,
+        enable: 1,
+        enable_positive: 1,
+        enable_negative: 1,
+        reserved: [0; 5],
+    };
+    for tick in 0..ticks {
+        assert_eq!(host.begin(tick * 1_000_000), 0);
+        // SAFETY: structures of the sizes they say.
+        let code = unsafe {
+            mc_power(
+                host.runtime,
+                &mut key,
+                (&raw const inputs).cast(),
+                (&raw mut out).cast(),
+            )
+        };
+        assert_eq!((code, out.status), (0, 0));
+        assert_eq!(out.error != 0, out.error_id != 0);
+        assert_eq!(host.end(), 0);
+    }
+    (out.error_id.into(), host.status().state)
+}
+
+/// Covers: R98
+#[test]
+fn a_simulated_drive_tells_what_it_is_told_to() {
+    let host = Host::new(3, 4);
+    let (axis, drive) = Host::setup();
+    let axis = AxisSetup {
+        start_powered: 1,
+        max_following_error: 1.0,
+        ..axis
+    };
+    let counts = AxisSetup {
+        scaling_increments: 1000,
+        ..axis
+    };
+    let own = DriveSetup { kind: 0, ..drive };
+    assert_eq!(host.add(&axis, &drive), Ok(1));
+    assert_eq!(host.add(&counts, &drive), Ok(2));
+    assert_eq!(host.add(&axis, &own), Ok(3));
+    // SAFETY: a handle.
+    let report =
+        |axis, quantity, value| unsafe { standstill_simulate_report(host.runtime, axis, quantity, value) };
+    let (bad, wrong) = (Code::BadValue as i32, Code::WrongDrive as i32);
+    assert_eq!(
+        (report(4, 0, 1.0), report(3, 0, 1.0)),
+        (Code::UnknownAxis as i32, wrong)
+    );
+    assert_eq!((report(1, 2, 1.0), report(1, -1, 1.0)), (bad, bad));
+    for no_count in [f64::NAN, 0.5, 1e300] {
+        assert_eq!(report(2, 0, no_count), bad, "{no_count}");
+    }
+    assert_eq!(
+        (report(1, 0, f64::NAN), report(2, 0, -1001.0), report(1, 1, 7.0)),
+        (0, 0, 0)
+    );
+    assert_eq!(
+        (host.begin(0), report(1, 0, 1.0), host.end()),
+        (0, Code::InTick as i32, 0)
+    );
+    let errors = || [1, 2].map(|axis| host.status_of(axis).error_id);
+    assert_eq!(errors(), [602, 404]);
+    assert_eq!(host.status_of(2).actual_position, -1.001);
+    // SAFETY: a handle.
+    let clear = |axis| unsafe { standstill_simulate(host.runtime, axis, 0, 0) };
+    assert_eq!((clear(1), clear(2)), (0, 0));
+    assert_eq!((host.begin(1_000_000), host.end()), (0, 0));
+    assert_eq!(host.status_of(2).actual_position, 0.0);
+}
+
 #[test]
 fn what_a_drive_cannot_have_is_named() {
     let host = Host::new(1, 4);

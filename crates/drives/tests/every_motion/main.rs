@@ -1,5 +1,6 @@
 //! Every kind of motion with everything that can go wrong with a drive, in random order.
 
+mod lies;
 mod rig;
 
 use rig::{Random, Rig, STEP, Upset};

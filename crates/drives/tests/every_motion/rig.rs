@@ -1,9 +1,9 @@
 //! An axis over a drive that can fail, scan by scan, with the claims that hold in every one.
 
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, BlockDetection, Drive, DriveCommand, DriveFeedback, DriveOrder,
-    DrivePosition, DriveReport, Homing, InstanceId, Limits, Log, Permission, Procedure, Scaling, Source,
-    Standard, StartState,
+    Axis, AxisConfig, AxisId, AxisState, BlockDetection, Comms, Drive, DriveCommand, DriveFeedback,
+    DriveOrder, DrivePosition, DriveReport, ErrorId, Homing, InstanceId, Limits, Log, Permission, Procedure,
+    Scaling, Source, Standard, StartState,
 };
 use standstill_drives::cia402::{Cia402Drive, MotorLoad, NodeHoming, Reaction, Settings, TorqueScale};
 use standstill_drives::mechanism::{Gains, Mechanism, Plant, PlantDrive, Servo, Stops};
@@ -62,6 +62,55 @@ pub enum Upset {
     Clear,
     Displace(i32),
     Remote(bool),
+}
+
+/// What a drive tells instead of what it measures.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Told {
+    pub position: Option<f64>,
+    pub torque: Option<f64>,
+    /// Something else in the report.
+    pub beside: Option<fn(&mut DriveReport)>,
+}
+
+impl Told {
+    pub fn position(position: f64) -> Self {
+        Self {
+            position: Some(position),
+            ..Self::default()
+        }
+    }
+
+    pub fn torque(torque: f64) -> Self {
+        Self {
+            torque: Some(torque),
+            ..Self::default()
+        }
+    }
+
+    pub fn beside(change: fn(&mut DriveReport)) -> Self {
+        Self {
+            beside: Some(change),
+            ..Self::default()
+        }
+    }
+
+    /// What comes of a feedback and a report. A count of increments is always a number.
+    fn over(&self, feedback: &mut DriveFeedback, report: &mut DriveReport) {
+        if let Some(told) = self.position {
+            feedback.position = match feedback.position {
+                DrivePosition::Units(_) => DrivePosition::Units(told),
+                DrivePosition::Increments(_) if told.is_finite() => DrivePosition::Increments(told as i64),
+                DrivePosition::Increments(increments) => DrivePosition::Increments(increments),
+            };
+        }
+        if let (Some(told), Some(torque)) = (self.torque, &mut report.torque) {
+            torque.actual = told;
+        }
+        if let Some(change) = self.beside {
+            change(report);
+        }
+    }
 }
 
 struct Device {
@@ -151,6 +200,12 @@ pub struct Rig {
     last: Option<(f64, bool)>,
     pub enabled: u32,
     pub worst: f64,
+    /// What the drive tells of itself that is not so.
+    pub told: Told,
+    /// Lies are told that the axis believes, so that it may be led anywhere.
+    pub believes_lies: bool,
+    /// Scans in which what the drive told was refused.
+    pub refused: u32,
 }
 
 impl Rig {
@@ -207,6 +262,9 @@ impl Rig {
             last: None,
             enabled: 0,
             worst: 0.0,
+            told: Told::default(),
+            believes_lies: false,
+            refused: 0,
         }
     }
 
@@ -227,16 +285,55 @@ impl Rig {
         };
         let feedback = self.device.read();
         self.device.report(self.axis.report_mut());
+        let mut told = feedback;
+        self.told.over(&mut told, self.axis.report_mut());
         self.axis.follow_report();
-        self.axis.follow_feedback(&feedback, self.scan, &mut self.log);
+        self.axis.follow_feedback(&told, self.scan, &mut self.log);
+        self.look_at_feedback(&told);
         self.axis.set_power(power, permitted, source, &mut self.log);
         during(&mut self.axis, source, &mut self.log);
         self.axis.advance(self.scan, &mut self.log);
         let command = self.axis.drive_command();
         let order = *self.axis.order();
-        self.look(&feedback, &command, &order);
+        self.look_at_numbers(&command, &order);
+        if !self.believes_lies {
+            self.look(&feedback, &command, &order);
+        }
         self.device.write(&order, &command);
         self.scan += 1;
+    }
+
+    /// What is no number is no feedback: the axis fails, and keeps what it knew.
+    fn look_at_feedback(&mut self, told: &DriveFeedback) {
+        let is_number = told.position.is_finite() && self.axis.report().is_finite();
+        if !is_number && told.comms == Comms::Ok {
+            self.refused += 1;
+            assert_eq!(self.axis.state(), AxisState::ErrorStop, "scan {}", self.scan);
+            assert_eq!(self.axis.fresh_position(), Err(ErrorId::FeedbackInvalid));
+        }
+        assert!(self.axis.actual_position().is_finite());
+        assert!(self.axis.actual_velocity().is_ok_and(f64::is_finite) || self.axis.fresh_position().is_err());
+    }
+
+    /// Whatever a drive tells, what it is told are numbers, and no torque is above what it can hold.
+    fn look_at_numbers(&self, command: &DriveCommand, order: &DriveOrder) {
+        let scan = self.scan;
+        let rename = command.rename.unwrap_or_default();
+        assert!(
+            command.position.is_finite() && rename.is_finite(),
+            "scan {scan}: {command:?}"
+        );
+        assert!(command.velocity.is_finite(), "scan {scan}: {command:?}");
+        assert!(self.axis.setpoint().is_finite(), "scan {scan}");
+        if let Some(torque) = order.torque {
+            let most = self.axis.report().torque.map_or(0.0, |told| told.most.max(0.0));
+            let (least, largest) = torque.velocity;
+            assert!(torque.torque.abs() <= most, "scan {scan}: {torque:?}");
+            assert!(
+                least.is_finite() && largest.is_finite(),
+                "scan {scan}: {torque:?}"
+            );
+        }
     }
 
     /// No set-point in operation is farther from the one before than the axis may go in a scan; the first one is so from

@@ -51,7 +51,8 @@ impl Reader {
             .get("unit")
             .map_or(Some(""), |node| self.text(node, "`unit`"));
         let drive = self.drive(&fields, config.scaling.is_some());
-        self.drives.push(drive);
+        self.drives
+            .push(drive.map(|drive| (drive, config.scaling.is_some())));
         limits?;
         good?;
         if let Err(error) = config.check() {
@@ -155,6 +156,9 @@ impl Reader {
         let override_max = self.optional(fields, "override_max", "`override_max`");
         let max_following_error = self.optional(fields, "max_following_error", "`max_following_error`");
         let in_position = self.in_position(fields);
+        let power_timeout = fields
+            .get("power_timeout")
+            .map_or(Some(None), |node| self.scans(node, "`power_timeout`").map(Some));
         let scaling = self.scaling(fields);
         let modulo = self.optional(fields, "modulo", "`modulo`");
         let software_limits = self.software_limits(fields);
@@ -174,6 +178,7 @@ impl Reader {
         config.override_max = override_max?.unwrap_or(config.override_max);
         config.max_following_error = max_following_error?;
         config.in_position = in_position?;
+        config.power_timeout = power_timeout?;
         config.scaling = scaling?;
         config.modulo = modulo?;
         config.software_limits = software_limits?;

@@ -54,8 +54,8 @@ struct Reader {
     names: Names,
     cycle_ns: Option<i64>,
     scan_count: Option<u64>,
-    /// The drives of the axes, where they could be read.
-    drives: Vec<Option<DriveSetup>>,
+    /// The drives of the axes, where they could be read, and whether they count increments.
+    drives: Vec<Option<(DriveSetup, bool)>>,
     /// The wires read so far.
     wires: circle::Wires,
     /// The numbers of the tables read so far.

@@ -82,6 +82,7 @@ pub(crate) const AXIS: Shape = Shape {
         "homing",
         "needs_homed",
         "override_max",
+        "power_timeout",
         "in_position",
         "max_following_error",
         "drive",
@@ -224,8 +225,11 @@ pub(crate) const FAULT: Shape = shape("`fault`", &["axis", "kind", "code", "note
 pub(crate) const CLEAR: Shape = shape("`clear`", &["axis", "note"]);
 pub(crate) const DRIVE_STEP: Shape = shape(
     "a `drive` step",
-    &["axis", "displace", "remote", "warning", "input", "probe", "note"],
+    &[
+        "axis", "displace", "remote", "warning", "input", "probe", "report", "note",
+    ],
 );
+pub(crate) const DRIVE_REPORT: Shape = shape("`report` of a drive", &["position", "torque", "note"]);
 pub(crate) const DRIVE_INPUT: Shape = shape("`input` of a drive", &["number", "value", "note"]);
 pub(crate) const DRIVE_PROBE: Shape = shape("`probe` of a drive", &["number", "at", "value", "note"]);
 

@@ -5,7 +5,7 @@ use super::value::Fields;
 use super::{Reader, is_note, shape};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::model::{Action, DriveChange, DriveSetup, FaultKind, Point, Span, Step, When};
-use standstill_axis::{DIGITAL, PROBES};
+use standstill_axis::{DIGITAL, DrivePosition, PROBES};
 use std::collections::BTreeMap;
 
 pub(crate) const FAULT_KINDS: [(&str, FaultKind); 4] = [
@@ -192,28 +192,32 @@ impl Reader {
         let mut changes = Some(Vec::new());
         for (key, value) in fields.iter() {
             let name = format!("`{}`", key.text);
-            let change = match key.text.as_str() {
+            let new = match key.text.as_str() {
                 "displace" => self.finite(value, &name).map(DriveChange::Displace),
                 "remote" => self.boolean(value, &name).map(DriveChange::Remote),
                 "warning" => self.boolean(value, &name).map(DriveChange::Warning),
                 "input" => self.input(value),
                 "probe" => self.probe(value),
+                "report" => {
+                    changes = changes
+                        .zip(self.drive_report(value, axis))
+                        .map(|(changes, new)| [changes, new].concat());
+                    continue;
+                }
                 _ => continue,
             };
-            let change = change.filter(|change| axis.is_none_or(|axis| self.knows_change(key, axis, change)));
-            changes = changes.zip(change).map(|(mut changes, change)| {
-                changes.push(change);
+            let new = new.filter(|change| axis.is_none_or(|axis| self.knows_change(key, axis, change)));
+            changes = changes.zip(new).map(|(mut changes, new)| {
+                changes.push(new);
                 changes
             });
         }
         let (axis, changes) = (axis?, changes?);
         if changes.is_empty() {
             let message = "a `drive` step needs what is to happen";
-            self.report(
-                Diagnostic::new(Code::MissingKey, fields.brace(), message).help(
-                    "give `displace`, `input` or `probe`, or for a CiA 402 drive `remote` or `warning`",
-                ),
-            );
+            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message).help(
+                "give `displace`, `input`, `probe` or `report`, or for a CiA 402 drive `remote` or `warning`",
+            ));
             return None;
         }
         let actions = changes.into_iter();
@@ -260,12 +264,61 @@ impl Reader {
         })
     }
 
+    /// What a drive tells instead of what it measures.
+    fn drive_report(&mut self, node: &Node, axis: Option<usize>) -> Option<Vec<DriveChange>> {
+        let fields = self.fields(node, &shape::DRIVE_REPORT)?;
+        let drive = axis.and_then(|axis| self.drives.get(axis).copied().flatten());
+        let mut changes = Vec::new();
+        if let Some(node) = fields.get("position") {
+            let position = match drive {
+                // A count of increments is always a number.
+                Some((_, true)) => self
+                    .whole(node, "`report.position`", i64::MIN..=i64::MAX)
+                    .map(DrivePosition::Increments),
+                Some((_, false)) | None => self.number(node, "`report.position`").map(DrivePosition::Units),
+            };
+            changes.push(DriveChange::ReportPosition(position?));
+        }
+        if let Some((key, node)) = fields.entry("torque") {
+            let torque = self.number(node, "`report.torque`")?;
+            let tells_torque = match drive {
+                Some((DriveSetup::Ideal(_), _)) => false,
+                Some((DriveSetup::Cia402(setup), _)) => setup.motor.is_some(),
+                Some((DriveSetup::Plant(_), _)) | None => true,
+            };
+            if !tells_torque {
+                let message = "this drive tells no torque";
+                self.report(
+                    Diagnostic::new(Code::BadValue, key.span, message)
+                        .help("a `plant` does, and a `cia402` drive with a `motor`"),
+                );
+                return None;
+            }
+            changes.push(DriveChange::ReportTorque(torque));
+        }
+        if changes.is_empty() {
+            let message = "`report` needs `position` or `torque`";
+            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
+            return None;
+        }
+        Some(changes)
+    }
+
     /// Whether the drive of `axis` knows the change; drives that could not be read were reported.
     fn knows_change(&mut self, key: &Key, axis: usize, change: &DriveChange) -> bool {
         let drive = self.drives.get(axis).copied().flatten();
         match (change, drive) {
-            (DriveChange::Displace(_) | DriveChange::Input { .. } | DriveChange::Probe { .. }, _)
-            | (_, None | Some(DriveSetup::Cia402(_))) => true,
+            (DriveChange::Remote(_) | DriveChange::Warning(_), None | Some((DriveSetup::Cia402(_), _))) => {
+                true
+            }
+            (
+                DriveChange::Displace(_)
+                | DriveChange::Input { .. }
+                | DriveChange::Probe { .. }
+                | DriveChange::ReportPosition(_)
+                | DriveChange::ReportTorque(_),
+                _,
+            ) => true,
             (DriveChange::Remote(_) | DriveChange::Warning(_), Some(_)) => {
                 let message = format!("only a CiA 402 drive has `{}`", key.text);
                 self.report(

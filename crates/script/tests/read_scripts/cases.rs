@@ -216,6 +216,20 @@ pub fn cases() -> Vec<Case> {
             "\"max_following_error\": 0, \"state\"",
         ),
         case(
+            "bad_value",
+            Schema,
+            "a time-out of no scans",
+            "\"state\"",
+            "\"power_timeout\": 0, \"state\"",
+        ),
+        case(
+            "bad_time",
+            Reader,
+            "a time-out between two scans",
+            "\"state\"",
+            "\"power_timeout\": \"T#1500us\", \"state\"",
+        ),
+        case(
             "missing_key",
             Schema,
             "a time without a window",
@@ -884,6 +898,20 @@ pub fn cases() -> Vec<Case> {
             "a drive step no drive knows",
             STEP,
             "{\"at\": 1, \"drive\": {\"axis\": \"X\", \"displace\": 1, \"torque\": 3}}",
+        ),
+        case(
+            "missing_key",
+            Schema,
+            "a report of nothing",
+            STEP,
+            "{\"at\": 1, \"drive\": {\"axis\": \"X\", \"report\": {\"note\": \"why\"}}}",
+        ),
+        case(
+            "bad_value",
+            Reader,
+            "a torque of a drive that tells none",
+            STEP,
+            "{\"at\": 1, \"drive\": {\"axis\": \"X\", \"report\": {\"torque\": 1}}}",
         ),
         case(
             "bad_value",

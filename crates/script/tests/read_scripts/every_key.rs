@@ -1,8 +1,8 @@
 //! A script with every key of the format, looked at where the example of the format says nothing.
 
 use standstill_axis::{
-    AboveLimit, AxisId, BlockDetection, HomeDirection, Homing, Limits, MoveProfile, PowerOff, Procedure,
-    Scaling, SwitchEdge,
+    AboveLimit, AxisId, BlockDetection, DrivePosition, HomeDirection, Homing, Limits, MoveProfile, PowerOff,
+    Procedure, Scaling, SwitchEdge,
 };
 use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
@@ -45,6 +45,7 @@ fn axes_take_their_configuration() {
         (Some(90.0), Some(1500.0))
     );
     assert_eq!(x.config.on_power_off, PowerOff::Coast);
+    assert_eq!(x.config.power_timeout, Some(4));
     assert!(x.config.needs_homed);
     assert!(!x.config.hardware_limits);
     let homing = Homing {
@@ -270,6 +271,21 @@ fn steps_and_claims_take_all_their_forms() {
         level: true,
     };
     assert_eq!(script.steps[6].actions, [of_y(input), of_y(probe)]);
+    let [
+        Action::Drive {
+            axis: 1,
+            change: DriveChange::ReportPosition(DrivePosition::Units(told)),
+        },
+    ] = script.steps[7].actions[..]
+    else {
+        panic!("{:?}", script.steps[7].actions);
+    };
+    assert!(told.is_nan());
+    let counted = DriveChange::ReportPosition(DrivePosition::Increments(-7));
+    assert_eq!(
+        script.steps[8].actions,
+        [of_z(counted), of_z(DriveChange::ReportTorque(f64::INFINITY))]
+    );
 
     let kinds: Vec<_> = script.claims.iter().map(|claim| &claim.kind).collect();
     assert!(matches!(kinds[0], ClaimKind::At(40, that) if that.len() == 3

@@ -162,7 +162,7 @@ fn play(bytes: &mut Bytes<'_>) {
                     let room = u32::from(bytes.byte() % 4);
                     standstill_log_read(runtime, &mut next, from_mut(&mut taken).cast(), 96, room, &mut copied)
                 }
-                _ => match bytes.byte() % 14 {
+                _ => match bytes.byte() % 15 {
                     0 => standstill_stop(runtime),
                     1 => standstill_start(runtime),
                     2 => standstill_instance_release(runtime, &mut keys[usize::from(bytes.byte()) % 6]),
@@ -173,6 +173,10 @@ fn play(bytes: &mut Bytes<'_>) {
                         standstill_simulate_probe(runtime, 2, (bytes.byte() % 4).into(), at, bytes.byte() % 2)
                     }
                     6 => standstill_simulate_push(runtime, 1, f64::from_bits(bytes.number())),
+                    14 => {
+                        let quantity = i32::from(bytes.byte() % 4) - 1;
+                        standstill_simulate_report(runtime, 1, quantity, f64::from_bits(bytes.number()))
+                    }
                     7 | 8 => {
                         let config = RecorderConfig {
                             size: size_of::<RecorderConfig>() as u32,

@@ -125,7 +125,7 @@ typedef struct standstill_mc_power_out {
     uint32_t size; /* sizeof this structure */
     uint8_t status; /* Status: The power stage is really on. */
     uint8_t valid; /* Valid: Status can be relied on. */
-    uint8_t error; /* Error: The block cannot do what its inputs ask; power is then not wanted. */
+    uint8_t error; /* Error: The block cannot do what its inputs ask, or the drive has not done it in time; power is then not asked for. */
     uint8_t reserved_7[1];
     uint16_t error_id; /* ErrorID: Why; 0 without an error. */
     uint8_t reserved_10[6];
