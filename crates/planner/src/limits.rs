@@ -155,7 +155,8 @@ impl Limits {
         let speed = start.velocity.abs().max(end.abs()) + steepest * settled;
         // Until it could be at rest, and from there to the position.
         let stopped = speed / lower + 2.0 * sqrt(speed / jerk) + 2.0 * sqrt(lower / snap);
-        let reached = speed + sqrt(2.0 * lower * (distance.abs() + speed * (settled + stopped)));
+        let way = distance.abs() + speed * (settled + stopped);
+        let reached = speed + (2.0 * sqrt(lower) * sqrt(way)).min(way / (SOONEST * cycle));
         let reached = if distance == 0.0 { speed } else { reached };
         let velocity = if reached > 0.0 {
             self.velocity.min(REACH * reached)
