@@ -77,7 +77,7 @@ impl<P: Planner> Axis<P> {
         self.shift += by;
         self.actual = self.shown_place(self.actual + by);
         let step = self.actual - self.setpoint.position;
-        self.record(Event::Shifted { by: step }, self.owner_source(scan), log);
+        self.tell_moved(step, self.owner_source(scan), log);
         self.coordinates = self.coordinates.wrapping_add(1);
         self.past = Past::new(self.actual);
         self.setpoint = Setpoint::at_rest(self.actual);
