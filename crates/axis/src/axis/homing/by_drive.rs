@@ -7,7 +7,7 @@ use super::super::queue::Work;
 use super::super::reading::Past;
 use super::super::{Axis, Motion};
 use super::Phase;
-use crate::{AxisState, DriveHoming, DrivePosition, ErrorId, Event, Log};
+use crate::{AxisState, DriveHoming, DrivePosition, ErrorId, Log};
 use standstill_planner::{Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
