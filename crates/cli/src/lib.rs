@@ -1,20 +1,23 @@
 //! The program `standstill`: arguments, exit statuses, printing. What it prints comes from the libraries.
 //!
-//! Standard output is the same on every machine; messages and progress go to standard error.
+//! Standard output is the same on every machine; messages and progress go to standard error. A library beside the program,
+//! so that a fuzzer can call what reads lines of plans.
 #![forbid(unsafe_code)]
 
 mod args;
 mod blocks;
 mod compare;
-mod exit;
+pub mod exit;
 mod explain;
 mod export;
 mod failing;
 mod fmt;
 mod json;
 mod junit;
+mod limit;
 mod live;
-mod plan;
+mod out;
+pub mod plan;
 mod progress;
 mod report;
 mod run;
@@ -28,13 +31,15 @@ mod watch;
 use args::{Arguments, Command, Schema, Soak};
 use clap::Parser;
 use exit::{Exit, Failure};
+use out::Out;
 use standstill_script::suite::shown;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, BufWriter, IsTerminal, Write};
+use std::io::{self, BufRead, BufReader, IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-fn main() -> ExitCode {
+/// The program: takes the arguments of the process, and gives the status it is to end with.
+pub fn main() -> ExitCode {
     exit::guarded(program).into()
 }
 
@@ -43,7 +48,15 @@ fn program() -> Exit {
         Ok(arguments) => arguments,
         Err(error) => return explained(&error),
     };
-    let mut out = BufWriter::new(io::stdout().lock());
+    if let Some(Err(failure)) = arguments.time_limit.map(limit::start) {
+        return failure.report();
+    }
+    limit::doing("reading the arguments");
+    let mut out = if is_data(&arguments.command) {
+        Out::data()
+    } else {
+        Out::text()
+    };
     let result = dispatch(&arguments.command, &mut out);
     // What was printed stands before the message that follows from it.
     let flushed = out.flush().map_err(Failure::from);
@@ -53,10 +66,32 @@ fn program() -> Exit {
     }
 }
 
+/// Whether what a command prints is for programs.
+fn is_data(command: &Command) -> bool {
+    match command {
+        Command::Plan { .. }
+        | Command::ComparePlanners { .. }
+        | Command::Sweep(_)
+        | Command::Blocks { .. }
+        | Command::Schema { .. } => true,
+        Command::Fmt { paths, .. } => paths.iter().any(|path| is_standard(path)),
+        Command::Run(_)
+        | Command::Live(_)
+        | Command::Watch(_)
+        | Command::Test { .. }
+        | Command::Report { .. }
+        | Command::Explain { .. }
+        | Command::Compare { .. }
+        | Command::Soak { .. }
+        | Command::Export { .. } => false,
+    }
+}
+
 /// Prints what clap has to say: help and version on standard output, mistakes on standard error.
 fn explained(error: &clap::Error) -> Exit {
     match error.print() {
-        Ok(()) if error.use_stderr() => Exit::Usage,
+        // A mistake stays one when nobody reads of it.
+        _ if error.use_stderr() => Exit::Usage,
         Ok(()) => Exit::Passed,
         Err(error) => Failure::from(error).report(),
     }
@@ -85,7 +120,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
                 junit: junit.as_deref(),
                 report: report.as_deref(),
                 recording: recording.as_deref(),
-                include_from: &outside.folders(),
+                allowed: &outside.allowed(),
             };
             test::test(wish, out)
         }
@@ -169,6 +204,7 @@ fn with_lines(
         return command(&mut standard_input(), "standard input");
     }
     let name = shown(path);
+    limit::doing(format!("reading {name}"));
     let file = File::open(path).map_err(|error| Failure::io(&name, &error))?;
     command(&mut BufReader::new(file), &name)
 }
