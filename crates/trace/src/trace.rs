@@ -111,8 +111,10 @@ impl Trace {
     /// without its own.
     pub fn describe_as(&mut self, other: &Header) {
         self.header.title.clone_from(&other.title);
+        let known = other.axes.iter().map(|axis| (axis.name.as_str(), axis));
+        let known: BTreeMap<_, _> = known.collect();
         for axis in &mut self.header.axes {
-            if let Some(known) = other.axes.iter().find(|known| known.name == axis.name) {
+            if let Some(known) = known.get(axis.name.as_str()) {
                 axis.clone_from(known);
             }
         }

@@ -87,7 +87,10 @@ fn what_a_file_says_takes_no_memory_and_what_it_unpacks_to_is_bounded() {
     let too_large = |file: &[u8]| matches!(decode(file), Err(ExactError::TooLarge { .. }));
     // It says so many rows, whatever it has.
     assert!(too_large(&made(50_000_000, &[])));
-    assert_eq!(decode(&made(u64::MAX, &[])).err(), Some(ExactError::TooLarge { most: 1 << 22 }));
+    assert_eq!(
+        decode(&made(u64::MAX, &[])).err(),
+        Some(ExactError::TooLarge { most: 1 << 22 })
+    );
     assert_eq!(decode(&made(1_000_000, &[])).err(), Some(ExactError::Damaged));
     // It has them, packed to a thousandth.
     let zeros = vec![0; 20_000_000];
@@ -99,5 +102,8 @@ fn what_a_file_says_takes_no_memory_and_what_it_unpacks_to_is_bounded() {
     let trace = common::run(2000, None);
     let (file, cells) = (encode(&trace), trace.scans() * trace.columns().len());
     assert!(decode_within(&file, cells).is_ok());
-    assert_eq!(decode_within(&file, cells - 1).err(), Some(ExactError::TooLarge { most: cells - 1 }));
+    assert_eq!(
+        decode_within(&file, cells - 1).err(),
+        Some(ExactError::TooLarge { most: cells - 1 })
+    );
 }

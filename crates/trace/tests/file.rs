@@ -75,7 +75,7 @@ fn a_file_is_replaced_whole_or_not_at_all() {
 #[test]
 #[cfg(unix)]
 fn nothing_is_written_through_a_link_and_permissions_stay() {
-    use standstill_trace::file::{replace_beside, read_regular};
+    use standstill_trace::file::{read_regular, replace_beside};
     use std::os::unix::fs::{PermissionsExt, symlink};
 
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("links");
@@ -83,7 +83,10 @@ fn nothing_is_written_through_a_link_and_permissions_stay() {
     fs::create_dir_all(&folder).expect("a folder for the test");
     let (outside, link) = (folder.join("outside"), folder.join("link"));
     fs::write(&outside, "as it was").expect("writable");
-    for replace in [replace::<fn(&mut dyn io::Write) -> io::Result<()>>, replace_beside] {
+    for replace in [
+        replace::<fn(&mut dyn io::Write) -> io::Result<()>>,
+        replace_beside,
+    ] {
         let _ = fs::remove_file(&link);
         symlink("outside", &link).expect("a link");
         replace(&link, |out| out.write_all(b"new")).expect("writable");
@@ -114,8 +117,14 @@ fn a_trace_is_begun_before_there_is_one() {
     let saving = Saving::begin(&folder.join("a.csv")).expect("writable");
     assert!(!folder.join("a.csv").exists());
     drop(saving);
-    assert_eq!(fs::read_dir(&folder).expect("readable").count(), 0, "nothing is left");
+    assert_eq!(
+        fs::read_dir(&folder).expect("readable").count(),
+        0,
+        "nothing is left"
+    );
     let saving = Saving::begin(&folder.join("a.csv")).expect("writable");
-    saving.finish(&common::run(5, None), Default::default()).expect("writable");
+    saving
+        .finish(&common::run(5, None), Default::default())
+        .expect("writable");
     assert_eq!(load(&folder.join("a.csv")).expect("our own").trace.scans(), 5);
 }

@@ -188,7 +188,9 @@ fn many_entries_take_work_in_proportion() {
     assert!(took < std::time::Duration::from_secs(30), "{took:?}");
     // Of so many mistakes only the first get the nearest name.
     let begin = std::time::Instant::now();
-    let error = read_with(&text.replace(":\"t", ":\"u"), "a.scan.json", &[], &mut |_| Ok(machine.clone()));
+    let error = read_with(&text.replace(":\"t", ":\"u"), "a.scan.json", &[], &mut |_| {
+        Ok(machine.clone())
+    });
     assert_eq!(error.expect_err("no such task").diagnostics().len(), MANY);
     let took = begin.elapsed();
     assert!(took < std::time::Duration::from_secs(30), "{took:?}");
