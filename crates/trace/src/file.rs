@@ -110,16 +110,17 @@ impl Saving {
     /// # Errors
     /// As [`save`].
     pub fn begin(path: &Path) -> Result<Self, FileError> {
-        let header = match form(path)? {
-            Form::JsonLines => None,
-            Form::Csv => Some(Draft::beside(&csv::meta_path(path))?),
-            Form::Exact => {
-                return Err(FileError::Form {
-                    path: path.to_owned(),
-                });
-            }
-        };
+        let form = form(path)?;
+        if form == Form::Exact {
+            return Err(FileError::Form {
+                path: path.to_owned(),
+            });
+        }
         let rows = Draft::begin(path)?;
+        let header = match form {
+            Form::Csv => Some(Draft::beside(&csv::meta_path(path))?),
+            Form::JsonLines | Form::Exact => None,
+        };
         Ok(Self { rows, header })
     }
 
@@ -275,12 +276,19 @@ fn begun(path: &Path) -> io::Result<NamedTempFile> {
         // The system takes from these what its mask says.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let draft = builder.tempfile_in(folder)?;
+    let draft = builder.tempfile_in(folder).map_err(without_path)?;
     #[cfg(unix)]
     if let Some(there) = there.filter(fs::Metadata::is_file) {
         draft.as_file().set_permissions(there.permissions())?;
     }
     Ok(draft)
+}
+
+/// What the system said, without the name of the new file, which nobody knows.
+fn without_path(error: io::Error) -> io::Error {
+    let text = error.to_string();
+    let said = text.split(" at path ").next().unwrap_or(&text).to_owned();
+    io::Error::new(error.kind(), said)
 }
 
 fn text(bytes: Vec<u8>) -> io::Result<String> {

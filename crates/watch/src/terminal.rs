@@ -163,6 +163,11 @@ pub fn watch(app: &mut App<'_>, color: bool) -> io::Result<Ended> {
     let mut terminal = ratatui::try_init()?;
     let ended = run(app, color, &mut terminal, &signals);
     drop(taken);
+    #[cfg(unix)]
+    if line::is_hung_up() {
+        // It would show the cursor on its way out, and say on standard error that it cannot: a panic where that has gone.
+        std::mem::forget(terminal);
+    }
     match ended {
         // What goes wrong at a terminal that has gone is its end.
         #[cfg(unix)]

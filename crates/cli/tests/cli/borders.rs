@@ -278,7 +278,7 @@ fn a_time_limit_ends_any_command_with_what_it_was_at() {
         assert_eq!((ended.status, ended.out.as_str()), (1, ""), "{arguments:?}");
         let told = ended
             .err
-            .strip_prefix("error: --time-limit 300ms: the time is up; it was at ");
+            .strip_prefix("error: --time-limit T#300ms: the time is up; it was at ");
         assert!(told.is_some_and(|told| told.contains(at)), "{}", ended.err);
         assert!(begin.elapsed() < Duration::from_secs(10), "{arguments:?}");
     }
@@ -322,9 +322,9 @@ fn guests_have_no_more_memory_than_the_command_line_gives_them() {
     write(
         &folder,
         "one.scan.json",
-        &script(r#""G":{"wasm":"large.wat","memory":4294967296}"#),
+        &script(r#""G":{"wasm":"large.wat","fuel":1000000000,"memory":4294967296}"#),
     );
-    let half = r#"{"wasm":"large.wat","memory":40000000}"#;
+    let half = r#"{"wasm":"large.wat","fuel":1000000000,"memory":40000000}"#;
     write(
         &folder,
         "two.scan.json",
@@ -341,7 +341,7 @@ fn guests_have_no_more_memory_than_the_command_line_gives_them() {
     assert_eq!(none.status, 2);
     // Those that do not say how much they need share what there is.
     let many: Vec<_> = (0..16)
-        .map(|n| format!(r#""G{n}":{{"wasm":"large.wat"}}"#))
+        .map(|n| format!(r#""G{n}":{{"wasm":"large.wat","fuel":1000000000}}"#))
         .collect();
     write(&folder, "many.scan.json", &script(&many.join(",")));
     let many = standstill(&folder, &["run", "-q", "many.scan.json"]);

@@ -58,7 +58,9 @@ mod terminal {
 
     impl Watched {
         fn new(folder: &Path, arguments: &[&str]) -> Self {
-            let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a terminal");
+            // The program must not hold its own terminal open from the other side.
+            let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
+            let ours = openpt(flags).expect("a terminal");
             grantpt(&ours).expect("ours");
             unlockpt(&ours).expect("ours");
             let name = ptsname(&ours, Vec::new()).expect("it has a name");

@@ -118,7 +118,7 @@ fn map(text: &str) {
 /// A table: our own, or that of a scope.
 fn recording(bytes: &[u8], text: &str) {
     let trace = known();
-    let map = r#"{"standstill_compare": 1, "recording": {"time": {"column": "t", "unit": "ms"}},
+    let map = r#"{"standstill_compare": 1, "recording": {"time": {"column": "t", "unit": "ms"}}, "offset": "T#0s",
         "signals": {"X.Position": {"column": "x", "tolerance": 1}, "go": {"column": "go"}}}"#;
     let map = read_map(map, "a.map.json", &trace).expect("a map");
     if let Some(text) = foreign::decode(bytes)
