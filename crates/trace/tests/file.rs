@@ -83,13 +83,14 @@ fn nothing_is_written_through_a_link_and_permissions_stay() {
     fs::create_dir_all(&folder).expect("a folder for the test");
     let (outside, link) = (folder.join("outside"), folder.join("link"));
     fs::write(&outside, "as it was").expect("writable");
-    for replace in [
-        replace::<fn(&mut dyn io::Write) -> io::Result<()>>,
-        replace_beside,
-    ] {
+    let ways: [fn(&Path) -> Result<(), FileError>; 2] = [
+        |path| replace(path, |out| out.write_all(b"new")),
+        |path| replace_beside(path, |out| out.write_all(b"new")),
+    ];
+    for write in ways {
         let _ = fs::remove_file(&link);
         symlink("outside", &link).expect("a link");
-        replace(&link, |out| out.write_all(b"new")).expect("writable");
+        write(&link).expect("writable");
         assert!(!fs::symlink_metadata(&link).expect("it is there").is_symlink());
         assert_eq!(fs::read_to_string(&link).expect("readable"), "new");
         assert_eq!(fs::read_to_string(&outside).expect("readable"), "as it was");

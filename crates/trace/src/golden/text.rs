@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use crate::column::{Cell, Role};
 use crate::digest;
-use crate::events;
+use crate::events::{events, lines};
 use crate::extremes::{axis_title, extremes_text};
 use crate::header::{Axis, Header, Limits};
 use crate::number::{cell_text, fixed, shortest, time_literal};
@@ -22,9 +22,9 @@ const DIGESTS_PER_LINE: usize = 8;
 /// changes only when behaviour does.
 #[must_use]
 pub fn text(trace: &Trace) -> String {
-    let events = events::events(trace);
+    let events = events(trace);
     let mut text = header(trace);
-    section(&mut text, "events", &events::lines(&events));
+    section(&mut text, "events", &lines(&events));
     let mut scans: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for event in &events {
         scans.entry(&event.subject).or_default().push(event.scan);
