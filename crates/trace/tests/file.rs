@@ -83,7 +83,8 @@ fn nothing_is_written_through_a_link_and_permissions_stay() {
     fs::create_dir_all(&folder).expect("a folder for the test");
     let (outside, link) = (folder.join("outside"), folder.join("link"));
     fs::write(&outside, "as it was").expect("writable");
-    let ways: [fn(&Path) -> Result<(), FileError>; 2] = [
+    type Way = fn(&Path) -> Result<(), FileError>;
+    let ways: [Way; 2] = [
         |path| replace(path, |out| out.write_all(b"new")),
         |path| replace_beside(path, |out| out.write_all(b"new")),
     ];
