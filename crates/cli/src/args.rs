@@ -1,6 +1,7 @@
 //! The arguments of the program.
 
 use clap::{Args, Parser, Subcommand};
+use standstill_script::suite::Allowed;
 use standstill_sweep::Shard;
 use standstill_trace::csv;
 use std::path::PathBuf;
@@ -9,6 +10,9 @@ use std::path::PathBuf;
 #[derive(Debug, Parser)]
 #[command(name = "standstill", version, arg_required_else_help = true, after_help = EXIT_STATUSES)]
 pub struct Arguments {
+    /// End the command with status 1 after this time, and say what it was at
+    #[arg(long, global = true, value_name = "TIME", value_parser = period)]
+    pub time_limit: Option<u64>,
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -341,7 +345,7 @@ pub enum OnOverrun {
     Stop,
 }
 
-/// Reads the time between two scans (ns).
+/// Reads a time (ns).
 fn period(text: &str) -> Result<u64, String> {
     let literal = match text.contains('#') {
         true => text.to_owned(),
@@ -354,7 +358,7 @@ fn period(text: &str) -> Result<u64, String> {
         .ok_or_else(|| "write a time above 0 with its unit, such as 1ms or 250us".to_owned())
 }
 
-/// Files that scripts may read although they lie outside their folder.
+/// What scripts may do beyond what any script may.
 #[derive(Args, Debug)]
 pub struct Outside {
     /// Let scripts read files (machine files, programs) from this folder, too
@@ -363,17 +367,36 @@ pub struct Outside {
     /// Let scripts read files from anywhere
     #[arg(long)]
     allow_outside: bool,
+    /// Let the guest programs of a script have so much memory in all, such as 256MiB
+    #[arg(long, value_name = "SIZE", value_parser = size, default_value = "64MiB")]
+    guest_memory: u64,
 }
 
 impl Outside {
-    /// The folders from which files may be read, and from folders below.
-    pub fn folders(&self) -> Vec<PathBuf> {
+    /// What scripts may do beyond what any script may.
+    pub fn allowed(&self) -> Allowed {
         let mut folders = self.include_from.clone();
         if self.allow_outside {
             folders.push(PathBuf::from(std::path::MAIN_SEPARATOR_STR));
         }
-        folders
+        Allowed {
+            folders,
+            guest_memory: self.guest_memory,
+        }
     }
+}
+
+/// Reads a number of bytes.
+fn size(text: &str) -> Result<u64, String> {
+    let units = [("KiB", 1 << 10), ("MiB", 1 << 20), ("GiB", 1_u64 << 30)];
+    let unit = units
+        .iter()
+        .find_map(|(unit, bytes)| Some((text.strip_suffix(unit)?, *bytes)));
+    let (number, bytes) = unit.unwrap_or((text, 1));
+    let number: Option<u64> = number.parse().ok();
+    number
+        .and_then(|number| number.checked_mul(bytes))
+        .ok_or_else(|| "write a number of bytes, or one with KiB, MiB or GiB, such as 256MiB".to_owned())
 }
 
 /// Reads a delimiter.
@@ -426,6 +449,16 @@ mod tests {
         assert_eq!(tolerance("0"), Ok(0.0));
         for wrong in ["-1e-9", "NaN", "Infinity", "1e999", "", "1,5", "small"] {
             assert!(tolerance(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn sizes_are_whole_numbers_of_bytes() {
+        assert_eq!(size("65536"), Ok(65_536));
+        assert_eq!(size("64MiB"), Ok(64 << 20));
+        assert_eq!(size("4GiB"), Ok(4 << 30));
+        for wrong in ["", "MiB", "-1", "1.5GiB", "4GB", "4 GiB", "99999999999GiB"] {
+            assert!(size(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -1,6 +1,7 @@
 //! `standstill compare`: a trace against the recording of a machine.
 
 use crate::exit::{Exit, Failure, complain};
+use crate::limit;
 use standstill_script::read_map;
 use standstill_script::suite::shown;
 use standstill_trace::{file, foreign, machine};
@@ -11,6 +12,7 @@ use std::path::Path;
 /// Holds `trace` against what `recording` has of it, as `map` says.
 pub fn compare(recording: &Path, trace: &Path, map: &Path, out: &mut dyn Write) -> Result<Exit, Failure> {
     let (recording_name, trace_name, map_name) = (shown(recording), shown(trace), shown(map));
+    limit::doing(format!("holding {trace_name} against {recording_name}"));
     let text = fs::read_to_string(map).map_err(|error| Failure::io(&map_name, &error))?;
     let loaded = file::load(trace)?.trace;
     let map = read_map(&text, &map_name, &loaded)

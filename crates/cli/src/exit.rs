@@ -4,6 +4,7 @@ use standstill_script::RunError;
 use standstill_script::suite::SuiteError;
 use standstill_trace::file::FileError;
 use standstill_trace::golden::GoldenError;
+use standstill_trace::printable_lines;
 use std::io::{self, ErrorKind, Write};
 use std::panic::{self, UnwindSafe};
 use std::process::ExitCode;
@@ -138,9 +139,9 @@ pub fn go_on(result: Result<Exit, Failure>, out: &mut dyn Write) -> Result<Exit,
     }
 }
 
-/// Writes a line to standard error. Unlike `eprintln!` it does not panic when nobody can read it.
+/// Writes lines to standard error, on which every character can be seen. Unlike `eprintln!` it does not panic when nobody can read it.
 pub fn complain(text: &str) {
-    let _ = writeln!(io::stderr(), "{text}");
+    let _ = writeln!(io::stderr(), "{}", printable_lines(text));
 }
 
 /// Runs the program; a panic becomes [`Exit::Internal`].

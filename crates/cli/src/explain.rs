@@ -1,6 +1,7 @@
 //! `standstill explain`: where two traces part.
 
 use crate::exit::{Exit, Failure, complain};
+use crate::limit;
 use standstill_script::suite::shown;
 use standstill_trace::story::story;
 use standstill_trace::{Trace, file};
@@ -25,6 +26,7 @@ pub fn explain(expected: &Path, found: &Path, out: &mut dyn Write) -> Result<Exi
 
 /// A trace, with what it lacks told on standard error.
 pub fn load(path: &Path) -> Result<Trace, Failure> {
+    limit::doing(format!("reading {}", shown(path)));
     let loaded = file::load(path)?;
     if !loaded.lacks.is_empty() {
         complain(&format!(

@@ -1,12 +1,12 @@
 //! Pages of failing tests: the golden as it should be, the run laid over it, the first difference marked.
 
-use crate::exit::Failure;
+use crate::exit::{Exit, Failure};
 use crate::report::page_failure;
 use standstill_report::{Mark, Source, check, html_marked};
 use standstill_script::golden;
 use standstill_script::suite::{Report, SuiteError, shown};
 use standstill_trace::compare::{Difference, Yardstick, compare_by};
-use standstill_trace::file::replace;
+use standstill_trace::file::replace_beside;
 use standstill_trace::{Trace, time_literal};
 use std::collections::BTreeSet;
 use std::fs;
@@ -32,10 +32,25 @@ impl<'a> Pages<'a> {
     /// Writes the page of a script that failed by this yardstick; its path.
     pub fn write(&mut self, script: &Path, report: &Report, yardstick: Yardstick) -> Result<String, Failure> {
         let path = self.place(script);
-        make(path.parent().unwrap_or(self.root))?;
+        let folder = path.parent().unwrap_or(self.root);
+        make(folder)?;
+        self.stay_below(folder)?;
         let page = page(script, report, yardstick)?;
-        replace(&path, |out| out.write_all(page.as_bytes()))?;
+        replace_beside(&path, |out| out.write_all(page.as_bytes()))?;
         Ok(shown(&path))
+    }
+
+    /// No link on the way leads out of the folder that was named.
+    fn stay_below(&self, folder: &Path) -> Result<(), Failure> {
+        let real = |path: &Path| fs::canonicalize(path).map_err(|error| Failure::io(&shown(path), &error));
+        if real(folder)?.starts_with(real(self.root)?) {
+            return Ok(());
+        }
+        let text = format!(
+            "error: {}: a link leads out of the folder of --report",
+            shown(folder)
+        );
+        Err(Failure::Told(Exit::Io, text))
     }
 
     /// Where the page of a script goes: below the folder as the script stands below its own.
@@ -63,7 +78,7 @@ fn make(folder: &Path) -> Result<(), Failure> {
 
 fn page(script: &Path, report: &Report, yardstick: Yardstick) -> Result<String, Failure> {
     let run = &report.outcome.trace;
-    let mut golden = golden::expected(script).map_err(SuiteError::from)?;
+    let mut golden = golden::expected(script, run).map_err(SuiteError::from)?;
     if let Some(expected) = &mut golden {
         expected.describe_as(run.header());
     }

@@ -1,7 +1,9 @@
 //! `standstill fmt`: scripts in their canonical layout.
 
 use crate::exit::{Exit, Failure, go_on};
+use crate::limit;
 use standstill_script::suite::{self, SuiteError};
+use standstill_trace::file::replace_beside;
 use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -35,13 +37,20 @@ pub fn filter(check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
 
 fn lay_out(path: &Path, check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let name = suite::shown(path);
+    limit::doing(name.as_str());
     let text = fs::read_to_string(path).map_err(|error| Failure::io(&name, &error))?;
     let canonical = canonical(&text, &name)?;
     if text == canonical {
         return Ok(Exit::Passed);
     }
     if !check {
-        fs::write(path, canonical).map_err(|error| Failure::io(&name, &error))?;
+        let found = fs::symlink_metadata(path).map_err(|error| Failure::io(&name, &error))?;
+        if found.is_symlink() {
+            let why =
+                format!("error: {name}: a link, through which nothing is written; lay out what it leads to");
+            return Err(Failure::Told(Exit::Io, why));
+        }
+        replace_beside(path, |out| out.write_all(canonical.as_bytes()))?;
     }
     writeln!(out, "{name}")?;
     Ok(Exit::of(!check))

@@ -20,13 +20,15 @@ mod linux {
     use super::*;
     use crate::args;
     use crate::exit::complain;
+    use crate::limit;
     use crate::run::{failing_claims, failure, verdict};
     use serde_json::{Map, json};
     use standstill_live::{Ended, OnOverrun, Stopped, System, Timing, pace};
     use standstill_script::suite::{self, SuiteError, shown};
     use standstill_script::{RunError, Session};
     use standstill_trace::csv::Dialect;
-    use standstill_trace::{Trace, digest, file};
+    use standstill_trace::digest;
+    use standstill_trace::file::{self, Draft, Saving};
 
     /// Runs the script in real time. What happened and when go to files; the last line is that of `run`.
     pub fn live(arguments: &LiveArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
@@ -46,7 +48,7 @@ mod linux {
             )));
         }
         let name = shown(path);
-        let (script, _) = suite::read_file(path, set, &outside.folders()).map_err(failure)?;
+        let (script, _) = suite::read_file(path, set, &outside.allowed()).map_err(failure)?;
         let cycle = script.cycle_ns.unsigned_abs();
         if cycle != *period {
             return Err(Failure::usage(&format!(
@@ -62,6 +64,10 @@ mod linux {
         };
         let mut session = Session::new(&script).map_err(wrong)?;
         session.reserve();
+        // What cannot be written is found out now, not after the run.
+        let saving = arguments.trace.as_deref().map(Saving::begin).transpose()?;
+        let times = arguments.timing.as_deref().map(Draft::begin).transpose()?;
+        limit::doing(format!("{name}, paced"));
         let mut timing = Timing::new(*period);
         let system = System::prepare().map_err(|error| Failure::io("signals", &error))?;
         for lack in system.lacks() {
@@ -84,9 +90,9 @@ mod linux {
         about.insert("system".to_owned(), system.to_json());
         drop(system);
         tell(&name, &timing);
-        if let Some(path) = &arguments.timing {
+        if let Some(times) = times {
             let text = format!("{:#}\n", timing.to_json(&about));
-            file::replace(path, |out| out.write_all(text.as_bytes()))?;
+            times.finish(|out| out.write_all(text.as_bytes()))?;
         }
         let ended = ended.map_err(wrong)?;
         let on = session
@@ -115,15 +121,10 @@ mod linux {
                 (trace, Exit::of(on.is_none() && why != Stopped::Overrun))
             }
         };
-        save(&trace, arguments)?;
-        Ok(exit)
-    }
-
-    fn save(trace: &Trace, arguments: &LiveArguments) -> Result<(), Failure> {
-        if let Some(path) = &arguments.trace {
-            file::save_as(trace, path, Dialect::default())?;
+        if let Some(saving) = saving {
+            saving.finish(&trace, Dialect::default())?;
         }
-        Ok(())
+        Ok(exit)
     }
 
     fn cause(why: Stopped) -> &'static str {

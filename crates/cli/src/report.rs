@@ -1,6 +1,7 @@
 //! `standstill report`, and what `run` writes beside its text: a trace as a page, a picture, a waveform.
 
 use crate::exit::{Exit, Failure, complain};
+use crate::limit;
 use standstill_report::{ReportError, Source, html};
 use standstill_script::suite::shown;
 use standstill_trace::file::{self, replace};
@@ -42,7 +43,9 @@ pub fn report(traces: &[PathBuf], targets: Targets<'_>) -> Result<Exit, Failure>
 }
 
 fn load(path: &Path) -> Result<(String, Loaded), Failure> {
-    let (name, loaded) = (shown(path), file::load(path)?);
+    let name = shown(path);
+    limit::doing(format!("reading {name}"));
+    let loaded = file::load(path)?;
     if !loaded.lacks.is_empty() {
         complain(&format!("note: {name} lacks {}", loaded.lacks.join(", ")));
     }

@@ -2,6 +2,7 @@
 
 use crate::args::RunArguments;
 use crate::exit::{Exit, Failure, go_on};
+use crate::limit;
 use crate::progress::Progress;
 use crate::report::{self, Targets};
 use standstill_report::Source;
@@ -89,7 +90,9 @@ fn run_one(
     let name = suite::shown(script);
     let outcome = {
         let mut progress = Progress::new(!arguments.quiet);
-        suite::run_file(script, &arguments.set, &arguments.outside.folders(), |scans| {
+        limit::doing(name.clone());
+        suite::run_file(script, &arguments.set, &arguments.outside.allowed(), |scans| {
+            limit::doing(format!("{name}: {scans} scans"));
             progress.show(|| format!("{name}: {scans} scans"))
         })
     };

@@ -2,6 +2,7 @@
 
 use crate::args::SweepArguments;
 use crate::exit::{Exit, Failure, complain};
+use crate::limit;
 use crate::progress::Progress;
 use standstill_script::suite::shown;
 use standstill_sweep::{Job, Judged, Part, Row, Rows, SweepError, merge, run, write};
@@ -14,7 +15,8 @@ use std::time::{Duration, Instant};
 
 /// Runs the sweep, or puts its shards together, and tells how many cases passed.
 pub fn sweep(arguments: &SweepArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
-    let job = Job::load(&arguments.sweep, &arguments.outside.folders())?;
+    limit::doing(shown(&arguments.sweep));
+    let job = Job::load(&arguments.sweep, &arguments.outside.allowed())?;
     let (rows, part) = if arguments.merge.is_empty() {
         computed(&job, arguments)?
     } else {
@@ -70,6 +72,12 @@ fn computed(job: &Job, arguments: &SweepArguments) -> Result<(Rows, Option<Part>
         }
         rows.insert(row.case, row.fields);
         let done = rows.len() - kept;
+        limit::doing(format!(
+            "{}: {} of {} cases",
+            shown(&arguments.sweep),
+            rows.len(),
+            all.len()
+        ));
         progress.show(|| standing(rows.len(), all.len(), done, begin.elapsed()));
         Ok::<_, Failure>(())
     })?;

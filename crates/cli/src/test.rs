@@ -5,10 +5,11 @@ use crate::exit::{Exit, Failure, go_on};
 use crate::explain::load;
 use crate::failing::Pages;
 use crate::junit::{self, Case, Ending};
+use crate::limit;
 use crate::progress::Progress;
 use standstill_script::golden::{Mode, Standing};
 use standstill_script::judge_recording;
-use standstill_script::suite::{self, Report};
+use standstill_script::suite::{self, Allowed, Report};
 use standstill_trace::compare::{Tolerance, Yardstick};
 use std::fmt;
 use std::io::Write;
@@ -30,8 +31,8 @@ pub struct Wish<'a> {
     pub report: Option<&'a Path>,
     /// The trace to judge the claims on, instead of runs.
     pub recording: Option<&'a Path>,
-    /// Folders that scripts may include files from.
-    pub include_from: &'a [PathBuf],
+    /// What scripts may do beyond what any script may.
+    pub allowed: &'a Allowed,
 }
 
 /// How exactly a run must be as its golden, from the arguments.
@@ -64,8 +65,12 @@ pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
         let place = format!("{} of {}{}: {name}", index + 1, scripts.len(), tally.trouble());
         progress.show(|| place.clone());
         let begin = Instant::now();
-        let told = |scans| progress.show(|| format!("{place}, {scans} scans"));
-        let judged = suite::judge_file(script, mode, wish.yardstick, wish.include_from, told);
+        limit::doing(place.clone());
+        let told = |scans| {
+            limit::doing(format!("{place}, {scans} scans"));
+            progress.show(|| format!("{place}, {scans} scans"));
+        };
+        let judged = suite::judge_file(script, mode, wish.yardstick, wish.allowed, told);
         progress.clear();
         let (ending, text) = match judged {
             Ok(report) => {
@@ -104,8 +109,9 @@ fn on_recording(wish: Wish<'_>, recording: &Path, out: &mut dyn Write) -> Result
         let message = format!("{name}: --recording is judged by one script, and this is a folder");
         return Err(Failure::usage(&message));
     }
+    limit::doing(suite::shown(script));
     let begin = Instant::now();
-    let (judge, _) = suite::read_file(script, &[], wish.include_from)?;
+    let (judge, _) = suite::read_file(script, &[], wish.allowed)?;
     let outcome = judge_recording(&judge, load(recording)?).map_err(|error| {
         Failure::Told(
             Exit::BadInput,

@@ -27,7 +27,7 @@ pub fn watch(arguments: &WatchArguments, out: &mut dyn Write) -> Result<Exit, Fa
         outside,
     } = arguments;
     let name = shown(path);
-    let (script, text) = suite::read_file(path, set, &outside.folders()).map_err(crate::run::failure)?;
+    let (script, text) = suite::read_file(path, set, &outside.allowed()).map_err(crate::run::failure)?;
     let save = Box::new(|changes: &[_]| save(path, &text, !set.is_empty(), changes));
     let mut app = App::new(&script, &name, save).map_err(|source| SuiteError::Run {
         path: path.clone(),
@@ -43,6 +43,8 @@ pub fn watch(arguments: &WatchArguments, out: &mut dyn Write) -> Result<Exit, Fa
             )));
         }
     }
+    crate::limit::doing(name.as_str());
+    crate::limit::before_end(standstill_watch::give_back);
     let color = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
     let ended =
         standstill_watch::watch(&mut app, color).map_err(|error| Failure::io("the terminal", &error))?;
@@ -85,12 +87,13 @@ fn save(
             format!("-{number}")
         };
         let target = stem.with_added_extension(format!("watched{end}{}", suite::EXTENSION));
-        if !target.exists() {
+        // A link that leads nowhere is a name that is taken, too.
+        if std::fs::symlink_metadata(&target).is_err() {
             break target;
         }
         number += 1;
     };
-    standstill_trace::file::replace(&target, |out| out.write_all(script.as_bytes()))
+    standstill_trace::file::replace_beside(&target, |out| out.write_all(script.as_bytes()))
         .map_err(|error| error.to_string())?;
     Ok(format!("written: {}", shown(&target)))
 }

@@ -1,6 +1,7 @@
 //! Files into a folder: all of them or none.
 
 use crate::File;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -35,7 +36,11 @@ pub fn write(folder: &Path, files: &[File]) -> Result<(), WriteError> {
             return Err(at(&place)(io::Error::from(io::ErrorKind::IsADirectory)));
         }
         let part = beside(file);
-        fs::write(&part, &file.text).map_err(at(&part))
+        // Whatever has this name already, a link perhaps, gives way to a new file.
+        let _ = fs::remove_file(&part);
+        let new = fs::File::options().write(true).create_new(true).open(&part);
+        new.and_then(|mut new| new.write_all(file.text.as_bytes()))
+            .map_err(at(&part))
     });
     let moved = written.and_then(|()| {
         files.iter().try_for_each(|file| {

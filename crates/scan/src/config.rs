@@ -1,5 +1,6 @@
 //! Tasks and programs as declared, and everything that can be wrong with them.
 
+use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::string::String;
 use core::fmt;
 
@@ -189,12 +190,9 @@ pub(crate) fn check(
     if base_tick_ns == 0 {
         return Err(ConfigError::BaseTick);
     }
-    for (index, task) in tasks.iter().enumerate() {
-        if tasks
-            .iter()
-            .take(index)
-            .any(|other| same(&other.name, &task.name))
-        {
+    let mut names = BTreeSet::new();
+    for task in tasks {
+        if !names.insert(upper(&task.name)) {
             return Err(ConfigError::DuplicateTask {
                 name: task.name.clone(),
             });
@@ -223,18 +221,15 @@ pub(crate) fn check(
             });
         }
     }
-    for (index, program) in programs.iter().enumerate() {
-        if programs
-            .iter()
-            .take(index)
-            .any(|other| same(&other.name, &program.name))
-        {
+    let mut programs_named = BTreeSet::new();
+    for program in programs {
+        if !programs_named.insert(upper(&program.name)) {
             return Err(ConfigError::DuplicateProgram {
                 name: program.name.clone(),
             });
         }
         if let Some(task) = &program.task
-            && find(tasks, task).is_none()
+            && !names.contains(&upper(task))
         {
             return Err(ConfigError::UnknownTask {
                 program: program.name.clone(),
@@ -245,12 +240,13 @@ pub(crate) fn check(
     Ok(())
 }
 
-/// The task called `name`.
-pub(crate) fn find(tasks: &[TaskConfig], name: &str) -> Option<usize> {
-    tasks.iter().position(|task| same(&task.name, name))
+/// The tasks by name, without regard to case as IEC identifiers are.
+pub(crate) fn by_name(tasks: &[TaskConfig]) -> BTreeMap<String, usize> {
+    let tasks = tasks.iter().enumerate();
+    tasks.map(|(index, task)| (upper(&task.name), index)).collect()
 }
 
-/// IEC identifiers are the same without regard to case.
-fn same(a: &str, b: &str) -> bool {
-    a.eq_ignore_ascii_case(b)
+/// What a name has in common with those that differ from it in case only.
+pub(crate) fn upper(name: &str) -> String {
+    name.to_ascii_uppercase()
 }

@@ -1,12 +1,13 @@
 //! The executor: which programs run, and the order of everything in a scan.
 
-use crate::config::{check, find};
+use crate::config::{by_name, check, upper};
 use crate::task::Task;
 use crate::{
     ConfigError, Fault, FaultText, Machine, NotOff, ProgramConfig, ProgramId, Programs, RUNTIME, ScanTime,
     Start, TaskConfig, TaskCounts, TaskId,
 };
 use alloc::string::String;
+use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
 use core::num::NonZero;
@@ -79,6 +80,10 @@ struct Program {
     task: Option<TaskId>,
 }
 
+/// An execution to come; they are done in this order: of the highest priority first, among equals of the task that waits
+/// longest, then of the one declared first.
+type Waiting = (u32, u64, TaskId);
+
 /// One resource: its tasks and program instances, executed one after the other without preemption.
 ///
 /// A task is due on the ticks of its phase grid, which begins at the first scan after a start. An instant
@@ -91,6 +96,10 @@ pub struct Executor {
     base_tick_ns: NonZero<u64>,
     tasks: Vec<Task>,
     programs: Vec<Program>,
+    /// The programs of each task, and behind them those without one, in declaration order.
+    by_task: Vec<Vec<ProgramId>>,
+    /// What is executed in the scan under way; it has room for all tasks.
+    waiting: Vec<Waiting>,
     /// Number of the next scan.
     next_scan: u64,
     previous_ns: Option<i64>,
@@ -120,20 +129,29 @@ impl Executor {
         programs: &[ProgramConfig],
     ) -> Result<Self, ConfigError> {
         check(base_tick_ns, tasks, programs)?;
+        let places = by_name(tasks);
+        let programs: Vec<_> = programs
+            .iter()
+            .map(|program| Program {
+                name: program.name.clone(),
+                task: (program.task.as_ref())
+                    .and_then(|name| places.get(&upper(name)).copied())
+                    .map(TaskId),
+            })
+            .collect();
+        let mut by_task = vec![Vec::new(); tasks.len() + 1];
+        for (index, program) in programs.iter().enumerate() {
+            let place = program.task.map_or(tasks.len(), |task| task.0);
+            if let Some(programs) = by_task.get_mut(place) {
+                programs.push(ProgramId(index));
+            }
+        }
         Ok(Self {
             base_tick_ns: NonZero::new(base_tick_ns).ok_or(ConfigError::BaseTick)?,
             tasks: tasks.iter().map(|task| Task::new(task, base_tick_ns)).collect(),
-            programs: programs
-                .iter()
-                .map(|program| Program {
-                    name: program.name.clone(),
-                    task: program
-                        .task
-                        .as_ref()
-                        .and_then(|name| find(tasks, name))
-                        .map(TaskId),
-                })
-                .collect(),
+            programs,
+            by_task,
+            waiting: Vec::with_capacity(tasks.len()),
             next_scan: 0,
             previous_ns: None,
             grid: None,
@@ -317,8 +335,17 @@ impl Executor {
         machine: &mut Machine<P, D>,
         work: &mut Work,
     ) -> Result<(), Fault> {
-        // Ends: an execution takes its task out of the waiting ones, and nothing puts one in.
-        while let Some(id) = self.most_urgent() {
+        // An execution takes its task out of the waiting ones, and nothing puts one in, so they are sorted once.
+        self.waiting.clear();
+        let waiting = self.tasks.iter().enumerate();
+        let waiting =
+            waiting.filter_map(|(index, task)| Some((task.priority, task.waiting_since()?, TaskId(index))));
+        self.waiting.extend(waiting);
+        self.waiting.sort_unstable();
+        for place in 0..self.waiting.len() {
+            let Some(&(_, _, id)) = self.waiting.get(place) else {
+                break;
+            };
             let took_ns = self.run_programs(Some(id), time, programs, machine)?;
             work.used_ns = work.used_ns.saturating_add(took_ns);
             work.executions += 1;
@@ -342,17 +369,6 @@ impl Executor {
         Ok(())
     }
 
-    /// The waiting task of the highest priority; among equals the one that waits longest, then the one
-    /// declared first.
-    fn most_urgent(&self) -> Option<TaskId> {
-        self.tasks
-            .iter()
-            .enumerate()
-            .filter_map(|(index, task)| Some((task.priority, task.waiting_since()?, TaskId(index))))
-            .min()
-            .map(|(_, _, id)| id)
-    }
-
     /// Runs the programs of `task`, or those without a task, in declaration order; gives what they took
     /// together (ns).
     fn run_programs<P: Planner, D: Drive>(
@@ -363,11 +379,8 @@ impl Executor {
         machine: &mut Machine<P, D>,
     ) -> Result<u64, Fault> {
         let mut used_ns = 0_u64;
-        for (index, program) in self.programs.iter().enumerate() {
-            if program.task != task {
-                continue;
-            }
-            let program = ProgramId(index);
+        let place = task.map_or(self.tasks.len(), |task| task.0);
+        for &program in self.by_task.get(place).into_iter().flatten() {
             let mut context = machine.context(time, RUNTIME);
             let took_ns = programs
                 .run(program, &mut context)

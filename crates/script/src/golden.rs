@@ -68,12 +68,13 @@ pub fn snap_path(script: &Path) -> PathBuf {
     script.with_extension("").with_extension("snap")
 }
 
-/// The run that the golden of a script records; none without a golden, or where its exact trace is no help.
+/// The run that the golden of a script records, to be held against `run`; none without a golden, or where its exact trace is
+/// no help.
 ///
 /// # Errors
 /// As [`judge`].
-pub fn expected(script: &Path) -> Result<Option<Trace>, GoldenError> {
-    golden::expected(&snap_path(script))
+pub fn expected(script: &Path, run: &Trace) -> Result<Option<Trace>, GoldenError> {
+    golden::expected(&snap_path(script), run)
 }
 
 /// Holds a run against the golden of its script by this yardstick, and does to the golden what `mode` permits. A golden
@@ -142,7 +143,7 @@ pub fn judge(
 
 /// What may be behind a difference, where the golden's exact trace can tell.
 fn likely_cause(snap: &Path, trace: &Trace) -> Result<String, GoldenError> {
-    let story = golden::expected(snap)?.and_then(|expected| story(&expected, trace));
+    let story = golden::expected(snap, trace)?.and_then(|expected| story(&expected, trace));
     let cause = story.and_then(|story| story.causes.into_iter().next());
     Ok(cause.map_or_else(String::new, |cause| {
         format!("likely cause\n  {cause}\n  look at: {}\n", cause.look_at())

@@ -28,7 +28,9 @@ pub use read::block::NOT_BUILT;
 pub use read::machine_map::read_map;
 pub use read::sweep::read_sweep;
 pub use read::time::parse as parse_time;
-pub use read::{CELLS_MAX, ENTITIES_MAX, SCANS_MAX, VERSION, read, read_with, read_with_programs};
+pub use read::{
+    CELLS_MAX, ENTITIES_MAX, GUEST_MEMORY, LOOKS_MAX, SCANS_MAX, VERSION, read, read_with, read_with_programs,
+};
 pub use run::{Change, Outcome, RecordingError, RunError, Session, judge_recording, run, run_with};
 pub use schema::schema;
 pub use schema_machine::machine_schema;

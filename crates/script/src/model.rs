@@ -182,6 +182,16 @@ pub enum When {
     },
 }
 
+impl When {
+    /// Looks at the row of a scan.
+    pub(crate) fn looks(&self) -> u64 {
+        match self {
+            Self::At(_) => 0,
+            Self::Holds { conditions, .. } => conditions.len() as u64,
+        }
+    }
+}
+
 /// One step.
 #[derive(Clone, Debug)]
 pub struct Step {
@@ -377,4 +387,19 @@ pub enum ClaimKind {
         /// Factor on every limit.
         factor: f64,
     },
+}
+
+impl ClaimKind {
+    /// Looks at the row of a scan that judging it takes at most.
+    pub(crate) fn looks(&self) -> u64 {
+        let looks = match self {
+            Self::At(_, that) | Self::By(_, that) | Self::Once(_, that) => that.len(),
+            Self::Always { during, that, .. } => that.len().saturating_mul(1 + during.len()),
+            Self::Never { during, that, .. } => during.len() + that.len(),
+            Self::Exclusive(_, points) => points.len(),
+            // Positions of four differences.
+            Self::WithinLimits { .. } => 14,
+        };
+        looks as u64
+    }
 }

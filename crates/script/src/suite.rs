@@ -4,9 +4,12 @@
 
 use crate::golden::{self, Mode, Standing};
 use crate::model::Script;
+use crate::read::read_within;
 use crate::run::{Outcome, RunError, run_with};
-use crate::{ScriptError, Verdict, read_with_programs};
+use crate::{GUEST_MEMORY, ScriptError, Verdict};
 use standstill_trace::compare::Yardstick;
+use standstill_trace::file::read_regular;
+pub use standstill_trace::file::shown;
 use standstill_trace::golden::GoldenError;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -100,13 +103,26 @@ impl SuiteError {
     }
 }
 
-/// A path as it is printed: with `/` on every system.
-pub fn shown(path: &Path) -> String {
-    path.display().to_string().replace(std::path::MAIN_SEPARATOR, "/")
+/// What the scripts of a command may do beyond what any script may.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Allowed {
+    /// Folders from which, and from whose folders, files may be read beside those of the script's own.
+    pub folders: Vec<PathBuf>,
+    /// Memory that all guest programs of a script may have together (bytes).
+    pub guest_memory: u64,
+}
+
+impl Default for Allowed {
+    fn default() -> Self {
+        Self {
+            folders: Vec::new(),
+            guest_memory: GUEST_MEMORY,
+        }
+    }
 }
 
 /// Reads and runs the script at `path`, and holds it against its claims and, by this yardstick, its golden. `progress` is told
-/// from time to time how many scans are done. Files that it includes lie below its folder or below one of `allowed`.
+/// from time to time how many scans are done. Files that it includes lie below its folder or where `allowed` says.
 ///
 /// # Errors
 /// [`SuiteError`]; claims and goldens that fail are no error but stand in the report.
@@ -114,7 +130,7 @@ pub fn judge_file(
     path: &Path,
     mode: Mode,
     yardstick: Yardstick,
-    allowed: &[PathBuf],
+    allowed: &Allowed,
     progress: impl FnMut(u64),
 ) -> Result<Report, SuiteError> {
     let outcome = run_file(path, &[], allowed, progress)?;
@@ -130,7 +146,7 @@ pub fn judge_file(
 pub fn run_file(
     path: &Path,
     parameters: &[(String, f64)],
-    allowed: &[PathBuf],
+    allowed: &Allowed,
     progress: impl FnMut(u64),
 ) -> Result<Outcome, SuiteError> {
     let (script, _) = read_file(path, parameters, allowed)?;
@@ -147,12 +163,13 @@ pub fn run_file(
 pub fn read_file(
     path: &Path,
     parameters: &[(String, f64)],
-    allowed: &[PathBuf],
+    allowed: &Allowed,
 ) -> Result<(Script, String), SuiteError> {
     let text = read_text(path)?;
     let mut load = |inner: &str| included(path, inner, allowed);
     let mut guest = |inner: &str| module(path, inner, allowed);
-    let script = read_with_programs(&text, &shown(path), parameters, &mut load, &mut guest)?;
+    let most = allowed.guest_memory;
+    let script = read_within(&text, &shown(path), parameters, &mut load, &mut guest, most)?;
     Ok((script, text))
 }
 
@@ -160,6 +177,7 @@ pub fn read_file(
 #[derive(Clone, Debug)]
 pub struct Texts {
     name: String,
+    guest_memory: u64,
     text: String,
     included: BTreeMap<String, String>,
     guests: BTreeMap<String, Vec<u8>>,
@@ -171,7 +189,7 @@ impl Texts {
     ///
     /// # Errors
     /// [`SuiteError::Io`], [`SuiteError::Encoding`], [`SuiteError::Script`].
-    pub fn read(path: &Path, allowed: &[PathBuf]) -> Result<(Self, Script), SuiteError> {
+    pub fn read(path: &Path, allowed: &Allowed) -> Result<(Self, Script), SuiteError> {
         let (name, text) = (shown(path), read_text(path)?);
         let mut files = BTreeMap::new();
         let mut load = |inner: &str| {
@@ -185,9 +203,11 @@ impl Texts {
             guests.insert(inner.to_owned(), bytes.clone());
             Ok(bytes)
         };
-        let script = read_with_programs(&text, &name, &[], &mut load, &mut guest)?;
+        let most = allowed.guest_memory;
+        let script = read_within(&text, &name, &[], &mut load, &mut guest, most)?;
         let texts = Self {
             name,
+            guest_memory: most,
             text,
             included: files,
             guests,
@@ -208,7 +228,8 @@ impl Texts {
             let bytes = self.guests.get(inner).cloned();
             bytes.ok_or_else(|| "it was not there before".to_owned())
         };
-        read_with_programs(&self.text, &self.name, parameters, &mut load, &mut guest)
+        let most = self.guest_memory;
+        read_within(&self.text, &self.name, parameters, &mut load, &mut guest, most)
     }
 }
 
@@ -225,13 +246,19 @@ pub fn read_text(path: &Path) -> Result<String, SuiteError> {
 }
 
 /// The text of a file that the script at `outer` includes.
-fn included(outer: &Path, inner: &str, allowed: &[PathBuf]) -> Result<String, String> {
-    fs::read_to_string(beside(outer, inner, allowed, "script")?).map_err(why)
+fn included(outer: &Path, inner: &str, allowed: &Allowed) -> Result<String, String> {
+    let bytes = read_regular(&beside(outer, inner, &allowed.folders, "script")?).map_err(why)?;
+    String::from_utf8(bytes).map_err(|_| "it is not UTF-8".to_owned())
 }
 
 /// The bytes of a guest that the script at `outer` names; of a file that is too large so many that it shows.
-fn module(outer: &Path, inner: &str, allowed: &[PathBuf]) -> Result<Vec<u8>, String> {
-    let file = fs::File::open(beside(outer, inner, allowed, "script")?).map_err(why)?;
+fn module(outer: &Path, inner: &str, allowed: &Allowed) -> Result<Vec<u8>, String> {
+    let path = beside(outer, inner, &allowed.folders, "script")?;
+    // A pipe would be waited for.
+    if !fs::metadata(&path).map_err(why)?.is_file() {
+        return Err("it is no regular file".to_owned());
+    }
+    let file = fs::File::open(path).map_err(why)?;
     let mut bytes = Vec::new();
     let most = standstill_guest::MODULE_MOST as u64 + 1;
     file.take(most).read_to_end(&mut bytes).map_err(why)?;
@@ -340,10 +367,10 @@ fn walk(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
         for entry in fs::read_dir(&folder).map_err(SuiteError::io(&folder))? {
             let entry = entry.map_err(SuiteError::io(&folder))?;
             let kind = entry.file_type().map_err(SuiteError::io(&folder))?;
-            // Links to folders are not followed: they could lead back here.
+            // Links to folders are not followed: they could lead back here. Pipes and devices are no scripts.
             if kind.is_dir() {
                 folders.push(entry.path());
-            } else {
+            } else if kind.is_file() || fs::metadata(entry.path()).is_ok_and(|found| found.is_file()) {
                 files.push(entry.path());
             }
         }

@@ -3,7 +3,7 @@
 //! The run under judgement has a BOOL `a`, TRUE in scans 3 to 5 and 8, and a number `v` that is 0, then 1.5
 //! from scan 4 on; axis X moves 3 -> 5 in three scans from scan 1 on (3, 3.5, 4.5, 5, ..).
 
-use standstill_script::{Outcome, read, run};
+use standstill_script::{Outcome, judge_recording, read, run};
 
 fn judged(claims: &str) -> Outcome {
     let text = format!(
@@ -220,4 +220,46 @@ fn verdicts_stand_in_the_header_of_the_trace() {
             "expect[1] never from 2 to 4 while v <= 1.0: a TRUE Failed"
         ]
     );
+}
+
+/// Axes that are called anew in the same scan: more than the ring of records holds.
+fn seventy_axes_moved_at_once() -> String {
+    let each = |text: &dyn Fn(usize) -> String| (0..70).map(text).collect::<Vec<_>>().join(", ");
+    let axes = each(&|axis| {
+        format!(
+            r#""X{axis}": {{"limits": {{"velocity": 100, "acceleration": 1000}}, "state": "Standstill"}}"#
+        )
+    });
+    let blocks = each(&|axis| {
+        format!(
+            r#"{{"name": "s{axis}", "type": "MC_SetPosition", "pins": {{"Axis": "X{axis}", "Execute": {{"from": "GO"}}, "Position": 1000, "Relative": true}}}}"#
+        )
+    });
+    let claims = each(&|axis| {
+        format!(r#"{{"within_limits": "X{axis}"}}, {{"always": {{"X{axis}.Position.d1": 0}}}}"#)
+    });
+    format!(
+        r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 5, "inputs": {{"GO": false}}, "axes": {{{axes}}}, "blocks": [{blocks}],
+            "steps": [{{"at": 2, "set": {{"GO": true}}}}], "expect": [{claims}]}}"#
+    )
+}
+
+#[test]
+fn coordinates_that_move_are_no_motion_however_many_records_the_scan_has() {
+    let script = read(&seventy_axes_moved_at_once(), "test.scan.json", &[]).expect("it is a script");
+    let outcome = run(&script).expect("it runs");
+    let failures = |outcome: &Outcome| -> Vec<String> {
+        let verdicts = outcome.verdicts.iter().flat_map(|verdict| &verdict.failures);
+        verdicts.map(ToString::to_string).collect()
+    };
+    assert_eq!(failures(&outcome), Vec::<String>::new());
+    let notes = outcome.trace.notes();
+    assert!(
+        notes
+            .iter()
+            .any(|note| note.text.contains("records of this scan are lost"))
+    );
+    // The trace tells it all, so claims judged on it come out the same.
+    let again = judge_recording(&script, outcome.trace).expect("it is of this script");
+    assert_eq!(failures(&again), Vec::<String>::new());
 }

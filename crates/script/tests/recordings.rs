@@ -1,6 +1,6 @@
 //! Claims judged on traces that a script did not make itself.
 
-use standstill_script::suite::{find, read_file, shown};
+use standstill_script::suite::{Allowed, find, read_file, shown};
 use standstill_script::{judge_recording, run};
 use std::path::Path;
 
@@ -21,7 +21,7 @@ fn a_recording_of_a_run_is_judged_as_the_run() {
     let scripts = folders.map(|name| find(&folder.join(name)).expect("a folder of scripts"));
     let (mut claims, mut differing) = (0, Vec::new());
     for path in scripts.concat() {
-        let (script, _) = read_file(&path, &[], &[]).expect("a good script");
+        let (script, _) = read_file(&path, &[], &Allowed::default()).expect("a good script");
         let ran = run(&script).expect("a run");
         let mut text = Vec::new();
         standstill_trace::jsonl::write(&ran.trace, &mut text).expect("memory");

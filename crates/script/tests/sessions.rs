@@ -2,7 +2,7 @@
 //! saved as a script.
 
 use standstill_script::model::Point;
-use standstill_script::suite::{find, read_file};
+use standstill_script::suite::{Allowed, find, read_file};
 use standstill_script::{Session, Standing, read, run, with_changes};
 use standstill_trace::compare::compare;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ fn claims_are_decided_on_the_way_as_they_are_judged_at_the_end() {
     let scripts = find(&scan_tests()).unwrap_or_else(|error| panic!("{error}"));
     let (mut early, mut claims) = (0, 0);
     for path in scripts.iter().step_by(5) {
-        let (script, _) = read_file(path, &[], &[]).unwrap_or_else(|error| panic!("{error}"));
+        let (script, _) = read_file(path, &[], &Allowed::default()).unwrap_or_else(|error| panic!("{error}"));
         let mut session = Session::new(&script).unwrap_or_else(|error| panic!("{error}"));
         let mut decided = vec![Standing::Open; script.claims.len()];
         while session.advance().unwrap_or_else(|error| panic!("{error}")) {

@@ -1,7 +1,9 @@
 //! Folders of scripts: what is found, and what each mode does to goldens.
 
 use standstill_script::golden::{Mode, Standing};
-use standstill_script::suite::{Report, SuiteError, find, find_texts, judge_file, name, orphans, shown};
+use standstill_script::suite::{
+    Allowed, Report, SuiteError, find, find_texts, judge_file, name, orphans, shown,
+};
 use standstill_trace::compare::{Tolerance, Yardstick};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -62,7 +64,7 @@ fn judged(path: &Path, mode: Mode) -> Report {
 }
 
 fn judged_by(path: &Path, mode: Mode, yardstick: Yardstick) -> Report {
-    judge_file(path, mode, yardstick, &[], |_| {}).unwrap_or_else(|error| panic!("{error}"))
+    judge_file(path, mode, yardstick, &Allowed::default(), |_| {}).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn failed(report: &Report) -> &str {
@@ -238,7 +240,15 @@ fn scripts_are_found_in_sorted_order_and_orphans_reported() {
 #[test]
 fn what_is_no_script_is_told_apart_from_what_cannot_be_read() {
     let folder = Folder::new("broken");
-    let judge = |file: &str| judge_file(&folder.0.join(file), Mode::Check, Yardstick::Exact, &[], |_| {});
+    let judge = |file: &str| {
+        judge_file(
+            &folder.0.join(file),
+            Mode::Check,
+            Yardstick::Exact,
+            &Allowed::default(),
+            |_| {},
+        )
+    };
     assert!(matches!(judge("nowhere.scan.json"), Err(SuiteError::Io { .. })));
     folder.write("broken.scan.json", "{,}");
     assert!(matches!(judge("broken.scan.json"), Err(SuiteError::Script(_))));

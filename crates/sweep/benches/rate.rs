@@ -15,7 +15,7 @@ const SAMPLES: u64 = 1_000_000;
 
 fn main() -> Result<(), SweepError> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/sweeps/turn.sweep.json");
-    let job = Job::load(&path, &[])?;
+    let job = Job::load(&path, &Default::default())?;
     let cases: Vec<u64> = (0..job.count()).collect();
     let (mut sweeps, mut loops) = (Vec::new(), Vec::new());
     for _ in 0..ROUNDS {

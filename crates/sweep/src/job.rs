@@ -1,6 +1,6 @@
 //! A sweep that is ready to run, and what comes of one of its cases.
 
-use standstill_script::suite::{self, SuiteError, Texts};
+use standstill_script::suite::{self, Allowed, SuiteError, Texts};
 use standstill_script::sweep::{Measure, Sweep, Take};
 use standstill_script::{Outcome, RunError, ScriptError, read_sweep, run};
 use standstill_trace::{Cell, Trace, cell_text, digest, extremes, shortest};
@@ -91,13 +91,13 @@ pub struct Row {
 
 impl Job {
     /// Reads the sweep at `path` and its script, and runs the script as it stands to see what signals it has. The
-    /// script lies below the folder of the sweep or below one of `allowed`; so does what the script includes.
+    /// script lies below the folder of the sweep or where `allowed` says; so does what the script includes.
     ///
     /// # Errors
     /// [`SweepError::Suite`].
-    pub fn load(path: &Path, allowed: &[PathBuf]) -> Result<Self, SweepError> {
+    pub fn load(path: &Path, allowed: &Allowed) -> Result<Self, SweepError> {
         let sweep = read_sweep(&suite::read_text(path)?, &suite::shown(path))?;
-        suite::beside(path, &sweep.script, allowed, "sweep").map_err(|why| sweep.no_script(&why))?;
+        suite::beside(path, &sweep.script, &allowed.folders, "sweep").map_err(|why| sweep.no_script(&why))?;
         let file = path.parent().unwrap_or(Path::new("")).join(&sweep.script);
         let (texts, script) = Texts::read(&file, allowed)?;
         let outcome = run(&script).map_err(|source| SuiteError::Run {

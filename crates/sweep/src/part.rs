@@ -53,6 +53,10 @@ impl Part {
                 rows.insert(case, row);
             }
         }
+        if fs::symlink_metadata(&path).is_ok_and(|found| found.is_symlink()) {
+            let why = io::Error::other("a link, through which nothing is written: delete it");
+            return Err(failed(why));
+        }
         let mut file = OpenOptions::new()
             .create(true)
             .append(true)

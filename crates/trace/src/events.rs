@@ -52,7 +52,7 @@ fn with_notes(trace: &Trace, of_trace: &[Note]) -> Vec<Event> {
     events
 }
 
-/// The events of a trace that grows.
+/// The events of one trace, which may grow.
 #[derive(Clone, Debug, Default)]
 pub struct EventLog {
     /// Scans and notes whose events were taken.
@@ -60,6 +60,8 @@ pub struct EventLog {
     notes: usize,
     /// Per column the scan whose value was told last.
     told: Vec<Option<usize>>,
+    /// The columns by subject, once the first row was looked at.
+    groups: Option<Vec<Group>>,
 }
 
 impl EventLog {
@@ -80,12 +82,13 @@ impl EventLog {
 
     fn scan(&mut self, trace: &Trace, scan: usize, mut notes: Vec<&Note>, events: &mut Vec<Event>) {
         self.told.resize(trace.columns().len(), None);
-        for group in &groups(trace.columns()) {
+        let groups = self.groups.get_or_insert_with(|| groups(trace.columns()));
+        for group in groups {
             let text = changes(trace, group, scan, &mut self.told);
             if !text.is_empty() {
                 events.push(Event {
                     scan,
-                    subject: group.subject.to_owned(),
+                    subject: group.subject.clone(),
                     text,
                 });
             }
@@ -139,29 +142,30 @@ fn note_event(note: &Note) -> Event {
 }
 
 /// The columns of one subject.
-struct Group<'a> {
-    subject: &'a str,
-    columns: Vec<(usize, &'a Column)>,
+#[derive(Clone, Debug)]
+struct Group {
+    subject: String,
+    columns: Vec<usize>,
 }
 
-fn groups(columns: &[Column]) -> Vec<Group<'_>> {
-    let mut groups: Vec<(u8, Group<'_>)> = Vec::new();
+/// The subjects in the order in which their events of a scan are told.
+fn groups(columns: &[Column]) -> Vec<Group> {
+    let mut groups: Vec<(u8, Group)> = Vec::new();
+    let mut places: BTreeMap<(u8, &str), usize> = BTreeMap::new();
     for (at, column) in columns.iter().enumerate() {
         let (rank, subject) = match column.role {
             Role::Variable => (0, VARIABLES),
             Role::InOut | Role::Input | Role::Output => (1, column.subject()),
             Role::AxisState | Role::AxisValue => (2, column.subject()),
         };
-        match groups
-            .iter_mut()
-            .find(|(r, group)| *r == rank && group.subject == subject)
-        {
-            Some((_, group)) => group.columns.push((at, column)),
+        let place = *places.entry((rank, subject)).or_insert(groups.len());
+        match groups.get_mut(place) {
+            Some((_, group)) => group.columns.push(at),
             None => groups.push((
                 rank,
                 Group {
-                    subject,
-                    columns: vec![(at, column)],
+                    subject: subject.to_owned(),
+                    columns: vec![at],
                 },
             )),
         }
@@ -172,10 +176,14 @@ fn groups(columns: &[Column]) -> Vec<Group<'_>> {
 
 /// What changed in a group in a scan: Booleans first, then values in column order. `told` holds per column the scan
 /// whose value was told last.
-fn changes(trace: &Trace, group: &Group<'_>, scan: usize, told: &mut [Option<usize>]) -> String {
+fn changes(trace: &Trace, group: &Group, scan: usize, told: &mut [Option<usize>]) -> String {
     let mut words = Vec::new();
     let mut takes_inputs = false;
-    for &(at, column) in &group.columns {
+    let columns = || {
+        let places = group.columns.iter();
+        places.filter_map(|&at| Some((at, trace.columns().get(at)?)))
+    };
+    for (at, column) in columns() {
         let before = scan
             .checked_sub(1)
             .and_then(|scan| trace.cell(scan, at))
@@ -188,11 +196,7 @@ fn changes(trace: &Trace, group: &Group<'_>, scan: usize, told: &mut [Option<usi
             _ => {}
         }
     }
-    for &(at, column) in group
-        .columns
-        .iter()
-        .filter(|(_, column)| column.kind != Kind::Bool)
-    {
+    for (at, column) in columns().filter(|(_, column)| column.kind != Kind::Bool) {
         let Some(now) = trace.cell(scan, at) else { continue };
         let before = scan.checked_sub(1).and_then(|scan| trace.cell(scan, at));
         if column.role == Role::AxisState {

@@ -1,27 +1,29 @@
 //! Traces in files, whose form follows from the name: `.csv`, `.jsonl`, and for reading `.exact`.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::csv::Dialect;
 use crate::exact::{self, ExactError};
+use crate::printable::printable;
 use crate::read::{Loaded, ReadError};
 use crate::trace::Trace;
 use crate::{csv, jsonl};
+use tempfile::NamedTempFile;
 
 /// Why a trace file could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// Its name ends in something else.
-    #[error("{}: a trace is a .csv, .jsonl or (for reading) .exact file", .path.display())]
+    #[error("{}: a trace is a .csv, .jsonl or (for reading) .exact file", shown(.path))]
     Form {
         /// The file.
         path: PathBuf,
     },
     /// The system refused.
-    #[error("{}: {source}", .path.display())]
+    #[error("{}: {source}", shown(.path))]
     Io {
         /// The file.
         path: PathBuf,
@@ -29,7 +31,7 @@ pub enum FileError {
         source: io::Error,
     },
     /// Its text is no trace, or not all of one.
-    #[error("{}: {source}", .path.display())]
+    #[error("{}: {source}", shown(.path))]
     Text {
         /// The file.
         path: PathBuf,
@@ -37,7 +39,7 @@ pub enum FileError {
         source: ReadError,
     },
     /// It is no exact trace, or a damaged one.
-    #[error("{}: {source}", .path.display())]
+    #[error("{}: {source}", shown(.path))]
     Exact {
         /// The file.
         path: PathBuf,
@@ -91,52 +93,234 @@ pub fn save(trace: &Trace, path: &Path) -> Result<(), FileError> {
 /// # Errors
 /// As [`save`].
 pub fn save_as(trace: &Trace, path: &Path, dialect: Dialect) -> Result<(), FileError> {
-    match form(path)? {
-        Form::JsonLines => replace(path, |mut out| jsonl::write(trace, &mut out)),
-        Form::Csv => {
-            replace(path, |mut out| csv::write_as(trace, dialect, &mut out))?;
-            replace(&csv::meta_path(path), |out| {
-                writeln!(out, "{}", trace.header_json())
-            })
+    Saving::begin(path)?.finish(trace, dialect)
+}
+
+/// The files of a trace, begun before the run that it is of: what keeps them from being written shows before it.
+#[derive(Debug)]
+pub struct Saving {
+    rows: Draft,
+    /// What stands beside a table.
+    header: Option<Draft>,
+}
+
+impl Saving {
+    /// Begins what [`save`] writes.
+    ///
+    /// # Errors
+    /// As [`save`].
+    pub fn begin(path: &Path) -> Result<Self, FileError> {
+        let form = form(path)?;
+        if form == Form::Exact {
+            return Err(FileError::Form {
+                path: path.to_owned(),
+            });
         }
-        Form::Exact => Err(FileError::Form {
-            path: path.to_owned(),
-        }),
+        let rows = Draft::begin(path)?;
+        let header = match form {
+            Form::Csv => Some(Draft::beside(&csv::meta_path(path))?),
+            Form::JsonLines | Form::Exact => None,
+        };
+        Ok(Self { rows, header })
+    }
+
+    /// Writes them; a table in this dialect.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn finish(self, trace: &Trace, dialect: Dialect) -> Result<(), FileError> {
+        let Self { rows, header } = self;
+        let Some(header) = header else {
+            return rows.finish(|mut out| jsonl::write(trace, &mut out));
+        };
+        rows.finish(|mut out| csv::write_as(trace, dialect, &mut out))?;
+        header.finish(|out| writeln!(out, "{}", trace.header_json()))
     }
 }
 
-/// Writes a file whole or not at all: `write` fills a file beside it, `NAME.partial`, which then takes its place. What
-/// is no regular file (a pipe, a device) is written to as it is.
+/// Writes a file that a person named, whole or not at all: what `write` gives goes to a new file beside it, which then
+/// takes its place. A link is replaced, not followed; what is no regular file (a pipe, a device) is written to as it is.
 ///
 /// # Errors
 /// What the system says; a file that was there is then as it was.
 pub fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
-    let whole = || {
-        if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
-            return fill(path, write);
-        }
-        // A link stays one: what it leads to is replaced.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        let mut name = target.as_os_str().to_owned();
-        name.push(".partial");
-        let partial = PathBuf::from(name);
-        let done = fill(&partial, write).and_then(|()| fs::rename(&partial, &target));
-        if done.is_err() {
-            // The first error is the one to tell.
-            let _ = fs::remove_file(&partial);
-        }
-        done
-    };
-    whole().map_err(|source| FileError::Io {
-        path: path.to_owned(),
-        source,
-    })
+    Draft::begin(path)?.finish(write)
 }
 
-fn fill(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let mut out = BufWriter::new(File::create(path)?);
+/// As [`replace`], for a file that nobody named, such as the golden beside a script: whatever stands in its place, nothing
+/// but this name in its folder changes. A folder or a device there is an error.
+///
+/// # Errors
+/// As [`replace`].
+pub fn replace_beside(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), FileError> {
+    Draft::beside(path)?.finish(write)
+}
+
+/// A file that is to be replaced, begun before there is anything to write: what keeps it from being written shows at the
+/// begin of a long run, not at its end. Dropped, it leaves what was there.
+#[derive(Debug)]
+pub struct Draft {
+    path: PathBuf,
+    target: Target,
+}
+
+#[derive(Debug)]
+enum Target {
+    /// It takes the place of what is there.
+    New(NamedTempFile),
+    /// A pipe or a device, written to as it is.
+    Open(File),
+}
+
+impl Draft {
+    /// Begins what [`replace`] does.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn begin(path: &Path) -> Result<Self, FileError> {
+        // Through a link, too: `/dev/stdout` is one.
+        let special = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+        if !special {
+            return Self::beside(path);
+        }
+        let open = File::options().write(true).open(path);
+        Self::of(path, open.map(Target::Open))
+    }
+
+    fn beside(path: &Path) -> Result<Self, FileError> {
+        Self::of(path, begun(path).map(Target::New))
+    }
+
+    fn of(path: &Path, target: io::Result<Target>) -> Result<Self, FileError> {
+        let path = path.to_owned();
+        match target {
+            Ok(target) => Ok(Self { path, target }),
+            Err(source) => Err(FileError::Io { path, source }),
+        }
+    }
+
+    /// Writes the file and puts it into its place.
+    ///
+    /// # Errors
+    /// As [`replace`].
+    pub fn finish(self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+        fill(self.file(), write).map_err(|source| FileError::Io {
+            path: self.path.clone(),
+            source,
+        })?;
+        self.keep()
+    }
+
+    /// Puts what was written into its place.
+    ///
+    /// # Errors
+    /// What the system says; a file that was there is then as it was.
+    pub fn keep(self) -> Result<(), FileError> {
+        let Self { path, target } = self;
+        match target {
+            Target::Open(_) => Ok(()),
+            Target::New(draft) => match draft.persist(&path) {
+                Ok(_) => Ok(()),
+                Err(error) => Err(FileError::Io {
+                    path,
+                    source: error.error,
+                }),
+            },
+        }
+    }
+
+    fn file(&self) -> &File {
+        match &self.target {
+            Target::Open(file) => file,
+            Target::New(draft) => draft.as_file(),
+        }
+    }
+}
+
+/// For what is written bit by bit; [`Draft::keep`] ends it.
+impl Write for Draft {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file().flush()
+    }
+}
+
+/// An empty file beside `path` with the permissions of the one there, or those of any new file.
+fn begun(path: &Path) -> io::Result<NamedTempFile> {
+    let there = fs::symlink_metadata(path).ok();
+    if there
+        .as_ref()
+        .is_some_and(|there| !there.is_file() && !there.is_symlink())
+    {
+        return Err(io::Error::other("this is no file that could be replaced"));
+    }
+    let name = path.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
+    let mut prefix = OsString::from(".");
+    prefix.push(name);
+    prefix.push(".");
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix).suffix(".partial");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // The system takes from these what its mask says.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let draft = builder.tempfile_in(folder).map_err(without_path)?;
+    #[cfg(unix)]
+    if let Some(there) = there.filter(fs::Metadata::is_file) {
+        draft.as_file().set_permissions(there.permissions())?;
+    }
+    Ok(draft)
+}
+
+/// What the system said, without the name of the new file, which nobody knows.
+fn without_path(error: io::Error) -> io::Error {
+    let text = error.to_string();
+    let said = text.split(" at path ").next().unwrap_or(&text).to_owned();
+    io::Error::new(error.kind(), said)
+}
+
+fn text(bytes: Vec<u8>) -> io::Result<String> {
+    String::from_utf8(bytes).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
+}
+
+fn fill(file: &File, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut out = BufWriter::new(file);
     write(&mut out)?;
     out.flush()
+}
+
+/// A path as it is printed: one line, with `/` on every system.
+#[must_use]
+pub fn shown(path: &Path) -> String {
+    let text = path.display().to_string().replace(std::path::MAIN_SEPARATOR, "/");
+    printable(&text).into_owned()
+}
+
+/// The bytes of a file that nobody named. What is no regular file is not read: a pipe would be waited for, and a device
+/// may have no end.
+///
+/// # Errors
+/// What the system says.
+pub fn read_regular(path: &Path) -> io::Result<Vec<u8>> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "this is no regular file",
+        ));
+    }
+    fs::read(path)
 }
 
 /// Reads a trace, for CSV together with [`csv::meta_path`] if that file is there.
@@ -157,7 +341,7 @@ pub fn load(path: &Path) -> Result<Loaded, FileError> {
         Form::JsonLines => jsonl::read(&read_text(path)?).map_err(|source| text_error(path, source)),
         Form::Csv => {
             let meta_path = csv::meta_path(path);
-            let meta = match fs::read_to_string(&meta_path) {
+            let meta = match read_regular(&meta_path).and_then(text) {
                 Ok(text) => Some(text),
                 Err(error) if error.kind() == io::ErrorKind::NotFound => None,
                 Err(error) => return Err(io_error(&meta_path, error)),

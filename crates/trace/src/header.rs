@@ -196,7 +196,48 @@ pub enum ClaimVerdict {
     Failed,
 }
 
+impl Claim {
+    /// Every text in it.
+    pub(crate) fn texts_mut(&mut self) -> impl Iterator<Item = &mut String> {
+        let failures = self.failures.iter_mut().map(|failure| &mut failure.text);
+        [&mut self.path, &mut self.text].into_iter().chain(failures)
+    }
+}
+
 impl Header {
+    /// Every text in it.
+    pub(crate) fn texts_mut(&mut self) -> impl Iterator<Item = &mut String> {
+        let Self {
+            runtime,
+            title,
+            covers,
+            script_hash,
+            axes,
+            inputs,
+            instances,
+            claims,
+            cycle_ns: _,
+        } = self;
+        let axes = axes.iter_mut().flat_map(|axis| [&mut axis.name, &mut axis.unit]);
+        let inputs = inputs
+            .iter_mut()
+            .flat_map(|input| [&mut input.name, &mut input.iec_type]);
+        let instances = instances.iter_mut().flat_map(|instance| {
+            let pins = instance.pins.iter_mut();
+            [&mut instance.name, &mut instance.block]
+                .into_iter()
+                .chain(pins.flat_map(|pin| [&mut pin.name, &mut pin.iec_type]))
+        });
+        let claims = claims.iter_mut().flat_map(Claim::texts_mut);
+        [runtime, title, script_hash]
+            .into_iter()
+            .chain(covers)
+            .chain(axes)
+            .chain(inputs)
+            .chain(instances)
+            .chain(claims)
+    }
+
     /// The columns of the trace in file order, after `scan` and `time_ns`: the axes, the input
     /// variables, the pins of the instances. This is the one place that knows the order.
     #[must_use]

@@ -42,6 +42,7 @@ pub mod markup;
 mod number;
 mod panels;
 pub mod plot;
+mod printable;
 mod read;
 pub mod story;
 pub mod svg;
@@ -56,5 +57,6 @@ pub use header::{
     Scaling,
 };
 pub use number::{cell_text, shortest, time_literal};
+pub use printable::{printable, printable_lines};
 pub use read::{Loaded, ReadError};
 pub use trace::{Note, RowError, Trace};

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::column::{Cell, Column, Kind, Role};
 use crate::header::{Axis, Header, axis_column};
 use crate::number;
+use crate::printable::printable;
 use crate::trace::{Note, Trace};
 
 /// A trace that was read, and what the files did not tell.
@@ -34,7 +35,8 @@ impl ReadError {
         Self {
             line,
             column,
-            message: message.into(),
+            // Pieces of the file stand in it.
+            message: printable(&message.into()).into_owned(),
         }
     }
 
@@ -193,14 +195,14 @@ fn wider(so_far: Option<Kind>, kind: Kind) -> Kind {
 
 /// Subjects with a state and a position are axes.
 fn find_axes(signals: &[String]) -> Vec<Axis> {
+    let with_position: BTreeSet<&str> = signals
+        .iter()
+        .filter_map(|name| name.strip_suffix(".Position"))
+        .collect();
     signals
         .iter()
         .filter_map(|name| name.strip_suffix(".State"))
-        .filter(|axis| {
-            signals
-                .iter()
-                .any(|name| name.strip_suffix(".Position") == Some(axis))
-        })
+        .filter(|axis| with_position.contains(axis))
         .map(|axis| Axis {
             name: axis.to_owned(),
             ..Axis::default()

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::column::{Cell, Column, Kind, canonical_bits};
 use crate::header::{Claim, Header};
+use crate::printable::{make_printable, printable};
 
 /// Something worth telling that is no column: an accepted plan, a refused or clamped command.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,7 +48,8 @@ pub enum RowError {
     },
 }
 
-/// A run: its header, one row a scan from scan 0 on, and its notes.
+/// A run: its header, one row a scan from scan 0 on, and its notes. Its texts are one line each and
+/// [`printable`](crate::printable), whatever they were made of.
 #[derive(Clone, Debug)]
 pub struct Trace {
     header: Header,
@@ -69,7 +71,12 @@ impl Trace {
 
     /// An empty trace with columns of its own: for traces that were read without their header, or with
     /// columns that this version does not know.
-    pub(crate) fn with_columns(header: Header, columns: Vec<Column>) -> Self {
+    pub(crate) fn with_columns(mut header: Header, mut columns: Vec<Column>) -> Self {
+        // What comes from outside is made fit to be shown here, where every trace begins.
+        header.texts_mut().for_each(make_printable);
+        columns
+            .iter_mut()
+            .for_each(|column| make_printable(&mut column.name));
         let by_name = columns
             .iter()
             .enumerate()
@@ -92,7 +99,11 @@ impl Trace {
     }
 
     /// Enters the judged claims into the header.
-    pub fn set_claims(&mut self, claims: Vec<Claim>) {
+    pub fn set_claims(&mut self, mut claims: Vec<Claim>) {
+        claims
+            .iter_mut()
+            .flat_map(Claim::texts_mut)
+            .for_each(make_printable);
         self.header.claims = claims;
     }
 
@@ -100,8 +111,10 @@ impl Trace {
     /// without its own.
     pub fn describe_as(&mut self, other: &Header) {
         self.header.title.clone_from(&other.title);
+        let known = other.axes.iter().map(|axis| (axis.name.as_str(), axis));
+        let known: BTreeMap<_, _> = known.collect();
         for axis in &mut self.header.axes {
-            if let Some(known) = other.axes.iter().find(|known| known.name == axis.name) {
+            if let Some(known) = known.get(axis.name.as_str()) {
                 axis.clone_from(known);
             }
         }
@@ -249,8 +262,40 @@ impl Trace {
     }
 
     /// Adds a note. Notes are shown among the events; files carry them in their header.
-    pub fn push_note(&mut self, note: Note) {
+    pub fn push_note(&mut self, mut note: Note) {
+        make_printable(&mut note.subject);
+        make_printable(&mut note.text);
         self.notes.push(note);
+    }
+
+    /// A trace of rows that are there already, one word a cell as [`Trace::decode`] reads it; words of names are places in
+    /// `names`. `None` if the words are no whole rows, or a name is not there or cannot stand in a row.
+    pub(crate) fn with_rows(
+        header: Header,
+        columns: Vec<Column>,
+        mut bits: Vec<u64>,
+        names: &[String],
+    ) -> Option<Self> {
+        let mut trace = Self::with_columns(header, columns);
+        let width = trace.columns.len();
+        if bits.len().checked_rem(width).unwrap_or(bits.len()) != 0
+            || names.iter().any(|name| name.chars().any(char::is_control))
+        {
+            return None;
+        }
+        let indices: Vec<u64> = names.iter().map(|name| trace.names.index(name)).collect();
+        for row in bits.chunks_exact_mut(width.max(1)) {
+            for (column, word) in trace.columns.iter().zip(row) {
+                match column.kind {
+                    Kind::Bool => *word = u64::from(*word != 0),
+                    Kind::Real => *word = canonical_bits(f64::from_bits(*word)),
+                    Kind::Integer => {}
+                    Kind::Name => *word = *indices.get(usize::try_from(*word).ok()?)?,
+                }
+            }
+        }
+        trace.bits = bits;
+        Some(trace)
     }
 
     fn decode(&self, kind: Kind, word: u64) -> Cell<'_> {
@@ -276,7 +321,7 @@ impl Names {
             return index;
         }
         let index = self.texts.len() as u64;
-        self.texts.push(text.to_owned());
+        self.texts.push(printable(text).into_owned());
         self.by_text.insert(text.to_owned(), index);
         index
     }

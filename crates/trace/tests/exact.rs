@@ -3,7 +3,7 @@
 
 mod common;
 
-use standstill_trace::exact::{ExactError, decode, digest_of, encode};
+use standstill_trace::exact::{ExactError, decode, decode_within, digest_of, encode};
 use standstill_trace::{Trace, digest};
 
 #[test]
@@ -58,4 +58,52 @@ fn an_empty_trace_and_a_hard_one_come_back() {
         };
         assert_eq!(texts(&back), texts(&hard), "scan {scan}");
     }
+}
+
+/// A companion of one column of BOOL and so many rows, with these bytes for its cells.
+fn made(rows: u64, cells: &[u8]) -> Vec<u8> {
+    let mut body = Vec::new();
+    let mut put = |mut number: u64| {
+        while number >= 0x80 {
+            body.push((number & 0x7f) as u8 | 0x80);
+            number >>= 7;
+        }
+        body.push(number as u8);
+    };
+    for number in [1_000_000, rows, 1, 1] {
+        put(number);
+    }
+    // `a`, an input variable; no names.
+    body.extend(*b"a\x00\x02\x00\x00");
+    body.extend(cells);
+    let mut file = b"standstill exact 1\n".to_vec();
+    file.extend(0_u64.to_le_bytes());
+    file.extend(miniz_oxide::deflate::compress_to_vec_zlib(&body, 9));
+    file
+}
+
+#[test]
+fn what_a_file_says_takes_no_memory_and_what_it_unpacks_to_is_bounded() {
+    let too_large = |file: &[u8]| matches!(decode(file), Err(ExactError::TooLarge { .. }));
+    // It says so many rows, whatever it has.
+    assert!(too_large(&made(50_000_000, &[])));
+    assert_eq!(
+        decode(&made(u64::MAX, &[])).err(),
+        Some(ExactError::TooLarge { most: 1 << 22 })
+    );
+    assert_eq!(decode(&made(1_000_000, &[])).err(), Some(ExactError::Damaged));
+    // It has them, packed to a thousandth.
+    let zeros = vec![0; 20_000_000];
+    let file = made(zeros.len() as u64, &zeros);
+    assert!(file.len() < 25_000 && too_large(&file), "{} bytes", file.len());
+    // It says few and has many.
+    assert!(decode(&made(3, &zeros)).is_err());
+    // A golden is bounded by its run.
+    let trace = common::run(2000, None);
+    let (file, cells) = (encode(&trace), trace.scans() * trace.columns().len());
+    assert!(decode_within(&file, cells).is_ok());
+    assert_eq!(
+        decode_within(&file, cells - 1).err(),
+        Some(ExactError::TooLarge { most: cells - 1 })
+    );
 }

@@ -7,7 +7,7 @@ use std::io;
 use std::path::Path;
 
 use standstill_trace::compare::compare;
-use standstill_trace::file::{FileError, can_save, load, replace, save};
+use standstill_trace::file::{FileError, Saving, can_save, load, replace, save};
 use standstill_trace::golden;
 
 #[test]
@@ -70,4 +70,63 @@ fn a_file_is_replaced_whole_or_not_at_all() {
     );
     assert!(replace(&folder.join("absent/out.html"), |_| Ok(())).is_err());
     assert!(replace(&folder, |_| Ok(())).is_err(), "a folder is no file");
+}
+
+#[test]
+#[cfg(unix)]
+fn nothing_is_written_through_a_link_and_permissions_stay() {
+    use standstill_trace::file::{read_regular, replace_beside};
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("links");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder for the test");
+    let (outside, link) = (folder.join("outside"), folder.join("link"));
+    fs::write(&outside, "as it was").expect("writable");
+    type Way = fn(&Path) -> Result<(), FileError>;
+    let ways: [Way; 2] = [
+        |path| replace(path, |out| out.write_all(b"new")),
+        |path| replace_beside(path, |out| out.write_all(b"new")),
+    ];
+    for write in ways {
+        let _ = fs::remove_file(&link);
+        symlink("outside", &link).expect("a link");
+        write(&link).expect("writable");
+        assert!(!fs::symlink_metadata(&link).expect("it is there").is_symlink());
+        assert_eq!(fs::read_to_string(&link).expect("readable"), "new");
+        assert_eq!(fs::read_to_string(&outside).expect("readable"), "as it was");
+    }
+    let mode = |path: &Path| fs::metadata(path).expect("it is there").permissions().mode() & 0o777;
+    fs::set_permissions(&outside, fs::Permissions::from_mode(0o640)).expect("ours");
+    replace(&outside, |out| out.write_all(b"new")).expect("writable");
+    assert_eq!(mode(&outside), 0o640);
+    let fresh = folder.join("fresh");
+    fs::write(&fresh, "").expect("writable");
+    assert_eq!(mode(&link), mode(&fresh), "a new file is as any other");
+    // A device is written to where a person names it, and nowhere else.
+    let null = Path::new("/dev/null");
+    assert!(replace(null, |out| out.write_all(b"gone")).is_ok());
+    assert!(replace_beside(null, |_| Ok(())).is_err());
+    assert!(read_regular(null).is_err());
+}
+
+#[test]
+fn a_trace_is_begun_before_there_is_one() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("begun");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder for the test");
+    assert!(Saving::begin(&folder.join("absent/a.csv")).is_err());
+    let saving = Saving::begin(&folder.join("a.csv")).expect("writable");
+    assert!(!folder.join("a.csv").exists());
+    drop(saving);
+    assert_eq!(
+        fs::read_dir(&folder).expect("readable").count(),
+        0,
+        "nothing is left"
+    );
+    let saving = Saving::begin(&folder.join("a.csv")).expect("writable");
+    saving
+        .finish(&common::run(5, None), Default::default())
+        .expect("writable");
+    assert_eq!(load(&folder.join("a.csv")).expect("our own").trace.scans(), 5);
 }

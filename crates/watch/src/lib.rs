@@ -14,5 +14,5 @@ mod view;
 
 pub use app::{App, Key, Mode, SPEEDS, Save};
 pub use help::KEYS;
-pub use terminal::{Ended, watch};
+pub use terminal::{Ended, give_back, watch};
 pub use view::{LEAST, draw};

@@ -2,11 +2,13 @@
 
 use crate::app::{App, Key, Mode};
 use crate::view::draw;
+use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
 /// Time between two screens while the run goes on.
@@ -18,6 +20,9 @@ const IDLE: Duration = Duration::from_millis(100);
 /// Of a frame the run gets so much at most; the rest is for the screen.
 const WORK: Duration = Duration::from_millis(30);
 
+/// So many looks of [`IDLE`] after it was asked to, the watching must have ended.
+const PATIENCE: u32 = 3;
+
 /// How the watching ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
@@ -28,6 +33,11 @@ pub enum Ended {
 }
 
 impl Ended {
+    /// By the signal that [`signals`] keeps.
+    fn of(signal: usize) -> Self {
+        Self::Signal(i32::try_from(signal).unwrap_or(SIGTERM))
+    }
+
     /// Ends the program as the signal would have, if it was one. Returns only if it was none.
     ///
     /// # Errors
@@ -40,32 +50,145 @@ impl Ended {
     }
 }
 
-/// Gives the terminal back when it is dropped.
-struct Taken;
+/// Gives the terminal back when it is dropped, and lets the guard go.
+struct Taken {
+    guard: Arc<Guard>,
+}
 
 impl Drop for Taken {
     fn drop(&mut self) {
+        self.guard.is_over.store(true, Ordering::Relaxed);
         // Nothing can be done about it on the way out.
         let _ = ratatui::try_restore();
     }
 }
 
-/// Watches until a key or a signal ends it; `color` says whether colours may be used.
+/// Gives the terminal back from any thread, also while the watching is held up: as far as it takes anything.
+pub fn give_back() {
+    let _ = ratatui::crossterm::terminal::disable_raw_mode();
+    #[cfg(unix)]
+    line::leave();
+}
+
+/// What ends the program when the watching cannot: it may be held up by a long scan, or by a terminal that takes nothing
+/// or has gone. crossterm reads on for ever from a terminal that was hung up.
+struct Guard {
+    signals: Arc<AtomicUsize>,
+    is_over: AtomicBool,
+}
+
+impl Guard {
+    /// Begins to look for signals and for the end of the terminal.
+    fn start(signals: Arc<AtomicUsize>) -> io::Result<Arc<Self>> {
+        let guard = Arc::new(Self {
+            signals,
+            is_over: AtomicBool::new(false),
+        });
+        let own = Arc::clone(&guard);
+        thread::Builder::new()
+            .name("terminal".to_owned())
+            .spawn(move || own.look())?;
+        Ok(guard)
+    }
+
+    fn look(&self) {
+        let mut asked = 0;
+        while !self.is_over.load(Ordering::Relaxed) {
+            thread::sleep(IDLE);
+            #[cfg(unix)]
+            if line::is_hung_up() {
+                let hangup = usize::try_from(signal_hook::consts::SIGHUP).unwrap_or_default();
+                let _first = self
+                    .signals
+                    .compare_exchange(0, hangup, Ordering::Relaxed, Ordering::Relaxed);
+            }
+            let signal = self.signals.load(Ordering::Relaxed);
+            asked += u32::from(signal != 0);
+            if asked > PATIENCE && !self.is_over.load(Ordering::Relaxed) {
+                give_back();
+                // Returns only if the system refuses; then there is nothing better.
+                let _ = Ended::of(signal).pass_on();
+                std::process::exit(1);
+            }
+        }
+    }
+}
+
+/// The line to the terminal, which crossterm does not look at.
+#[cfg(unix)]
+mod line {
+    use rustix::event::{PollFd, PollFlags, Timespec, poll};
+    use std::io;
+    use std::time::Duration;
+
+    /// What the line is ready for within `wait`.
+    fn ready(fd: &impl rustix::fd::AsFd, wanted: PollFlags, wait: Duration) -> PollFlags {
+        let mut fds = [PollFd::new(fd, wanted)];
+        let wait = Timespec::try_from(wait).ok();
+        // Interrupted by a signal it is ready for nothing.
+        match poll(&mut fds, wait.as_ref()) {
+            Ok(_) => fds[0].revents(),
+            Err(_) => PollFlags::empty(),
+        }
+    }
+
+    /// Whether nobody is at its other end any more.
+    pub fn is_hung_up() -> bool {
+        ready(&io::stdin(), PollFlags::empty(), Duration::ZERO).contains(PollFlags::HUP)
+    }
+
+    /// Waits for input; whether there is somebody at its other end.
+    pub fn wait(time: Duration) -> bool {
+        !ready(&io::stdin(), PollFlags::IN, time).contains(PollFlags::HUP)
+    }
+
+    /// Leaves the other screen and shows the cursor, if that can be written at once.
+    pub fn leave() {
+        let out = io::stdout();
+        if ready(&out, PollFlags::OUT, Duration::ZERO).contains(PollFlags::OUT) {
+            let _ = rustix::io::write(&out, b"\x1b[?1049l\x1b[?25h");
+        }
+    }
+}
+
+/// Watches until a key, a signal or the end of the terminal ends it; `color` says whether colours may be used.
 ///
 /// # Errors
 /// What the system says of the terminal.
 pub fn watch(app: &mut App<'_>, color: bool) -> io::Result<Ended> {
     let signals = signals()?;
+    let guard = Guard::start(Arc::clone(&signals))?;
+    let taken = Taken { guard };
     // Takes the terminal back in a panic, too, before its message is printed.
     let mut terminal = ratatui::try_init()?;
-    let _taken = Taken;
+    let ended = run(app, color, &mut terminal, &signals);
+    drop(taken);
+    #[cfg(unix)]
+    if line::is_hung_up() {
+        // It would show the cursor on its way out, and say on standard error that it cannot: a panic where that has gone.
+        std::mem::forget(terminal);
+    }
+    match ended {
+        // What goes wrong at a terminal that has gone is its end.
+        #[cfg(unix)]
+        Err(_) if line::is_hung_up() => Ok(Ended::Signal(signal_hook::consts::SIGHUP)),
+        ended => ended,
+    }
+}
+
+fn run(
+    app: &mut App<'_>,
+    color: bool,
+    terminal: &mut DefaultTerminal,
+    signals: &AtomicUsize,
+) -> io::Result<Ended> {
     let mut before = Instant::now();
     // A screen is drawn when it may have changed: over a slow line nothing is sent while nothing happens.
     let mut stale = true;
     while !app.is_done() {
         match signals.load(Ordering::Relaxed) {
             0 => {}
-            signal => return Ok(Ended::Signal(i32::try_from(signal).unwrap_or(SIGTERM))),
+            signal => return Ok(Ended::of(signal)),
         }
         if std::mem::take(&mut stale) {
             terminal.draw(|frame| draw(frame, app, color))?;
@@ -74,6 +197,11 @@ pub fn watch(app: &mut App<'_>, color: bool) -> io::Result<Ended> {
             IDLE
         } else {
             FRAME.saturating_sub(WORK)
+        };
+        #[cfg(unix)]
+        let wait = match line::wait(wait) {
+            true => Duration::ZERO,
+            false => return Ok(Ended::Signal(signal_hook::consts::SIGHUP)),
         };
         if event::poll(wait)? {
             stale = true;

@@ -141,7 +141,7 @@ impl<P: Planner> Axis<P> {
             self.rename = Some(self.setpoint().position);
         }
         self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
-        self.record(Event::Shifted { by }, source, log);
+        self.tell_moved(by, source, log);
         self.pass_at_rest(source.scan, log);
         Ok(())
     }
@@ -175,11 +175,17 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
+    /// Coordinates were moved by `by` (u).
+    pub(super) fn tell_moved(&mut self, by: f64, source: Source, log: &mut Log) {
+        self.moved = (source.scan, self.coordinates_moved(source.scan) + by);
+        self.record(Event::Shifted { by }, source, log);
+    }
+
     /// The place where the axis stands is called `position` (u) from now on (MC_Home).
     pub(super) fn call_set_position(&mut self, position: f64, scan: u64, log: &mut Log) {
         let by = position - self.setpoint.position;
         if by != 0.0 {
-            self.record(Event::Shifted { by }, self.owner_source(scan), log);
+            self.tell_moved(by, self.owner_source(scan), log);
         }
         self.coordinates = self.coordinates.wrapping_add(1);
         self.rename_actual(self.setpoint.position, position);

@@ -300,6 +300,8 @@ pub struct Axis<P: Planner = Standard> {
     rename: Option<f64>,
     /// What positions are called more than increments say (u); 0 for drives that speak units.
     shift: f64,
+    /// The last scan in which coordinates moved, and by how much in all (u).
+    moved: (u64, f64),
     /// The owner's motion may leave the software limits, so every set-point is looked at.
     watched: bool,
     /// A queued MC_SetPosition takes effect at the next latch.
@@ -377,6 +379,7 @@ impl<P: Planner> Axis<P> {
             homing: homing::Search::default(),
             rename: None,
             shift: 0.0,
+            moved: (0, 0.0),
             watched: false,
             shift_due: false,
             factors: Factors::ONE,
@@ -416,6 +419,13 @@ impl<P: Planner> Axis<P> {
     /// good one.
     pub fn actual_position(&self) -> f64 {
         self.actual
+    }
+
+    /// By how much positions are called more from `scan` on (u), if that is the last scan in which coordinates moved; else
+    /// 0. Unlike the records of it, which a ring of [`LOG_KEPT`](crate::LOG_KEPT) may lose, it is there for every axis.
+    pub fn coordinates_moved(&self, scan: u64) -> f64 {
+        let (last, by) = self.moved;
+        if last == scan { by } else { 0.0 }
     }
 
     /// Operation is enabled (MC_Power.Status).

@@ -13,6 +13,7 @@ mod samples;
 mod shared;
 
 use crate::exit::{Exit, Failure};
+use crate::{limit, out};
 use fields::Fields;
 use samples::Samples;
 use std::io::{BufRead, Write};
@@ -81,7 +82,12 @@ fn each_line(
         };
         let text = text.trim_ascii();
         if !text.is_empty() {
+            limit::doing(format!("line {number} of {name}"));
             each(number, text)?;
+        }
+        // There may be no end to the input, and nobody wants the answers.
+        if out::is_closed() {
+            break;
         }
     }
     Ok(())

@@ -6,7 +6,7 @@ use crate::plan::methods::Planned;
 use crate::table;
 use standstill_planner::{GridPlan, OnlinePlan, RampPlan, SampledPlan, Setpoint, UnequalPlan};
 use standstill_script::suite::shown;
-use std::fs::File;
+use standstill_trace::file::Draft;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
@@ -54,14 +54,14 @@ impl Setpoints {
 pub struct Samples {
     /// Stands for the file in messages.
     name: String,
-    file: BufWriter<File>,
+    file: BufWriter<Draft>,
 }
 
 impl Samples {
     /// Begins the file with its header.
     pub fn create(path: &Path) -> Result<Self, Failure> {
         let name = shown(path);
-        let file = File::create(path).map_err(|error| Failure::io(&name, &error))?;
+        let file = Draft::begin(path)?;
         let mut samples = Self {
             name,
             file: BufWriter::new(file),
@@ -88,12 +88,18 @@ impl Samples {
         })
     }
 
-    /// Writes what is still held back.
+    /// Puts the file into its place.
     pub fn finish(mut self) -> Result<(), Failure> {
-        self.checked(BufWriter::flush)
+        self.checked(BufWriter::flush)?;
+        let draft = self.file.into_inner();
+        let draft = draft.map_err(|error| Failure::io(&self.name, error.error()))?;
+        Ok(draft.keep()?)
     }
 
-    fn checked(&mut self, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<(), Failure> {
+    fn checked(
+        &mut self,
+        write: impl FnOnce(&mut BufWriter<Draft>) -> io::Result<()>,
+    ) -> Result<(), Failure> {
         write(&mut self.file).map_err(|error| Failure::io(&self.name, &error))
     }
 }

@@ -5,6 +5,7 @@ use crate::exit::{Exit, Failure};
 use serde::{Deserialize, Serialize};
 use standstill_script::suite::shown;
 use standstill_soak::monkey::{Seen, play, shrink};
+use standstill_trace::file::replace_beside;
 use std::fmt;
 use std::fs;
 use std::io::Write;
@@ -50,8 +51,8 @@ pub fn blocks(
     let episodes: Episodes = soak(seed, count, resume)?;
     for script in &episodes.scripts {
         let path = folder.join(format!("{seed}-{}.scan.json", script.episode));
-        let written = fs::create_dir_all(folder).and_then(|()| fs::write(&path, &script.text));
-        written.map_err(|error| Failure::io(&shown(&path), &error))?;
+        fs::create_dir_all(folder).map_err(|error| Failure::io(&shown(folder), &error))?;
+        replace_beside(&path, |out| out.write_all(script.text.as_bytes()))?;
         writeln!(out, "{}: {}", shown(&path), script.broken)?;
     }
     let failed = episodes.failed;

@@ -13,6 +13,7 @@ pub use blocks::blocks;
 pub use planner::planner;
 
 use crate::exit::Failure;
+use crate::limit;
 use crate::progress::Progress;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -88,6 +89,7 @@ fn run<T: Trial>(state: &mut State<T>, chains: u64, file: Option<&Path>) -> Resu
             state.tally.add(tally);
         }
         let (done, failed) = (state.chains * T::LINKS, state.tally.failed());
+        limit::doing(format!("{done} of {} {}", chains * T::LINKS, T::CASES));
         progress.show(|| format!("{done} of {} {}, {failed} failed", chains * T::LINKS, T::CASES));
         if let Some(path) = file
             && saved.elapsed() >= SAVE_EVERY

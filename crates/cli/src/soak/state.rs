@@ -4,6 +4,7 @@ use super::Trial;
 use crate::exit::{Exit, Failure};
 use serde::{Deserialize, Serialize};
 use standstill_script::suite::shown;
+use standstill_trace::file::replace;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -66,11 +67,7 @@ impl<T: Trial> State<T> {
 
     /// Writes the file. An interruption leaves the old one or the new one, never a part.
     pub fn write(&self, path: &Path) -> Result<(), Failure> {
-        let mut part = path.as_os_str().to_owned();
-        part.push(".part");
-        let text = serde_json::to_string(self).map_err(std::io::Error::from);
-        text.and_then(|text| fs::write(&part, text + "\n"))
-            .and_then(|()| fs::rename(&part, path))
-            .map_err(|error| Failure::io(&shown(path), &error))
+        let text = serde_json::to_string(self).map_err(|error| Failure::io(&shown(path), &error.into()))?;
+        Ok(replace(path, |out| writeln!(out, "{text}"))?)
     }
 }

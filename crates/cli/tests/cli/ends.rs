@@ -23,18 +23,19 @@ fn unread(folder: &std::path::Path, arguments: &[&str]) -> (Option<i32>, String)
 #[test]
 fn a_closed_pipe_ends_quietly() {
     let folder = with_script("ends_pipe");
-    for arguments in [
-        &["run", "move.scan.json"][..],
-        &["run", "-q", "--set", "v=2", "move.scan.json"],
-        &["test", "move.scan.json"],
-        &["blocks", "--json"],
-        &["blocks"],
-        &["schema"],
-        &["--help"],
+    // With the status of what it found out: a claim fails at another velocity, and there is no golden yet.
+    for (arguments, status) in [
+        (&["run", "move.scan.json"][..], 0),
+        (&["run", "-q", "--set", "v=2", "move.scan.json"], 1),
+        (&["test", "move.scan.json"], 1),
+        (&["blocks", "--json"], 0),
+        (&["blocks"], 0),
+        (&["schema"], 0),
+        (&["--help"], 0),
     ] {
         assert_eq!(
             unread(&folder, arguments),
-            (Some(0), String::new()),
+            (Some(status), String::new()),
             "{arguments:?}"
         );
     }
@@ -79,7 +80,7 @@ fn a_full_disk_is_an_error_of_io() {
 fn bad_usage_is_told_before_anything_runs() {
     let folder = with_script("ends_usage");
     for (arguments, message) in [
-        (&[][..], "Usage: standstill <COMMAND>"),
+        (&[][..], "Usage: standstill [OPTIONS] <COMMAND>"),
         (&["rum"], "a similar subcommand exists: 'run'"),
         (&["run"], "required arguments were not provided"),
         (

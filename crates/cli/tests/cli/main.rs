@@ -1,6 +1,7 @@
 //! The program from outside: what it prints, and how it ends.
 
 mod blocks;
+mod borders;
 mod compare;
 mod ends;
 mod export;

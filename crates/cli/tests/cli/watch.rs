@@ -28,6 +28,7 @@ fn without_a_terminal_it_says_so_and_a_broken_script_comes_first() {
 #[cfg(unix)]
 mod terminal {
     use super::*;
+    use rustix::event::{PollFd, PollFlags, Timespec, poll};
     use rustix::process::{Pid, Signal, kill_process};
     use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
     use rustix::termios::{LocalModes, Termios, Winsize, tcgetattr, tcsetwinsize};
@@ -36,8 +37,9 @@ mod terminal {
     use std::os::unix::process::ExitStatusExt;
     use std::path::Path;
     use std::process::{Child, ExitStatus, Stdio};
+    use std::sync::atomic::{AtomicBool, Ordering};
     use std::sync::{Arc, Mutex};
-    use std::thread;
+    use std::thread::{self, JoinHandle};
     use std::time::{Duration, Instant};
 
     /// Longer than a busy machine takes for anything here.
@@ -50,11 +52,15 @@ mod terminal {
         before: Termios,
         child: Child,
         shown: Arc<Mutex<Vec<u8>>>,
+        deaf: Arc<AtomicBool>,
+        reader: Option<JoinHandle<()>>,
     }
 
     impl Watched {
         fn new(folder: &Path, arguments: &[&str]) -> Self {
-            let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).expect("a terminal");
+            // The program must not hold its own terminal open from the other side.
+            let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
+            let ours = openpt(flags).expect("a terminal");
             grantpt(&ours).expect("ours");
             unlockpt(&ours).expect("ours");
             let name = ptsname(&ours, Vec::new()).expect("it has a name");
@@ -86,9 +92,19 @@ mod terminal {
             let ours = File::from(ours);
             let shown = Arc::new(Mutex::new(Vec::new()));
             let (mut source, target) = (ours.try_clone().expect("a handle"), Arc::clone(&shown));
-            thread::spawn(move || {
+            let deaf = Arc::new(AtomicBool::new(false));
+            let stop = Arc::clone(&deaf);
+            let reader = thread::spawn(move || {
                 let mut buffer = [0; 4096];
-                while let Ok(count @ 1..) = source.read(&mut buffer) {
+                while !stop.load(Ordering::Relaxed) {
+                    let wait = Timespec::try_from(Duration::from_millis(20)).expect("short");
+                    let ready = poll(&mut [PollFd::new(&source, PollFlags::IN)], Some(&wait));
+                    if !ready.is_ok_and(|count| count > 0) {
+                        continue;
+                    }
+                    let Ok(count @ 1..) = source.read(&mut buffer) else {
+                        return;
+                    };
                     target
                         .lock()
                         .expect("nobody panicked")
@@ -101,6 +117,37 @@ mod terminal {
                 before,
                 child,
                 shown,
+                deaf,
+                reader: Some(reader),
+            }
+        }
+
+        /// Takes nothing any more of what is written to the terminal.
+        fn take_nothing(&mut self) {
+            self.deaf.store(true, Ordering::Relaxed);
+            if let Some(reader) = self.reader.take() {
+                reader.join().expect("it did not panic");
+            }
+        }
+
+        fn id(&self) -> Pid {
+            let id = i32::try_from(self.child.id()).expect("a process id");
+            Pid::from_raw(id).expect("not zero")
+        }
+
+        /// The status of a program that has to end at once, and by itself.
+        fn ends_at_once(mut child: Child) -> ExitStatus {
+            // A second is what is promised; the rest is for a busy machine.
+            let begin = Instant::now();
+            loop {
+                if let Some(status) = child.try_wait().expect("it is our child") {
+                    return status;
+                }
+                if begin.elapsed() > Duration::from_secs(3) {
+                    let _ = child.kill();
+                    panic!("it outlives its terminal");
+                }
+                thread::sleep(Duration::from_millis(10));
             }
         }
 
@@ -212,8 +259,7 @@ mod terminal {
         for (signal, number) in [(Signal::TERM, 15), (Signal::INT, 2), (Signal::HUP, 1)] {
             let watched = Watched::new(&folder, &["move.scan.json"]);
             watched.expect("One short move");
-            let id = i32::try_from(watched.child.id()).expect("a process id");
-            kill_process(Pid::from_raw(id).expect("not zero"), signal).expect("it runs");
+            kill_process(watched.id(), signal).expect("it runs");
             let (status, text) = watched.ended();
             assert_eq!(status.signal(), Some(number), "{text:?}");
         }
@@ -222,6 +268,66 @@ mod terminal {
         watched.expect("One short move");
         watched.press("\u{3}");
         assert_eq!(watched.ended().0.signal(), Some(2));
+    }
+
+    #[test]
+    fn it_ends_with_its_terminal() {
+        let folder = with_script("watch_hangup");
+        // Without end at the speed of the clock.
+        write(
+            &folder,
+            "long.scan.json",
+            &SCRIPT.replace("\"scans\": 30", "\"scans\": 1000000"),
+        );
+        for keys in ["", " ", "e+++++ "] {
+            let mut watched = Watched::new(&folder, &["long.scan.json"]);
+            watched.expect("One short move");
+            watched.press(keys);
+            watched.take_nothing();
+            let Watched { ours, child, .. } = watched;
+            drop(ours);
+            let status = Watched::ends_at_once(child);
+            assert_eq!(status.signal(), Some(1), "{keys:?}: {status:?}");
+        }
+    }
+
+    #[test]
+    fn a_terminal_that_takes_nothing_does_not_keep_it_from_ending() {
+        let folder = with_script("watch_stuck");
+        write(
+            &folder,
+            "long.scan.json",
+            &SCRIPT.replace("\"scans\": 30", "\"scans\": 1000000"),
+        );
+        let mut watched = Watched::new(&folder, &["long.scan.json"]);
+        watched.expect("One short move");
+        watched.take_nothing();
+        // The screen changes until the line is full.
+        watched.press("++++ ");
+        thread::sleep(Duration::from_secs(1));
+        kill_process(watched.id(), Signal::TERM).expect("it runs");
+        let status = Watched::ends_at_once(watched.child);
+        assert_eq!(status.signal(), Some(15), "{status:?}");
+        // Amid a key that never ends, too: a terminal sends those in pieces.
+        let mut watched = Watched::new(&folder, &["long.scan.json"]);
+        watched.expect("One short move");
+        watched.press("\u{1b}[");
+        thread::sleep(Duration::from_millis(300));
+        kill_process(watched.id(), Signal::TERM).expect("it runs");
+        assert_eq!(watched.ended().0.signal(), Some(15));
+    }
+
+    #[test]
+    fn the_end_of_the_time_gives_the_terminal_back() {
+        let folder = with_script("watch_time");
+        let watched = Watched::new(&folder, &["--time-limit", "500ms", "move.scan.json"]);
+        watched.expect("One short move");
+        let (status, text) = watched.ended();
+        assert_eq!(status.code(), Some(1), "{text:?}");
+        assert!(
+            text.contains("the time is up; it was at move.scan.json"),
+            "{text:?}"
+        );
     }
 
     #[test]

@@ -82,7 +82,7 @@ pub fn of_lines(text: &str) -> Trace {
 
 /// The trace of a scan script: the columns of its axes, and what `variables` makes of a scan.
 pub fn of_script(path: &Path, variables: impl Fn(&Trace, usize) -> Vec<Cell<'static>>) -> Trace {
-    let (_, script) = standstill_script::suite::Texts::read(path, &[]).unwrap();
+    let (_, script) = standstill_script::suite::Texts::read(path, &Default::default()).unwrap();
     let outcome = standstill_script::run(&script).unwrap();
     for verdict in &outcome.verdicts {
         assert!(verdict.failures.is_empty(), "{}: {verdict:?}", path.display());

@@ -222,18 +222,48 @@ fn nearest(rows: &Rows<'_>, scan: u64, holds: impl Fn(u64) -> bool) -> String {
     "it was so in no scan".to_owned()
 }
 
-/// `in 3 scans: 7, 8, 9`
-pub(super) fn listed(scans: impl Iterator<Item = u64>) -> String {
-    let all: Vec<u64> = scans.collect();
-    let named: Vec<_> = all.iter().take(SCANS_NAMED).map(u64::to_string).collect();
-    let (count, named) = (all.len(), named.join(", "));
-    match (count, all.last()) {
-        (1, _) => format!("in scan {named}"),
-        (count, Some(last)) if count > SCANS_NAMED => {
-            format!("in {count} scans: {named} .. {last}")
+/// Scans in which a claim fails: how many, the first few and the last.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Listed {
+    count: u64,
+    first: [u64; SCANS_NAMED],
+    last: u64,
+}
+
+impl Listed {
+    /// The next scan.
+    pub(super) fn add(&mut self, scan: u64) {
+        let place = usize::try_from(self.count).unwrap_or(usize::MAX);
+        if let Some(place) = self.first.get_mut(place) {
+            *place = scan;
         }
-        _ => format!("in {count} scans: {named}"),
+        self.count += 1;
+        self.last = scan;
     }
+}
+
+/// `in 3 scans: 7, 8, 9`
+impl std::fmt::Display for Listed {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { count, first, last } = self;
+        let named = first.iter().zip(0..*count);
+        let named: Vec<_> = named.map(|(scan, _)| scan.to_string()).collect();
+        let named = named.join(", ");
+        if *count == 1 {
+            write!(out, "in scan {named}")
+        } else if *count > SCANS_NAMED as u64 {
+            write!(out, "in {count} scans: {named} .. {last}")
+        } else {
+            write!(out, "in {count} scans: {named}")
+        }
+    }
+}
+
+/// The scans in which a claim fails, in a few words.
+fn listed(scans: impl Iterator<Item = u64>) -> Listed {
+    let mut listed = Listed::default();
+    scans.for_each(|scan| listed.add(scan));
+    listed
 }
 
 pub(super) fn failure(path: &str, scan: Option<u64>, text: String) -> Failure {

@@ -13,7 +13,7 @@
 //! The 1e-9 is the accuracy the planner states for its limits.
 
 use super::Failure;
-use super::judge::{failure, listed, within_run};
+use super::judge::{Listed, failure, within_run};
 use crate::model::Range;
 use crate::run::{Derivatives, Rows};
 use standstill_trace::shortest;
@@ -29,7 +29,7 @@ pub(super) fn within(rows: &Rows<'_>, path: &str, range: Range, axis: usize, fac
     };
     let slack = resolved(rows, axis);
     let mut first: [Option<(u64, f64, f64)>; 4] = [None; 4];
-    let mut broken: [Vec<u64>; 4] = Default::default();
+    let mut broken = [Listed::default(); 4];
     for scan in scans {
         let Some(derivatives) = rows.derivatives(axis, scan) else {
             continue;
@@ -41,7 +41,7 @@ pub(super) fn within(rows: &Rows<'_>, path: &str, range: Range, axis: usize, fac
             // Written so that a NaN breaks the limit.
             if !(value.abs() <= bound * (1.0 + RELATIVE) + slack[order]) {
                 first[order].get_or_insert((scan, value, bound));
-                broken[order].push(scan);
+                broken[order].add(scan);
             }
         }
     }
@@ -53,7 +53,7 @@ pub(super) fn within(rows: &Rows<'_>, path: &str, range: Range, axis: usize, fac
                 "{} at scan {scan}, expected of magnitude <= {}; broken {}",
                 shortest(value),
                 shortest(bound),
-                listed(broken.into_iter())
+                broken
             );
             let path = format!("{path}.within_limits.{name}.Position.d{}", order + 1);
             failures.push(failure(&path, Some(scan), text));

@@ -8,6 +8,8 @@ use super::json::{self, Json, Key, Node};
 use super::{Reader, shape, without_mark};
 use crate::error::{Code, Diagnostic, File, quoted};
 use crate::model::Span;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, VecDeque};
 
 /// Most files of one script.
 pub(super) const FILES_MAX: usize = 64;
@@ -16,6 +18,9 @@ pub(super) const FILES_MAX: usize = 64;
 const SECTIONS: [&str; 5] = ["parameters", "axes", "inputs", "tasks", "blocks"];
 
 type Members = Vec<(Key, Node)>;
+
+/// The names of `override`, with their places, by the name in capitals; those of one name in their order.
+type Overrides = BTreeMap<String, VecDeque<(String, Span)>>;
 
 /// Gives the text of a file, named relative to the script's folder, or says why not.
 pub(super) type Load<'a> = &'a mut dyn FnMut(&str) -> Result<String, String>;
@@ -67,10 +72,15 @@ impl Reader {
         let mut below = Members::new();
         for (path, span) in paths.unwrap_or_default() {
             for (key, node) in self.machine(&path, span, files) {
-                self.lay(&mut below, key, node, &mut Vec::new());
+                self.lay(&mut below, key, node, &mut Overrides::new());
             }
         }
-        let mut overrides: Vec<_> = overrides.unwrap_or_default();
+        let mut wanted = Overrides::new();
+        for (name, span) in overrides.unwrap_or_default() {
+            let upper = name.to_ascii_uppercase();
+            wanted.entry(upper).or_default().push_back((name, span));
+        }
+        let mut overrides = wanted;
         let mut rest = Members::new();
         for (key, node) in members {
             match key.text.as_str() {
@@ -79,7 +89,7 @@ impl Reader {
                 _ => rest.push((key, node)),
             }
         }
-        for (name, span) in overrides {
+        for (name, span) in overrides.into_values().flatten() {
             let message = format!("nothing overrides {}", quoted(&name));
             self.report(
                 Diagnostic::new(Code::BadOverride, span, message)
@@ -168,15 +178,19 @@ impl Reader {
     }
 
     /// Lays a section over those that are there. An override that was used is taken from the list.
-    fn lay(&mut self, below: &mut Members, key: Key, node: Node, overrides: &mut Vec<(String, Span)>) {
+    fn lay(&mut self, below: &mut Members, key: Key, node: Node, overrides: &mut Overrides) {
         let Some((_, there)) = below.iter_mut().find(|(other, _)| other.text == key.text) else {
             below.push((key, node));
             return;
         };
         match (&mut there.json, node.json) {
             (Json::Map(there), Json::Map(entries)) => {
+                let mut places = Places::new(there.iter().map(|(key, _)| key.text.as_str()));
                 for (key, node) in entries {
-                    match there.iter_mut().find(|(other, _)| same(&other.text, &key.text)) {
+                    match places
+                        .of(&key.text, there.len())
+                        .and_then(|place| there.get_mut(place))
+                    {
                         None => there.push((key, node)),
                         Some((other, entry)) => {
                             if self.permitted(&key.text, key.span, other.span, overrides) {
@@ -187,12 +201,19 @@ impl Reader {
                 }
             }
             (Json::List(there), Json::List(entries)) => {
+                let mut places = Places::default();
+                for (place, (name, _)) in there
+                    .iter()
+                    .enumerate()
+                    .filter_map(|(place, node)| Some((place, name_of(node)?)))
+                {
+                    places.of(name, place);
+                }
                 for node in entries {
-                    let name = name_of(&node);
-                    let clash = name.as_ref().and_then(|(name, _)| {
-                        let of = |other: &Node| name_of(other).is_some_and(|(other, _)| same(&other, name));
-                        there.iter_mut().find(|other| of(other))
-                    });
+                    let name = name_of(&node).map(|(name, span)| (name.to_owned(), span));
+                    let clash = (name.as_ref())
+                        .and_then(|(name, _)| places.of(name, there.len()))
+                        .and_then(|place| there.get_mut(place));
                     match (clash, name) {
                         (Some(entry), Some((name, span))) => {
                             let other = name_of(entry).map_or(entry.span, |(_, span)| span);
@@ -220,15 +241,9 @@ impl Reader {
     }
 
     /// Whether the entry may be laid over one of an included file; reports it if not.
-    fn permitted(
-        &mut self,
-        name: &str,
-        span: Span,
-        other: Span,
-        overrides: &mut Vec<(String, Span)>,
-    ) -> bool {
-        if let Some(at) = overrides.iter().position(|(wanted, _)| same(wanted, name)) {
-            overrides.remove(at);
+    fn permitted(&mut self, name: &str, span: Span, other: Span, overrides: &mut Overrides) -> bool {
+        let wanted = overrides.get_mut(&name.to_ascii_uppercase());
+        if wanted.is_some_and(|wanted| wanted.pop_front().is_some()) {
             return true;
         }
         let message = format!("the name {} is taken by an included file", quoted(name));
@@ -243,48 +258,69 @@ impl Reader {
     }
 }
 
-fn same(one: &str, other: &str) -> bool {
-    one.eq_ignore_ascii_case(other)
+/// Places of entries by name, without regard to case.
+#[derive(Default)]
+struct Places(BTreeMap<String, usize>);
+
+impl Places {
+    /// Those of a list of names.
+    fn new<'n>(names: impl Iterator<Item = &'n str>) -> Self {
+        let mut places = Self::default();
+        for (place, name) in names.enumerate() {
+            places.of(name, place);
+        }
+        places
+    }
+
+    /// The place of a name; if it has none, `free` is its place from now on.
+    fn of(&mut self, name: &str, free: usize) -> Option<usize> {
+        match self.0.entry(name.to_ascii_uppercase()) {
+            Entry::Occupied(place) => Some(*place.get()),
+            Entry::Vacant(place) => {
+                place.insert(free);
+                None
+            }
+        }
+    }
 }
 
 /// The `name` of a block.
-fn name_of(node: &Node) -> Option<(String, Span)> {
+fn name_of(node: &Node) -> Option<(&str, Span)> {
     let Json::Map(members) = &node.json else {
         return None;
     };
     let (_, node) = members.iter().find(|(key, _)| key.text == "name")?;
     match &node.json {
-        Json::Text(name) => Some((name.clone(), node.span)),
+        Json::Text(name) => Some((name.as_str(), node.span)),
         _ => None,
     }
 }
 
 /// Keys that are given replace those of the entry, pins one by one; the others stay.
 fn replace(entry: &mut Node, by: Node) {
-    match (&mut entry.json, by.json) {
-        (Json::Map(there), Json::Map(members)) => {
-            for (key, node) in members {
-                match there.iter_mut().find(|(other, _)| other.text == key.text) {
-                    Some((_, pins)) if key.text == "pins" => replace_members(pins, node),
-                    Some((other, value)) => (*other, *value) = (key, node),
-                    None => there.push((key, node)),
-                }
-            }
-        }
-        (_, json) => {
-            *entry = Node { span: by.span, json };
-        }
-    }
+    replace_members(entry, by, |key, there, node| match key {
+        "pins" => replace_members(there, node, |_, pin, node| *pin = node),
+        _ => *there = node,
+    });
 }
 
-/// As [`replace`], one level and no more.
-fn replace_members(entry: &mut Node, by: Node) {
+/// The members of `by` replace those of `entry` of the same key as `lay` says, or are added to them.
+fn replace_members(entry: &mut Node, by: Node, lay: impl Fn(&str, &mut Node, Node)) {
     match (&mut entry.json, by.json) {
         (Json::Map(there), Json::Map(members)) => {
+            let keys = there.iter().map(|(key, _)| key.text.clone()).zip(0..);
+            let mut places: BTreeMap<String, usize> = keys.collect();
             for (key, node) in members {
-                match there.iter_mut().find(|(other, _)| other.text == key.text) {
-                    Some((other, value)) => (*other, *value) = (key, node),
-                    None => there.push((key, node)),
+                let place = places.get(&key.text).copied();
+                match place.and_then(|place| there.get_mut(place)) {
+                    Some((other, value)) => {
+                        lay(&key.text, value, node);
+                        *other = key;
+                    }
+                    None => {
+                        places.insert(key.text.clone(), there.len());
+                        there.push((key, node));
+                    }
                 }
             }
         }

@@ -29,7 +29,8 @@ use crate::error::{Code, Diagnostic, ScriptError, quoted};
 use crate::format::number_text;
 use crate::model::{Conditions, DriveSetup, Input, Program, Script, Span};
 use json::{Json, Key, Node};
-use names::{Entity, Names, identifier_error, suggestion};
+use names::{Entity, Names, identifier_error};
+pub use program::GUEST_MEMORY;
 use standstill_fb::{PinType, Value};
 use standstill_trace::digest::Fnv1a;
 use std::collections::BTreeMap;
@@ -40,6 +41,9 @@ pub const SCANS_MAX: u64 = 10_000_000;
 
 /// Most cells, that is rows times columns, of one run's trace.
 pub const CELLS_MAX: u64 = 100_000_000;
+
+/// Most looks at rows that the conditions of a script's claims and steps may take, each in every scan: some minutes of work.
+pub const LOOKS_MAX: u64 = 10_000_000_000;
 
 /// Most axes, inputs or instances of one script each: their numbers are 16 bits wide.
 pub const ENTITIES_MAX: usize = 65_000;
@@ -52,6 +56,8 @@ pub const VERSION: u32 = 1;
 struct Reader {
     parameters: BTreeMap<String, f64>,
     names: Names,
+    /// The tasks by name in capitals.
+    task_places: BTreeMap<String, usize>,
     cycle_ns: Option<i64>,
     scan_count: Option<u64>,
     /// The drives of the axes, where they could be read, and whether they count increments.
@@ -62,6 +68,8 @@ struct Reader {
     tables: Vec<f64>,
     /// The guest programs read so far.
     programs: Vec<Option<Program>>,
+    /// Memory that all guests may have together (bytes).
+    guest_memory: u64,
     errors: Vec<Diagnostic>,
 }
 
@@ -95,7 +103,7 @@ pub fn read_with(
 }
 
 /// As [`read_with`], for a script that may have guest programs: `guest` gives the bytes of one, named relative to the
-/// script's folder, or says why not.
+/// script's folder, or says why not. Together they may have [`GUEST_MEMORY`].
 ///
 /// # Errors
 /// As [`read_with`].
@@ -106,6 +114,21 @@ pub fn read_with_programs(
     load: &mut dyn FnMut(&str) -> Result<String, String>,
     guest: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<Script, ScriptError> {
+    read_within(text, file_name, overrides, load, guest, GUEST_MEMORY)
+}
+
+/// As [`read_with_programs`], for a script whose guests may have so many bytes of memory together.
+///
+/// # Errors
+/// As [`read_with`].
+pub(crate) fn read_within(
+    text: &str,
+    file_name: &str,
+    overrides: &[(String, f64)],
+    load: &mut dyn FnMut(&str) -> Result<String, String>,
+    guest: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+    guest_memory: u64,
+) -> Result<Script, ScriptError> {
     let mut guests: Vec<Vec<u8>> = Vec::new();
     let mut keep = |path: &str| {
         let bytes = guest(path)?;
@@ -115,7 +138,10 @@ pub fn read_with_programs(
     let plain = without_mark(text);
     let root =
         json::parse(plain).map_err(|diagnostic| ScriptError::new(file_name, plain, vec![diagnostic]))?;
-    let mut reader = Reader::default();
+    let mut reader = Reader {
+        guest_memory,
+        ..Reader::default()
+    };
     let mut files = include::Files::new(file_name, plain, load);
     let root = reader.with_includes(root, &mut files);
     // What is missing may stand in a file that could not be had.
@@ -206,6 +232,7 @@ impl Reader {
             hash: 0,
         };
         self.check_size(&script, fields.get("scans")?.span);
+        self.check_looks(&script, fields.get("scans")?.span);
         Some(script)
     }
 
@@ -252,9 +279,11 @@ impl Reader {
                 *place = *value;
                 continue;
             }
-            let help = suggestion(name, self.parameters.keys().map(String::as_str)).unwrap_or_else(|| {
-                "declare it under \"parameters\" and use it as {\"param\": ..}".to_owned()
-            });
+            let help = self
+                .help(name, self.parameters.keys().map(String::as_str))
+                .unwrap_or_else(|| {
+                    "declare it under \"parameters\" and use it as {\"param\": ..}".to_owned()
+                });
             let message = format!(
                 "the script has no parameter {} to set to {}",
                 quoted(name),
@@ -465,6 +494,21 @@ impl Reader {
                 "with these columns at most {} scans; a longer `cycle` covers the same time with fewer",
                 CELLS_MAX / columns
             )));
+        }
+    }
+
+    fn check_looks(&mut self, script: &Script, span: Span) {
+        let claims = script.claims.iter().map(|claim| claim.kind.looks());
+        let steps = script.steps.iter().map(|step| step.when.looks());
+        let looks = claims.chain(steps).fold(0, u64::saturating_add);
+        let looks = looks.saturating_mul(script.scans);
+        if looks > LOOKS_MAX {
+            let message = format!(
+                "claims and steps take {looks} looks at rows, more than the {LOOKS_MAX} of one run: their conditions \
+                 times the scans"
+            );
+            let help = "a longer `cycle` covers the same time with fewer scans";
+            self.report(Diagnostic::new(Code::TooLarge, span, message).help(help));
         }
     }
 }

@@ -193,14 +193,22 @@ impl Names {
     }
 }
 
+/// Longest name (characters) that is looked at for slips.
+const NAME_WITH_SLIPS: usize = 100;
+
 /// The remedy for a name that is nearly one of `candidates`.
 pub(crate) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     let wanted = name.to_ascii_lowercase();
     let length = wanted.chars().count();
+    // The work grows with the product of the lengths, and nobody has a slip of one letter in mind there.
+    if length > NAME_WITH_SLIPS {
+        return None;
+    }
     // One slip in three letters still lets one guess what was meant, and one in a word shorter than three; a
     // single letter that differs says nothing.
     let slips = if length < 2 { 0 } else { (length / 3).max(1) };
     candidates
+        .filter(|candidate| candidate.len() <= 8 * NAME_WITH_SLIPS)
         .map(|candidate| {
             (
                 strsim::damerau_levenshtein(&wanted, &candidate.to_ascii_lowercase()),

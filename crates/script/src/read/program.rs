@@ -23,6 +23,9 @@ pub(crate) const FUEL_MAX: i64 = 1_000_000_000;
 /// Most bytes of memory: what 32 bits reach.
 pub(crate) const MEMORY_MAX: i64 = 1 << 32;
 
+/// Memory that all guest programs of a script may have together unless the caller allows more (bytes).
+pub const GUEST_MEMORY: u64 = 64 << 20;
+
 /// Types of symbols.
 pub(crate) const SYMBOL_TYPES: [&str; SymbolType::ALL.len()] = {
     let mut names = [""; SymbolType::ALL.len()];
@@ -62,15 +65,56 @@ impl Reader {
             self.report(Diagnostic::new(Code::TooLarge, node.span, message));
             return None;
         }
+        let share = self.memory_share(&members, node)?;
         for (index, (key, node)) in members.iter().enumerate() {
             let first = first + index * INSTANCES_MOST;
-            let program = self.program(&key.text, node, u16::try_from(first).unwrap_or(1), load);
+            let first = u16::try_from(first).unwrap_or(1);
+            let program = self.program(&key.text, node, first, share, load);
             self.programs.push(program);
         }
         self.programs.iter().cloned().collect()
     }
 
-    fn program(&mut self, name: &str, node: &Node, first: u16, load: LoadGuest<'_>) -> Option<Program> {
+    /// The memory of a program that does not say how much it needs (bytes): as usual, or what is left for each of them. All
+    /// together may have no more than the caller allows.
+    fn memory_share(&mut self, members: &Fields<'_>, node: &Node) -> Option<u64> {
+        let said = |node: &Node| match &node.json {
+            Json::Map(inner) => inner
+                .iter()
+                .find(|(key, _)| key.text == "memory")
+                .map(|(_, node)| {
+                    // What is no number of bytes is told where the program is read.
+                    match node.json {
+                        Json::Number(bytes) if bytes >= 0.0 => bytes as u64,
+                        _ => 0,
+                    }
+                }),
+            _ => None,
+        };
+        let all: Vec<_> = members.iter().map(|(_, node)| said(node)).collect();
+        let total = all.iter().flatten().copied().fold(0, u64::saturating_add);
+        let most = self.guest_memory;
+        if total > most {
+            let message = format!(
+                "the programs may take {total} bytes of memory, more than the {most} of all guests of a script"
+            );
+            let help = format!("where that is wanted, run it with `--guest-memory {total}`");
+            self.report(Diagnostic::new(Code::TooLarge, node.span, message).help(help));
+            return None;
+        }
+        let silent = all.iter().filter(|said| said.is_none()).count() as u64;
+        let left = (most - total).checked_div(silent).unwrap_or_default();
+        Some(left.min(Settings::default().memory))
+    }
+
+    fn program(
+        &mut self,
+        name: &str,
+        node: &Node,
+        first: u16,
+        share: u64,
+        load: LoadGuest<'_>,
+    ) -> Option<Program> {
         let fields = self.fields(node, &shape::PROGRAM)?;
         let defaults = Settings::default();
         let fuel = match fields.get("fuel") {
@@ -78,7 +122,7 @@ impl Reader {
             Some(node) => self.whole(node, "`fuel`", 1..=FUEL_MAX).map(i64::cast_unsigned),
         };
         let memory = match fields.get("memory") {
-            None => Some(defaults.memory),
+            None => Some(share),
             Some(node) => self
                 .whole(node, "`memory`", 1..=MEMORY_MAX)
                 .map(i64::cast_unsigned),

@@ -1,7 +1,7 @@
 //! Tasks: when they run, and which one a block belongs to.
 
 use super::json::Node;
-use super::names::{identifier_error, suggestion};
+use super::names::identifier_error;
 use super::value::Fields;
 use super::{Reader, shape};
 use crate::error::{Code, Diagnostic, quoted};
@@ -15,6 +15,7 @@ pub(super) const MAIN: &str = "main";
 impl Reader {
     pub(super) fn tasks(&mut self, fields: &Fields<'_>) -> Option<Vec<Task>> {
         let Some(node) = fields.get("tasks") else {
+            self.task_places.insert(MAIN.to_ascii_uppercase(), 0);
             return Some(vec![Task {
                 name: MAIN.to_owned(),
                 interval: Some(1),
@@ -37,6 +38,8 @@ impl Reader {
                     Diagnostic::new(Code::DuplicateName, key.span, message).related(first, "by this task"),
                 );
             }
+            let upper = key.text.to_ascii_uppercase();
+            self.task_places.entry(upper).or_insert(tasks.len());
             tasks.push(self.task(&key.text, node));
         }
         tasks.into_iter().collect()
@@ -98,13 +101,11 @@ impl Reader {
     pub(super) fn task_index(&mut self, name: &str, span: Span, tasks: Option<&[Task]>) -> Option<usize> {
         // Tasks that were refused are already reported.
         let tasks = tasks?;
-        let index = tasks.iter().position(|task| task.name.eq_ignore_ascii_case(name));
+        let index = self.task_places.get(&name.to_ascii_uppercase()).copied();
         if index.is_none() {
             let message = format!("the script has no task {}", quoted(name));
-            self.report(
-                Diagnostic::new(Code::UnknownTask, span, message)
-                    .maybe_help(suggestion(name, tasks.iter().map(|task| task.name.as_str()))),
-            );
+            let help = self.help(name, tasks.iter().map(|task| task.name.as_str()));
+            self.report(Diagnostic::new(Code::UnknownTask, span, message).maybe_help(help));
         }
         index
     }

@@ -183,7 +183,8 @@ impl Reader {
         let name = self.text(name_node, "`param`")?;
         let value = self.parameters.get(name).copied();
         if value.is_none() {
-            let help = suggestion(name, self.parameters.keys().map(String::as_str))
+            let help = self
+                .help(name, self.parameters.keys().map(String::as_str))
                 .unwrap_or_else(|| format!("declare it: \"parameters\": {{{name:?}: 0}}"));
             self.report(
                 Diagnostic::new(
@@ -314,12 +315,21 @@ impl Reader {
         None
     }
 
-    /// The remedy for an unknown name among those `filter` takes. Only the first errors get one: in a long
-    /// script a slip in every line would be compared with every name.
+    /// The remedy for an unknown name among those `filter` takes.
     pub(super) fn name_help(&self, name: &str, filter: fn(&Entity) -> bool) -> Option<String> {
+        self.help(name, self.names.of(filter))
+    }
+
+    /// The remedy for a name that is none of `candidates`, of which there may be many. Only the first errors get one: in a
+    /// long script a slip in every line would be compared with every name.
+    pub(super) fn help<'a>(
+        &self,
+        name: &str,
+        candidates: impl Iterator<Item = &'a str> + Clone,
+    ) -> Option<String> {
         const ERRORS_WITH_HELP: usize = 200;
         (self.errors.len() < ERRORS_WITH_HELP)
-            .then(|| suggestion(name, self.names.of(filter)))
+            .then(|| suggestion(name, candidates))
             .flatten()
     }
 

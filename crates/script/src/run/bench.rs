@@ -64,11 +64,29 @@ fn fail(axis: usize, kind: FaultKind, code: u16, time: ScanTime, machine: &mut S
     }
 }
 
+/// The instances and the guest programs of each task.
+fn by_task(script: &Script) -> Vec<(Vec<usize>, Vec<usize>)> {
+    let mut tasks = vec![(Vec::new(), Vec::new()); script.tasks.len()];
+    for (index, instance) in script.blocks.iter().enumerate() {
+        if let Some((blocks, _)) = tasks.get_mut(instance.task) {
+            blocks.push(index);
+        }
+    }
+    for (index, program) in script.programs.iter().enumerate() {
+        if let Some((_, guests)) = tasks.get_mut(program.task) {
+            guests.push(index);
+        }
+    }
+    tasks
+}
+
 /// A script at work.
 pub(crate) struct Bench<'a> {
     script: &'a Script,
     layout: Layout,
     values: Values,
+    /// The instances and the guest programs of each task, in file order.
+    tasks: Vec<(Vec<usize>, Vec<usize>)>,
     /// Pin types of all instances, in trace order.
     types: Vec<PinType>,
     cells: Cells,
@@ -99,6 +117,7 @@ impl<'a> Bench<'a> {
             layout,
             guests,
             values,
+            tasks: by_task(script),
             types: script
                 .blocks
                 .iter()
@@ -287,20 +306,21 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
 
     fn run(&mut self, program: ProgramId, context: &mut Context<'_, Standard>) -> Result<u64, ProgramFault> {
         let script = self.script;
-        for (index, declared) in script.blocks.iter().enumerate() {
-            if declared.task != program.0 {
-                continue;
-            }
+        let ProgramId(task) = program;
+        for place in 0.. {
+            let index = self.tasks.get(task).and_then(|(blocks, _)| blocks.get(place));
+            let Some((index, declared)) = index.and_then(|&index| Some((index, script.blocks.get(index)?)))
+            else {
+                break;
+            };
             self.feed(index, &declared.wires, context.scan);
             context.instance = instance_id(index);
             if let Some(instance) = self.values.instances.get_mut(index) {
                 instance.call(context);
             }
         }
-        for (index, declared) in script.programs.iter().enumerate() {
-            if declared.task != program.0 {
-                continue;
-            }
+        let guests = self.tasks.get(task).map(|(_, guests)| guests.as_slice());
+        for &index in guests.unwrap_or_default() {
             let outcome = self.guests.scan(index, context);
             if let Some(values) = self.values.symbols.get_mut(index) {
                 self.guests.refresh(index, values);
@@ -327,6 +347,9 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
             shifts: &self.shifts,
         };
         self.schedule.look(&rows, time.scan);
+        if self.schedule.is_full() {
+            self.error.get_or_insert(RunError::Pending { scan: time.scan });
+        }
         if self.last_scan.is_none()
             && let Some((conditions, after)) = &self.script.stop_when
             && rows.hold(conditions, time.scan)

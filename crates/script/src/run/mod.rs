@@ -13,6 +13,7 @@ mod values;
 
 pub use recorded::{RecordingError, judge_recording};
 pub(crate) use rows::{Derivatives, Rows};
+use schedule::PENDING_MAX;
 pub use session::{Change, Session};
 
 use crate::CELLS_MAX;
@@ -94,6 +95,12 @@ pub enum RunError {
         scan: u64,
         /// Name of the axis.
         axis: String,
+    },
+    /// Steps with `every` and `after` came more often than the run remembers.
+    #[error("scan {scan}: more than {PENDING_MAX} steps wait for their scan; lower their `after`")]
+    Pending {
+        /// The scan.
+        scan: u64,
     },
     /// A defect of this program.
     #[error("internal: {0}")]

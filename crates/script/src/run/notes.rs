@@ -3,8 +3,9 @@
 use super::bench::{ScriptMachine, instance_id};
 use super::rows::Shift;
 use crate::model::Script;
-use standstill_axis::{Event, LOG_KEPT};
+use standstill_axis::{AxisId, Event, LOG_KEPT, Record};
 use standstill_record::told::{Names, note};
+use standstill_scan::RUNTIME;
 use standstill_trace::{Note, Trace};
 
 /// How many records have been taken from the ring so far, and what they speak of.
@@ -31,7 +32,8 @@ impl Notes {
         self.names.instances.insert(id, name);
     }
 
-    /// Takes this scan's records into the trace.
+    /// Takes this scan's records into the trace, and where coordinates moved, which claims need to know, from the axes
+    /// themselves: records are in a ring, and of a scan with more of them some are lost.
     pub(crate) fn take(&mut self, machine: &ScriptMachine, trace: &mut Trace, shifts: &mut Vec<Shift>) {
         let log = machine.log();
         let lost = (log.total() - self.taken).saturating_sub(LOG_KEPT as u64);
@@ -45,14 +47,29 @@ impl Notes {
                 text: format!("{lost} records of this scan are lost: the ring holds {LOG_KEPT}"),
             });
         }
-        for (index, record) in records.iter().enumerate() {
-            if let Event::Shifted { by } = record.event {
-                shifts.push(Shift {
-                    scan: record.scan,
-                    axis: record.axis.index(),
-                    by,
-                });
+        for (index, axis) in machine.axes().iter().enumerate() {
+            let by = axis.coordinates_moved(scan as u64);
+            if by == 0.0 {
+                continue;
             }
+            shifts.push(Shift {
+                scan: scan as u64,
+                axis: index,
+                by,
+            });
+            // A trace is judged by its notes where there are no axes any more.
+            let left = by - told(&records, axis.id());
+            if lost > 0 && left != 0.0 {
+                let record = Record {
+                    scan: scan as u64,
+                    axis: axis.id(),
+                    instance: RUNTIME,
+                    event: Event::Shifted { by: left },
+                };
+                trace.push_note(note(&self.names, &record, scan, None));
+            }
+        }
+        for (index, record) in records.iter().enumerate() {
             // Only the last plan of an axis in a scan is still there to be told in full.
             let replaced = records
                 .iter()
@@ -67,4 +84,14 @@ impl Notes {
             trace.push_note(note(&self.names, record, scan, plan));
         }
     }
+}
+
+/// By how much the records say that the coordinates of an axis moved (u).
+fn told(records: &[&Record], axis: AxisId) -> f64 {
+    let own = records.iter().filter(|record| record.axis == axis);
+    own.map(|record| match record.event {
+        Event::Shifted { by } => by,
+        _ => 0.0,
+    })
+    .sum()
 }

@@ -7,7 +7,7 @@ use crate::claims;
 use crate::model::{AxisNumber, ClaimKind, Comparison, Condition, Point, Script, Signal, Test};
 use standstill_record::text::shift;
 use standstill_trace::Trace;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Why a recording cannot be judged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -70,13 +70,15 @@ pub fn judge_recording(script: &Script, mut recording: Trace) -> Result<Outcome,
 
 /// Where coordinates moved, which a trace tells in its notes.
 fn shifts(script: &Script, recording: &Trace) -> Vec<Shift> {
+    let axes = script.axes.iter().zip(0..);
+    let axes: BTreeMap<_, _> = axes.map(|(axis, index)| (axis.name.as_str(), index)).collect();
     let mut shifts: Vec<_> = recording
         .notes()
         .iter()
         .filter_map(|note| {
             Some(Shift {
                 scan: note.scan as u64,
-                axis: script.axes.iter().position(|axis| axis.name == note.subject)?,
+                axis: *axes.get(note.subject.as_str())?,
                 by: shift(&note.text)?,
             })
         })

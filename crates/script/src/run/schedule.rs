@@ -2,12 +2,17 @@
 
 use super::rows::Rows;
 use crate::model::{Script, When};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Most steps that may wait for their scan.
+pub(crate) const PENDING_MAX: usize = 1 << 22;
 
 /// The steps to come, and which of the conditional ones wait for their conditions.
 #[derive(Clone, Debug)]
 pub(crate) struct Schedule {
-    /// Scans and the indices of the steps that apply then, the last one first; steps of one scan apply in file order.
-    due: Vec<(u64, usize)>,
+    /// Scans and the indices of the steps that apply then, the next one on top; steps of one scan apply in file order.
+    due: BinaryHeap<Reverse<(u64, usize)>>,
     /// Per step: it applies when its conditions hold next.
     armed: Vec<bool>,
 }
@@ -16,12 +21,11 @@ impl Schedule {
     pub(crate) fn new(script: &Script) -> Self {
         let steps = (0..).zip(&script.steps);
         // With room for every step to come, so that a scan takes no memory for them.
-        let mut due = Vec::with_capacity(2 * script.steps.len());
+        let mut due = BinaryHeap::with_capacity(2 * script.steps.len());
         due.extend(steps.filter_map(|(index, step)| match step.when {
-            When::At(scan) => Some((scan, index)),
+            When::At(scan) => Some(Reverse((scan, index))),
             When::Holds { .. } => None,
         }));
-        due.sort_unstable_by(|one, other| other.cmp(one));
         Self {
             due,
             armed: vec![true; script.steps.len()],
@@ -30,8 +34,17 @@ impl Schedule {
 
     /// The next step of this scan, in file order; each is given once.
     pub(crate) fn take(&mut self, scan: u64) -> Option<usize> {
-        let (_, index) = self.due.pop_if(|(due, _)| *due <= scan)?;
+        let Reverse((due, _)) = self.due.peek()?;
+        if *due > scan {
+            return None;
+        }
+        let Reverse((_, index)) = self.due.pop()?;
         Some(index)
+    }
+
+    /// Whether more steps wait than may.
+    pub(crate) fn is_full(&self) -> bool {
+        self.due.len() > PENDING_MAX
     }
 
     /// Looks at the row of `scan`: conditions that hold on it bring their step `after` scans later than the
@@ -53,10 +66,7 @@ impl Schedule {
             let holds = rows.hold(conditions, scan);
             if holds && *armed {
                 let apply = scan.saturating_add(1).saturating_add(*after);
-                let entry = (apply, index);
-                if let Err(place) = self.due.binary_search_by(|other| entry.cmp(other)) {
-                    self.due.insert(place, entry);
-                }
+                self.due.push(Reverse((apply, index)));
             }
             *armed = !holds;
         }

@@ -16,6 +16,7 @@ mod predict;
 use std::collections::BTreeMap;
 
 use bytes::{Reader, put, put_signed, put_text};
+use miniz_oxide::inflate::TINFLStatus;
 pub(crate) use predict::ordered;
 use predict::{EXTRAPOLATION_ORDERS, Predictor, cheapest};
 
@@ -27,8 +28,20 @@ use crate::trace::Trace;
 /// The first bytes of a companion, with the version of its form.
 const MAGIC: &[u8] = b"standstill exact 1\n";
 
-/// More than this a companion cannot unpack to (bytes): a guard against damaged files.
-const UNPACKED_MAX: usize = 1 << 30;
+/// Bytes that surely hold the cycle and the numbers of rows and columns.
+const HEAD_BYTES: usize = 64;
+
+/// Most bytes of a cell: a number of 64 bits, seven a byte.
+const CELL_BYTES: usize = 10;
+
+/// Most bytes of a companion beside its cells: the names of its columns, and those in them.
+const NAMES_BYTES: usize = 1 << 22;
+
+/// A companion of which nothing else is known unpacks to so many cells at least ..
+const CELLS_FREE: usize = 1 << 22;
+
+/// .. and to so many per byte of the file.
+const CELLS_PER_BYTE: usize = 256;
 
 /// Why a companion could not be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -39,6 +52,12 @@ pub enum ExactError {
     /// It is cut short or altered.
     #[error("the exact trace is damaged")]
     Damaged,
+    /// It holds more than there is reason to unpack.
+    #[error("the exact trace is larger than the {most} cells that are read of it")]
+    TooLarge {
+        /// So many cells would have been read.
+        most: usize,
+    },
 }
 
 /// The companion of a trace. Same trace, same bytes. Cost: some ten passes over the columns of reals.
@@ -90,15 +109,43 @@ pub fn digest_of(file: &[u8]) -> Result<u64, ExactError> {
         .ok_or(ExactError::Damaged)
 }
 
-/// Unpacks a companion. Of the header only the cycle and the names of the axes are known.
+/// Unpacks a companion that stands for itself. Of the header only the cycle and the names of the axes are known.
+///
+/// Memory is in proportion to the file: a companion of more than 2^22 cells must hold at most 256 a byte. Goldens are
+/// bounded by their runs instead, see [`decode_within`].
 ///
 /// # Errors
-/// Another file, or one whose content does not have the digest it states.
+/// Another file, one whose content does not have the digest it states, or one that would take too much memory.
 pub fn decode(file: &[u8]) -> Result<Trace, ExactError> {
+    decode_within(file, CELLS_FREE.max(file.len().saturating_mul(CELLS_PER_BYTE)))
+}
+
+/// Unpacks a companion of at most so many cells, that is rows times columns. Memory: at most some 30 bytes a cell that is
+/// there, and 4 MiB.
+///
+/// # Errors
+/// As [`decode`].
+pub fn decode_within(file: &[u8], most: usize) -> Result<Trace, ExactError> {
     let stated = digest_of(file)?;
     let packed = file.get(MAGIC.len() + 8..).unwrap_or_default();
-    let body = miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(packed, UNPACKED_MAX)
-        .map_err(|_| ExactError::Damaged)?;
+    let room = most.saturating_mul(CELL_BYTES).saturating_add(NAMES_BYTES);
+    // The head of what is packed says how much it is, so a file that says too much is not unpacked.
+    let head = match miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(packed, HEAD_BYTES) {
+        Ok(whole) => whole,
+        Err(error) if error.status == TINFLStatus::HasMoreOutput => error.output,
+        Err(_) => return Err(ExactError::Damaged),
+    };
+    let cells = Reader(&head).cells().ok_or(ExactError::Damaged)?;
+    if cells > most {
+        return Err(ExactError::TooLarge { most });
+    }
+    let body = match miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(packed, room) {
+        Ok(body) => body,
+        Err(error) if error.status == TINFLStatus::HasMoreOutput => {
+            return Err(ExactError::TooLarge { most });
+        }
+        Err(_) => return Err(ExactError::Damaged),
+    };
     let trace = Reader(&body).trace().ok_or(ExactError::Damaged)?;
     if digest::whole(&trace) == stated {
         Ok(trace)
@@ -190,14 +237,15 @@ impl Reader<'_> {
         })
     }
 
-    fn words(&mut self, rows: usize) -> Option<Vec<u64>> {
+    /// The words of a column, each to its place among those of all rows.
+    fn words(&mut self, places: impl Iterator<Item = usize>, bits: &mut [u64]) -> Option<()> {
         let (mut last, mut step) = (0_u64, 0_u64);
-        let word = || {
+        for place in places {
             step = step.wrapping_add(self.signed()?.cast_unsigned());
             last = last.wrapping_add(step);
-            Some(last)
-        };
-        std::iter::repeat_with(word).take(rows).collect()
+            *bits.get_mut(place)? = last;
+        }
+        Some(())
     }
 
     fn reals(&mut self, rows: usize, earlier: &[Vec<f64>]) -> Option<Vec<f64>> {
@@ -217,6 +265,14 @@ impl Reader<'_> {
         Some(values)
     }
 
+    /// Rows times columns, as the first numbers say.
+    fn cells(mut self) -> Option<usize> {
+        let _cycle_ns = self.number()?;
+        let rows = usize::try_from(self.number()?).ok()?;
+        let width = usize::try_from(self.number()?).ok()?;
+        rows.checked_mul(width)
+    }
+
     fn trace(mut self) -> Option<Trace> {
         let cycle_ns = self.number()?;
         let rows = self.count()?;
@@ -228,17 +284,26 @@ impl Reader<'_> {
         let names: Vec<String> = std::iter::repeat_with(|| self.text())
             .take(count)
             .collect::<Option<_>>()?;
+        let cells = rows.checked_mul(width)?;
+        // A cell takes a byte at least, so a count that the file does not hold takes no memory.
+        if cells > self.0.len() || (width == 0 && rows > 0) {
+            return None;
+        }
+        let mut bits = vec![0; cells];
         let mut reals: Vec<Vec<f64>> = Vec::new();
-        let mut words: Vec<Vec<u64>> = Vec::new();
-        for column in &columns {
+        for (at, column) in columns.iter().enumerate() {
+            let places = (at..cells).step_by(width);
             if column.kind == Kind::Real {
                 let values = self.reals(rows, &reals)?;
-                words.push(values.iter().map(|value| value.to_bits()).collect());
+                for (place, value) in places.zip(&values) {
+                    *bits.get_mut(place)? = value.to_bits();
+                }
                 reals.push(values);
             } else {
-                words.push(self.words(rows)?);
+                self.words(places, &mut bits)?;
             }
         }
+        drop(reals);
         let axes = columns.iter().filter(|column| column.role == Role::AxisState);
         let axes = axes
             .map(|column| Axis {
@@ -246,33 +311,11 @@ impl Reader<'_> {
                 ..Axis::default()
             })
             .collect();
-        let kinds: Vec<Kind> = columns.iter().map(|column| column.kind).collect();
-        let mut trace = Trace::with_columns(
-            Header {
-                cycle_ns,
-                axes,
-                ..Header::default()
-            },
-            columns,
-        );
-        for scan in 0..rows {
-            let cells = kinds
-                .iter()
-                .zip(&words)
-                .map(|(kind, words)| cell(*kind, *words.get(scan)?, &names));
-            trace.push_row(&cells.collect::<Option<Vec<_>>>()?).ok()?;
-        }
-        Some(trace)
-    }
-}
-
-fn cell(kind: Kind, word: u64, names: &[String]) -> Option<Cell<'_>> {
-    match kind {
-        Kind::Bool => Some(Cell::Bool(word != 0)),
-        Kind::Real => Some(Cell::Real(f64::from_bits(word))),
-        Kind::Integer => Some(Cell::Integer(word.cast_signed())),
-        Kind::Name => names
-            .get(usize::try_from(word).ok()?)
-            .map(|text| Cell::Name(text)),
+        let header = Header {
+            cycle_ns,
+            axes,
+            ..Header::default()
+        };
+        Trace::with_rows(header, columns, bits, &names)
     }
 }

@@ -8,6 +8,7 @@ mod near;
 mod snap;
 mod text;
 
+use std::borrow::Cow;
 use std::fmt;
 use std::fs;
 use std::io;
@@ -18,13 +19,17 @@ use similar::TextDiff;
 use crate::compare::{Closeness, Difference, Tolerance, Yardstick, closeness, compare, compare_by};
 use crate::digest;
 use crate::exact::{self, ExactError};
-use crate::file::{FileError, replace};
+use crate::file::{FileError, read_regular, replace_beside, shown};
+use crate::printable::printable;
 use crate::trace::Trace;
 
 pub use text::text;
 
 /// Lines of a text difference that are shown.
 const DIFF_LINES_SHOWN: usize = 60;
+
+/// Lines of each text that are held against each other.
+const DIFF_LINES_MOST: usize = 4000;
 
 /// What a run is, held against its golden.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +64,7 @@ pub struct Mismatch {
 #[derive(Debug, thiserror::Error)]
 pub enum GoldenError {
     /// A file could not be read or written.
-    #[error("{}: {source}", .path.display())]
+    #[error("{}: {source}", shown(.path))]
     Io {
         /// The file.
         path: PathBuf,
@@ -67,7 +72,7 @@ pub enum GoldenError {
         source: io::Error,
     },
     /// The snapshot is not in insta's form.
-    #[error("{}: no snapshot in insta's form (a header between two lines `---`, then the text)", .path.display())]
+    #[error("{}: no snapshot in insta's form (a header between two lines `---`, then the text)", shown(.path))]
     Form {
         /// The file.
         path: PathBuf,
@@ -115,7 +120,7 @@ pub fn judge_by(snap: &Path, trace: &Trace, yardstick: Yardstick) -> Result<Verd
             None => Verdict::Companion("there is no exact trace".to_owned()),
         });
     }
-    let expected = expected_trace(&reviewed, companion.as_deref());
+    let expected = expected_trace(&reviewed, companion.as_deref(), most_cells(trace));
     if let (Yardstick::Events(tolerance), Ok(expected)) = (yardstick, &expected)
         && near::same_events(&reviewed, &found, tolerance)
         && compare_by(expected, trace, yardstick).is_none()
@@ -138,17 +143,17 @@ pub fn judge_by(snap: &Path, trace: &Trace, yardstick: Yardstick) -> Result<Verd
     })))
 }
 
-/// The reviewed run of this path (`x.snap`) from its companion; none if there is no golden, or no companion that
-/// belongs to it.
+/// The reviewed run of this path (`x.snap`) from its companion, to be held against `run`; none if there is no golden, no
+/// companion that belongs to it, or one that is far larger than the run.
 ///
 /// # Errors
 /// As [`judge`].
-pub fn expected(snap: &Path) -> Result<Option<Trace>, GoldenError> {
+pub fn expected(snap: &Path, run: &Trace) -> Result<Option<Trace>, GoldenError> {
     let Some(reviewed) = reviewed(snap)? else {
         return Ok(None);
     };
     let companion = read_if_there(&exact_path(snap))?;
-    Ok(expected_trace(&reviewed, companion.as_deref()).ok())
+    Ok(expected_trace(&reviewed, companion.as_deref(), most_cells(run)).ok())
 }
 
 /// Makes this run the golden of this path: writes `x.snap` and `x.exact` where they do not hold it already,
@@ -172,7 +177,10 @@ pub fn accept(snap: &Path, trace: &Trace) -> Result<bool, GoldenError> {
     }
     let path = exact_path(snap);
     let file = read_if_there(&path)?;
-    let holds = file.as_deref().map(exact::decode).is_some_and(|held| {
+    let decoded = file
+        .as_deref()
+        .map(|file| exact::decode_within(file, most_cells(trace)));
+    let holds = decoded.is_some_and(|held| {
         // Digests do not tell of columns that were renamed, the comparison does.
         held.is_ok_and(|held| compare(&held, trace).is_none())
     });
@@ -212,7 +220,7 @@ pub fn withdraw(snap: &Path) -> Result<(), GoldenError> {
 
 /// Writes a file whole or not at all: half a golden would be no golden.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), GoldenError> {
-    replace(path, |out| out.write_all(bytes)).map_err(|error| match error {
+    replace_beside(path, |out| out.write_all(bytes)).map_err(|error| match error {
         FileError::Io { path, source } => GoldenError::Io { path, source },
         other => GoldenError::io(path)(io::Error::other(other)),
     })
@@ -231,21 +239,28 @@ fn reviewed(snap: &Path) -> Result<Option<String>, GoldenError> {
 }
 
 fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, GoldenError> {
-    match fs::read(path) {
+    match read_regular(path) {
         Ok(file) => Ok(Some(file)),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(GoldenError::io(path)(error)),
     }
 }
 
+/// Cells of a companion that are read to say where a run differs from it: more than a reviewed run of a changed script may
+/// have, and in proportion to this one.
+fn most_cells(run: &Trace) -> usize {
+    let cells = run.scans().saturating_mul(run.columns().len());
+    cells.saturating_mul(4).max(1 << 20)
+}
+
 /// The reviewed run from its companion, if that is the one the snapshot's last line speaks of.
-fn expected_trace(reviewed: &str, companion: Option<&[u8]>) -> Result<Trace, String> {
+fn expected_trace(reviewed: &str, companion: Option<&[u8]>, most: usize) -> Result<Trace, String> {
     let file = companion.ok_or("there is no exact trace")?;
     let stated = exact::digest_of(file).map_err(|error: ExactError| error.to_string())?;
     if !reviewed.trim_end().ends_with(&text::digest_text(stated)) {
         return Err("the exact trace is of another run than the snapshot".to_owned());
     }
-    exact::decode(file).map_err(|error| error.to_string())
+    exact::decode_within(file, most).map_err(|error| error.to_string())
 }
 
 /// The difference of the events of two texts; empty if they are the same within the tolerance.
@@ -256,8 +271,23 @@ fn events_difference(reviewed: &str, found: &str, tolerance: Tolerance) -> Strin
     text_difference(near::events(reviewed), near::events(found))
 }
 
+/// Both texts from where they part, at most [`DIFF_LINES_MOST`] lines of each: the work of a difference grows with the
+/// square of what differs. Texts that are no longer than that stay whole.
+fn window(old: &str, new: &str) -> [String; 2] {
+    let whole = |text: &str| text.lines().nth(DIFF_LINES_MOST).is_none();
+    if whole(old) && whole(new) {
+        return [old, new].map(|text| format!("{text}\n"));
+    }
+    let equal = old.lines().zip(new.lines()).take_while(|(old, new)| old == new);
+    let from = equal.count().saturating_sub(1);
+    [old, new].map(|text| {
+        let lines = text.lines().skip(from).take(DIFF_LINES_MOST);
+        lines.flat_map(|line| [line, "\n"]).collect()
+    })
+}
+
 fn text_difference(reviewed: &str, found: &str) -> String {
-    let [old, new] = [reviewed, found].map(|text| format!("{}\n", text.trim_end()));
+    let [old, new] = window(reviewed.trim_end(), found.trim_end());
     let all = TextDiff::from_lines(&old, &new)
         .unified_diff()
         .context_radius(1)
@@ -266,7 +296,7 @@ fn text_difference(reviewed: &str, found: &str) -> String {
     let mut shown: String = lines
         .by_ref()
         .take(DIFF_LINES_SHOWN)
-        .flat_map(|line| [line, "\n"])
+        .flat_map(|line| [printable(line), Cow::Borrowed("\n")])
         .collect();
     let hidden = lines.count();
     if hidden > 0 {

@@ -1,10 +1,11 @@
 //! The golden text of a trace.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use crate::column::{Cell, Role};
 use crate::digest;
-use crate::events::{self, Event};
+use crate::events::{events, lines};
 use crate::extremes::{axis_title, extremes_text};
 use crate::header::{Axis, Header, Limits};
 use crate::number::{cell_text, fixed, shortest, time_literal};
@@ -21,12 +22,17 @@ const DIGESTS_PER_LINE: usize = 8;
 /// changes only when behaviour does.
 #[must_use]
 pub fn text(trace: &Trace) -> String {
-    let events = events::events(trace);
+    let events = events(trace);
     let mut text = header(trace);
-    section(&mut text, "events", &events::lines(&events));
+    section(&mut text, "events", &lines(&events));
+    let mut scans: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for event in &events {
+        scans.entry(&event.subject).or_default().push(event.scan);
+    }
     for axis in &trace.header().axes {
         text.push('\n');
-        text.push_str(&set_points(trace, axis, &events));
+        let own = scans.get(axis.name.as_str());
+        text.push_str(&set_points(trace, axis, own.map_or(&[], Vec::as_slice)));
     }
     text.push('\n');
     text.push_str(&extremes_text(trace));
@@ -71,8 +77,10 @@ fn header(trace: &Trace) -> String {
     for axis in axes {
         let _ = writeln!(text, "axis    {}", axis_line(axis));
     }
+    let bound = in_outs(trace);
     for instance in instances {
-        let axes = in_outs(trace, &instance.name).join(", ");
+        let axes = bound.get(instance.name.as_str());
+        let axes = axes.map_or_else(String::new, |axes| axes.join(", "));
         let bound = if axes.is_empty() {
             axes
         } else {
@@ -124,18 +132,20 @@ fn axis_line(axis: &Axis) -> String {
     words.join("  ")
 }
 
-/// What the in-out pins of an instance were bound to in scan 0: its axes.
-fn in_outs(trace: &Trace, instance: &str) -> Vec<String> {
-    let columns = trace.columns().iter().zip(trace.row(0));
-    columns
-        .filter(|(column, _)| column.role == Role::InOut && column.subject() == instance)
-        .map(|(_, cell)| cell_text(cell))
-        .collect()
+/// What the in-out pins of each instance were bound to in scan 0: its axes.
+fn in_outs(trace: &Trace) -> BTreeMap<&str, Vec<String>> {
+    let mut bound: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for (column, cell) in trace.columns().iter().zip(trace.row(0)) {
+        if column.role == Role::InOut {
+            bound.entry(column.subject()).or_default().push(cell_text(cell));
+        }
+    }
+    bound
 }
 
-/// Set-points at equal distances and at scans in which the axis had an event. Rows at rest that repeat the
+/// Set-points at equal distances and at the scans in which the axis had an event. Rows at rest that repeat the
 /// row above are left out.
-fn set_points(trace: &Trace, axis: &Axis, events: &[Event]) -> String {
+fn set_points(trace: &Trace, axis: &Axis, events: &[usize]) -> String {
     let quantities = ["Position", "Velocity", "Acceleration", "Jerk"];
     let columns = quantities.map(|quantity| trace.column(&format!("{}.{quantity}", axis.name)));
     let mut text = format!("set-points of {}\n{:>7}", axis_title(axis), "scan");
@@ -144,7 +154,7 @@ fn set_points(trace: &Trace, axis: &Axis, events: &[Event]) -> String {
     }
     text.push('\n');
     let mut above = None;
-    for scan in table_scans(trace, axis, events) {
+    for scan in table_scans(trace, events) {
         let values = columns.map(
             |column| match column.and_then(|column| trace.cell(scan, column)) {
                 Some(Cell::Real(value)) => Some(value),
@@ -169,16 +179,12 @@ fn set_points(trace: &Trace, axis: &Axis, events: &[Event]) -> String {
     text
 }
 
-fn table_scans(trace: &Trace, axis: &Axis, events: &[Event]) -> Vec<usize> {
+fn table_scans(trace: &Trace, events: &[usize]) -> Vec<usize> {
     let scans = trace.scans();
     let step = round_step(scans.div_ceil(TABLE_ROWS));
-    let own = events
-        .iter()
-        .filter(|event| event.subject == axis.name)
-        .map(|event| event.scan);
     let mut chosen: Vec<usize> = (0..scans)
         .step_by(step)
-        .chain(own)
+        .chain(events.iter().copied())
         .chain(scans.checked_sub(1))
         .collect();
     chosen.retain(|&scan| scan < scans);

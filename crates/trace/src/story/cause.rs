@@ -9,6 +9,7 @@ use crate::events::{Event, VARIABLES, row_events};
 use crate::header::{Axis, Limits};
 use crate::story::Extent;
 use crate::trace::Trace;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Share of the largest value of a column below which a difference is that of rounding.
 const ROUNDING: f64 = 1e-9;
@@ -128,8 +129,10 @@ pub fn causes(
 
 fn limits(expected: &Trace, found: &Trace) -> Vec<Cause> {
     let mut causes = Vec::new();
+    let axes = found.header().axes.iter();
+    let axes: BTreeMap<&str, &Axis> = axes.map(|axis| (axis.name.as_str(), axis)).collect();
     for axis in &expected.header().axes {
-        let Some(other) = found.header().axes.iter().find(|other| other.name == axis.name) else {
+        let Some(other) = axes.get(axis.name.as_str()) else {
             continue;
         };
         // A trace without its header has no limits to compare.
@@ -209,13 +212,8 @@ fn of_rows(expected: &Trace, found: &Trace, first: &ScanDifference, extent: &Ext
         return Cause::Parameter(given);
     }
     let shared = |events: Vec<Event>, other: &Trace| -> Vec<Event> {
-        let known = |event: &Event| {
-            event.subject == VARIABLES
-                || other
-                    .columns()
-                    .iter()
-                    .any(|column| column.subject() == event.subject)
-        };
+        let subjects: BTreeSet<&str> = other.columns().iter().map(Column::subject).collect();
+        let known = |event: &Event| event.subject == VARIABLES || subjects.contains(event.subject.as_str());
         events
             .into_iter()
             .filter(|event| event.scan >= first.scan && known(event))
@@ -291,10 +289,12 @@ fn fault(before: &[Event], after: &[Event], scan: usize) -> Option<Cause> {
     };
     // An axis tells more of it than a block that it made fail.
     let find = |events: &[Event], other: &[Event]| {
+        let others = other.iter().filter(tells);
+        let other: BTreeSet<_> = others.map(|event| (&event.subject, &event.text)).collect();
         let mut own: Vec<&Event> = events
             .iter()
             .filter(tells)
-            .filter(|event| !other.contains(event))
+            .filter(|event| !other.contains(&(&event.subject, &event.text)))
             .collect();
         own.sort_by_key(|event| !event.text.contains("ErrorStop"));
         own.first().map(|event| (*event).clone())
@@ -342,10 +342,8 @@ fn shifted(before: &[Event], after: &[Event], scans: (usize, usize)) -> Option<C
 
 /// The first event that the other run does not have from there on, in whatever scan.
 fn only(events: &[Event], other: &[Event]) -> Option<Event> {
-    let known = |event: &Event| {
-        other
-            .iter()
-            .any(|other| (&other.subject, &other.text) == (&event.subject, &event.text))
-    };
+    let other = other.iter().map(|event| (&event.subject, &event.text));
+    let other: BTreeSet<_> = other.collect();
+    let known = |event: &Event| other.contains(&(&event.subject, &event.text));
     events.iter().find(|event| !known(event)).cloned()
 }

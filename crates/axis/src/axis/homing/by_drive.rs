@@ -7,7 +7,7 @@ use super::super::queue::Work;
 use super::super::reading::Past;
 use super::super::{Axis, Motion};
 use super::Phase;
-use crate::{AxisState, DriveHoming, DrivePosition, ErrorId, Event, Log};
+use crate::{AxisState, DriveHoming, DrivePosition, ErrorId, Log};
 use standstill_planner::{Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
@@ -77,7 +77,7 @@ impl<P: Planner> Axis<P> {
         self.shift += by;
         self.actual = self.shown_place(self.actual + by);
         let step = self.actual - self.setpoint.position;
-        self.record(Event::Shifted { by: step }, self.owner_source(scan), log);
+        self.tell_moved(step, self.owner_source(scan), log);
         self.coordinates = self.coordinates.wrapping_add(1);
         self.past = Past::new(self.actual);
         self.setpoint = Setpoint::at_rest(self.actual);

@@ -1,0 +1,218 @@
+//! The program `standstill`: arguments, exit statuses, printing. What it prints comes from the libraries.
+//!
+//! Standard output is the same on every machine; messages and progress go to standard error. A library beside the program,
+//! so that a fuzzer can call what reads lines of plans.
+#![forbid(unsafe_code)]
+
+mod args;
+mod blocks;
+mod compare;
+pub mod exit;
+mod explain;
+mod export;
+mod failing;
+mod fmt;
+mod json;
+mod junit;
+mod limit;
+mod live;
+mod out;
+pub mod plan;
+mod progress;
+mod report;
+mod run;
+mod soak;
+mod suggest;
+mod sweep;
+mod table;
+mod test;
+mod watch;
+
+use args::{Arguments, Command, Schema, Soak};
+use clap::Parser;
+use exit::{Exit, Failure};
+use out::Out;
+use standstill_script::suite::shown;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, IsTerminal, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+/// The program: takes the arguments of the process, and gives the status it is to end with.
+pub fn main() -> ExitCode {
+    exit::guarded(program).into()
+}
+
+fn program() -> Exit {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return explained(&error),
+    };
+    if let Some(Err(failure)) = arguments.time_limit.map(limit::start) {
+        return failure.report();
+    }
+    limit::doing("reading the arguments");
+    let mut out = if is_data(&arguments.command) {
+        Out::data()
+    } else {
+        Out::text()
+    };
+    let result = dispatch(&arguments.command, &mut out);
+    // What was printed stands before the message that follows from it.
+    let flushed = out.flush().map_err(Failure::from);
+    match result.and_then(|exit| flushed.map(|()| exit)) {
+        Ok(exit) => exit,
+        Err(failure) => failure.report(),
+    }
+}
+
+/// Whether what a command prints is for programs.
+fn is_data(command: &Command) -> bool {
+    match command {
+        Command::Plan { .. }
+        | Command::ComparePlanners { .. }
+        | Command::Sweep(_)
+        | Command::Blocks { .. }
+        | Command::Schema { .. } => true,
+        Command::Fmt { paths, .. } => paths.iter().any(|path| is_standard(path)),
+        Command::Run(_)
+        | Command::Live(_)
+        | Command::Watch(_)
+        | Command::Test { .. }
+        | Command::Report { .. }
+        | Command::Explain { .. }
+        | Command::Compare { .. }
+        | Command::Soak { .. }
+        | Command::Export { .. } => false,
+    }
+}
+
+/// Prints what clap has to say: help and version on standard output, mistakes on standard error.
+fn explained(error: &clap::Error) -> Exit {
+    match error.print() {
+        // A mistake stays one when nobody reads of it.
+        _ if error.use_stderr() => Exit::Usage,
+        Ok(()) => Exit::Passed,
+        Err(error) => Failure::from(error).report(),
+    }
+}
+
+fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
+    match command {
+        Command::Run(arguments) => run::run(arguments, out),
+        Command::Live(arguments) => live::live(arguments, out),
+        Command::Watch(arguments) => watch::watch(arguments, out),
+        Command::Test {
+            paths,
+            accept,
+            golden,
+            abs,
+            rel,
+            junit,
+            report,
+            recording,
+            outside,
+        } => {
+            let wish = test::Wish {
+                paths,
+                accept: *accept,
+                yardstick: test::yardstick(*golden, *abs, *rel)?,
+                junit: junit.as_deref(),
+                report: report.as_deref(),
+                recording: recording.as_deref(),
+                allowed: &outside.allowed(),
+            };
+            test::test(wish, out)
+        }
+        Command::Report {
+            traces,
+            output,
+            svg,
+            vcd,
+        } => {
+            let targets = report::Targets {
+                html: output.as_deref(),
+                svg: svg.as_deref(),
+                vcd: vcd.as_deref(),
+            };
+            report::report(traces, targets)
+        }
+        Command::Explain { expected, found } => explain::explain(expected, found, out),
+        Command::Compare {
+            recording,
+            trace,
+            map,
+        } => compare::compare(recording, trace, map, out),
+        Command::Plan { file, samples } => {
+            let file = file.as_deref().unwrap_or(Path::new("-"));
+            with_lines(file, |lines, name| {
+                plan::plan(lines, name, samples.as_deref(), out)
+            })
+        }
+        Command::ComparePlanners { cases } => {
+            with_lines(cases, |lines, name| plan::compare(lines, name, out))
+        }
+        Command::Sweep(arguments) => sweep::sweep(arguments, out),
+        Command::Soak {
+            what: Soak::Planner { seed, count, resume },
+        } => soak::planner(*seed, *count, resume.as_deref(), out),
+        Command::Soak {
+            what:
+                Soak::Blocks {
+                    seed,
+                    count,
+                    resume,
+                    failures,
+                },
+        } => soak::blocks(*seed, *count, resume.as_deref(), failures, out),
+        Command::Blocks { json: true } => blocks::json(out),
+        Command::Blocks { json: false } => blocks::table(out),
+        Command::Export {
+            target,
+            out: folder,
+            prefix,
+            dialect,
+        } => export::export(*target, folder, prefix, dialect.as_deref(), out),
+        Command::Schema { of } => {
+            let text = match of {
+                Schema::Script => standstill_script::schema(),
+                Schema::Machine => standstill_script::machine_schema(),
+                Schema::Map => standstill_script::map_schema(),
+                Schema::Sweep => standstill_script::sweep_schema(),
+            };
+            write!(out, "{text}")?;
+            Ok(Exit::Passed)
+        }
+        Command::Fmt { paths, check } if paths.iter().all(|path| is_standard(path)) => {
+            fmt::filter(*check, out)
+        }
+        Command::Fmt { paths, check } => fmt::files(paths, *check, out),
+    }
+}
+
+/// Whether a path stands for standard input.
+fn is_standard(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Calls `command` with the lines of a file, or of standard input, and what stands for it in messages.
+fn with_lines(
+    path: &Path,
+    command: impl FnOnce(&mut dyn BufRead, &str) -> Result<Exit, Failure>,
+) -> Result<Exit, Failure> {
+    if is_standard(path) {
+        return command(&mut standard_input(), "standard input");
+    }
+    let name = shown(path);
+    limit::doing(format!("reading {name}"));
+    let file = File::open(path).map_err(|error| Failure::io(&name, &error))?;
+    command(&mut BufReader::new(file), &name)
+}
+
+/// Standard input; tells a person at a terminal that it is waited for.
+fn standard_input() -> impl BufRead {
+    if io::stdin().is_terminal() {
+        exit::complain("reading from the terminal, one JSON object a line");
+    }
+    io::stdin().lock()
+}

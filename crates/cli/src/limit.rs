@@ -1,0 +1,51 @@
+//! `--time-limit`: the end of a command that takes too long, whatever it is at.
+
+use crate::exit::{Exit, Failure, complain};
+use crate::out;
+use standstill_trace::time_literal;
+use std::process;
+use std::sync::{Mutex, MutexGuard};
+use std::thread;
+use std::time::Duration;
+
+/// What the command is at.
+static DOING: Mutex<String> = Mutex::new(String::new());
+
+/// What must be done before the program ends.
+static FIRST: Mutex<Option<fn()>> = Mutex::new(None);
+
+fn locked<T>(mutex: &'static Mutex<T>) -> MutexGuard<'static, T> {
+    mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+/// Remembers what the command is at, for the message when the time is up.
+pub fn doing(what: impl Into<String>) {
+    *locked(&DOING) = what.into();
+}
+
+/// Has `first` called before the program ends: a terminal that is taken over has to be given back.
+pub fn before_end(first: fn()) {
+    *locked(&FIRST) = Some(first);
+}
+
+/// Ends the program in so much time from now on, unless it has ended by itself.
+pub fn start(limit_ns: u64) -> Result<(), Failure> {
+    let watch = move || {
+        thread::sleep(Duration::from_nanos(limit_ns));
+        let at = locked(&DOING).clone();
+        out::flush_if_free();
+        if let Some(first) = *locked(&FIRST) {
+            first();
+        }
+        complain(&format!(
+            "error: --time-limit {}: the time is up; it was at {at}",
+            time_literal(limit_ns)
+        ));
+        process::exit(i32::from(Exit::Failed as u8));
+    };
+    thread::Builder::new()
+        .name("time-limit".to_owned())
+        .spawn(watch)
+        .map(drop)
+        .map_err(|error| Failure::usage(&format!("--time-limit needs a thread of its own: {error}")))
+}

@@ -1,0 +1,470 @@
+//! Files of strangers: what they say cannot forge what is printed, nothing is written where it must not be, and work and
+//! memory stay in proportion.
+
+use crate::support::{SCRIPT, command, ended, read, scratch, standstill, with_script, write};
+use std::fs;
+use std::time::{Duration, Instant};
+
+/// A script whose texts try to do something to who reads them; its claim fails.
+fn hostile() -> String {
+    SCRIPT
+        .replace(
+            "One short move",
+            r"\u001b[2Jmove\nhostile.scan.json: passed, 9 of 9 claims\u2028ok\r\u202e",
+        )
+        .replace(r#""unit": "mm""#, r#""unit": "mm\u001b]0;x\u0007\nok  a""#)
+        .replace("\"at\": 21", "\"at\": 19")
+}
+
+/// Whether a text has nothing in it but what can be seen, and line ends.
+#[track_caller]
+fn is_plain(what: &str, text: &str) {
+    let hidden = |character: &char| {
+        *character != '\n'
+            && (character.is_control()
+                || matches!(character, '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}'))
+    };
+    assert_eq!(text.chars().find(hidden), None, "{what}: {text:?}");
+    let forged = |line: &&str| line.trim_start().starts_with("ok  a") || line.contains("claims\u{2028}");
+    assert_eq!(text.lines().find(forged), None, "{what}");
+    let verdicts = text
+        .lines()
+        .filter(|line| line.starts_with("hostile.scan.json: passed"));
+    assert_eq!(verdicts.count(), 0, "{what}: {text}");
+}
+
+#[test]
+fn what_a_script_says_is_one_line_and_can_be_seen_wherever_it_is_printed() {
+    let folder = scratch("borders_texts");
+    write(&folder, "hostile.scan.json", &hostile());
+    let run = standstill(&folder, &["run", "hostile.scan.json", "--trace", "a.jsonl"]);
+    assert_eq!(run.status, 1);
+    is_plain("run", &run.out);
+    assert!(
+        run.out
+            .starts_with("\\u{1b}[2Jmove\\u{a}hostile.scan.json: passed"),
+        "{}",
+        run.out
+    );
+    for arguments in [
+        &["test", ".", "--junit", "junit.xml"][..],
+        &["explain", "a.jsonl", "b.jsonl"],
+        &[
+            "run",
+            "-q",
+            "hostile.scan.json",
+            "absent\u{1b}[2J\nok  a.scan.json",
+        ],
+    ] {
+        let other = read(&folder, "a.jsonl").replace("DiscreteMotion", "Disc\\u001breteMotion");
+        write(&folder, "b.jsonl", &other);
+        let ended = standstill(&folder, arguments);
+        assert!((1..=4).contains(&ended.status), "{arguments:?}");
+        is_plain("output", &ended.out);
+        is_plain("messages", &ended.err);
+    }
+    is_plain("JUnit", &read(&folder, "junit.xml"));
+    // The golden and its difference.
+    write(
+        &folder,
+        "good.scan.json",
+        &hostile().replace("\"at\": 19", "\"at\": 21"),
+    );
+    assert_eq!(
+        standstill(&folder, &["test", "--accept", "good.scan.json"]).status,
+        0
+    );
+    is_plain("golden", &read(&folder, "good.snap"));
+    let golden = read(&folder, "good.snap").replace("+Execute", "+Exe\u{1b}[2Jcute");
+    write(&folder, "good.snap", &golden);
+    let ended = standstill(&folder, &["test", "good.scan.json"]);
+    assert_eq!(ended.status, 1);
+    assert!(ended.out.contains("+Exe\\u{1b}[2Jcute"), "{}", ended.out);
+    is_plain("difference", &ended.out);
+}
+
+#[cfg(unix)]
+mod links {
+    use super::*;
+    use std::os::unix::fs::symlink;
+    use std::path::Path;
+
+    const SECRET: &str = "nobody may write this\n";
+
+    fn is_untouched(folder: &Path, name: &str) {
+        assert_eq!(read(folder, name), SECRET, "{name}");
+    }
+
+    #[test]
+    fn testing_writes_through_no_link() {
+        let folder = scratch("borders_links");
+        fs::create_dir(folder.join("suite")).expect("a folder");
+        let suite = folder.join("suite");
+        write(&folder, "outside", SECRET);
+        for name in [
+            "move.snap.new",
+            "move.snap.new.partial",
+            "kept.exact",
+            "kept.exact.partial",
+        ] {
+            symlink("../outside", suite.join(name)).expect("a link");
+        }
+        write(&suite, "move.scan.json", SCRIPT);
+        // No golden yet: one is proposed.
+        let proposed = standstill(&suite, &["test", "move.scan.json"]);
+        assert_eq!(proposed.status, 1, "{}", proposed.err);
+        is_untouched(&folder, "outside");
+        assert!(read(&suite, "move.snap.new").contains("expression: golden"));
+        // A golden whose exact trace is not its own: it is written anew.
+        write(&suite, "kept.scan.json", SCRIPT);
+        fs::remove_file(suite.join("kept.exact")).expect("the link");
+        assert_eq!(
+            standstill(&suite, &["test", "--accept", "kept.scan.json"]).status,
+            0
+        );
+        fs::remove_file(suite.join("kept.exact")).expect("it was written");
+        symlink("../outside", suite.join("kept.exact")).expect("a link");
+        let kept = standstill(&suite, &["test", "kept.scan.json"]);
+        assert_eq!(kept.status, 0, "{}{}", kept.out, kept.err);
+        is_untouched(&folder, "outside");
+        // Its proposal is taken back: the link goes, not what it leads to.
+        symlink("../outside", suite.join("kept.snap.new")).expect("a link");
+        assert_eq!(standstill(&suite, &["test", "kept.scan.json"]).status, 0);
+        is_untouched(&folder, "outside");
+    }
+
+    #[test]
+    fn no_file_that_is_named_is_written_through_a_link() {
+        let folder = with_script("borders_named_links");
+        write(&folder, "outside", SECRET);
+        write(
+            &folder,
+            "line.jsonl",
+            r#"{"Ts":0.01,"target":1,"limits":{"velocity":1}}"#,
+        );
+        for name in ["a.csv", "a.csv.meta.json", "junit.xml", "a.html", "s.csv"] {
+            symlink("outside", folder.join(name)).expect("a link");
+        }
+        let run = [
+            "run",
+            "-q",
+            "move.scan.json",
+            "--trace",
+            "a.csv",
+            "--report",
+            "a.html",
+        ];
+        assert_eq!(standstill(&folder, &run).status, 0);
+        assert_eq!(
+            standstill(&folder, &["test", "--junit", "junit.xml", "move.scan.json"]).status,
+            1
+        );
+        assert_eq!(
+            standstill(&folder, &["plan", "line.jsonl", "--samples", "s.csv"]).status,
+            0
+        );
+        is_untouched(&folder, "outside");
+        assert!(read(&folder, "a.csv").starts_with("scan,time_ns"));
+    }
+
+    #[test]
+    fn pages_stay_below_their_folder_and_scripts_that_are_links_are_not_laid_out() {
+        let folder = scratch("borders_pages");
+        for name in ["suite", "elsewhere", "pages"] {
+            fs::create_dir(folder.join(name)).expect("a folder");
+        }
+        write(
+            &folder.join("suite"),
+            "move.scan.json",
+            &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
+        );
+        symlink("../elsewhere", folder.join("pages/suite")).expect("a link");
+        let ended = standstill(&folder, &["test", "suite", "--report", "pages"]);
+        assert_eq!(ended.status, 4, "{}", ended.out);
+        assert!(ended.err.contains("leads out of the folder"), "{}", ended.err);
+        assert_eq!(
+            fs::read_dir(folder.join("elsewhere")).expect("a folder").count(),
+            0
+        );
+        let dense = r#"{"standstill":1}"#;
+        write(&folder, "dense.json", dense);
+        symlink("../dense.json", folder.join("suite/link.scan.json")).expect("a link");
+        assert_eq!(standstill(&folder, &["fmt", "suite/link.scan.json"]).status, 4);
+        assert_eq!(read(&folder, "dense.json"), dense);
+    }
+
+    #[test]
+    fn a_pipe_in_a_suite_is_not_waited_for() {
+        let folder = with_script("borders_fifo");
+        for name in ["move.snap", "other.scan.json"] {
+            let made = std::process::Command::new("mkfifo")
+                .arg(folder.join(name))
+                .status();
+            assert!(made.expect("every Unix has it").success());
+        }
+        let ended = standstill(&folder, &["test", "."]);
+        assert_eq!(ended.status, 4);
+        assert!(
+            ended.err.contains("move.snap: this is no regular file"),
+            "{}",
+            ended.err
+        );
+        assert!(!ended.out.contains("other.scan.json"), "{}", ended.out);
+    }
+
+    /// A shell in which files cannot grow beyond half a kilobyte, as on a full disk.
+    #[test]
+    fn a_full_disk_leaves_a_script_as_it_was() {
+        let folder = scratch("borders_full");
+        let long = format!("{{\"standstill\":1,\"note\":\"{}\"}}", "long ".repeat(2000));
+        write(&folder, "long.scan.json", &long);
+        let mut shell = std::process::Command::new("sh");
+        shell.args([
+            "-c",
+            "trap '' XFSZ; ulimit -f 1; exec \"$0\" fmt .",
+            env!("CARGO_BIN_EXE_standstill"),
+        ]);
+        let ended = ended(shell.current_dir(&folder));
+        assert_eq!(ended.status, 4, "{}", ended.out);
+        assert_eq!(read(&folder, "long.scan.json"), long);
+        assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 1);
+    }
+}
+
+#[test]
+fn claims_times_scans_have_a_bound() {
+    let folder = scratch("borders_claims");
+    let claims = vec![r#"{"always": {"X.Position": 0, "X.Velocity": 0}}"#; 600].join(",");
+    let script = format!(
+        r#"{{"standstill":1,"cycle":"T#1us","scans":10000000,"axes":{{"X":{{"limits":{{"velocity":1,"acceleration":1}}}}}},
+            "blocks":[],"expect":[{claims}]}}"#
+    );
+    write(&folder, "claims.scan.json", &script);
+    let begin = Instant::now();
+    let ended = standstill(&folder, &["test", "."]);
+    assert_eq!(ended.status, 3);
+    assert!(
+        ended
+            .err
+            .contains("error[too_large]: claims and steps take 12000000000 looks"),
+        "{}",
+        ended.err
+    );
+    assert!(begin.elapsed() < Duration::from_secs(10));
+}
+
+#[test]
+fn a_time_limit_ends_any_command_with_what_it_was_at() {
+    let folder = scratch("borders_time");
+    let script = r#"{"standstill":1,"cycle":"T#1us","scans":10000000,"axes":{"X":{"limits":{"velocity":1,"acceleration":1}}},
+        "blocks":[],"expect":[{"always":{"X.Position":0}}]}"#;
+    write(&folder, "long.scan.json", script);
+    for (arguments, at) in [
+        (
+            &["--time-limit", "300ms", "run", "long.scan.json"][..],
+            "long.scan.json",
+        ),
+        (
+            &["test", ".", "--time-limit", "T#0.3s"],
+            "1 of 1: ./long.scan.json",
+        ),
+        (
+            &["soak", "planner", "--count", "100000000", "--time-limit", "300ms"],
+            "of 100000000",
+        ),
+    ] {
+        let begin = Instant::now();
+        let ended = standstill(&folder, arguments);
+        assert_eq!((ended.status, ended.out.as_str()), (1, ""), "{arguments:?}");
+        let told = ended
+            .err
+            .strip_prefix("error: --time-limit T#300ms: the time is up; it was at ");
+        assert!(told.is_some_and(|told| told.contains(at)), "{}", ended.err);
+        assert!(begin.elapsed() < Duration::from_secs(10), "{arguments:?}");
+    }
+    // What was printed before stands there, and who is in time knows nothing of it.
+    write(&folder, "move.scan.json", SCRIPT);
+    let both = [
+        "run",
+        "-q",
+        "--time-limit",
+        "2s",
+        "move.scan.json",
+        "long.scan.json",
+    ];
+    let ended = standstill(&folder, &both);
+    assert_eq!(ended.status, 1);
+    assert!(ended.out.starts_with("move.scan.json: passed"), "{}", ended.out);
+    assert_eq!(
+        standstill(&folder, &["run", "-q", "--time-limit", "1h", "move.scan.json"]).status,
+        0
+    );
+    assert_eq!(
+        standstill(&folder, &["run", "--time-limit", "soon", "move.scan.json"]).status,
+        2
+    );
+}
+
+/// A module that takes 80 MiB when it starts.
+const LARGE: &str = r#"(module (memory (export "memory") 1)
+    (func (export "plc_init") (drop (memory.grow (i32.const 1280))))
+    (func (export "plc_scan") (param i32 i64)))"#;
+
+#[test]
+fn guests_have_no_more_memory_than_the_command_line_gives_them() {
+    let folder = scratch("borders_guest");
+    write(&folder, "large.wat", LARGE);
+    let script = |programs: &str| {
+        format!(
+            r#"{{"standstill":1,"cycle":"T#1ms","scans":2,"axes":{{}},"blocks":[],"programs":{{{programs}}}}}"#
+        )
+    };
+    write(
+        &folder,
+        "one.scan.json",
+        &script(r#""G":{"wasm":"large.wat","fuel":1000000000,"memory":4294967296}"#),
+    );
+    let half = r#"{"wasm":"large.wat","fuel":1000000000,"memory":40000000}"#;
+    write(
+        &folder,
+        "two.scan.json",
+        &script(&format!(r#""G":{half},"H":{half}"#)),
+    );
+    for name in ["one.scan.json", "two.scan.json"] {
+        let refused = standstill(&folder, &["run", "-q", name]);
+        assert_eq!(refused.status, 3, "{name}");
+        assert!(refused.err.contains("`--guest-memory "), "{}", refused.err);
+        let wanted = standstill(&folder, &["run", "-q", name, "--guest-memory", "4GiB"]);
+        assert_eq!(wanted.status, 0, "{}", wanted.err);
+    }
+    let none = standstill(&folder, &["run", "-q", "one.scan.json", "--guest-memory", "4GB"]);
+    assert_eq!(none.status, 2);
+    // Those that do not say how much they need share what there is.
+    let many: Vec<_> = (0..16)
+        .map(|n| format!(r#""G{n}":{{"wasm":"large.wat","fuel":1000000000}}"#))
+        .collect();
+    write(&folder, "many.scan.json", &script(&many.join(",")));
+    let many = standstill(&folder, &["run", "-q", "many.scan.json"]);
+    assert_eq!(many.status, 0, "{}", many.err);
+}
+
+/// A golden's exact trace in which so many rows of zeros stand, deflated to a thousandth.
+fn inflated(rows: u64, zeros: usize) -> Vec<u8> {
+    let mut body = Vec::new();
+    let mut put = |mut number: u64| {
+        while number >= 0x80 {
+            body.push((number & 0x7f) as u8 | 0x80);
+            number >>= 7;
+        }
+        body.push(number as u8);
+    };
+    for number in [1_000_000, rows, 1, 1] {
+        put(number);
+    }
+    // One column `a` of BOOL, an input variable; no names.
+    body.extend(*b"a\x00\x02\x00\x00");
+    body.resize(body.len() + zeros, 0);
+    let mut file = b"standstill exact 1\n".to_vec();
+    file.extend(0_u64.to_le_bytes());
+    file.extend(miniz_oxide::deflate::compress_to_vec_zlib(&body, 9));
+    file
+}
+
+/// The program in a shell that gives it so many kilobytes of memory.
+#[cfg(target_os = "linux")]
+fn within(kilobytes: u32, folder: &std::path::Path, arguments: &[&str]) -> crate::support::Ended {
+    let mut shell = std::process::Command::new("sh");
+    shell.args(["-c", &format!("ulimit -v {kilobytes}; exec \"$@\"")]);
+    shell
+        .args(["sh", env!("CARGO_BIN_EXE_standstill")])
+        .args(arguments);
+    shell.env_remove("CI").env_remove("INSTA_UPDATE");
+    ended(shell.current_dir(folder))
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn exact_traces_take_memory_in_proportion() {
+    let folder = with_script("borders_exact");
+    assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
+    // As if the run had changed, so that the exact trace is asked where; its digest is the one of the golden's text.
+    let golden = read(&folder, "move.snap").replace("+Execute", "+Other");
+    let digest = golden
+        .trim_end()
+        .rsplit(' ')
+        .next()
+        .expect("the digest")
+        .to_owned();
+    write(&folder, "move.snap", &golden);
+    let digest = u64::from_str_radix(&digest, 16).expect("a digest").to_le_bytes();
+    let most = 48_000_000;
+    for (name, rows, zeros) in [
+        ("unpacks to 48 MB", most as u64, most),
+        ("says that it has 50 million rows", 50_000_000, 100),
+        ("says more than there can be", u64::MAX / 2, 100),
+    ] {
+        let mut file = inflated(rows, zeros);
+        file[19..27].copy_from_slice(&digest);
+        assert!(file.len() < 50_000, "{}", file.len());
+        fs::write(folder.join("move.exact"), &file).expect("writable");
+        for arguments in [&["test", "."][..], &["explain", "move.exact", "move.exact"]] {
+            let ended = within(200_000, &folder, arguments);
+            let (status, text) = match arguments[0] {
+                "test" => (1, ended.out),
+                _ => (3, ended.err),
+            };
+            assert_eq!(ended.status, status, "{name}: {text}");
+            assert!(
+                text.contains("the exact trace is larger than the") || text.contains("damaged"),
+                "{name}: {text}"
+            );
+        }
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn live_finds_out_before_it_runs_that_it_cannot_write() {
+    let folder = with_script("borders_live");
+    for option in ["--trace", "--timing"] {
+        let begin = Instant::now();
+        let long = SCRIPT.replace("\"scans\": 30", "\"scans\": 6000");
+        write(&folder, "long.scan.json", &long);
+        let path = format!("absent/a{}", if option == "--trace" { ".csv" } else { ".json" });
+        let ended = standstill(
+            &folder,
+            &["live", "long.scan.json", "--period", "10ms", option, &path],
+        );
+        assert_eq!((ended.status, ended.out.as_str()), (4, ""), "{}", ended.err);
+        assert!(ended.err.contains("absent/a"), "{}", ended.err);
+        assert!(
+            begin.elapsed() < Duration::from_secs(20),
+            "it would have run for a minute"
+        );
+    }
+}
+
+#[test]
+fn a_failing_claim_is_the_status_also_when_nobody_reads_of_it() {
+    let folder = with_script("borders_unread");
+    write(
+        &folder,
+        "late.scan.json",
+        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
+    );
+    write(&folder, "lines.jsonl", "{\"Ts\":0.01}\n");
+    for (arguments, status) in [
+        (&["run", "late.scan.json"][..], 1),
+        (&["run", "-q", "late.scan.json", "move.scan.json"], 1),
+        (&["test", "."], 1),
+        (&["plan", "lines.jsonl"], 1),
+        (&["run", "move.scan.json", "absent.scan.json"], 4),
+        (&["rum"], 2),
+    ] {
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let output = command(arguments).current_dir(&folder).stdout(writer).output();
+        let code = output.expect("it starts").status.code();
+        assert_eq!(code, Some(status), "{arguments:?}");
+    }
+}
