@@ -17,6 +17,9 @@ const STILL: f64 = 1e-9;
 /// A velocity limit this many times higher than a plan's speeds says nothing of them.
 const REACH: f64 = 1024.0 * 1024.0;
 
+/// What an acceleration is off by, relative to the largest one it comes from: a hundredth of [`RELATIVE`].
+const CHANGED: f64 = 1e-11;
+
 /// What sums of positions resolve, relative to them.
 const RESOLVED: f64 = 32.0 * f64::EPSILON;
 
@@ -130,7 +133,7 @@ impl Scale {
         Self {
             tick: [
                 tick * followed.acceleration(),
-                tick * followed.jerk + TICK * followed.acceleration(),
+                tick * followed.jerk + CHANGED * followed.acceleration(),
                 tick * followed.snap,
             ],
             way: case.limits.velocity.max(followed.speed()) * followed.duration.max(time),

@@ -8,6 +8,9 @@ use crate::{Limits, Order};
 /// What a 64-bit instant of a path resolves, relative to its duration.
 const TICK: f64 = 2.0 * f64::EPSILON;
 
+/// What an acceleration is off by, relative to the largest one it comes from.
+const CHANGED: f64 = 1e-11;
+
 /// By how much a start state forced a plan out of its limits, as magnitudes above the limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Excess {
@@ -87,7 +90,7 @@ pub(crate) fn excess<const N: usize>(
     // A piece that ends late by what the time since the start resolves goes on changing for as long.
     let tick = TICK * path.duration();
     // A bound far below the other one is met by an acceleration that has changed by as much as the other.
-    let rounding = TICK
+    let rounding = CHANGED
         * limits
             .acceleration
             .max(limits.deceleration)
