@@ -12,18 +12,37 @@ use std::{env, fs};
 /// The variable that chooses; 0 and nothing choose none.
 pub const CHOICE: &str = "STANDSTILL_MUTANT";
 
-const HOOK: &str = r#"
-//! Which change of the sources is in force.
+/// The variable that names a file for the numbers of the points that are reached.
+pub const REACHED: &str = "STANDSTILL_MUTANTS_REACHED";
+
+const HOOK: &str = r#"//! Which change of the sources is in force.
+use std::env;
+use std::fs::OpenOptions;
+use std::io::Write;
 use std::sync::LazyLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 static CHOSEN: LazyLock<usize> = LazyLock::new(|| {
-    std::env::var("STANDSTILL_MUTANT").map_or(0, |number| number.parse().expect("a number"))
+    env::var("STANDSTILL_MUTANT").map_or(0, |number| number.parse().expect("a number"))
 });
+static REACHED: LazyLock<Option<String>> = LazyLock::new(|| env::var("STANDSTILL_MUTANTS_REACHED").ok());
+static NOTED: [AtomicBool; 100_000] = [const { AtomicBool::new(false) }; 100_000];
 
 /// Whether it is this one.
 #[inline]
 pub fn on(number: usize) -> bool {
+    if let Some(path) = &*REACHED && !NOTED[number].load(Ordering::Relaxed) {
+        note(number, path);
+    }
     *CHOSEN == number
+}
+
+#[cold]
+fn note(number: usize, path: &str) {
+    if !NOTED[number].swap(true, Ordering::Relaxed) {
+        let file = OpenOptions::new().create(true).append(true).open(path);
+        writeln!(file.expect("a file"), "{number}").expect("room");
+    }
 }
 "#;
 
@@ -67,15 +86,21 @@ impl Copy {
             if sampled.iter().any(|point| point.file == name) {
                 bytes = woven(name, &String::from_utf8(bytes)?, sampled).into_bytes();
             }
-            if let Some((_, hook)) = CRATES.iter().find(|(folder, _)| name == format!("{folder}/Cargo.toml")) {
+            if let Some((_, hook)) = CRATES
+                .iter()
+                .find(|(folder, _)| name == format!("{folder}/Cargo.toml"))
+            {
                 let hook = format!("[dependencies]\nstandstill-mutant-hook = {{ path = \"{hook}\" }}");
-                bytes = String::from_utf8(bytes)?.replace("[dependencies]", &hook).into_bytes();
+                bytes = String::from_utf8(bytes)?
+                    .replace("[dependencies]", &hook)
+                    .into_bytes();
             }
             write(&root.join(name), &bytes)?;
             kept.insert(root.join(name));
         }
         let hook = root.join("crates/mutant-hook");
-        let manifest = "[package]\nname = \"standstill-mutant-hook\"\nversion = \"0.0.0\"\nedition = \"2024\"\n";
+        let manifest =
+            "[package]\nname = \"standstill-mutant-hook\"\nversion = \"0.0.0\"\nedition = \"2024\"\n";
         for (name, text) in [("Cargo.toml", manifest), ("src/lib.rs", HOOK)] {
             write(&hook.join(name), text.as_bytes())?;
             kept.insert(hook.join(name));
@@ -87,14 +112,26 @@ impl Copy {
     fn cargo(&self, arguments: &[&str]) -> Command {
         let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
         let target = self.root.with_file_name("build");
-        cargo.args(arguments).env("CARGO_TARGET_DIR", target).current_dir(&self.root);
+        cargo
+            .args(arguments)
+            .env("CARGO_TARGET_DIR", target)
+            .current_dir(&self.root);
         cargo
     }
 
     /// Builds the program that runs scripts. Points that do not compile are the error's: their numbers.
     pub fn build(&self) -> Result<Result<PathBuf, BTreeSet<usize>>, Box<dyn Error>> {
-        let arguments = ["build", "--release", "-p", "standstill-cli", "--message-format=json"];
-        let done = self.cargo(&arguments).stderr(std::process::Stdio::inherit()).output()?;
+        let arguments = [
+            "build",
+            "--release",
+            "-p",
+            "standstill-cli",
+            "--message-format=json",
+        ];
+        let done = self
+            .cargo(&arguments)
+            .stderr(std::process::Stdio::inherit())
+            .output()?;
         if done.status.success() {
             return Ok(Ok(self.root.with_file_name("build").join("release/standstill")));
         }
@@ -131,14 +168,19 @@ impl Copy {
         for package in &packages {
             arguments.extend(["-p", package]);
         }
-        let done = self.cargo(&arguments).stderr(std::process::Stdio::inherit()).output()?;
+        let done = self
+            .cargo(&arguments)
+            .stderr(std::process::Stdio::inherit())
+            .output()?;
         if !done.status.success() {
             return Err("the tests of the copy do not build".into());
         }
         let tests = messages(&done.stdout).filter_map(|message| {
             let program = message["executable"].as_str()?.into();
             let folder = Path::new(message["manifest_path"].as_str()?).parent()?.into();
-            message["profile"]["test"].as_bool()?.then_some(Test { program, folder })
+            message["profile"]["test"]
+                .as_bool()?
+                .then_some(Test { program, folder })
         });
         Ok(tests.collect())
     }
@@ -168,7 +210,10 @@ fn weave(out: &mut String, text: &str, points: &mut &[(usize, &Point)], from: us
         let is_block = point.statement || text[point.range.start..].starts_with('{');
         let (open, close) = if is_block { ('{', '}') } else { ('(', ')') };
         let mutated = &point.mutated;
-        let _ = write!(out, "{open}if ::standstill_mutant_hook::on({number}) {{ {mutated} }} else {{ ");
+        let _ = write!(
+            out,
+            "{open}if ::standstill_mutant_hook::on({number}) {{ {mutated} }} else {{ "
+        );
         at = weave(out, text, points, point.range.start, point.range.end);
         let _ = write!(out, " }}{close}");
     }
@@ -180,10 +225,16 @@ fn weave(out: &mut String, text: &str, points: &mut &[(usize, &Point)], from: us
 fn numbers_at(text: &str, from: usize, to: usize) -> Vec<usize> {
     let numbers = |line: &str| {
         let after = line.split("_hook::on(").skip(1);
-        after.filter_map(|text| text.split(')').next()?.parse().ok()).collect::<Vec<usize>>()
+        after
+            .filter_map(|text| text.split(')').next()?.parse().ok())
+            .collect::<Vec<usize>>()
     };
     let lines: Vec<_> = text.lines().take(to).collect();
-    let within: Vec<_> = lines.iter().skip(from - 1).flat_map(|line| numbers(line)).collect();
+    let within: Vec<_> = lines
+        .iter()
+        .skip(from - 1)
+        .flat_map(|line| numbers(line))
+        .collect();
     if within.is_empty() {
         let before = lines.iter().rev().flat_map(|line| numbers(line).pop());
         return before.take(1).collect();
@@ -192,7 +243,9 @@ fn numbers_at(text: &str, from: usize, to: usize) -> Vec<usize> {
 }
 
 fn messages(output: &[u8]) -> impl Iterator<Item = Value> {
-    output.split(|byte| *byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok())
+    output
+        .split(|byte| *byte == b'\n')
+        .filter_map(|line| serde_json::from_slice(line).ok())
 }
 
 fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {

@@ -1,12 +1,13 @@
 //! Runs programs with one point chosen, until one of them fails.
 
-use crate::copy::{CHOICE, Test};
+use crate::copy::{CHOICE, REACHED, Test};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 use std::time::{Duration, Instant};
+use std::{env, fs, process, thread};
 
 /// Something that passes or fails.
 #[derive(Debug)]
@@ -15,9 +16,11 @@ pub struct Trial {
     program: PathBuf,
     arguments: Vec<String>,
     folder: PathBuf,
-    /// After this long it hangs.
-    limit: Duration,
-    /// How many points it has seen so far: those that see most are asked first.
+    /// How long it takes without a change.
+    takes: Duration,
+    /// The points it comes by: only these can it see.
+    reached: HashSet<usize>,
+    /// How many points it has seen so far.
     kills: AtomicUsize,
 }
 
@@ -28,7 +31,8 @@ impl Trial {
             program,
             arguments,
             folder,
-            limit: Duration::from_secs(600),
+            takes: Duration::from_secs(60),
+            reached: HashSet::new(),
             kills: AtomicUsize::new(0),
         }
     }
@@ -36,7 +40,7 @@ impl Trial {
     /// One for each folder of scripts: the first that fails ends a judgement early.
     pub fn scripts(program: &Path, root: &Path) -> std::io::Result<Vec<Self>> {
         let mut trials = Vec::new();
-        for entry in std::fs::read_dir(root.join("scan-tests"))? {
+        for entry in fs::read_dir(root.join("scan-tests"))? {
             let folder = entry?.file_name().to_string_lossy().into_owned();
             // What other scripts include are no scripts.
             if folder != "include" {
@@ -50,27 +54,41 @@ impl Trial {
 
     pub fn tests(tests: Vec<Test>) -> Vec<Self> {
         let of = |test: Test| {
-            let name = test.program.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let name = name.rsplit_once('-').map_or(name.clone(), |(name, _)| name.to_owned());
+            let name = test
+                .program
+                .file_stem()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            let name = name
+                .rsplit_once('-')
+                .map_or(name.clone(), |(name, _)| name.to_owned());
             Self::new(name, test.program, vec!["--quiet".to_owned()], test.folder)
         };
         tests.into_iter().map(of).collect()
     }
 
-    /// Whether all is well with the point of this number.
-    fn passes(&self, number: usize) -> bool {
-        let mut child = Command::new(&self.program)
+    fn command(&self) -> Command {
+        let mut command = Command::new(&self.program);
+        command
             .args(&self.arguments)
             .current_dir(&self.folder)
-            .env(CHOICE, number.to_string())
-            // Both processors are taken by judgements; nothing may write a golden.
-            .envs([("RAYON_NUM_THREADS", "1"), ("RUST_TEST_THREADS", "1"), ("INSTA_UPDATE", "no")])
+            // Judgements take all processors already; nothing may write a golden.
+            .envs([
+                ("RAYON_NUM_THREADS", "1"),
+                ("RUST_TEST_THREADS", "1"),
+                ("INSTA_UPDATE", "no"),
+            ])
             .stdin(Stdio::null())
             .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("a program that was built");
-        let until = Instant::now() + self.limit;
+            .stderr(Stdio::null());
+        command
+    }
+
+    /// Whether all is well; what takes ten times as long as without a change hangs.
+    fn passes(&self, mut command: Command) -> bool {
+        let mut child = command.spawn().expect("a program that was built");
+        let until = Instant::now() + (10 * self.takes).max(Duration::from_secs(10));
         loop {
             if let Some(status) = child.try_wait().expect("a child") {
                 return status.success();
@@ -84,31 +102,80 @@ impl Trial {
         }
     }
 
-    /// Without a change it must pass; gives it ten times as long as that takes from then on.
+    /// Without a change it must pass; notes how long that takes and what it comes by.
     fn prove(&mut self) -> Result<(), String> {
-        let start = Instant::now();
-        if !self.passes(0) {
+        let (path, start) = (
+            env::temp_dir().join(format!("reached-{}", process::id())),
+            Instant::now(),
+        );
+        let mut command = self.command();
+        command.env(REACHED, &path);
+        if !self.passes(command) {
             return Err(format!("{} fails without any change", self.name));
         }
-        self.limit = (10 * start.elapsed()).max(Duration::from_secs(10));
+        self.takes = start.elapsed();
+        let reached = fs::read_to_string(&path).unwrap_or_default();
+        let _ = fs::remove_file(&path);
+        self.reached = reached.lines().filter_map(|line| line.parse().ok()).collect();
         Ok(())
+    }
+
+    /// Whether it fails with the point of this number.
+    fn sees(&self, number: usize) -> bool {
+        let mut command = self.command();
+        command.env(CHOICE, number.to_string());
+        let seen = !self.passes(command);
+        if seen {
+            self.kills.fetch_add(1, Ordering::Relaxed);
+        }
+        seen
+    }
+
+    /// How long it takes to see a point, on average.
+    fn price(&self) -> Duration {
+        self.takes / (1 + self.kills.load(Ordering::Relaxed) as u32)
     }
 }
 
-/// For each of `numbers`, the first of `trials` that fails.
-pub fn judge(trials: &mut [Trial], numbers: &[usize]) -> Result<Vec<Option<String>>, String> {
+/// What came of a point.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// No trial comes by it.
+    NotReached,
+    /// No trial fails.
+    NotSeen,
+    /// This one does.
+    SeenBy(String),
+}
+
+/// What `trials` say of each of `numbers`, those first that see most in a second.
+pub fn judge(trials: &mut [Trial], numbers: &[usize]) -> Result<Vec<Verdict>, String> {
     trials.iter_mut().try_for_each(Trial::prove)?;
     let trials = &*trials;
-    let (next, verdicts) = (AtomicUsize::new(0), Mutex::new(vec![None; numbers.len()]));
+    let (next, verdicts) = (
+        AtomicUsize::new(0),
+        Mutex::new(vec![Verdict::NotReached; numbers.len()]),
+    );
     let work = || {
-        while let Some((at, number)) = numbers.iter().enumerate().nth(next.fetch_add(1, Ordering::Relaxed)) {
-            let mut order: Vec<_> = trials.iter().collect();
-            order.sort_by_key(|trial| usize::MAX - trial.kills.load(Ordering::Relaxed));
-            let killer = order.into_iter().find(|trial| !trial.passes(*number));
-            if let Some(trial) = killer {
-                trial.kills.fetch_add(1, Ordering::Relaxed);
+        while let Some((at, number)) = numbers
+            .iter()
+            .enumerate()
+            .nth(next.fetch_add(1, Ordering::Relaxed))
+        {
+            let mut order: Vec<_> = trials
+                .iter()
+                .filter(|trial| trial.reached.contains(number))
+                .collect();
+            if order.is_empty() {
+                continue;
             }
-            verdicts.lock().expect("no panic")[at] = killer.map(|trial| trial.name.clone());
+            order.sort_by_cached_key(|trial| trial.price());
+            let seen_by = order.into_iter().find(|trial| trial.sees(*number));
+            let verdict = seen_by.map_or(Verdict::NotSeen, |trial| Verdict::SeenBy(trial.name.clone()));
+            verdicts.lock().expect("no panic")[at] = verdict;
+            if at % 20 == 19 {
+                eprintln!("{} of {}", at + 1, numbers.len());
+            }
         }
     };
     thread::scope(|scope| {

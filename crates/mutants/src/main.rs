@@ -9,7 +9,7 @@ mod points;
 
 use clap::Parser;
 use copy::Copy;
-use judge::{Trial, judge};
+use judge::{Trial, Verdict, judge};
 use points::Point;
 use std::collections::{BTreeMap, HashSet};
 use std::error::Error;
@@ -32,6 +32,9 @@ struct Args {
     /// Judge only these of them, by their numbers in the last report
     #[arg(long, value_delimiter = ',')]
     only: Vec<usize>,
+    /// Instead of a sample, all whose line in a report contains this
+    #[arg(long)]
+    of: Option<String>,
     /// Judge by scripts only
     #[arg(long)]
     scripts: bool,
@@ -39,11 +42,16 @@ struct Args {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let args = Args::parse();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize()?;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../..")
+        .canonicalize()?;
     let mut points = all_points(&root)?;
     let equivalents = Equivalents::read(&root.join(EQUIVALENTS))?;
     equivalents.check(&points)?;
     let all = points.len();
+    if let Some(text) = &args.of {
+        points.retain(|point| point.key.contains(text));
+    }
 
     // A change elsewhere in the sources moves no point in or out of the sample.
     points.sort_by_cached_key(|point| drawn(args.seed, &point.key));
@@ -65,26 +73,32 @@ fn main() -> Result<(), Box<dyn Error>> {
     numbers.retain(|number| args.only.is_empty() || args.only.contains(number));
     println!("{} of {all} points, seed {}", points.len(), args.seed);
     let by_script = judge(&mut Trial::scripts(&program, &copy.root)?, &numbers)?;
-    let unseen: Vec<_> = numbers.iter().zip(&by_script).filter(|(_, killer)| killer.is_none()).map(|(number, _)| *number).collect();
+    let seen = |verdict: &Verdict| matches!(verdict, Verdict::SeenBy(_));
+    let unseen = numbers
+        .iter()
+        .zip(&by_script)
+        .filter(|(_, verdict)| !seen(verdict));
+    let unseen: Vec<_> = unseen.map(|(number, _)| *number).collect();
     println!("scripts do not see {} of {}", unseen.len(), numbers.len());
     let mut by_test = BTreeMap::new();
     if !args.scripts {
-        let killers = judge(&mut Trial::tests(copy.build_tests()?), &unseen)?;
-        by_test.extend(unseen.into_iter().zip(killers));
+        let verdicts = judge(&mut Trial::tests(copy.build_tests()?), &unseen)?;
+        by_test.extend(unseen.into_iter().zip(verdicts));
     }
 
     let judged = numbers.iter().zip(by_script).map(|(number, script)| Judged {
         number: *number,
         point: &points[number - 1],
         equivalent: equivalents.0.contains_key(&points[number - 1].key),
-        test: by_test.get(number).cloned().flatten(),
-        script,
+        by_script: seen(&script),
+        seen: seen(&script) || by_test.get(number).is_some_and(seen),
+        verdicts: (script, by_test.get(number).cloned()),
     });
     let judged: Vec<_> = judged.collect();
     let report = report(&judged);
     fs::write(root.join("target/mutants/report.txt"), &report)?;
     print!("{report}");
-    match judged.iter().find(|judged| judged.equivalent && judged.killer().is_some()) {
+    match judged.iter().find(|judged| judged.equivalent && judged.seen) {
         Some(judged) => Err(format!("listed as equivalent, but seen: {}", judged.point.key).into()),
         None => Ok(()),
     }
@@ -94,14 +108,10 @@ struct Judged<'a> {
     number: usize,
     point: &'a Point,
     equivalent: bool,
-    script: Option<String>,
-    test: Option<String>,
-}
-
-impl Judged<'_> {
-    fn killer(&self) -> Option<&String> {
-        self.script.as_ref().or(self.test.as_ref())
-    }
+    by_script: bool,
+    seen: bool,
+    /// Of the scripts, and of the tests if they were asked.
+    verdicts: (Verdict, Option<Verdict>),
 }
 
 /// Every point of the crates, in the order of the files.
@@ -116,12 +126,15 @@ fn all_points(root: &Path) -> Result<Vec<Point>, Box<dyn Error>> {
         }
     }
     let variants = points::variants(&files);
-    let of = |(name, text, parsed): &(String, String, syn::File)| points::points(name, text, parsed, &variants);
+    let of =
+        |(name, text, parsed): &(String, String, syn::File)| points::points(name, text, parsed, &variants);
     Ok(files.iter().flat_map(of).collect())
 }
 
 fn sources(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    let mut paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>()?;
+    let mut paths = fs::read_dir(folder)?
+        .map(|entry| Ok(entry?.path()))
+        .collect::<std::io::Result<Vec<_>>>()?;
     paths.sort();
     let mut sources_in = Vec::new();
     for path in paths {
@@ -152,7 +165,10 @@ impl Equivalents {
     fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
         let mut entries = BTreeMap::new();
         let mut key = String::new();
-        for line in fs::read_to_string(path)?.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        for line in fs::read_to_string(path)?
+            .lines()
+            .filter(|line| !line.is_empty() && !line.starts_with('#'))
+        {
             if !line.starts_with(' ') {
                 key = line.to_owned();
             }
@@ -182,21 +198,35 @@ fn report(judged: &[Judged]) -> String {
     let mut list = |title: &str, of: &dyn Fn(&Judged) -> bool| {
         let _ = writeln!(out, "\n{title}:");
         for judged in judged.iter().filter(|judged| of(judged)) {
-            let Judged { number, point, test, .. } = judged;
-            let by = test.as_ref().map_or(String::new(), |test| format!("  [{test}]"));
+            let Judged { number, point, .. } = judged;
+            let by = match &judged.verdicts {
+                (_, Some(Verdict::SeenBy(test))) => format!("  [{test}]"),
+                (Verdict::NotReached, None | Some(Verdict::NotReached)) => "  [not reached]".to_owned(),
+                (Verdict::NotReached, _) => "  [not reached by scripts]".to_owned(),
+                _ => String::new(),
+            };
             let _ = writeln!(out, "{number:4}  line {}, {}{by}", point.line, point.key);
         }
     };
     list("equivalent", &|judged| judged.equivalent);
-    list("seen by Rust tests only", &|judged| judged.script.is_none() && judged.test.is_some());
-    list("not seen", &|judged| judged.killer().is_none() && !judged.equivalent);
-    let _ = writeln!(out, "\n{:12} {:>7} {:>10} {:>8} {:>14} {:>14}", "crate", "changes", "equivalent", "the rest", "by scripts", "by all tests");
+    list("seen by Rust tests only", &|judged| {
+        judged.seen && !judged.by_script
+    });
+    list("not seen", &|judged| !judged.seen && !judged.equivalent);
+    let _ = writeln!(
+        out,
+        "\n{:12} {:>7} {:>10} {:>8} {:>14} {:>14}",
+        "crate", "changes", "equivalent", "the rest", "by scripts", "by all tests"
+    );
     for (folder, _) in copy::CRATES.iter().chain([&("", "")]) {
-        let within: Vec<_> = judged.iter().filter(|judged| judged.point.file.starts_with(folder)).collect();
+        let within: Vec<_> = judged
+            .iter()
+            .filter(|judged| judged.point.file.starts_with(folder))
+            .collect();
         let rest: Vec<_> = within.iter().filter(|judged| !judged.equivalent).collect();
         let share = |seen: usize| format!("{seen} ({:.1} %)", 100.0 * seen as f64 / rest.len().max(1) as f64);
-        let scripts = rest.iter().filter(|judged| judged.script.is_some()).count();
-        let tests = rest.iter().filter(|judged| judged.killer().is_some()).count();
+        let scripts = rest.iter().filter(|judged| judged.by_script).count();
+        let tests = rest.iter().filter(|judged| judged.seen).count();
         let name = if folder.is_empty() { "all" } else { folder };
         let _ = writeln!(
             out,

@@ -41,7 +41,12 @@ pub fn variants(files: &[(String, String, syn::File)]) -> HashMap<String, Vec<St
 
 /// Every point of a file. Left out: tests, `const` (no choice at run time there), patterns, types, macros but
 /// `matches!`, and functions that only make text.
-pub fn points(file: &str, text: &str, parsed: &syn::File, variants: &HashMap<String, Vec<String>>) -> Vec<Point> {
+pub fn points(
+    file: &str,
+    text: &str,
+    parsed: &syn::File,
+    variants: &HashMap<String, Vec<String>>,
+) -> Vec<Point> {
     let mut finder = Finder {
         file,
         text,
@@ -96,7 +101,12 @@ impl Finder<'_> {
     /// `node` with `part` of it replaced.
     fn replaced(&self, node: &impl Spanned, part: &impl Spanned, by: &str) -> String {
         let (outer, inner) = (node.span().byte_range(), part.span().byte_range());
-        [&self.text[outer.start..inner.start], by, &self.text[inner.end..outer.end]].concat()
+        [
+            &self.text[outer.start..inner.start],
+            by,
+            &self.text[inner.end..outer.end],
+        ]
+        .concat()
     }
 
     /// What decides between two ways; `let` among `&&` can be no value.
@@ -114,7 +124,12 @@ impl Finder<'_> {
         }
     }
 
-    fn function(&mut self, attributes: &[syn::Attribute], signature: &syn::Signature, body: Option<&syn::Block>) {
+    fn function(
+        &mut self,
+        attributes: &[syn::Attribute],
+        signature: &syn::Signature,
+        body: Option<&syn::Block>,
+    ) {
         let makes_text = matches!(&signature.output, syn::ReturnType::Type(_, kind) if self.text_of(kind).ends_with("str"));
         if let Some(body) = body
             && signature.constness.is_none()
@@ -142,16 +157,27 @@ impl<'a> Visit<'a> for Finder<'_> {
     }
 
     fn visit_item_impl(&mut self, item: &'a syn::ItemImpl) {
-        let shown = |path: &syn::Path| path.segments.last().is_some_and(|last| last.ident == "Debug" || last.ident == "Display");
+        let shown = |path: &syn::Path| {
+            path.segments
+                .last()
+                .is_some_and(|last| last.ident == "Debug" || last.ident == "Display")
+        };
         if item.trait_.as_ref().is_some_and(|(_, path, _)| shown(path)) {
             return;
         }
-        let name = self.text_of(&item.self_ty).split('<').next().unwrap_or_default().to_owned();
+        let name = self
+            .text_of(&item.self_ty)
+            .split('<')
+            .next()
+            .unwrap_or_default()
+            .to_owned();
         self.implementation(name, |finder| visit::visit_item_impl(finder, item));
     }
 
     fn visit_item_trait(&mut self, item: &'a syn::ItemTrait) {
-        self.implementation(item.ident.to_string(), |finder| visit::visit_item_trait(finder, item));
+        self.implementation(item.ident.to_string(), |finder| {
+            visit::visit_item_trait(finder, item)
+        });
     }
 
     fn visit_item_fn(&mut self, item: &'a syn::ItemFn) {
@@ -178,7 +204,11 @@ impl<'a> Visit<'a> for Finder<'_> {
 
     fn visit_stmt(&mut self, statement: &'a Stmt) {
         if let Stmt::Expr(expr, Some(_)) = statement {
-            let called = if let Expr::Try(tried) = expr { &tried.expr } else { expr };
+            let called = if let Expr::Try(tried) = expr {
+                &tried.expr
+            } else {
+                expr
+            };
             let sets = match called {
                 Expr::Assign(_) | Expr::MethodCall(_) | Expr::Call(_) => true,
                 Expr::Binary(binary) => !is_relation(&binary.op),
@@ -210,7 +240,10 @@ impl<'a> Visit<'a> for Finder<'_> {
 
     fn visit_expr_match(&mut self, expr: &'a syn::ExprMatch) {
         for pair in expr.arms.windows(2) {
-            let (body, next) = (self.text_of(&pair[0].body), self.text_of(&pair[1].body).to_owned());
+            let (body, next) = (
+                self.text_of(&pair[0].body),
+                self.text_of(&pair[1].body).to_owned(),
+            );
             if body != next {
                 self.add(&pair[0].body, &next, false);
             }
@@ -328,7 +361,10 @@ fn at_the_bound(op: &BinOp) -> Option<&'static str> {
 }
 
 fn is_relation(op: &BinOp) -> bool {
-    matches!(op, BinOp::Lt(_) | BinOp::Le(_) | BinOp::Gt(_) | BinOp::Ge(_) | BinOp::Eq(_) | BinOp::Ne(_))
+    matches!(
+        op,
+        BinOp::Lt(_) | BinOp::Le(_) | BinOp::Gt(_) | BinOp::Ge(_) | BinOp::Eq(_) | BinOp::Ne(_)
+    )
 }
 
 fn has_let(expr: &Expr) -> bool {
@@ -348,6 +384,8 @@ fn is_test(attributes: &[syn::Attribute]) -> bool {
 }
 
 fn one_line(text: &str) -> String {
-    let code = text.lines().map(|line| line.split("//").next().unwrap_or_default());
+    let code = text
+        .lines()
+        .map(|line| line.split("//").next().unwrap_or_default());
     code.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ")
 }
