@@ -59,6 +59,48 @@ pub fn points(
     finder.points
 }
 
+/// Operators and methods, and what may stand in their place.
+const SWAPS: [(&str, &[&str]); 38] = [
+    ("<", &[">=", "<="]),
+    ("<=", &[">", "<"]),
+    (">", &["<=", ">="]),
+    (">=", &["<", ">"]),
+    ("==", &["!="]),
+    ("!=", &["=="]),
+    ("&&", &["||"]),
+    ("||", &["&&"]),
+    ("+", &["-"]),
+    ("-", &["+"]),
+    ("*", &["/"]),
+    ("/", &["*"]),
+    ("%", &["/"]),
+    ("&", &["|"]),
+    ("|", &["&"]),
+    ("^", &["|"]),
+    ("<<", &[">>"]),
+    (">>", &["<<"]),
+    ("+=", &["-="]),
+    ("-=", &["+="]),
+    ("*=", &["/="]),
+    ("/=", &["*="]),
+    ("&=", &["|="]),
+    ("|=", &["&="]),
+    ("min", &["max"]),
+    ("max", &["min"]),
+    ("any", &["all"]),
+    ("all", &["any"]),
+    ("is_some", &["is_none"]),
+    ("is_none", &["is_some"]),
+    ("is_ok", &["is_err"]),
+    ("is_err", &["is_ok"]),
+    ("is_some_and", &["is_none_or"]),
+    ("is_none_or", &["is_some_and"]),
+    ("saturating_add", &["saturating_sub"]),
+    ("saturating_sub", &["saturating_add"]),
+    ("wrapping_add", &["wrapping_sub"]),
+    ("wrapping_sub", &["wrapping_add"]),
+];
+
 struct Finder<'a> {
     file: &'a str,
     text: &'a str,
@@ -69,8 +111,8 @@ struct Finder<'a> {
     points: Vec<Point>,
 }
 
-impl Finder<'_> {
-    fn text_of(&self, node: &impl Spanned) -> &str {
+impl<'a> Finder<'a> {
+    fn text_of(&self, node: &impl Spanned) -> &'a str {
         &self.text[node.span().byte_range()]
     }
 
@@ -107,6 +149,14 @@ impl Finder<'_> {
             &self.text[inner.end..outer.end],
         ]
         .concat()
+    }
+
+    /// `node` with its operator or method swapped.
+    fn swaps(&mut self, node: &impl Spanned, part: &impl Spanned) {
+        let found = SWAPS.iter().find(|(name, _)| *name == self.text_of(part));
+        for by in found.map_or(&[][..], |(_, others)| others) {
+            self.add(node, &self.replaced(node, part, by), false);
+        }
     }
 
     /// What decides between two ways; `let` among `&&` can be no value.
@@ -211,7 +261,7 @@ impl<'a> Visit<'a> for Finder<'_> {
             };
             let sets = match called {
                 Expr::Assign(_) | Expr::MethodCall(_) | Expr::Call(_) => true,
-                Expr::Binary(binary) => !is_relation(&binary.op),
+                Expr::Binary(binary) => self.text_of(&binary.op).ends_with('='),
                 _ => false,
             };
             if sets {
@@ -240,12 +290,9 @@ impl<'a> Visit<'a> for Finder<'_> {
 
     fn visit_expr_match(&mut self, expr: &'a syn::ExprMatch) {
         for pair in expr.arms.windows(2) {
-            let (body, next) = (
-                self.text_of(&pair[0].body),
-                self.text_of(&pair[1].body).to_owned(),
-            );
+            let (body, next) = (self.text_of(&pair[0].body), self.text_of(&pair[1].body));
             if body != next {
-                self.add(&pair[0].body, &next, false);
+                self.add(&pair[0].body, next, false);
             }
         }
         visit::visit_expr_match(self, expr);
@@ -253,14 +300,10 @@ impl<'a> Visit<'a> for Finder<'_> {
 
     fn visit_expr_binary(&mut self, expr: &'a syn::ExprBinary) {
         if !has_let(&expr.left) && !has_let(&expr.right) {
-            let mut changes: Vec<_> = opposite(&expr.op).into_iter().collect();
-            changes.extend(at_the_bound(&expr.op));
-            for by in changes {
-                self.add(expr, &self.replaced(expr, &expr.op, by), false);
-            }
+            self.swaps(expr, &expr.op);
             if matches!(expr.op, BinOp::And(_) | BinOp::Or(_)) {
                 for side in [&expr.left, &expr.right] {
-                    self.add(expr, &self.text_of(side).to_owned(), false);
+                    self.add(expr, self.text_of(side), false);
                 }
             }
         }
@@ -269,7 +312,7 @@ impl<'a> Visit<'a> for Finder<'_> {
 
     fn visit_expr_unary(&mut self, expr: &'a syn::ExprUnary) {
         if matches!(expr.op, UnOp::Not(_) | UnOp::Neg(_)) {
-            self.add(expr, &self.text_of(&expr.expr).to_owned(), false);
+            self.add(expr, self.text_of(&expr.expr), false);
         }
         visit::visit_expr_unary(self, expr);
     }
@@ -294,22 +337,7 @@ impl<'a> Visit<'a> for Finder<'_> {
     }
 
     fn visit_expr_method_call(&mut self, expr: &'a syn::ExprMethodCall) {
-        const PAIRS: [[&str; 2]; 7] = [
-            ["min", "max"],
-            ["any", "all"],
-            ["is_some", "is_none"],
-            ["is_ok", "is_err"],
-            ["is_some_and", "is_none_or"],
-            ["saturating_add", "saturating_sub"],
-            ["wrapping_add", "wrapping_sub"],
-        ];
-        for [one, other] in PAIRS {
-            for (from, to) in [(one, other), (other, one)] {
-                if expr.method == from {
-                    self.add(expr, &self.replaced(expr, &expr.method, to), false);
-                }
-            }
-        }
+        self.swaps(expr, &expr.method);
         visit::visit_expr_method_call(self, expr);
     }
 
@@ -318,53 +346,6 @@ impl<'a> Visit<'a> for Finder<'_> {
             self.add(expr, &format!("!{}", self.text_of(expr)), false);
         }
     }
-}
-
-fn opposite(op: &BinOp) -> Option<&'static str> {
-    Some(match op {
-        BinOp::Lt(_) => ">=",
-        BinOp::Le(_) => ">",
-        BinOp::Gt(_) => "<=",
-        BinOp::Ge(_) => "<",
-        BinOp::Eq(_) => "!=",
-        BinOp::Ne(_) => "==",
-        BinOp::And(_) => "||",
-        BinOp::Or(_) => "&&",
-        BinOp::Add(_) => "-",
-        BinOp::Sub(_) => "+",
-        BinOp::Mul(_) => "/",
-        BinOp::Div(_) => "*",
-        BinOp::AddAssign(_) => "-=",
-        BinOp::SubAssign(_) => "+=",
-        BinOp::MulAssign(_) => "/=",
-        BinOp::DivAssign(_) => "*=",
-        BinOp::BitAnd(_) => "|",
-        BinOp::BitOr(_) => "&",
-        BinOp::BitXor(_) => "&",
-        BinOp::BitAndAssign(_) => "|=",
-        BinOp::BitOrAssign(_) => "&=",
-        BinOp::Shl(_) => ">>",
-        BinOp::Shr(_) => "<<",
-        _ => return None,
-    })
-}
-
-/// The same order, but for equal sides.
-fn at_the_bound(op: &BinOp) -> Option<&'static str> {
-    Some(match op {
-        BinOp::Lt(_) => "<=",
-        BinOp::Le(_) => "<",
-        BinOp::Gt(_) => ">=",
-        BinOp::Ge(_) => ">",
-        _ => return None,
-    })
-}
-
-fn is_relation(op: &BinOp) -> bool {
-    matches!(
-        op,
-        BinOp::Lt(_) | BinOp::Le(_) | BinOp::Gt(_) | BinOp::Ge(_) | BinOp::Eq(_) | BinOp::Ne(_)
-    )
 }
 
 fn has_let(expr: &Expr) -> bool {
