@@ -1,7 +1,7 @@
 //! Runs programs with one point chosen, until one of them fails.
 
 use crate::copy::{CHOICE, REACHED, Test};
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
@@ -19,7 +19,7 @@ pub struct Trial {
     /// How long it takes without a change.
     takes: Duration,
     /// The points it comes by: only these can it see.
-    reached: HashSet<usize>,
+    reached: BTreeSet<usize>,
     /// How many points it has seen so far.
     kills: AtomicUsize,
 }
@@ -32,7 +32,7 @@ impl Trial {
             arguments,
             folder,
             takes: Duration::from_secs(60),
-            reached: HashSet::new(),
+            reached: BTreeSet::new(),
             kills: AtomicUsize::new(0),
         }
     }

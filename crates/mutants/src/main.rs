@@ -11,7 +11,7 @@ use clap::Parser;
 use copy::Copy;
 use judge::{Trial, Verdict, judge};
 use points::Point;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -32,9 +32,9 @@ struct Args {
     /// Judge only these of them, by their numbers in the last report
     #[arg(long, value_delimiter = ',')]
     only: Vec<usize>,
-    /// Instead of a sample, all whose line in a report contains this
+    /// Instead of a sample, all whose line in a report contains one of these
     #[arg(long)]
-    of: Option<String>,
+    of: Vec<String>,
     /// Judge by scripts only
     #[arg(long)]
     scripts: bool,
@@ -49,8 +49,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let equivalents = Equivalents::read(&root.join(EQUIVALENTS))?;
     equivalents.check(&points)?;
     let all = points.len();
-    if let Some(text) = &args.of {
-        points.retain(|point| point.key.contains(text));
+    if !args.of.is_empty() {
+        points.retain(|point| args.of.iter().any(|text| point.key.contains(text)));
     }
 
     // A change elsewhere in the sources moves no point in or out of the sample.
@@ -79,7 +79,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         .zip(&by_script)
         .filter(|(_, verdict)| !seen(verdict));
     let unseen: Vec<_> = unseen.map(|(number, _)| *number).collect();
-    println!("scripts do not see {} of {}", unseen.len(), numbers.len());
+    println!(
+        "scripts do not see {} of {}: {unseen:?}",
+        unseen.len(),
+        numbers.len()
+    );
     let mut by_test = BTreeMap::new();
     if !args.scripts {
         let verdicts = judge(&mut Trial::tests(copy.build_tests()?), &unseen)?;
@@ -185,7 +189,7 @@ impl Equivalents {
 
     /// Each is a change that can be made today.
     fn check(&self, points: &[Point]) -> Result<(), String> {
-        let keys: HashSet<_> = points.iter().map(|point| &point.key).collect();
+        let keys: BTreeSet<_> = points.iter().map(|point| &point.key).collect();
         match self.0.keys().find(|key| !keys.contains(key)) {
             Some(key) => Err(format!("{EQUIVALENTS} is stale: {key}")),
             None => Ok(()),

@@ -1,6 +1,6 @@
 //! Where the sources can be changed a little, and how: one [`Point`] for each change.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
@@ -23,8 +23,8 @@ pub struct Point {
 }
 
 /// The variants without data of every enum in `files`, in their order.
-pub fn variants(files: &[(String, String, syn::File)]) -> HashMap<String, Vec<String>> {
-    struct Enums(HashMap<String, Vec<String>>);
+pub fn variants(files: &[(String, String, syn::File)]) -> BTreeMap<String, Vec<String>> {
+    struct Enums(BTreeMap<String, Vec<String>>);
     impl<'a> Visit<'a> for Enums {
         fn visit_item_enum(&mut self, item: &'a syn::ItemEnum) {
             let plain = item.variants.iter().filter(|variant| variant.fields.is_empty());
@@ -32,7 +32,7 @@ pub fn variants(files: &[(String, String, syn::File)]) -> HashMap<String, Vec<St
             self.0.insert(item.ident.to_string(), names);
         }
     }
-    let mut enums = Enums(HashMap::new());
+    let mut enums = Enums(BTreeMap::new());
     for (_, _, parsed) in files {
         enums.visit_file(parsed);
     }
@@ -45,69 +45,51 @@ pub fn points(
     file: &str,
     text: &str,
     parsed: &syn::File,
-    variants: &HashMap<String, Vec<String>>,
+    variants: &BTreeMap<String, Vec<String>>,
 ) -> Vec<Point> {
     let mut finder = Finder {
         file,
         text,
         variants,
         within: Vec::new(),
-        seen: HashMap::new(),
+        seen: BTreeMap::new(),
         points: Vec::new(),
     };
     finder.visit_file(parsed);
     finder.points
 }
 
-/// Operators and methods, and what may stand in their place.
-const SWAPS: [(&str, &[&str]); 38] = [
-    ("<", &[">=", "<="]),
-    ("<=", &[">", "<"]),
-    (">", &["<=", ">="]),
-    (">=", &["<", ">"]),
-    ("==", &["!="]),
-    ("!=", &["=="]),
-    ("&&", &["||"]),
-    ("||", &["&&"]),
-    ("+", &["-"]),
-    ("-", &["+"]),
-    ("*", &["/"]),
-    ("/", &["*"]),
-    ("%", &["/"]),
-    ("&", &["|"]),
-    ("|", &["&"]),
-    ("^", &["|"]),
-    ("<<", &[">>"]),
-    (">>", &["<<"]),
-    ("+=", &["-="]),
-    ("-=", &["+="]),
-    ("*=", &["/="]),
-    ("/=", &["*="]),
-    ("&=", &["|="]),
-    ("|=", &["&="]),
-    ("min", &["max"]),
-    ("max", &["min"]),
-    ("any", &["all"]),
-    ("all", &["any"]),
-    ("is_some", &["is_none"]),
-    ("is_none", &["is_some"]),
-    ("is_ok", &["is_err"]),
-    ("is_err", &["is_ok"]),
-    ("is_some_and", &["is_none_or"]),
-    ("is_none_or", &["is_some_and"]),
-    ("saturating_add", &["saturating_sub"]),
-    ("saturating_sub", &["saturating_add"]),
-    ("wrapping_add", &["wrapping_sub"]),
-    ("wrapping_sub", &["wrapping_add"]),
+/// Operators and methods that stand for each other, either way.
+const SWAPS: [[&str; 2]; 20] = [
+    ["<", ">="],
+    [">", "<="],
+    ["<", "<="],
+    [">", ">="],
+    ["==", "!="],
+    ["&&", "||"],
+    ["+", "-"],
+    ["*", "/"],
+    ["&", "|"],
+    ["<<", ">>"],
+    ["+=", "-="],
+    ["*=", "/="],
+    ["&=", "|="],
+    ["min", "max"],
+    ["any", "all"],
+    ["is_some", "is_none"],
+    ["is_ok", "is_err"],
+    ["is_some_and", "is_none_or"],
+    ["saturating_add", "saturating_sub"],
+    ["wrapping_add", "wrapping_sub"],
 ];
 
 struct Finder<'a> {
     file: &'a str,
     text: &'a str,
-    variants: &'a HashMap<String, Vec<String>>,
+    variants: &'a BTreeMap<String, Vec<String>>,
     /// The type and the function around, outermost first.
     within: Vec<String>,
-    seen: HashMap<String, usize>,
+    seen: BTreeMap<String, usize>,
     points: Vec<Point>,
 }
 
@@ -153,9 +135,12 @@ impl<'a> Finder<'a> {
 
     /// `node` with its operator or method swapped.
     fn swaps(&mut self, node: &impl Spanned, part: &impl Spanned) {
-        let found = SWAPS.iter().find(|(name, _)| *name == self.text_of(part));
-        for by in found.map_or(&[][..], |(_, others)| others) {
-            self.add(node, &self.replaced(node, part, by), false);
+        for [one, other] in SWAPS {
+            for (from, to) in [(one, other), (other, one)] {
+                if self.text_of(part) == from {
+                    self.add(node, &self.replaced(node, part, to), false);
+                }
+            }
         }
     }
 
