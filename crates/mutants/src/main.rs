@@ -190,10 +190,11 @@ impl Equivalents {
     /// Each is a change that can be made today.
     fn check(&self, points: &[Point]) -> Result<(), String> {
         let keys: BTreeSet<_> = points.iter().map(|point| &point.key).collect();
-        match self.0.keys().find(|key| !keys.contains(key)) {
-            Some(key) => Err(format!("{EQUIVALENTS} is stale: {key}")),
-            None => Ok(()),
+        let stale: Vec<_> = self.0.keys().filter(|key| !keys.contains(key)).cloned().collect();
+        if stale.is_empty() {
+            return Ok(());
         }
+        Err(format!("{EQUIVALENTS} is stale:\n{}", stale.join("\n")))
     }
 }
 
