@@ -4,11 +4,10 @@ use crate::random::Random;
 use core::array::from_fn;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Drive, DrivePosition, Event, IdealDrive, InstanceId, Limits, Log,
-    PowerOff, Scaling, Standard, StartState,
+    MoveProfile, PowerOff, Scaling, Standard, StartState,
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::{AnyInstance, Context, Direction, Group, Pin, PinType, TableInfo, TableRef, Value};
-use standstill_planner::MoveProfile;
 
 const AXES: usize = 3;
 
