@@ -73,6 +73,8 @@ impl Bench {
             ("Velocity", Value::Lreal(5.0)),
             ("VelocityDiff", Value::Lreal(1.0)),
             ("Torque", Value::Lreal(1.0)),
+            ("WindowOnly", Value::Bool(true)),
+            ("LastPosition", Value::Lreal(f64::MAX)),
         ];
         let parameter = if name.contains("Bool") { 6 } else { 9 };
         let number = ("ParameterNumber", Value::Int(parameter));

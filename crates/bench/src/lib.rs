@@ -2,7 +2,7 @@
 //!
 //! The measures themselves are `benches/ratios.rs` (time, against the yardstick in the same run),
 //! `examples/instructions.rs` (instructions, under valgrind), `examples/worst_plan.rs` (search steps),
-//! `panic-probe` (reachable panics) and `tests/` (heap use, long runs). Commands and figures are in
+//! `panic-probe` (reachable panics), `same-bits` (other processors) and `tests/` (heap use, long runs). Commands and figures are in
 //! `docs/performance.md`.
 #![forbid(unsafe_code)]
 

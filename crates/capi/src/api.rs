@@ -37,7 +37,7 @@ pub extern "C" fn standstill_result_text(result: i32) -> *const c_char {
         -5 => c"there is no runtime at this address",
         -6 => c"another thread is in the runtime, or has a tick open",
         -7 => c"only between tick_begin and tick_end",
-        -8 => c"not between tick_begin and tick_end",
+        -8 => c"only outside a tick: before tick_begin, or after tick_end",
         -9 => c"the instant is before that of the tick before",
         -10 => c"no instance has this key",
         -11 => c"the key is of an instance of another block",

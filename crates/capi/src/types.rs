@@ -25,7 +25,7 @@ pub enum Code {
     OtherThread = -6,
     /// Blocks are called between tick_begin and tick_end only.
     NotInTick = -7,
-    /// Not between tick_begin and tick_end.
+    /// Only outside a tick: before tick_begin, or after tick_end.
     InTick = -8,
     /// The instant is before that of the tick before: use a monotonic clock.
     TimeBackwards = -9,

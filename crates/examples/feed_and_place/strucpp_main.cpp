@@ -8,20 +8,6 @@
 #define EXPORT(name)
 #endif
 
-namespace {
-
-/* A VAR_GLOBAL is a wrapped value, which newer releases put into one structure more. */
-template <class Global> auto inside(Global &global, int) -> decltype((global.value)) {
-    return global.value;
-}
-template <class Global> Global &inside(Global &global, long) {
-    return global;
-}
-
-strucpp::Configuration_CONFIG0 plc;
-
-} // namespace
-
 extern "C" {
 
 uint8_t Start, Stop;
@@ -31,23 +17,44 @@ uint8_t PlaceBusy, PlaceDone, PlaceAborted;
 
 void plc_init(void);
 void plc_scan(int32_t tick, int64_t now_ns);
+}
+
+namespace strucpp {
+
+#if !STRUCPP_HAS_EXCEPTIONS
+/* An index outside its array, where it cannot be thrown: a guest traps, which ends the program and is told. */
+[[noreturn]] void iec_runtime_fault(IecFault, const char *) noexcept {
+    __builtin_trap();
+}
+#endif
+
+/* A VAR_GLOBAL is a member of the configuration up to 0.5 and a variable of the namespace since 0.6: from in here both have
+   the same name. */
+struct Plc : Configuration_CONFIG0 {
+    void scan() {
+        START.write(Start != 0);
+        STOP.write(Stop != 0);
+        CELL.run();
+        State = STATE.read();
+        Parts = PARTS.read();
+        Aborts = ABORTS.read();
+        FeedBusy = FEEDBUSY.read();
+        FeedDone = FEEDDONE.read();
+        FeedAborted = FEEDABORTED.read();
+        PlaceBusy = PLACEBUSY.read();
+        PlaceDone = PLACEDONE.read();
+        PlaceAborted = PLACEABORTED.read();
+    }
+};
+
+} // namespace strucpp
+
+static strucpp::Plc plc;
 
 EXPORT(plc_init) void plc_init(void) {}
 
 EXPORT(plc_scan) void plc_scan(int32_t tick, int64_t now_ns) {
     (void)tick;
     strucpp::__CURRENT_TIME_NS = now_ns;
-    inside(plc.START, 0).set(Start != 0);
-    inside(plc.STOP, 0).set(Stop != 0);
-    plc.CELL.run();
-    State = inside(plc.STATE, 0).get();
-    Parts = inside(plc.PARTS, 0).get();
-    Aborts = inside(plc.ABORTS, 0).get();
-    FeedBusy = inside(plc.FEEDBUSY, 0).get();
-    FeedDone = inside(plc.FEEDDONE, 0).get();
-    FeedAborted = inside(plc.FEEDABORTED, 0).get();
-    PlaceBusy = inside(plc.PLACEBUSY, 0).get();
-    PlaceDone = inside(plc.PLACEDONE, 0).get();
-    PlaceAborted = inside(plc.PLACEABORTED, 0).get();
-}
+    plc.scan();
 }

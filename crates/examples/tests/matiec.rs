@@ -167,6 +167,16 @@ fn blocks_of_the_shim(shim: &str) -> String {
     out
 }
 
+/// matiec crashes over a declaration of several block instances.
+#[test]
+fn prog_st_declares_each_block_instance_by_itself() {
+    let program = fs::read_to_string(folder().join("prog.st")).unwrap();
+    let declarations = program.lines().filter_map(|line| line.trim().split_once(" : "));
+    for (names, of) in declarations.filter(|(names, _)| names.contains(',')) {
+        assert!(["BOOL;", "INT;"].contains(&of), "{names} : {of}");
+    }
+}
+
 /// What CI has of the way through matiec: the shim and the file that runs a program, under a program in matiec's shape.
 #[test]
 fn a_program_in_the_shape_of_matiec_linked_and_as_a_guest() {

@@ -118,3 +118,27 @@ fn prog_st_as_a_guest() {
     let trace = of_guest(&out.join("guest.scan.json"), str::to_owned);
     hold("STruC++, as a guest", &trace, None);
 }
+
+/// What CI has of the way through STruC++ beside the shim: the file that runs a program, over what two releases make of it.
+#[test]
+fn the_file_that_runs_a_program_compiles_wherever_the_globals_are() {
+    if !has("c++") {
+        return;
+    }
+    let shape = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/strucpp_shape");
+    let main = folder().join("strucpp_main.cpp");
+    for globals in ["-DGLOBALS_ARE_MEMBERS", "-UGLOBALS_ARE_MEMBERS"] {
+        let options = [
+            "-std=c++17",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            "-fsyntax-only",
+            globals,
+            "-I",
+        ];
+        let mut command = options.map(str::to_owned).to_vec();
+        command.extend([text(&shape), text(&main)]);
+        run("c++", command);
+    }
+}

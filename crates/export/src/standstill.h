@@ -77,7 +77,7 @@ enum standstill_result
    */
   STANDSTILL_NOT_IN_TICK = -7,
   /**
-   * Not between tick_begin and tick_end.
+   * Only outside a tick: before tick_begin, or after tick_end.
    */
   STANDSTILL_IN_TICK = -8,
   /**
