@@ -99,12 +99,8 @@ impl<R: Point> ProfileCore<R> {
         if let Some((axis, id)) = self.execute.running(pins.execute) {
             self.follow(axis, id, pins, shape, context);
         }
-        let (held, rising) = (
-            self.execute.running(false),
-            self.execute.running(pins.execute).is_none(),
-        );
         let (given, continuous) = (&mut self.given, &mut self.continuous);
-        let phase = self.execute.scan(pins.execute, context, |context, _| {
+        self.execute.scan(pins.execute, context, |context, _| {
             let tables = context.tables;
             let (axis, log, source) = context.axis(pins.axis)?;
             let id = shape
@@ -114,14 +110,7 @@ impl<R: Point> ProfileCore<R> {
                 .unwrap_or_else(|| Err(unknown(axis, R::PIN, source, log)))?;
             (*given, *continuous) = (Some(*shape), pins.continuous_update);
             Ok((pins.axis, id))
-        });
-        // The one before has nobody left to give it its points.
-        if let (Some((axis, id)), true) = (held, rising)
-            && let Ok((axis, log, source)) = context.axis(axis)
-        {
-            axis.withdraw_profile(id, source, log);
-        }
-        phase
+        })
     }
 
     /// A command in progress, before its fate is asked for: new values, and the points when its turn has come.

@@ -141,7 +141,7 @@ error_ids! {
         "Move the other limit first, or switch one of them off.";
     ParameterOnModulo = 147, "Software limits do not exist on a modulo axis: its positions come round.",
         "Leave the parameters 2 to 5 alone on this axis.";
-    ProfileTableInvalid = 160, "A profile's table has no point after the start, more than 40, a DeltaTime that is not above 0 (the first may be 0), or a value that is NaN or infinite.",
+    ProfileTableInvalid = 160, "A profile's table has no point after the start, more than 40, a DeltaTime that is not above 0 (the first may be 0) or that TimeScale makes less than 1e-9 of a cycle, or a value that is NaN or infinite.",
         "Give 1 to 40 points, each later than the one before; the record in the log names the point.";
     ProfileStartMismatch = 161, "The first point of a profile is for the start (DeltaTime 0), and the axis has another value there.",
         "Leave the point out, give it a DeltaTime in which to get there, or bring the axis there first.";

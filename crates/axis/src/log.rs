@@ -95,6 +95,9 @@ pub enum Event {
         /// Which direction.
         error: ErrorId,
     },
+    /// The instance was triggered anew and its new command refused, or given to another axis: the motion it gave before goes
+    /// on to its end with no block that follows it.
+    Orphaned,
     /// The axis entered ErrorStop.
     Fault {
         /// Why.

@@ -408,7 +408,7 @@ pub struct Record {
     /// The low half of the key of the block instance; 0: the runtime itself.
     pub instance: u32,
     /// 1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position, 8 planned to
-    /// a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault.
+    /// a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault, 14 orphaned.
     pub event: i32,
     /// ErrorID, 0 without one.
     pub error_id: u32,

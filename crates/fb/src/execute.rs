@@ -164,8 +164,20 @@ impl ExecuteCore {
         context: &mut Context<'_, P>,
         issue: impl FnOnce(&mut Context<'_, P>, Option<CommandId>) -> Result<(AxisId, CommandId), ErrorId>,
     ) -> Result<(), ErrorId> {
-        let held = self.command.take().map(|(_, id)| id);
-        self.command = Some(issue(context, held)?);
+        let Some((axis, held)) = self.command.take() else {
+            self.command = Some(issue(context, None)?);
+            return Ok(());
+        };
+        // What waits gives up its place first, whatever becomes of the new command (R97).
+        let waited = context
+            .axis(axis)
+            .is_ok_and(|(holder, _, _)| holder.withdraw(held));
+        let issued = issue(context, Some(held));
+        let new = issued.ok().filter(|(given_to, _)| *given_to == axis);
+        if let Ok((holder, log, source)) = context.axis(axis) {
+            holder.replaced(held, waited, new.map(|(_, id)| id), source, log);
+        }
+        self.command = Some(issued?);
         Ok(())
     }
 }

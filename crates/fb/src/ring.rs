@@ -26,7 +26,7 @@ pub const FIELDS: [(&str, &str, &str, usize); 11] = [
         "event",
         "i32",
         "1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position, 8 planned \
-         to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault.",
+         to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault, 14 orphaned.",
         24,
     ),
     ("error_id", "u32", "ErrorID, 0 without one.", 28),
@@ -154,6 +154,7 @@ impl FlatRecord {
                 record.error_id = error.number().into();
                 record.count = code.into();
             }
+            Event::Orphaned => record.event = 14,
         }
         record
     }

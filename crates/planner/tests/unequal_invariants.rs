@@ -454,26 +454,68 @@ fn nothing_to_move_and_what_cannot_be_planned() {
     }
 }
 
+/// A move that speeds up a million times slower than it slows down.
+fn very_unequal(target: f64, velocity: f64) -> Move {
+    Move {
+        start: 0.0,
+        target,
+        limits: Limits {
+            velocity,
+            acceleration: 2.2e-6,
+            deceleration: 18.9,
+            ..Limits::NONE
+        },
+        cycle: 0.001,
+    }
+}
+
 /// A search that its cap ends returns a plan all the same, never longer than with the lower rate for both.
 #[test]
 fn a_search_that_meets_its_cap_still_plans() {
-    let request = Move {
-        start: 0.0,
-        target: 1.0,
-        limits: Limits {
-            acceleration: 1.1e-17,
-            deceleration: 1e-17,
-            ..Limits::NONE
-        },
-        cycle: 1.0,
-    };
-    let planned = UnequalPlan::new_counted(Family::Overlapped, 0.0, 1.0, &request.limits, 1.0);
-    let (plan, work) = planned.expect("valid");
-    assert!(work.capped, "{work:?}");
-    assert!(plan.scans() <= request.plan(Method::Overlapped).expect("valid").scans());
-    assert_eq!(plan.at(u64::from(plan.scans())), Setpoint::at_rest(1.0));
-    let peaks = plan.peaks();
-    assert!(peaks.acceleration <= 1.1e-17 * (1.0 + 1e-9));
+    let mut capped = 0;
+    for target in [1e6, 1.1e6, 1.3e6, 1.7e6, 2e6, 2.3e6] {
+        let request = very_unequal(target, 1e4);
+        let planned =
+            UnequalPlan::new_counted(Family::Overlapped, 0.0, target, &request.limits, request.cycle);
+        let (plan, work) = planned.expect("valid");
+        capped += u32::from(work.capped);
+        assert!(plan.scans() <= request.plan(Method::Overlapped).expect("valid").scans());
+        assert_eq!(plan.at(u64::from(plan.scans())), Setpoint::at_rest(target));
+        let peaks = plan.peaks();
+        assert!(peaks.acceleration <= 18.9 * (1.0 + 1e-9));
+    }
+    assert!(capped > 0);
+}
+
+/// With the lower rate for both these would take more scans than a plan counts.
+#[test]
+fn what_is_too_long_by_the_lower_rate_alone_is_planned() {
+    for (target, velocity) in [(4e6, 100.0), (3e6, 1e4), (5e6, 1e6), (-4e6, 100.0)] {
+        let up = very_unequal(target, velocity);
+        let down = Move {
+            limits: Limits {
+                acceleration: up.limits.deceleration,
+                deceleration: up.limits.acceleration,
+                ..up.limits
+            },
+            ..up
+        };
+        let rates = up.limits.acceleration * up.limits.deceleration
+            / (up.limits.acceleration + up.limits.deceleration);
+        let least = (2.0 * target.abs() / rates).sqrt() / up.cycle;
+        for request in [up, down] {
+            assert!(request.plan(Method::Overlapped).is_err());
+            for family in [Family::Separate, Family::Overlapped] {
+                let plan = try_plan(&request, family).expect("valid");
+                let scans = f64::from(plan.scans());
+                assert!(
+                    scans >= least * (1.0 - 1e-9) && scans <= least * (1.0 + 1e-4),
+                    "{scans} {least}"
+                );
+                assert_eq!(plan.at(u64::from(plan.scans())), Setpoint::at_rest(target));
+            }
+        }
+    }
 }
 
 /// One digest for every platform, build and optimisation level.

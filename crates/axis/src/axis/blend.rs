@@ -63,11 +63,70 @@ impl<P: Planner> Axis<P> {
         // What can't be planned blended is planned as a move to rest, whose error would be the same. So is what comes
         // out faster than it may because the limits were lowered too late: it passes its end, turns and comes back.
         let planned = planned.ok().flatten();
-        planned.filter(|plan| {
-            let end = plan.at(u64::from(plan.scans())).velocity.abs();
-            let most = self.config.limits.velocity * (1.0 + ROUNDING);
-            end <= if entry.passage.wanted > 0.0 { most } else { 0.0 }
-        })
+        planned
+            .filter(|plan| {
+                let end = plan.at(u64::from(plan.scans())).velocity.abs();
+                let most = self.config.limits.velocity * (1.0 + ROUNDING);
+                end <= if entry.passage.wanted > 0.0 { most } else { 0.0 }
+            })
+            .filter(|plan| entry.passage.wanted <= 0.0 || self.is_worth_it(entry, start, end, before, plan))
+    }
+
+    /// Whether the command after `entry` is done sooner if that passes its `end` along `passing` than if it comes to rest
+    /// there. Where it need not let go of a brake for the speed it is told to have, it certainly is.
+    ///
+    /// Cost: at most three plans, for one that is told late.
+    fn is_worth_it(
+        &self,
+        entry: &Entry,
+        start: &Setpoint,
+        end: f64,
+        before: &Limits,
+        passing: &P::Plan,
+    ) -> bool {
+        let last = passing.at(u64::from(passing.scans()));
+        let is_braking = start.velocity * start.acceleration < 0.0;
+        let is_wanted = last.velocity.abs() >= entry.passage.wanted * (1.0 - ROUNDING);
+        if is_wanted && !is_braking {
+            return true;
+        }
+        let profile = self.config.profile;
+        let planned = self.planner.move_to(profile, start, end, &entry.limits, before);
+        // Coming to rest by way of a turn is none.
+        let turns = |plan: &P::Plan| {
+            let (up, down) = self.planner.ways((plan, 0));
+            let back = if end > start.position { down } else { up };
+            back > ROUNDING * (up + down)
+        };
+        let planned = planned.ok().filter(|plan| !turns(plan));
+        let anew = planned.map_or(u64::MAX, |plan| u64::from(plan.scans()));
+        let present = match (&self.motion, &self.owner) {
+            (Motion::Run { plan, elapsed, scans }, Some(owner))
+                if owner.id == entry.id && plan.at(*scans).velocity == 0.0 =>
+            {
+                scans.saturating_sub(*elapsed)
+            }
+            _ => u64::MAX,
+        };
+        let to_rest = anew.min(present);
+        let Some(next) = self.queue.iter().find(|next| next.id != entry.id) else {
+            return true;
+        };
+        let target = self.end_of_leg(next, end, end > start.position);
+        // What has no end has none that could come sooner.
+        let after = |from: &Setpoint| match target {
+            Some(target) => self
+                .planner
+                .move_to(profile, from, target, &next.limits, &next.limits)
+                .map_or(u64::MAX, |plan| u64::from(plan.scans())),
+            None => 0,
+        };
+        let passed = Setpoint {
+            position: end,
+            ..last
+        };
+        let in_motion = u64::from(passing.scans()).saturating_add(after(&passed));
+        in_motion < to_rest.saturating_add(after(&Setpoint::at_rest(end)))
     }
 
     /// `limits` of a motion, with the velocity its plan ends with, should that be larger (B3).

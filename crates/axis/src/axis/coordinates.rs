@@ -121,6 +121,7 @@ impl<P: Planner> Axis<P> {
             return Err(error);
         }
         self.coordinates = self.coordinates.wrapping_add(1);
+        self.rename_places();
         self.shift_actual(by);
         self.homing.shift(by);
         if !relative {
@@ -188,6 +189,7 @@ impl<P: Planner> Axis<P> {
             self.tell_moved(by, self.owner_source(scan), log);
         }
         self.coordinates = self.coordinates.wrapping_add(1);
+        self.rename_places();
         self.rename_actual(self.setpoint.position, position);
         if self.config.scaling.is_some() {
             self.shift += position - self.setpoint.position;

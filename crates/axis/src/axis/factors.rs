@@ -146,6 +146,8 @@ impl<P: Planner> Axis<P> {
         };
         self.note_passing(&mut owner);
         self.override_entry(&mut owner);
-        self.replan(owner, scan, log)
+        self.replan(owner, scan, log)?;
+        self.end_orphan();
+        Ok(())
     }
 }

@@ -4,7 +4,7 @@
 //! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`inside`] keeps take-overs within the axis
 //! limits, [`superimposed`] adds a second motion, [`factors`] is the override, [`guard`] lets no set-point jump, [`replan`] changes the owner's motion
 //! while it runs, [`update`] gives it new values, [`jog`] checks what MC_Jog asks for, [`queued`] lets administrative
-//! commands wait, [`parameters`] has what can be written by number, [`torque`] holds torques, [`supervision`] watches the distance to the
+//! commands wait, [`retrigger`] takes the place of one that waits, [`parameters`] has what can be written by number, [`torque`] holds torques, [`supervision`] watches the distance to the
 //! actual position, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges, [`profile`] moves along curves through points,
 //! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
 //! motions inside, [`limit_switches`] off the hardware ones, [`permission`] out of barred directions, [`homing`] searches the reference, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
@@ -31,6 +31,7 @@ mod queue;
 mod queued;
 mod reading;
 mod replan;
+mod retrigger;
 mod software_limits;
 mod step;
 mod superimposed;

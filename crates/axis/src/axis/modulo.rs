@@ -31,6 +31,9 @@ pub(super) struct Modulo {
     turns: i64,
     /// Whole turns at the actual position.
     actual_turns: i64,
+    /// A position of the frame (u) at which the axis stood when the frame was moved, and what it was called before: a
+    /// place some turns on has fewer bits than one in the first turn, and standing is no reason to be called anything else.
+    stood: Option<(f64, f64)>,
 }
 
 impl Modulo {
@@ -41,6 +44,7 @@ impl Modulo {
             turn: config.scaling.and_then(|scaling| scaling.turn(length)),
             turns: 0,
             actual_turns: 0,
+            stood: None,
         })
     }
 
@@ -48,7 +52,7 @@ impl Modulo {
     #[inline(never)]
     pub fn shown(&self, setpoint: &Setpoint) -> Setpoint {
         Setpoint {
-            position: split(setpoint.position, self.length).1,
+            position: self.in_turn(setpoint.position),
             ..*setpoint
         }
     }
@@ -67,7 +71,10 @@ impl Modulo {
     /// A position of the frame (u) in the first turn.
     #[inline(never)]
     pub fn in_turn(&self, position: f64) -> f64 {
-        split(position, self.length).1
+        match self.stood {
+            Some((here, called)) if here == position => called,
+            _ => split(position, self.length).1,
+        }
     }
 
     /// The actual position (u) in the first turn.
@@ -95,10 +102,18 @@ impl Modulo {
 }
 
 impl<P: Planner> Axis<P> {
+    /// The coordinates move: every place is called something else.
+    pub(super) fn rename_places(&mut self) {
+        if let Some(modulo) = &mut self.modulo {
+            modulo.stood = None;
+        }
+    }
+
     /// The set-point takes over where the feedback is, turns included.
     pub(super) fn count_actual_turns(&mut self) {
         if let Some(modulo) = &mut self.modulo {
             modulo.turns = modulo.actual_turns;
+            modulo.stood = None;
         }
     }
 
@@ -164,10 +179,15 @@ impl<P: Planner> Axis<P> {
         let turns = (here - start) / modulo.length;
         let nearest = (if turns < 0.0 { turns - 0.5 } else { turns + 0.5 }) as i64;
         modulo.turns = modulo.turns.saturating_add(nearest);
+        let called = modulo.in_turn(self.setpoint.position);
         self.setpoint.position = match &mut self.layer {
             Some(layer) => layer.start_at(start),
             None => start,
         };
+        modulo.stood = self
+            .setpoint
+            .is_at_rest()
+            .then_some((self.setpoint.position, called));
     }
 
     /// Where `entry` ends, now that it is its turn, and how far its frame is from the present one. Distances

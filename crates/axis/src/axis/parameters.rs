@@ -326,7 +326,7 @@ impl<P: Planner> Axis<P> {
             let write = Write::Parameter { parameter, value };
             return self.enqueue(Work::Write(write), source, log);
         }
-        self.set_parameters(parameters);
+        self.set_parameters(parameters, source.scan, log);
         let id = self.new_id();
         self.decide(id, Fate::Done);
         Ok(id)
@@ -342,7 +342,7 @@ impl<P: Planner> Axis<P> {
     ) -> Fate {
         match self.written(parameter, value) {
             Ok(parameters) => {
-                self.set_parameters(parameters);
+                self.set_parameters(parameters, source.scan, log);
                 Fate::Done
             }
             Err(why) => Fate::Failed(self.refuse_write(parameter, value, why, source, log)),
@@ -440,13 +440,14 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    fn set_parameters(&mut self, parameters: Parameters) {
+    fn set_parameters(&mut self, parameters: Parameters, scan: u64, log: &mut Log) {
         let limits_moved = self.parameters.software_limits != parameters.software_limits;
         self.parameters = parameters;
         self.stir();
         if limits_moved {
-            // Whatever was checked was checked against the limits before.
+            // Whatever was checked was checked against the limits before: what moves, and what waits behind it.
             self.watched = self.owner.is_some() && self.parameters.software_limits.is_some();
+            self.arm_anew(scan, log);
         }
     }
 }

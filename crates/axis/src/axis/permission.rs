@@ -168,6 +168,7 @@ impl<P: Planner> Axis<P> {
             _ => Motion::Hold,
         };
         self.in_force = limits;
+        self.end_orphan();
         self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
     }
 

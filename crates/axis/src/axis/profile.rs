@@ -20,6 +20,9 @@ use standstill_planner::{
     PROFILE_POINTS, Plan, Planner, ProfileCause, ProfileFault, ProfileKind, ProfilePoint,
 };
 
+/// In seconds.
+const HALF_A_NANOSECOND: f64 = 0.5e-9;
+
 /// A record of a profile's table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProfileRow {
@@ -90,7 +93,8 @@ impl Profile<'_> {
                 .checked_add(row.delta_ns)
                 .ok_or(("DeltaTime", row.delta_ns as f64, f64::NAN, table))?;
             let time = sum as f64 / 1e9;
-            if since > 0.0 && time <= since {
+            // A point half a unit of the table ahead is where the profile is now.
+            if since > 0.0 && time - since <= HALF_A_NANOSECOND {
                 points.passed += 1;
                 continue;
             }
@@ -235,7 +239,7 @@ impl<P: Planner> Axis<P> {
                 self.before = self.limits_before(&owner.limits);
                 self.adopt(owner, motion, source.scan, log);
             }
-            Err(error) => self.drop_profile(Fate::Failed(error), error, source.scan, log),
+            Err(error) => self.drop_profile(error, source.scan, log),
         }
     }
 
@@ -317,26 +321,12 @@ impl<P: Planner> Axis<P> {
         is_endless && self.goal_reached()
     }
 
-    /// The block that would give the profile `id` its points does not do so any more: it was triggered anew. One that waits
-    /// is passed over when its turn comes; one whose turn has come ends as if it could not start.
-    pub fn withdraw_profile(&mut self, id: CommandId, source: Source, log: &mut Log) {
-        if self.profile_is_due(id) {
-            self.drop_profile(Fate::Aborted, ErrorId::RemovedFromBuffer, source.scan, log);
-        }
-        for entry in self.queue.iter_mut().filter(|entry| entry.id == id) {
-            if let Work::Profile { due, .. } = &mut entry.work {
-                *due = false;
-            }
-        }
-    }
-
     /// A due profile cannot start.
     #[cold]
-    fn drop_profile(&mut self, fate: Fate, error: ErrorId, scan: u64, log: &mut Log) {
-        self.end_owner(fate);
+    fn drop_profile(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
+        self.end_owner(Fate::Failed(error));
         if self.setpoint.is_at_rest() {
-            self.motion = Motion::Hold;
-            self.enter(AxisEvent::MotionDone);
+            self.come_to_rest();
         }
         self.hand_over(self.setpoint.position, scan, log);
         if self.owner.is_none() && !self.setpoint.is_at_rest() {

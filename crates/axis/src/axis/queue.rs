@@ -37,8 +37,7 @@ pub(super) enum Work {
     Through { to: Place, end_velocity: f64 },
     /// To a velocity (u/s); with `along` its sign is taken relative to the motion when it becomes active.
     Velocity { velocity: f64, along: bool },
-    /// Along a curve; with `due` its points have yet to come from its block, when it owns the axis. One that waits
-    /// without is withdrawn, and passed over when its turn comes.
+    /// Along a curve; with `due` its points have yet to come from its block, when it owns the axis.
     Profile {
         kind: ProfileKind,
         due: bool,
@@ -215,6 +214,10 @@ pub(super) struct Entry {
     pub held: bool,
     /// It brakes, or stands, because MC_Power bars a direction it needs.
     pub paused: bool,
+    /// No block follows it: its instance was triggered anew and refused.
+    pub orphaned: bool,
+    /// What its instance gave after it, and follows now (B19).
+    pub heir: Option<CommandId>,
 }
 
 /// Values of a command before the override.
@@ -248,6 +251,8 @@ impl Entry {
             passage: REST,
             held: work == Work::Stop,
             paused: false,
+            orphaned: false,
+            heir: None,
         }
     }
 
@@ -300,6 +305,21 @@ impl Queue {
         self.entries.rotate_left(1);
         self.len -= 1;
         Some(first)
+    }
+
+    /// Takes command `id` out, from wherever it stands; `false` if it is not there.
+    pub fn remove(&mut self, id: CommandId) -> bool {
+        let Some(place) = self.iter().position(|entry| entry.id == id) else {
+            return false;
+        };
+        if let Some(behind) = self.entries.get_mut(place..) {
+            behind.rotate_left(1);
+        }
+        if let Some(last) = self.entries.last_mut() {
+            *last = None;
+        }
+        self.len -= 1;
+        true
     }
 
     pub fn first(&self) -> Option<&Entry> {

@@ -62,7 +62,8 @@ impl<P: Planner> Axis<P> {
             // From rest the way leads straight to the target, from motion perhaps past it.
             Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
                 outside(self.end_of_plan())
-                    || (!self.setpoint.is_at_rest() && outside(self.rest(&self.setpoint, &entry.limits)))
+                    || (!self.setpoint.is_at_rest()
+                        && (outside(self.rest(&self.setpoint, &entry.limits)) || self.turns_outside()))
             }
             // A torque has no plan to look at: it is watched after every latch.
             Work::Torque { .. } | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
@@ -126,6 +127,7 @@ impl<P: Planner> Axis<P> {
                         || self
                             .owner
                             .is_some_and(|owner| leaves(self.rest(next, &owner.limits)))
+                        || self.turns_outside()
                 }
                 Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return false,
             },
@@ -163,6 +165,25 @@ impl<P: Planner> Axis<P> {
             Ok(ramp) => ramp.at(u64::from(ramp.scans())).position,
             Err(_) => state.position,
         }
+    }
+
+    /// Whether the rest of the running plan turns outside the software limits. Cost: a look at each of its pieces.
+    #[inline(never)]
+    fn turns_outside(&self) -> bool {
+        let (Motion::Run { plan, elapsed, .. }, Some(range)) =
+            (&self.motion, self.parameters.software_limits)
+        else {
+            return false;
+        };
+        // Over nothing it is the sum of both.
+        let still = Setpoint::at_rest(0.0);
+        let limits = &self.config.limits;
+        let hold = self.planner.ramp_to(&still, 0.0, limits, limits);
+        hold.is_ok_and(|hold| {
+            !self
+                .planner
+                .fits((plan, *elapsed), (&hold, 0), &Limits::NONE, Some(range))
+        })
     }
 
     /// Where the running plan has its goal (u).

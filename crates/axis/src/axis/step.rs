@@ -218,13 +218,17 @@ impl<P: Planner> Axis<P> {
         if self.base().velocity != 0.0 {
             return self.pass_on(scan, log);
         }
-        self.motion = Motion::Hold;
         self.end_owner(Fate::Done);
-        // The motion is not over while something is superimposed (V14).
+        self.come_to_rest();
+        self.hand_over(self.setpoint.position, scan, log);
+    }
+
+    /// The owner has ended at rest. The motion is not over while something is superimposed (V14).
+    pub(super) fn come_to_rest(&mut self) {
+        self.motion = Motion::Hold;
         if !self.is_superimposing() {
             self.enter(AxisEvent::MotionDone);
         }
-        self.hand_over(self.setpoint.position, scan, log);
     }
 
     /// The next waiting command that can be planned becomes the owner; those that cannot fail (R79). An
@@ -241,14 +245,8 @@ impl<P: Planner> Axis<P> {
             if self.write_queued(scan, log) {
                 continue;
             }
-            if let Work::Profile { due, .. } = next.work {
-                if due {
-                    return self.begin_due(next);
-                }
-                // Nobody would give it its points.
-                self.queue.pop();
-                self.decide(next.id, Fate::Aborted);
-                continue;
+            if let Work::Profile { .. } = next.work {
+                return self.begin_due(next);
             }
             let passage_from = self.aim(&mut next, from);
             next.passage = self.passage(&next, passage_from, 1);
@@ -276,6 +274,7 @@ impl<P: Planner> Axis<P> {
                     };
                     self.refuse_plan(&next, error, source, log);
                     self.decide(next.id, Fate::Failed(error));
+                    self.lose_heir(next.id, source, log);
                 }
             }
         }

@@ -47,6 +47,20 @@ pub(super) struct Added {
     planned: bool,
     /// That motion is slower than asked for.
     lowered: bool,
+    /// No block follows it: its instance was triggered anew and refused.
+    orphaned: bool,
+}
+
+impl Added {
+    /// It has to wait before it goes on; without a block it does not, and is a halt from now on.
+    fn wait(&mut self) {
+        if self.orphaned {
+            self.adds = Adds::Halt;
+            self.halting = false;
+        }
+        self.planned = self.adds == Adds::Halt;
+        self.lowered = false;
+    }
 }
 
 /// The second motion and what it lies on.
@@ -130,8 +144,7 @@ impl<P: Plan> Layer<P> {
         self.motion = Motion::Hold;
         self.added = Setpoint::at_rest(self.added.position);
         if let Some(command) = &mut self.command {
-            command.planned = command.adds == Adds::Halt;
-            command.lowered = false;
+            command.wait();
         }
     }
 
@@ -226,6 +239,7 @@ impl<P: Planner> Axis<P> {
             halting: false,
             planned: !layer.moves(),
             lowered: false,
+            orphaned: false,
         };
         let proposed = if layer.moves() {
             self.propose(&layer, &command).map_err(|error| {
@@ -333,6 +347,34 @@ impl<P: Planner> Axis<P> {
             Adds::Halt => fate,
         };
         self.decide(command.id, fate);
+    }
+
+    /// Superimposed command `id` waits for room, or is held up, and its instance gives another one: what moves comes to rest.
+    /// Returns whether that is so.
+    pub(super) fn withdraw_superimposed(&mut self, id: CommandId) -> bool {
+        let Some(layer) = &mut self.layer else {
+            return false;
+        };
+        let waits = |command: &&mut Added| command.id == id && (!command.planned || command.halting);
+        let Some(command) = layer.command.as_mut().filter(waits) else {
+            return false;
+        };
+        command.orphaned = true;
+        command.wait();
+        command.planned = false;
+        layer.try_soon();
+        self.stir();
+        true
+    }
+
+    /// No block follows superimposed command `id` any more; `false` if it has ended.
+    pub(super) fn orphan_superimposed(&mut self, id: CommandId) -> bool {
+        let command = self.layer.as_mut().and_then(|layer| layer.command.as_mut());
+        let command = command.filter(|command| command.id == id);
+        command.is_some_and(|command| {
+            command.orphaned = true;
+            true
+        })
     }
 
     /// Everything ends (R65): from now on there is one motion, that of the sum.
@@ -446,8 +488,7 @@ impl<P: Planner> Axis<P> {
         if let (Ok(plan), Some(command)) = (planned, &mut layer.command) {
             layer.motion = Motion::along(plan);
             layer.in_force = limits;
-            command.planned = false;
-            command.lowered = false;
+            command.wait();
         }
     }
 

@@ -131,8 +131,8 @@ impl<P: Planner> Axis<P> {
         self.aim_from(owner, &base, from);
     }
 
-    /// A command that waits has changed: the owner may have to pass its end at another speed (B16).
-    fn arm_anew(&mut self, scan: u64, log: &mut Log) {
+    /// What waits has changed: the owner may have to pass its end at another speed (B16).
+    pub(super) fn arm_anew(&mut self, scan: u64, log: &mut Log) {
         let leads = |owner: &Entry| owner.end.is_some();
         if !self.pass_at_rest(scan, log) && self.owner.as_ref().is_some_and(leads) {
             self.arm(BufferMode::BlendingPrevious, scan, log);

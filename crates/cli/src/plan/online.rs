@@ -7,7 +7,7 @@ use crate::plan::refusal::Refusal;
 use crate::plan::samples::Setpoints;
 use crate::plan::shared::{bounded, check_end_velocity, check_limits, cycle, too_long};
 use standstill_planner::papers::{Tracking, peaks, scans};
-use standstill_planner::{Field, OnlinePlan, PlanError, Setpoint};
+use standstill_planner::{Excess, Field, OnlinePlan, PlanError, Setpoint};
 
 /// The limits both need.
 const NEEDED: [Field; 2] = [Field::LimitVelocity, Field::LimitAcceleration];
@@ -28,7 +28,7 @@ pub fn online(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal
         return Err(fields.invalid("end_velocity", message).nearest(Some(number(0.0))));
     }
     let before = fields.limits_before(limits)?;
-    let plan = OnlinePlan::passing(start, target, *end_velocity, limits, &before, cycle)
+    let plan = OnlinePlan::keeping_velocity(start, target, *end_velocity, limits, &before, cycle)
         .map_err(|error| Refusal::of_plan_error(fields, error))?;
     let end = if *end_velocity == 0.0 {
         plan.at(plan.scans().into())
@@ -74,7 +74,7 @@ pub fn tracking(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refus
     // The list is not empty, and its first target applies at once.
     let first = changes.next().map_or(0.0, |(_, target)| *target);
     let mut tracking = Tracking::new(&problem.start, first, limits, cycle).map_err(refuse)?;
-    let unavoidable = tracking.plan().excess();
+    let mut unavoidable = tracking.plan().excess();
     let mut segments = Vec::new();
     let mut plans = vec![(0, *tracking.plan())];
     let (mut began, mut scan) = (0, 0);
@@ -86,6 +86,7 @@ pub fn tracking(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refus
             segments.extend(executed);
             began = at;
             plans.push((at, *tracking.plan()));
+            unavoidable = larger(unavoidable, tracking.plan().excess());
         }
     }
     segments.extend(tracking.plan().segments());
@@ -105,6 +106,18 @@ pub fn tracking(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refus
             end,
             Setpoints::Online(plans),
         )
+    })
+}
+
+/// The larger of each part of what two plans exceed.
+fn larger(one: Option<Excess>, other: Option<Excess>) -> Option<Excess> {
+    let (Some(a), Some(b)) = (one, other) else {
+        return one.or(other);
+    };
+    Some(Excess {
+        velocity: a.velocity.max(b.velocity),
+        acceleration: a.acceleration.max(b.acceleration),
+        jerk: a.jerk.max(b.jerk),
     })
 }
 

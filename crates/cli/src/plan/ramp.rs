@@ -22,7 +22,7 @@ pub fn ramp(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> 
     check_limits(fields, limits, &[Field::LimitAcceleration], &[])?;
     check_end_velocity(fields, problem)?;
     let before = fields.limits_before(limits)?;
-    let plan = RampPlan::new(start, *end_velocity, limits, &before, cycle)
+    let plan = RampPlan::keeping_velocity(start, *end_velocity, limits, &before, cycle)
         .map_err(|error| Refusal::of_plan_error(fields, error))?;
     let end = Setpoint {
         velocity: *end_velocity,

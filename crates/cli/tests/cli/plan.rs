@@ -246,3 +246,24 @@ fn a_line_that_is_no_text_is_refused_and_the_next_one_is_read() {
     assert!(answers[0].starts_with(r#"{"id":null,"error":{"code":"invalid_input","field":null,"#));
     assert!(answers[1].contains("\"scans\":"));
 }
+
+/// A new target in the middle of a turn that could not be avoided makes it longer: that is told, too.
+#[test]
+fn tracking_tells_the_excess_of_every_plan() {
+    let line = |targets: &str| {
+        format!(
+            r#"{{"Ts": 0.01, "velocity": -1.1551677055369458, "acceleration": -26.53497147984475, "targets": {targets}, "limits": {{"velocity": 5, "acceleration": 20, "deceleration": 100, "jerk": 400, "snap": 800}}, "method": "tracking"}}
+"#
+        )
+    };
+    let first = "[0, -1.9500978770341924]";
+    let lines = line(&format!("[{first}]")) + &line(&format!("[{first}, [0.18, 2.986943640183675]]"));
+    let excess = answers(&lines)
+        .iter()
+        .map(|answer| answer["unavoidable"]["velocity"].as_f64())
+        .collect::<Vec<_>>();
+    let [Some(one), Some(both)] = excess[..] else {
+        panic!("{excess:?}");
+    };
+    assert!(both > one + 1e-3, "{one} {both}");
+}

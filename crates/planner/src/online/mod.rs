@@ -148,6 +148,42 @@ impl OnlinePlan {
         Ok(plan)
     }
 
+    /// As [`OnlinePlan::passing`], but where the rates of `limits`, once inside, would lead out of the velocity of both
+    /// limits and those of `before` would not, the rates of `before` hold throughout.
+    ///
+    /// # Errors
+    /// As [`OnlinePlan::passing`].
+    pub fn keeping_velocity(
+        start: &Setpoint,
+        target: f64,
+        end_velocity: f64,
+        limits: &Limits,
+        before: &Limits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
+        let lowered = |limits| Self::passing(start, target, end_velocity, limits, before, cycle);
+        let plan = lowered(limits)?;
+        let wider = limits.or_larger(before);
+        let kept = Limits {
+            velocity: limits.velocity,
+            ..wider
+        };
+        let leaves = |plan: &Self| {
+            plan.found.excess.is_some() && plan.peaks().velocity > wider.velocity * (1.0 + ON_LIMIT)
+        };
+        if kept == *limits || !leaves(&plan) {
+            return Ok(plan);
+        }
+        // Too late for the lower rates: the ones before hold to the end if that keeps their velocity.
+        match lowered(&kept) {
+            Ok(mut other) if !leaves(&other) => {
+                other.found.excess = excess::excess(&other.found.path, end_velocity, None, limits);
+                Ok(other)
+            }
+            _ => Ok(plan),
+        }
+    }
+
     /// The share of the residual that is made up for after a `part` of the path (O9).
     #[inline]
     fn share(&self, part: f64) -> f64 {

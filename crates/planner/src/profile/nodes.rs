@@ -14,6 +14,10 @@ const STENCIL: usize = 5;
 /// An acceleration fades out this much slower than it may: what rounding takes of that is far less.
 const MARGIN: f64 = 1.0 + 1e-6;
 
+/// Scans a stretch has to last: a shorter one is no time, in which anything could change, and not a number of which the
+/// fourth power still is one.
+const SHORTEST: f64 = 1e-9;
+
 /// A value with its derivatives, all of them known or, between anchors, yet to be estimated.
 #[derive(Clone, Copy, Debug, Default)]
 struct Knot {
@@ -71,7 +75,13 @@ pub(super) fn fill(
     };
     let mut knots = [Knot::default(); NODES];
     let from = joined.map_or(begin, |([_, from], _)| from);
-    let knotted = knots_of(&mut knots, kind, (start.position, &begin, &from), points)?;
+    let knotted = knots_of(
+        &mut knots,
+        kind,
+        (start.position, &begin, &from),
+        points,
+        SHORTEST * cycle,
+    )?;
     let mut slots = nodes.iter_mut();
     let mut count = 0;
     let mut put = |node: Node| {
@@ -133,12 +143,13 @@ fn joined(
     lies_ahead.then_some(([without_jerk, without_either], 2))
 }
 
-/// Where the curve begins, and the points after it.
+/// Where the curve begins, and the points after it, each more than `shortest` (s) after the one before.
 fn knots_of(
     knots: &mut [Knot; NODES],
     kind: ProfileKind,
     (origin, begin, from): (f64, &Node, &Node),
     points: &[ProfilePoint],
+    shortest: f64,
 ) -> Result<usize, ProfileFault> {
     let fault = |cause, point, value, limit| ProfileFault {
         cause,
@@ -175,8 +186,9 @@ fn knots_of(
             }
             continue;
         }
-        if !(point.time > before && point.time.is_finite()) {
-            return Err(fault(ProfileCause::Time, number, point.time - before, 0.0));
+        if !(point.time - before > shortest && point.time.is_finite()) {
+            let least = if point.time > before { shortest } else { 0.0 };
+            return Err(fault(ProfileCause::Time, number, point.time - before, least));
         }
         before = point.time;
         if let Some(slot) = slots.next() {

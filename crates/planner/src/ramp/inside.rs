@@ -112,15 +112,17 @@ pub(super) fn lead_in(state: State, goal: f64, (low, high): (f64, f64), bounds: 
         lead.viable = true;
         return lead;
     }
-    if bounds.is_lowered() && state.v.max(lead.rest) > high * (1.0 + ON_LIMIT) {
-        let (spans, steps) = hasten(state, high, goal, low, bounds);
-        lead.add(&spans, steps, bounds.jerk);
+    // Where it comes to may be another place once acceleration and jerk are inside.
+    let entered = arrested(state.after_all(&enter(state, bounds)), bounds.jerk);
+    // Bound to come out on the other side of zero: before anything else, since this grows for as long as it is put off.
+    if bounds.is_lowered() && lead.rest.min(entered) < -high * (1.0 + ON_LIMIT) {
+        let (spans, steps) = hasten(state.mirrored(), high, -goal, -high, &bounds.turned());
+        lead.add(&spans.mirrored(), steps, bounds.jerk);
         return lead;
     }
-    // The same on the other side of zero, where it is bound to come to.
-    if bounds.is_lowered() && lead.rest < low * (1.0 + ON_LIMIT) && low < 0.0 {
-        let (spans, steps) = hasten(state.mirrored(), -low, -goal, -high, &bounds.turned());
-        lead.add(&spans.mirrored(), steps, bounds.jerk);
+    if bounds.is_lowered() && state.v.max(lead.rest).max(entered) > high * (1.0 + ON_LIMIT) {
+        let (spans, steps) = hasten(state, high, goal, low, bounds);
+        lead.add(&spans, steps, bounds.jerk);
         return lead;
     }
     lead.add(&enter(state, bounds), 0, bounds.jerk);

@@ -173,6 +173,40 @@ impl RampPlan {
         Ok(plan)
     }
 
+    /// As [`RampPlan::new`], but where the rates of `limits`, once inside, would lead out of the velocity of both limits
+    /// and those of `before` would not, the rates of `before` hold throughout.
+    ///
+    /// # Errors
+    /// As [`RampPlan::new`].
+    pub fn keeping_velocity(
+        start: &Setpoint,
+        velocity: f64,
+        limits: &Limits,
+        before: &Limits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
+        let plan = Self::new(start, velocity, limits, before, cycle)?;
+        let wider = limits.or_larger(before);
+        let kept = Limits {
+            velocity: limits.velocity,
+            ..wider
+        };
+        let leaves =
+            |plan: &Self| plan.excess.is_some() && plan.peaks().velocity > wider.velocity * (1.0 + ON_LIMIT);
+        if kept == *limits || !leaves(&plan) {
+            return Ok(plan);
+        }
+        // Too late for the lower rates: the ones before hold to the end if that keeps their velocity.
+        match Self::new(start, velocity, &kept, before, cycle) {
+            Ok(other) if !leaves(&other) => {
+                let heading = heading(start, velocity, limits.velocity, limits.order());
+                let excess = excess::excess(&other.path, velocity, Some(heading), limits);
+                Ok(Self { excess, ..other })
+            }
+            _ => Ok(plan),
+        }
+    }
+
     /// Number of scans until the goal velocity; 0 if the start has it.
     pub const fn scans(&self) -> u32 {
         self.scans

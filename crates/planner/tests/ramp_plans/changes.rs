@@ -2,7 +2,7 @@
 
 use crate::support::{self, ORDERS, Random, integrate};
 use standstill_planner::kernel::MAX_STEPS;
-use standstill_planner::{Excess, Limits, Order, RampPlan, Setpoint};
+use standstill_planner::{Excess, Limits, OnlinePlan, Order, RampPlan, Setpoint};
 use std::vec::Vec;
 
 /// By how much `seen` is outside `limits`, with the sign of velocity a stop should keep in `heading`.
@@ -502,4 +502,52 @@ fn getting_inside_comes_first_and_is_fast() {
         let slower = RampPlan::new(&cruising, 6.0, &new, &new, 1e-3).unwrap();
         assert!(plan.duration() < slower.duration());
     }
+}
+
+/// Lower rates do not lead out of the old velocity limit where a stop under the old ones would not: plans to a velocity
+/// and to a place, from any state.
+#[test]
+fn lowered_limits_keep_the_old_velocity() {
+    const CYCLE: f64 = 0.001;
+    let mut random = Random(29);
+    let mut lowered = 0;
+    for case in 0..20_000 {
+        let before = support::limits(&mut random, ORDERS[case % 3]);
+        let mut factor = || [1.0, 1.0, 0.5, 0.2, 0.05][random.below(5) as usize];
+        let limits = Limits {
+            velocity: before.velocity * factor(),
+            acceleration: before.acceleration * factor(),
+            deceleration: before.deceleration * factor(),
+            jerk: before.jerk * factor(),
+            snap: before.snap * factor(),
+        };
+        let lower = before.acceleration.min(before.deceleration);
+        let start = Setpoint {
+            velocity: before.velocity * random.between(-1.0, 1.0),
+            acceleration: lower * random.between(-1.0, 1.0),
+            jerk: if before.jerk.is_finite() {
+                before.jerk * random.between(-1.0, 1.0)
+            } else {
+                0.0
+            },
+            ..Setpoint::at_rest(0.0)
+        };
+        let most = before.velocity * (1.0 + 1e-9);
+        let stop = RampPlan::new(&start, 0.0, &before, &before, CYCLE).unwrap();
+        if stop.peaks().velocity > most || limits == before {
+            continue;
+        }
+        lowered += 1;
+        let goal = limits.velocity * random.between(-1.0, 1.0);
+        let ramp = RampPlan::keeping_velocity(&start, goal, &limits, &before, CYCLE).unwrap();
+        let target = before.velocity * before.velocity / lower * random.between(-3.0, 3.0);
+        let online = OnlinePlan::keeping_velocity(&start, target, 0.0, &limits, &before, CYCLE).unwrap();
+        for peak in [ramp.peaks().velocity, online.peaks().velocity] {
+            assert!(
+                peak <= most,
+                "case {case}: {peak} {start:?} {limits:?} {before:?} {goal} {target}"
+            );
+        }
+    }
+    assert!(lowered > 15_000, "{lowered}");
 }

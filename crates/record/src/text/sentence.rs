@@ -23,7 +23,8 @@ pub fn subject<'n>(names: &'n impl Called, record: &Record) -> &'n str {
         | Event::Clamped { .. }
         | Event::Raised { .. }
         | Event::Superimposed { .. }
-        | Event::RoomAwaited => names.instance(record.instance.0).unwrap_or(axis),
+        | Event::RoomAwaited
+        | Event::Orphaned => names.instance(record.instance.0).unwrap_or(axis),
         Event::Unavoidable(_)
         | Event::Planned { .. }
         | Event::Paused { .. }
@@ -123,6 +124,9 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
             in_scans(out, scans)
         }
         Event::RoomAwaited => out.write_str("waits for room below the axis limits"),
+        Event::Orphaned => {
+            out.write_str("orphaned: refused, and what it had set in motion goes on without it")
+        }
         Event::Paused { error } => {
             out.write_str("pauses: ")?;
             whole(out, error.number().into())?;

@@ -13,14 +13,17 @@ use crate::rules::Kind;
 /// Most axes of a machine.
 const AXES: u64 = 3;
 
-/// Played more often than chance would have it: a curve, or one that waits for an edge and one that ends that.
-const FAVOURED: [&[&str]; 6] = [
+/// Played more often than chance would have it: a curve, one that waits for an edge and one that ends that, or limits that
+/// are written while moves blend.
+const FAVOURED: [&[&str]; 8] = [
     &["MC_PositionProfile"],
     &["MC_VelocityProfile"],
     &["MC_AccelerationProfile"],
     &["MC_VelocityProfile", "MC_PositionProfile"],
     &["MC_TouchProbe", "MC_TouchProbe", "MC_AbortTrigger"],
     &["MC_DigitalCamSwitch"],
+    &["MC_WriteParameter", "MC_MoveRelative", "MC_MoveRelative"],
+    &["MC_WriteParameter", "MC_WriteBoolParameter", "MC_MoveAbsolute"],
 ];
 
 /// Lengths of a scan (ns).

@@ -142,7 +142,7 @@ impl<'a> Monkey<'a> {
                 let odds = match (kind, pin.name) {
                     // Both are needed to switch on.
                     (Kind::Power, _) => return Some(Value::Bool(!self.random.one_in(20))),
-                    (_, "Relative") => 2,
+                    (_, "Relative" | "Value") => 2,
                     _ => 12,
                 };
                 Some(Value::Bool(self.random.one_in(odds)))
@@ -158,6 +158,12 @@ impl<'a> Monkey<'a> {
             PinType::Lreal => self.number(block, pin.name, axis).map(Value::Lreal),
             // Which tracks work.
             PinType::Dword => Some(Value::Dword(self.random.below(16) as u32)),
+            // The software limits more often than others.
+            PinType::Int if pin.name == "ParameterNumber" => Some(Value::Int(if self.random.one_in(3) {
+                self.random.below(19) as i16
+            } else {
+                2 + self.random.below(4) as i16
+            })),
             PinType::Int | PinType::Word | PinType::Time | PinType::Axis(_) | PinType::Table(_) => None,
         }
     }
@@ -186,7 +192,12 @@ impl<'a> Monkey<'a> {
             } else {
                 0.0
             }),
+            // Now and then one with which the times are none.
+            "TimeScale" if self.random.one_in(8) => Some(self.random.log_between(1e-300, 1e300)),
             "TimeScale" => Some(self.random.between(0.8, 2.0)),
+            // Of a parameter: a software limit near, or a limit of motions.
+            "Value" if self.random.one_in(4) => self.part(limits.velocity),
+            "Value" => Some(axis.setpoint().position + self.length(way)),
             "PositionScale" | "VelocityScale" | "AccelerationScale" => Some(self.random.between(-1.0, 1.0)),
             // Of the window of a probe.
             "FirstPosition" | "LastPosition" => Some(axis.setpoint().position + self.length(way)),

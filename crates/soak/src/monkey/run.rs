@@ -38,6 +38,8 @@ pub struct Instance {
     outputs: Outputs,
     command: Option<CommandId>,
     fate: Option<Fate>,
+    /// What it gave last, ended or not, and what it had in motion then (B19).
+    given: [Option<CommandId>; 2],
 }
 
 /// A rule that was broken in a run.
@@ -102,6 +104,8 @@ struct Run<'a, H> {
     /// The state of each axis as last seen.
     states: Vec<AxisState>,
     following: Vec<bool>,
+    /// The motion of each axis that no instance follows, as recorded.
+    orphans: Vec<Option<CommandId>>,
     records: u64,
     failure: Option<Failure>,
     seen: Seen,
@@ -123,8 +127,16 @@ impl Instance {
             was_on: false,
             command: None,
             fate: None,
+            given: [None; 2],
             block,
         }
+    }
+
+    /// Whether it waits in the buffer of its axis, as far as its outputs tell.
+    fn waits(&self) -> bool {
+        let elsewhere =
+            matches!(self.block.info().name, "MC_Reset" | "MC_TouchProbe") || self.kind.is_superimposed();
+        self.shown.busy && !self.shown.active && !elsewhere
     }
 
     /// Writes an input.
@@ -167,6 +179,7 @@ pub fn run(scenario: &Scenario, hands: &mut impl Hands) -> (Seen, Option<Failure
         fences: machine.axes().iter().map(Fence::new).collect(),
         states: machine.axes().iter().map(Axis::state).collect(),
         following: vec![true; machine.axes().len()],
+        orphans: vec![None; machine.axes().len()],
         records: 0,
         failure: None,
         seen: Seen::default(),
@@ -278,6 +291,16 @@ impl<H: Hands> Run<'_, H> {
             powered: axis.is_powered(),
         };
         check_call(&call)?;
+        if axis.newest_command() != newest {
+            let moving = instance
+                .given
+                .into_iter()
+                .flatten()
+                .find(|id| axis.active_command() == Some(*id));
+            instance.given = [Some(axis.newest_command()), moving];
+        } else if now.error && instance.command.is_some() {
+            instance.given = [None; 2];
+        }
         if instance.kind == Kind::Jog {
             // Its commands follow each other; what became of one of them is not what it shows.
             if axis.newest_command() != newest {
@@ -360,6 +383,7 @@ impl<H: Hands> Run<'_, H> {
             beside_held |= instance.kind.is_superimposed();
         }
         let (state, owned) = (axis.state(), axis.active_command().is_some());
+        self.check_followed(index, axis)?;
         // What is superimposed is asked for only where there may be something: the answer is long.
         let added = if beside_held || (state == AxisState::DiscreteMotion && !owned) {
             axis.outlook().superimposed.and_then(|beside| beside.command)
@@ -397,6 +421,26 @@ impl<H: Hands> Run<'_, H> {
         )
     }
 
+    /// No motion without a block: what owns the axis or waits is an instance's, or recorded to be nobody's any more.
+    fn check_followed(&self, index: usize, axis: &Axis<Standard>) -> Result<(), Broken> {
+        let instances = || self.instances.iter().filter(|instance| instance.axis == index);
+        let broken = |what| Err(Broken { id: "R97", what });
+        if let Some(owner) = axis.active_command()
+            && !instances().any(|instance| instance.given.contains(&Some(owner)))
+        {
+            if self.orphans[index] != Some(owner) {
+                return broken("a motion without a block");
+            }
+            if axis.outlook().paused {
+                return broken("a motion without a block is held up, to go on by itself");
+            }
+        }
+        if axis.waiting() > 0 && axis.waiting() > instances().filter(|instance| instance.waits()).count() {
+            return broken("a command waits without a block");
+        }
+        Ok(())
+    }
+
     /// What was recorded in this scan, for the limits.
     fn read_records(&mut self, time: ScanTime, machine: &Bench) {
         let total = machine.log().total();
@@ -425,6 +469,10 @@ impl<H: Hands> Run<'_, H> {
                     if let Some((plan, _)) = machine.axes()[record.axis.index()].plan() {
                         track.leads(plan.at(0).position, plan.at(u64::from(plan.scans())).position);
                     }
+                }
+                Event::Orphaned => {
+                    let index = record.axis.index();
+                    self.orphans[index] = machine.axes()[index].active_command();
                 }
                 Event::Refused { .. }
                 | Event::PointRefused { .. }

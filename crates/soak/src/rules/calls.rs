@@ -183,6 +183,7 @@ pub fn check_call(call: &Call) -> Result<(), Broken> {
         "R34",
         "Error and ErrorID disagree",
     )?;
+    rule(now.error_id < 900, "R79", "a defect is reported")?;
     match call.kind {
         Kind::Power => rule(
             now.status == call.powered,

@@ -9,10 +9,25 @@ use standstill_axis::{Axis, AxisState, Planner};
 /// By how much a set-point may be outside, relative to the distance between the limits.
 const RELATIVE: f64 = 1e-9;
 
+/// No software limits.
+const NONE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+/// The software limits in force, infinite where there is none: what the configuration says, and what was written since.
+fn limits_of<P: Planner>(axis: &Axis<P>) -> (f64, f64) {
+    let on = |number| axis.bool_parameter(number) == Ok(true);
+    let at = |number, off| {
+        axis.real_parameter(number)
+            .ok()
+            .filter(|_| on(number + 2))
+            .unwrap_or(off)
+    };
+    (at(3, NONE.0), at(2, NONE.1))
+}
+
 /// The software limits of one axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Fence {
-    limits: Option<(f64, f64)>,
+    limits: (f64, f64),
     /// It was inside with the last set-point, from where it is not to come out.
     inside: bool,
 }
@@ -21,7 +36,7 @@ impl Fence {
     /// Those of `axis`.
     pub fn new<P: Planner>(axis: &Axis<P>) -> Self {
         Self {
-            limits: axis.config().software_limits,
+            limits: limits_of(axis),
             inside: false,
         }
     }
@@ -37,11 +52,16 @@ impl Fence {
     /// The rule that does not hold.
     #[inline]
     pub fn check<P: Planner>(&mut self, axis: &Axis<P>) -> Result<(), Broken> {
-        let Some((min, max)) = self.limits else {
+        let limits @ (min, max) = limits_of(axis);
+        if limits == NONE {
             return Ok(());
-        };
+        }
+        if core::mem::replace(&mut self.limits, limits) != limits {
+            self.forget();
+        }
         let position = axis.setpoint().position;
-        let near = RELATIVE * (max - min);
+        let apart = max - min;
+        let near = RELATIVE * if apart.is_finite() { apart } else { position.abs() };
         let is_inside = position >= min - near && position <= max + near;
         let was_inside = core::mem::replace(&mut self.inside, is_inside);
         let commanded =

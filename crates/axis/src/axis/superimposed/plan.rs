@@ -265,6 +265,9 @@ impl<P: Planner> Axis<P> {
         };
         command.limits = self.factors.of(&command.asked, &self.parameters.limits);
         command.halting = self.factors.halt();
+        if command.halting {
+            command.wait();
+        }
         command.planned = false;
         layer.try_soon();
         self.stir();

@@ -78,6 +78,7 @@ impl<P: Planner> Axis<P> {
             halting: self.factors.halt(),
             planned: false,
             lowered: false,
+            orphaned: false,
         })
     }
 }

@@ -2114,7 +2114,7 @@ typedef struct standstill_record {
     uint32_t instance;
     /** 1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position,
      *  8 planned to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13
-     *  fault. */
+     *  fault, 14 orphaned. */
     int32_t event;
     /** ErrorID, 0 without one. */
     uint32_t error_id;

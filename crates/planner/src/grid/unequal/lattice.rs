@@ -9,7 +9,7 @@ use crate::{Limits, Order};
 pub const MAX_RAMP_ROWS: u32 = 8192;
 
 /// Share by which a real bound is lowered, so that rounding can only add candidates, never lose one.
-const LESS_MARGIN: f64 = 1.0 - 1e-12;
+pub(super) const LESS_MARGIN: f64 = 1.0 - 1e-12;
 
 /// Box lengths n1, n2, n3 of a ramp in scans; those an order does without are 0.
 pub(super) type Ramp = [f64; 3];

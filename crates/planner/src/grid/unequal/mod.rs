@@ -78,7 +78,7 @@ impl UnequalPlan {
 
     /// As [`UnequalPlan::new`], with the work the search took.
     ///
-    /// Bounded: at most [`MAX_RAMP_ROWS`] rows (measured counts in docs/planner.md, section 12). A search cut
+    /// Bounded: at most twice [`MAX_RAMP_ROWS`] rows (measured counts in docs/planner.md, section 12). A search cut
     /// short by them returns the shorter one of its best and [`GridPlan`](super::GridPlan) with the lower rate.
     ///
     /// # Errors

@@ -2,9 +2,9 @@
 
 use super::super::problem::LONGEST;
 use super::super::search::Family;
-use super::lattice::{MAX_RAMP_ROWS, Ramp, Thresholds, sum};
+use super::lattice::{LESS_MARGIN, MAX_RAMP_ROWS, Ramp, Thresholds, sum};
 use crate::Order;
-use crate::math::{ceil, max, min, sqrt};
+use crate::math::{ceil, floor, max, min, sqrt};
 
 /// Steps of the estimate the search starts from: four digits are enough.
 const ESTIMATE_STEPS: u32 = 6;
@@ -63,6 +63,12 @@ impl Search<'_> {
     fn run(&mut self) -> Option<Found> {
         let estimate = min(self.estimate()?, LONGEST as f64);
         let mut best = self.fits(estimate, 0.0);
+        if best.is_none() && self.work.capped {
+            // Near the least count of a long move the sum is raised scan by scan; with some more it is there at once.
+            self.work.rows = 0;
+            let roomy = estimate + ceil(2.0 * sqrt(estimate));
+            best = self.fits(min(roomy, LONGEST as f64), 0.0);
+        }
         let mut short = if best.is_some() { 0.0 } else { estimate };
         let mut step = 1.0;
         // Down while it fits, with longer and longer steps; or up until it does.
@@ -128,7 +134,14 @@ impl Search<'_> {
     /// the sum can be raised step by step to the least that is enough (docs/planner.md, eq. 34).
     fn fits(&mut self, scans: f64, least_sum: f64) -> Option<Found> {
         self.work.counts += 1;
-        let mut ramps = least_sum;
+        // Where the sum starts that is raised: the least one for which n3 alone would do (docs/planner.md, after eq. 34).
+        let both = self.thresholds.up + self.thresholds.down;
+        let square = scans * scans - both * LESS_MARGIN;
+        if square < 0.0 {
+            return None;
+        }
+        let alone = both * LESS_MARGIN / (scans + sqrt(square));
+        let mut ramps = max(least_sum, floor(alone));
         let mut known = None;
         loop {
             let m = 2.0 * scans - ramps;

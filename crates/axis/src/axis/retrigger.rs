@@ -1,0 +1,122 @@
+//! An instance that is triggered anew while it holds a command.
+//!
+//! What waits gives up its place before the new command is looked at, whatever becomes of that. What moves goes on to its
+//! end; should the new command be refused, no block follows it any more. That is recorded, and from then on what would
+//! hold the motion up ends it as MC_Halt does: it never sets off again by itself.
+//!
+//! Source: PLCopen Motion Control Part 1, section on Execute/Done; R32, R38, R97, B19.
+
+use super::accept::REST;
+use super::power::Reaction;
+use super::queue::{Entry, Work};
+use super::{Axis, Source};
+use crate::{AxisEvent, CommandId, Event, Fate, Log};
+use standstill_planner::Planner;
+
+impl<P: Planner> Axis<P> {
+    /// The instance that holds command `id` is about to give another one: if `id` waits, it is taken out of the buffer, or
+    /// of the wait for room, without ever being active. Returns whether that is so. [`Axis::replaced`] must follow in the
+    /// same call.
+    pub fn withdraw(&mut self, id: CommandId) -> bool {
+        if self.queue.remove(id) {
+            self.decide(id, Fate::Aborted);
+            return true;
+        }
+        self.withdraw_superimposed(id)
+    }
+
+    /// The instance that held command `id`, which [`Axis::withdraw`] said `waited` or not, follows the command `new` now:
+    /// none if that was refused, or went to another axis.
+    ///
+    /// Cost: at most two plans, and what it takes to look through the buffer.
+    pub fn replaced(
+        &mut self,
+        id: CommandId,
+        waited: bool,
+        new: Option<CommandId>,
+        source: Source,
+        log: &mut Log,
+    ) {
+        if waited {
+            self.arm_anew(source.scan, log);
+        } else if self.profile_is_due(id) {
+            return self.pass_over_due_profile(id, source, log);
+        }
+        let of_instance = |owner: &&mut Entry| owner.id == id || owner.heir == Some(id);
+        match (self.owner.as_mut().filter(of_instance), new) {
+            (Some(owner), Some(new)) => owner.heir = Some(new),
+            (Some(owner), None) => {
+                let owner = owner.id;
+                self.orphan(owner, source, log);
+            }
+            (None, None) if !waited => self.orphan(id, source, log),
+            (None, _) => {}
+        }
+    }
+
+    /// Command `id`, which waited, has failed: what its instance has in motion goes on (B19, R79).
+    pub(super) fn lose_heir(&mut self, id: CommandId, source: Source, log: &mut Log) {
+        if let Some(owner) = self.owner.filter(|owner| owner.heir == Some(id)) {
+            self.orphan(owner.id, source, log);
+        }
+    }
+
+    /// No block follows command `id` any more.
+    fn orphan(&mut self, id: CommandId, source: Source, log: &mut Log) {
+        let owner = self.owner.as_mut().filter(|owner| owner.id == id);
+        if let Some(owner) = owner {
+            owner.orphaned = true;
+        } else if !self.orphan_superimposed(id) {
+            return;
+        }
+        self.record(Event::Orphaned, source, log);
+        self.end_orphan();
+    }
+
+    /// An owner that no block follows has been held up: it becomes a halt.
+    pub(super) fn end_orphan(&mut self) {
+        let held_up = |owner: &Entry| owner.orphaned && (owner.paused || owner.halted);
+        if let Some(owner) = self.owner.filter(held_up) {
+            self.enter(AxisEvent::StartDiscrete);
+            self.own(Entry {
+                work: Work::Halt,
+                end: None,
+                passage: REST,
+                paused: false,
+                halted: false,
+                ..owner
+            });
+        }
+    }
+
+    /// The profile whose turn has come has no block any more that would give it its points: the next command has its turn,
+    /// and without one the axis comes to rest.
+    #[cold]
+    fn pass_over_due_profile(&mut self, id: CommandId, source: Source, log: &mut Log) {
+        if self.setpoint.is_at_rest() {
+            self.end_owner(Fate::Aborted);
+            self.come_to_rest();
+        }
+        self.hand_over(self.setpoint.position, source.scan, log);
+        let Some(mut halt) = self.owner.filter(|owner| owner.id == id) else {
+            return;
+        };
+        halt.work = Work::Halt;
+        let before = self.limits_before(&halt.limits);
+        let planned = match self.plan_next(&mut halt) {
+            Ok(Some(motion)) => Ok(motion),
+            Ok(None) => {
+                // No room for a stop beside what is superimposed: that ends, too.
+                self.end_superimposed(Fate::Aborted);
+                self.plan_for(&mut halt)
+            }
+            Err(error) => Err(error),
+        };
+        match planned {
+            Ok(motion) => {
+                self.begin(halt, motion, before, source.scan, log);
+            }
+            Err(error) => self.trip(error, 0, Reaction::Ramp, source.scan, log),
+        }
+    }
+}
