@@ -432,7 +432,7 @@ fn contains(outer: &Limits, inner: &Limits) -> bool {
 ///
 /// The rates are at most 10^4 times apart in what they do: a ramp that changes between two such rates keeps the lower
 /// one to 1e-9 of the higher (docs/planner-ramps.md, section 7).
-fn extreme(random: &mut Random, typical: &Limits, cycle: f64) -> Limits {
+pub(crate) fn extreme(random: &mut Random, typical: &Limits, cycle: f64) -> Limits {
     let mut limits = *typical;
     let bounds = [
         &mut limits.velocity,

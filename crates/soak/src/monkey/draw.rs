@@ -1,6 +1,7 @@
 //! Random machines.
 
 use super::scenario::{AxisSetup, BlockSetup, Scenario, TableSetup, kind_of};
+use crate::cases::extreme;
 use crate::random::Random;
 use standstill_axis::{
     AboveLimit, AxisConfig, Defaults, Limits, MoveProfile, PowerOff, QUEUE_MAX, Scaling, StartState,
@@ -86,9 +87,18 @@ fn limits(random: &mut Random, cycle: f64) -> Limits {
     }
 }
 
-/// An axis; every part of its configuration differs from the default once in some axes.
+/// An axis; every part of its configuration differs from the default once in some axes. In every eighth some rates are what
+/// programs write for "no limit"; its velocity stays, so that programs know how fast it is.
 fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
-    let limits = limits(random, cycle);
+    let typical = limits(random, cycle);
+    let limits = if random.one_in(8) {
+        Limits {
+            velocity: typical.velocity,
+            ..extreme(random, &typical, cycle)
+        }
+    } else {
+        typical
+    };
     let way = limits.velocity * cycle;
     let mut config = AxisConfig::new(limits);
     if !random.one_in(8) {
