@@ -17,8 +17,8 @@ const STILL: f64 = 1e-9;
 /// A velocity limit this many times higher than a plan's speeds says nothing of them.
 const REACH: f64 = 1024.0 * 1024.0;
 
-/// What an acceleration is off by, relative to the largest one it comes from: a hundredth of [`RELATIVE`].
-const CHANGED: f64 = 1e-11;
+/// What an acceleration is off by, relative to the largest one it comes from: a tenth of [`RELATIVE`].
+const CHANGED: f64 = 1e-10;
 
 /// What sums of positions resolve, relative to them.
 const RESOLVED: f64 = 32.0 * f64::EPSILON;

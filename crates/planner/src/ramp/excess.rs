@@ -9,7 +9,7 @@ use crate::{Limits, Order};
 const TICK: f64 = 2.0 * f64::EPSILON;
 
 /// What an acceleration is off by, relative to the largest one it comes from.
-const CHANGED: f64 = 1e-11;
+const CHANGED: f64 = 1e-10;
 
 /// By how much a start state forced a plan out of its limits, as magnitudes above the limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -82,7 +82,7 @@ pub(crate) fn excess<const N: usize>(
     let mut excess = Excess::default();
     let peaks = peaks(path, goal);
     let scale = if limits.velocity.is_finite() {
-        limits.velocity.min(REACH * peaks.velocity)
+        limits.velocity.min(4.0 * REACH * peaks.velocity)
     } else {
         peaks.velocity
     };
