@@ -212,22 +212,34 @@ mod links {
         assert!(!ended.out.contains("other.scan.json"), "{}", ended.out);
     }
 
-    /// A shell in which files cannot grow beyond half a kilobyte, as on a full disk.
+    /// The program where files cannot grow beyond half a kilobyte, as on a full disk.
+    fn on_a_full_disk(folder: &Path, arguments: &[&str]) -> crate::support::Ended {
+        let mut shell = std::process::Command::new("sh");
+        shell.args(["-c", "trap '' XFSZ; ulimit -f 1; exec \"$@\"", "sh"]);
+        shell.arg(env!("CARGO_BIN_EXE_standstill")).args(arguments);
+        shell.env_remove("CI").env_remove("INSTA_UPDATE");
+        ended(shell.current_dir(folder))
+    }
+
     #[test]
-    fn a_full_disk_leaves_a_script_as_it_was() {
+    fn a_full_disk_leaves_scripts_and_goldens_as_they_were() {
         let folder = scratch("borders_full");
         let long = format!("{{\"standstill\":1,\"note\":\"{}\"}}", "long ".repeat(2000));
         write(&folder, "long.scan.json", &long);
-        let mut shell = std::process::Command::new("sh");
-        shell.args([
-            "-c",
-            "trap '' XFSZ; ulimit -f 1; exec \"$0\" fmt .",
-            env!("CARGO_BIN_EXE_standstill"),
-        ]);
-        let ended = ended(shell.current_dir(&folder));
+        let ended = on_a_full_disk(&folder, &["fmt", "."]);
         assert_eq!(ended.status, 4, "{}", ended.out);
         assert_eq!(read(&folder, "long.scan.json"), long);
         assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 1);
+
+        let folder = with_script("borders_full_golden");
+        let accept = ["test", "--accept", "."];
+        assert_eq!(standstill(&folder, &accept).status, 0);
+        let before = read(&folder, "move.snap");
+        write(&folder, "move.scan.json", &SCRIPT.replace("One short", "Another"));
+        let ended = on_a_full_disk(&folder, &accept);
+        assert_eq!(ended.status, 4, "{}", ended.out);
+        assert_eq!(read(&folder, "move.snap"), before);
+        assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 3);
     }
 }
 

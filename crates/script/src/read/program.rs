@@ -85,7 +85,7 @@ impl Reader {
                 .map(|(_, node)| {
                     // What is no number of bytes is told where the program is read.
                     match node.json {
-                        Json::Number(bytes) if bytes >= 0.0 => bytes as u64,
+                        Json::Number(bytes) if (0.0..=MEMORY_MAX as f64).contains(&bytes) => bytes as u64,
                         _ => 0,
                     }
                 }),
