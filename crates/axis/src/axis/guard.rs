@@ -34,15 +34,20 @@ impl<P: Planner> Axis<P> {
             .and_then(|layer| self.excess_of(&layer.motion));
         let told = [self.excess_of(&self.motion), layer].map(Option::unwrap_or_default);
         let excess = |part: fn(&Excess) -> f64| told.iter().map(part).fold(0.0, f64::max);
-        let wider = [self.before, self.config.limits, self.stop_limits()];
-        let widest = wider
-            .iter()
-            .fold(self.in_force, |widest, limits| widest.or_larger(limits));
+        let wider = [
+            &self.in_force,
+            &self.before,
+            &self.config.limits,
+            &self.stop_limits(),
+        ];
+        // What one of them does not limit may step.
+        let most = |bound: fn(&Limits) -> f64| wider.iter().map(|limits| bound(limits)).fold(0.0, f64::max);
         let widest = Limits {
-            velocity: widest.velocity + excess(|told| told.velocity),
-            acceleration: widest.acceleration.max(widest.deceleration) + excess(|told| told.acceleration),
-            jerk: widest.jerk + excess(|told| told.jerk),
-            ..widest
+            velocity: most(|limits| limits.velocity) + excess(|told| told.velocity),
+            acceleration: most(|limits| limits.acceleration.max(limits.deceleration))
+                + excess(|told| told.acceleration),
+            jerk: most(|limits| limits.jerk) + excess(|told| told.jerk),
+            ..self.in_force
         };
         let is_last = matches!(&self.motion, Motion::Run { elapsed, scans, .. } if elapsed >= scans);
         let slack = if is_last { LAST_SCAN } else { RELATIVE };
