@@ -87,7 +87,8 @@ fn whole_numbers_wrap_in_their_width_and_divide_towards_zero() {
             values.extend([-1, -7]);
         }
         for a in &values {
-            for b in &values {
+            // Division by zero is a fault, which another test shows.
+            for b in values.iter().filter(|b| **b != 0) {
                 let variables =
                     format!("a : {ty} := {a}; b : {ty} := {b}; s, d, p, q, r : {ty}; lt, le, eq : BOOL; n, m : {ty};");
                 let run = ran(

@@ -4,6 +4,7 @@ use super::Checker;
 use super::convert::rounded;
 use super::path::Named;
 use crate::error::Code;
+use crate::parse::NESTING_MOST;
 use crate::source::Span;
 use crate::syntax::{Expression, ExpressionKind, Ident};
 use crate::typed::{Expr, Kind};
@@ -13,6 +14,18 @@ impl<'a> Checker<'a> {
     /// An expression where a value of type `expected` is wanted, if one is. The value may have another type: the caller
     /// converts it.
     pub(super) fn expression(&mut self, expression: &'a Expression, expected: Option<TypeId>) -> Expr {
+        // The reader limits what stands in one expression; constants may lead to others.
+        if self.depth > 2 * NESTING_MOST {
+            self.error(Code::TooDeep, expression.span, "constants are nested too deep within each other", "");
+            return Expr::wrong(expression.span);
+        }
+        self.depth += 1;
+        let value = self.any_expression(expression, expected);
+        self.depth -= 1;
+        value
+    }
+
+    fn any_expression(&mut self, expression: &'a Expression, expected: Option<TypeId>) -> Expr {
         let span = expression.span;
         let (kind, ty) = match &expression.kind {
             ExpressionKind::Bool(value) => (Kind::Integer((*value).into()), BOOL),

@@ -96,6 +96,9 @@ struct ConstantEntry<'a> {
     value: Option<(TypeId, Constant)>,
 }
 
+/// How many levels of an expression a declaration stands for that another one needs: so much more stack it takes.
+const NEED: usize = 4;
+
 /// Whose an element of an enumeration is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum ElementOf {
@@ -238,14 +241,15 @@ impl<'a> Checker<'a> {
 
     /// Does something that something else needs first, unless the row of such is too long.
     fn needing<T>(&mut self, span: Span, other: T, inner: impl FnOnce(&mut Self) -> T) -> T {
-        if self.depth >= NESTING_MOST {
-            let message = format!("this needs more than {NESTING_MOST} other declarations one through another");
+        if self.depth + NEED >= NESTING_MOST {
+            let most = NESTING_MOST / NEED;
+            let message = format!("this needs more than {most} other declarations one through another");
             self.error(Code::TooDeep, span, message, "declare with fewer steps between");
             return other;
         }
-        self.depth += 1;
+        self.depth += NEED;
         let result = inner(self);
-        self.depth -= 1;
+        self.depth -= NEED;
         result
     }
 

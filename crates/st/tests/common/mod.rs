@@ -125,6 +125,11 @@ impl Running {
         }
     }
 
+    /// The number of the place of the loop that ran last.
+    pub fn loop_site(&self) -> u32 {
+        self.bits(standstill_st::LOOP_SITE, 4) as u32
+    }
+
     /// The place of the fault, and the value that led to it.
     pub fn fault(&self) -> (Place, i64) {
         let place = self.compiled.symbols.place(self.bits(FAULT_SITE, 4) as u32);
