@@ -71,6 +71,7 @@ impl Parser<'_> {
                 Token::Word(_) if self.ahead(1) == Token::Colon => items.extend(self.type_declaration()),
                 Token::Word(word) if !skip::is_item(word) && !skip::is_section(word) => {
                     self.new_name("a type");
+                    self.next();
                     self.skip_to_semicolon();
                 }
                 _ => {

@@ -194,15 +194,17 @@ impl Parser<'_> {
     }
 
     fn condition(&mut self, end: Word, after: &str) -> Expression {
-        let condition = self.expression();
+        let mut condition = self.expression();
         if self.token() == Token::Assign {
             self.tell_here(Code::Syntax, "`:=` assigns, and a condition is wanted", "compare with `=`");
             self.next();
             self.expression();
+            condition.kind = ExpressionKind::Wrong;
         }
         if !self.expect_word(end, after) {
             // A `;` or another word in its place; the statements follow.
-            if matches!(self.token(), Token::Semicolon | Token::Colon) {
+            let begins = matches!(self.ahead(1), Token::Assign | Token::Open | Token::Dot | Token::OpenBracket | Token::Equal);
+            if matches!(self.token(), Token::Semicolon | Token::Colon) || self.token() == Token::Name && !begins {
                 self.next();
             }
         }
@@ -312,7 +314,13 @@ impl Parser<'_> {
                 break;
             }
         }
-        self.expect(Token::Colon, ":", "behind a label");
+        if !self.expect(Token::Colon, ":", "behind a label") {
+            // There is one: that is how a label was known.
+            while !matches!(self.token(), Token::End | Token::Colon) {
+                self.next();
+            }
+            self.take(Token::Colon);
+        }
         labels
     }
 
