@@ -4,7 +4,9 @@ use crate::args::StSources;
 use crate::exit::{Exit, Failure, complain};
 use crate::json::{Object, list, string};
 use standstill_script::suite::shown;
-use standstill_st::{Diagnostic, FAULT_SITE, FAULT_VALUE, LOOP_SITE, Options, Report, Severity, Source, Symbols, Value};
+use standstill_st::{
+    Diagnostic, FAULT_SITE, FAULT_VALUE, LOOP_SITE, Options, Report, Severity, Source, Symbols, Value,
+};
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -45,7 +47,11 @@ pub fn check(given: &StSources, json: bool, out: &mut dyn Write) -> Result<Exit,
     } else if !report.diagnostics().is_empty() {
         writeln!(out, "{report}")?;
     }
-    Ok(if report.has_errors() { Exit::BadInput } else { Exit::Passed })
+    Ok(if report.has_errors() {
+        Exit::BadInput
+    } else {
+        Exit::Passed
+    })
 }
 
 fn diagnostic(report: &Report, it: &Diagnostic) -> String {
@@ -68,7 +74,12 @@ fn diagnostic(report: &Report, it: &Diagnostic) -> String {
 }
 
 /// Compiles to a module, and writes its symbols beside it.
-pub fn build(given: &StSources, output: &Path, axes: &[String], out: &mut dyn Write) -> Result<Exit, Failure> {
+pub fn build(
+    given: &StSources,
+    output: &Path,
+    axes: &[String],
+    out: &mut dyn Write,
+) -> Result<Exit, Failure> {
     let files = read(&given.files)?;
     let options = Options {
         program: given.program.clone(),
@@ -106,7 +117,10 @@ fn symbols(symbols: &Symbols) -> String {
             Value::Plain => None,
             Value::Element(elements) => {
                 let pair = |(name, number): (String, i128)| {
-                    Object::new().with("name", string(&name)).with("number", number.to_string()).text()
+                    Object::new()
+                        .with("name", string(&name))
+                        .with("number", number.to_string())
+                        .text()
                 };
                 Some(list(elements.into_iter().map(pair)))
             }
@@ -116,6 +130,7 @@ fn symbols(symbols: &Symbols) -> String {
             .with("type", string(symbol.ty.name()))
             .with("address", symbol.address.to_string())
             .with("section", string(section(symbol.section)))
+            .with("retain", symbol.retain.to_string())
             .with_some("at", symbol.at.as_deref().map(string))
             .with_some("elements", elements)
             .text()

@@ -15,12 +15,16 @@ fn prog_st_as_it_stands() {
         "Feed, Place, BackFeeder, BackPlacer : MC_MoveAbsolute;",
         "Feed : MC_MoveAbsolute; Place : MC_MoveAbsolute; BackFeeder, BackPlacer : MC_MoveAbsolute;",
     );
-    for (name, text) in [("feed-and-place-st", text), ("feed-and-place-st-split", split.into_bytes())] {
+    for (name, text) in [
+        ("feed-and-place-st", text),
+        ("feed-and-place-st-split", split.into_bytes()),
+    ] {
         let source = Source {
             name: "prog.st",
             bytes: &text,
         };
-        let compiled = standstill_st::compile(&[source], &Options::default()).unwrap_or_else(|report| panic!("{report}"));
+        let compiled = standstill_st::compile(&[source], &Options::default())
+            .unwrap_or_else(|report| panic!("{report}"));
         let out = scratch(name);
         fs::write(out.join("program.wasm"), compiled.wasm).unwrap();
         for file in ["guest.scan.json", "cell.machine.json"] {

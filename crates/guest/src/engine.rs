@@ -68,7 +68,10 @@ fn signature(import: Import) -> (FuncType, &'static str) {
             FuncType::new([ValType::I32; 5], [ValType::I32]),
             "a function (i32, i32, i32, i32, i32) -> i32",
         ),
-        Import::Function(_) => (FuncType::new([ValType::F64], [ValType::F64]), "a function (f64) -> f64"),
+        Import::Function(_) => (
+            FuncType::new([ValType::F64], [ValType::F64]),
+            "a function (f64) -> f64",
+        ),
         Import::FunctionOfTwo(_) => (
             FuncType::new([ValType::F64; 2], [ValType::F64]),
             "a function (f64, f64) -> f64",

@@ -71,8 +71,12 @@ pub(crate) enum Import {
     Block(usize),
 }
 
+type OfOne = fn(f64) -> f64;
+
+type OfTwo = fn(f64, f64) -> f64;
+
 /// Functions of one number: their names, and what does them. In software, so that their bits are the same everywhere.
-pub(crate) const FUNCTIONS: [(&str, fn(f64) -> f64); 9] = [
+pub(crate) const FUNCTIONS: [(&str, OfOne); 9] = [
     ("math_acos", libm::acos),
     ("math_asin", libm::asin),
     ("math_atan", libm::atan),
@@ -85,7 +89,7 @@ pub(crate) const FUNCTIONS: [(&str, fn(f64) -> f64); 9] = [
 ];
 
 /// Functions of two numbers.
-pub(crate) const FUNCTIONS_OF_TWO: [(&str, fn(f64, f64) -> f64); 2] =
+pub(crate) const FUNCTIONS_OF_TWO: [(&str, OfTwo); 2] =
     [("math_atan2", libm::atan2), ("math_pow", libm::pow)];
 
 macro_rules! names {

@@ -246,7 +246,10 @@ impl Report {
     pub fn render(&self) -> String {
         // A fixed width, so that long lines are cut in the same way everywhere.
         let renderer = Renderer::plain().term_width(140);
-        let rendered = self.diagnostics.iter().map(|it| renderer.render(&[self.group(it)]));
+        let rendered = self
+            .diagnostics
+            .iter()
+            .map(|it| renderer.render(&[self.group(it)]));
         let mut out: Vec<String> = rendered.collect();
         if self.hidden > 0 {
             out.push(format!("error: {} more of these", self.hidden));
@@ -285,7 +288,12 @@ impl Report {
                 Some((text, line, range)) => {
                     let context = AnnotationKind::Context.span(range).label(visible(label));
                     let path = self.file_name(*span);
-                    group.element(Snippet::source(text).line_start(line as usize).path(path).annotation(context))
+                    group.element(
+                        Snippet::source(text)
+                            .line_start(line as usize)
+                            .path(path)
+                            .annotation(context),
+                    )
                 }
                 None => group.element(Level::NOTE.message(visible(label))),
             };
@@ -318,7 +326,12 @@ pub(crate) fn did_you_mean<'a>(name: &str, candidates: impl Iterator<Item = &'a 
     let wanted: String = name.to_ascii_lowercase().chars().take(100).collect();
     let slips = (wanted.chars().count() / 3).max(1);
     candidates
-        .map(|candidate| (strsim::osa_distance(&wanted, &candidate.to_ascii_lowercase()), candidate))
+        .map(|candidate| {
+            (
+                strsim::osa_distance(&wanted, &candidate.to_ascii_lowercase()),
+                candidate,
+            )
+        })
         .filter(|(distance, _)| *distance <= slips)
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| format!("did you mean `{candidate}`?"))

@@ -37,7 +37,9 @@ impl Default for Layout {
 impl Layout {
     /// Takes so many bytes, at a multiple of 8; `u32::MAX` when there are no more addresses.
     pub(crate) fn take(&mut self, bytes: u32) -> u32 {
-        let Some(place) = self.end.checked_next_multiple_of(8) else { return u32::MAX };
+        let Some(place) = self.end.checked_next_multiple_of(8) else {
+            return u32::MAX;
+        };
         match place.checked_add(bytes) {
             Some(end) => self.end = end,
             None => {

@@ -47,7 +47,9 @@ impl Word {
             return None;
         }
         let upper = text.to_ascii_uppercase();
-        let place = Self::ALL.binary_search_by(|(word, _)| (*word).cmp(upper.as_str())).ok()?;
+        let place = Self::ALL
+            .binary_search_by(|(word, _)| (*word).cmp(upper.as_str()))
+            .ok()?;
         Self::ALL.get(place).map(|(_, word)| *word)
     }
 }
@@ -193,7 +195,9 @@ impl Lexer<'_> {
     }
 
     fn starts_with(&self, sign: &str) -> bool {
-        self.bytes.get(self.at..).is_some_and(|rest| rest.starts_with(sign.as_bytes()))
+        self.bytes
+            .get(self.at..)
+            .is_some_and(|rest| rest.starts_with(sign.as_bytes()))
     }
 
     fn skip_while(&mut self, wanted: impl Fn(u8) -> bool) {
@@ -255,12 +259,16 @@ impl Lexer<'_> {
             let span = self.span(from);
             self.at = self.bytes.len();
             let wrong = Diagnostic::error(Code::NotClosed, span, "a pragma is opened here and not closed");
-            self.found.add(wrong.help("write `}` at its end, or `(* .. *)` for a comment"));
+            self.found
+                .add(wrong.help("write `}` at its end, or `(* .. *)` for a comment"));
             return;
         }
         self.at += 1;
         let inner = self.text.get(from + 1..self.at - 1).unwrap_or_default().trim();
-        let word = inner.split(|c: char| !c.is_ascii_alphabetic()).next().unwrap_or_default();
+        let word = inner
+            .split(|c: char| !c.is_ascii_alphabetic())
+            .next()
+            .unwrap_or_default();
         if !KNOWN.iter().any(|known| known.eq_ignore_ascii_case(word)) {
             let message = format!("the pragma {} is not known and has no effect", quoted(inner));
             let span = self.span(from);
@@ -302,10 +310,20 @@ impl Lexer<'_> {
             '}' => Diagnostic::error(Code::Syntax, span, "`}` closes a pragma that is not open"),
             '%' => Diagnostic::error(Code::Syntax, span, "`%` begins an address such as %IX0.0")
                 .help("the rest of a division is `MOD`"),
-            '#' => Diagnostic::error(Code::Syntax, span, "`#` stands behind a type or a base, without a space: INT#5, 16#FF"),
-            '|' => Diagnostic::error(Code::Syntax, span, "`|` is no operator of Structured Text").help("write `OR`"),
-            '~' => Diagnostic::error(Code::Syntax, span, "`~` is no operator of Structured Text").help("write `NOT`"),
-            _ => Diagnostic::error(Code::Syntax, span, format!("`{sign}` has no meaning in Structured Text")),
+            '#' => Diagnostic::error(
+                Code::Syntax,
+                span,
+                "`#` stands behind a type or a base, without a space: INT#5, 16#FF",
+            ),
+            '|' => Diagnostic::error(Code::Syntax, span, "`|` is no operator of Structured Text")
+                .help("write `OR`"),
+            '~' => Diagnostic::error(Code::Syntax, span, "`~` is no operator of Structured Text")
+                .help("write `NOT`"),
+            _ => Diagnostic::error(
+                Code::Syntax,
+                span,
+                format!("`{sign}` has no meaning in Structured Text"),
+            ),
         };
         self.found.add(wrong);
         None
@@ -338,16 +356,23 @@ impl Lexer<'_> {
         let wrong = Diagnostic::error(
             Code::BadName,
             span,
-            format!("{} has `{letter}`, and names are made of A to Z, 0 to 9 and `_`", quoted(text)),
+            format!(
+                "{} has `{letter}`, and names are made of A to Z, 0 to 9 and `_`",
+                quoted(text)
+            ),
         );
         let help = match letter {
             'ä' | 'Ä' => "write `ae`",
             'ö' | 'Ö' => "write `oe`",
             'ü' | 'Ü' => "write `ue`",
             'ß' => "write `ss`",
-            '‘' | '’' | '“' | '”' | '„' => "these quotes come from a word processor; strings stand between `'`",
+            '‘' | '’' | '“' | '”' | '„' => {
+                "these quotes come from a word processor; strings stand between `'`"
+            }
             '–' | '—' => "this dash comes from a word processor; minus is `-`",
-            '\u{a0}' | '\u{200b}' | '\u{feff}' => "this is a space of a word processor; delete it and type a space",
+            '\u{a0}' | '\u{200b}' | '\u{feff}' => {
+                "this is a space of a word processor; delete it and type a space"
+            }
             _ => "use other letters; comments and strings may have any",
         };
         self.found.add(wrong.help(help));
@@ -399,7 +424,8 @@ impl Lexer<'_> {
         }
         let span = self.span(from);
         let wrong = Diagnostic::error(Code::NotClosed, span, "a string is not closed in its line");
-        self.found.add(wrong.help("a quote inside of a string is `$'`, a new line `$N`"));
+        self.found
+            .add(wrong.help("a quote inside of a string is `$'`, a new line `$N`"));
         Some(token)
     }
 }
@@ -412,7 +438,11 @@ mod tests {
         let mut found = Found::default();
         let tokens = lex(text, 0, &mut found);
         assert!(!found.has_errors(), "{text}");
-        tokens.into_iter().map(|(token, _)| token).filter(|token| *token != Token::End).collect()
+        tokens
+            .into_iter()
+            .map(|(token, _)| token)
+            .filter(|token| *token != Token::End)
+            .collect()
     }
 
     #[test]
@@ -436,11 +466,9 @@ mod tests {
         assert_eq!(kinds("1..5"), [Token::Integer, Token::Range, Token::Integer]);
         assert_eq!(kinds("w.3"), [Token::Name, Token::Dot, Token::Integer]);
         assert_eq!(kinds("1_0.5E-3 2E5"), [Token::Real, Token::Real]);
-        assert_eq!(kinds("16#FF_0 T#1d_2h3.5s INT#5"), [
-            Token::Based,
-            Token::Duration,
-            Token::Typed,
-            Token::Integer
-        ]);
+        assert_eq!(
+            kinds("16#FF_0 T#1d_2h3.5s INT#5"),
+            [Token::Based, Token::Duration, Token::Typed, Token::Integer]
+        );
     }
 }

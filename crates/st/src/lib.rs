@@ -100,7 +100,9 @@ fn build(given: &[Source<'_>], options: &Options, module: bool) -> Result<Built,
     }
     let items = parse::parse(&sources, &mut found);
     let (program, mut found) = check::check(&sources, &items, options, found);
-    let Some(program) = program else { return Err(found.report(sources)) };
+    let Some(program) = program else {
+        return Err(found.report(sources));
+    };
     if !module || program.instances.is_empty() {
         return Ok((None, found.report(sources)));
     }

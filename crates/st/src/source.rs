@@ -88,7 +88,10 @@ impl Sources {
                 Ok(text) => (text.to_owned(), None),
                 Err(error) => {
                     let good = bytes.get(..error.valid_up_to()).unwrap_or_default();
-                    (String::from_utf8_lossy(good).into_owned(), Some(error.valid_up_to()))
+                    (
+                        String::from_utf8_lossy(good).into_owned(),
+                        Some(error.valid_up_to()),
+                    )
                 }
             };
             // One further than the text, because a message may point at the end of a file.
@@ -96,8 +99,12 @@ impl Sources {
             if let Some(at) = bad {
                 let at = start + at as u32;
                 wrong.push(
-                    Diagnostic::error(Code::Encoding, Span { start: at, end: at }, "the text is not UTF-8 from here on")
-                        .help("save the file as UTF-8: in most editors under Save As, Encoding"),
+                    Diagnostic::error(
+                        Code::Encoding,
+                        Span { start: at, end: at },
+                        "the text is not UTF-8 from here on",
+                    )
+                    .help("save the file as UTF-8: in most editors under Save As, Encoding"),
                 );
             }
             let starts = text.bytes().zip(1..).filter(|(byte, _)| *byte == b'\n');
@@ -138,7 +145,9 @@ impl Sources {
 
     /// The text of a file, and the place of its first byte.
     pub(crate) fn text_of(&self, file: usize) -> (&str, u32) {
-        self.files.get(file).map_or(("", 0), |file| (&file.text, file.start))
+        self.files
+            .get(file)
+            .map_or(("", 0), |file| (&file.text, file.start))
     }
 
     /// The name of a file without folder and ending.
@@ -149,7 +158,9 @@ impl Sources {
     }
 
     fn index(&self, place: u32) -> usize {
-        self.files.partition_point(|file| file.start <= place).saturating_sub(1)
+        self.files
+            .partition_point(|file| file.start <= place)
+            .saturating_sub(1)
     }
 
     fn file(&self, place: u32) -> &File {
@@ -189,10 +200,16 @@ impl Sources {
         const LONGEST: usize = 2000;
         let file = self.file(span.start);
         let (from, to) = (span.start - file.start, span.end.max(span.start) - file.start);
-        let first = file.lines.partition_point(|start| *start <= from).saturating_sub(1);
+        let first = file
+            .lines
+            .partition_point(|start| *start <= from)
+            .saturating_sub(1);
         let last = file.lines.partition_point(|start| *start <= to).saturating_sub(1);
         let begin = file.lines.get(first).copied()? as usize;
-        let end = file.lines.get(last + 1).map_or(file.text.len(), |next| *next as usize);
+        let end = file
+            .lines
+            .get(last + 1)
+            .map_or(file.text.len(), |next| *next as usize);
         let text = file.text.get(begin..end)?;
         if text.len() > LONGEST {
             return None;
@@ -200,11 +217,6 @@ impl Sources {
         let text = text.trim_end_matches(['\n', '\r']);
         let at = |place: u32| (place as usize - begin).min(text.len());
         Some((text, first as u32 + 1, at(from)..at(to)))
-    }
-
-    /// Whether two places are in one file.
-    pub(crate) fn together(&self, one: Span, other: Span) -> bool {
-        self.index(one.start) == self.index(other.start)
     }
 
     /// The file a place is in.

@@ -32,7 +32,9 @@ pub(crate) fn write(program: &Program<'_>, ty: TypeId, start: &Start, memory: &m
         }
         (Type::Array(array), _) => elements(program, ty, array, start, memory, at),
         _ => {
-            let Some(of) = program.types.elementary(ty) else { return };
+            let Some(of) = program.types.elementary(ty) else {
+                return;
+            };
             match start {
                 Start::Value(Constant::Real(value)) => real(of, *value, memory, at),
                 Start::Value(Constant::Integer(value)) if of.is_real() => real(of, *value as f64, memory, at),
@@ -53,7 +55,13 @@ fn members(program: &Program<'_>, list: &[Member], start: &Start, memory: &mut [
             Start::Members(given) => given.iter().find(|(it, _)| *it == place).map(|(_, start)| start),
             _ => None,
         };
-        write(program, member.ty, given.unwrap_or(&member.start), memory, at + member.offset);
+        write(
+            program,
+            member.ty,
+            given.unwrap_or(&member.start),
+            memory,
+            at + member.offset,
+        );
     }
 }
 
@@ -92,7 +100,9 @@ fn repeat(
     }
     write(program, array.of, start, memory, at);
     let (begin, stride) = (at as usize, array.stride as usize);
-    let Some(element) = memory.get(begin..begin + stride) else { return };
+    let Some(element) = memory.get(begin..begin + stride) else {
+        return;
+    };
     if element.iter().all(|byte| *byte == 0) {
         return;
     }

@@ -1,12 +1,12 @@
 //! Where the variables of a module stand, and which place in the text a fault means.
 
+use crate::Options;
 use crate::check::{Instance, Program, UnitKind};
 use crate::emit::{FaultKind, Site};
 use crate::error::{Code, Diagnostic};
 use crate::source::{Position, Sources, Span};
 use crate::start;
 use crate::types::{Elementary, Member, MemberKind, Members, Start, Type, TypeId, Types};
-use crate::Options;
 
 /// What a variable is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -45,6 +45,8 @@ pub struct Symbol {
     pub section: Section,
     /// `%IX0.0`, if it is declared AT one.
     pub at: Option<String>,
+    /// Whether it is declared RETAIN or PERSISTENT.
+    pub retain: bool,
     /// What its numbers mean.
     pub value: Value,
 }
@@ -103,6 +105,7 @@ struct Part {
     ty: TypeId,
     address: u32,
     section: Section,
+    retain: bool,
     at: Option<String>,
 }
 
@@ -128,11 +131,15 @@ impl Symbols {
             section: Section::Internal,
             instance: true,
         }));
-        let tasks = program.tasks.iter().filter(|task| !task.name.is_empty()).map(|task| Task {
-            name: task.name.clone(),
-            interval_ns: task.interval_ns,
-            priority: task.priority,
-        });
+        let tasks = program
+            .tasks
+            .iter()
+            .filter(|task| !task.name.is_empty())
+            .map(|task| Task {
+                name: task.name.clone(),
+                interval_ns: task.interval_ns,
+                priority: task.priority,
+            });
         let units = program.units.into_iter().map(|unit| Unit {
             name: unit.name,
             members: unit.members,
@@ -172,7 +179,10 @@ impl Symbols {
         let mut rest = path;
         if path.starts_with('%') {
             return self.leaves(usize::MAX).into_iter().find(|symbol| {
-                symbol.at.as_deref().is_some_and(|at| at.eq_ignore_ascii_case(path))
+                symbol
+                    .at
+                    .as_deref()
+                    .is_some_and(|at| at.eq_ignore_ascii_case(path))
             });
         }
         let name = next_name(&mut rest)?;
@@ -181,7 +191,9 @@ impl Symbols {
             Some(root) => self.root(root),
             None => {
                 let mut instances = self.roots.iter().filter(|root| root.instance);
-                let (only, None) = (instances.next()?, instances.next()) else { return None };
+                let (only, None) = (instances.next()?, instances.next()) else {
+                    return None;
+                };
                 self.member(&self.root(only), name)?
             }
         };
@@ -215,6 +227,7 @@ impl Symbols {
             ty: root.member.ty,
             address: root.address,
             section: root.section,
+            retain: root.member.retain,
             at: root.member.address.clone(),
         }
     }
@@ -240,6 +253,7 @@ impl Symbols {
             ty: member.ty,
             address: of.address + member.offset,
             section,
+            retain: of.retain || member.retain,
             at: member.address.clone(),
         })
     }
@@ -250,8 +264,13 @@ impl Symbols {
     }
 
     fn element(&self, of: &Part, indices: &str) -> Option<Part> {
-        let Type::Array(array) = self.types.get(of.ty) else { return None };
-        let given: Vec<i64> = indices.split(',').map(|index| index.trim().parse().ok()).collect::<Option<_>>()?;
+        let Type::Array(array) = self.types.get(of.ty) else {
+            return None;
+        };
+        let given: Vec<i64> = indices
+            .split(',')
+            .map(|index| index.trim().parse().ok())
+            .collect::<Option<_>>()?;
         if given.len() != array.bounds.len() {
             return None;
         }
@@ -268,6 +287,7 @@ impl Symbols {
             ty: array.of,
             address: of.address + number as u32 * array.stride,
             section: of.section,
+            retain: of.retain,
             at: None,
         })
     }
@@ -285,6 +305,7 @@ impl Symbols {
             type_name,
             address: part.address,
             section: part.section,
+            retain: part.retain,
             at: part.at.clone(),
             value,
         })
@@ -299,11 +320,17 @@ impl Symbols {
             return;
         }
         if let Some(members) = self.members(part.ty) {
-            for part in members.list.iter().filter_map(|member| self.part_of(part, member)) {
+            for part in members
+                .list
+                .iter()
+                .filter_map(|member| self.part_of(part, member))
+            {
                 self.collect(&part, most, found);
             }
         }
-        let Type::Array(array) = self.types.get(part.ty) else { return };
+        let Type::Array(array) = self.types.get(part.ty) else {
+            return;
+        };
         let mut indices: Vec<i64> = array.bounds.iter().map(|(low, _)| *low).collect();
         for number in 0..array.count {
             if found.len() >= most {
@@ -315,6 +342,7 @@ impl Symbols {
                 ty: array.of,
                 address: part.address + number * array.stride,
                 section: part.section,
+                retain: part.retain,
                 at: None,
             };
             self.collect(&element, most, found);
@@ -333,7 +361,10 @@ impl Symbols {
     pub fn block_of(&self, path: &str) -> Option<&str> {
         let mut rest = path;
         let name = next_name(&mut rest)?;
-        let root = self.roots.iter().find(|root| root.member.name.eq_ignore_ascii_case(name))?;
+        let root = self
+            .roots
+            .iter()
+            .find(|root| root.member.name.eq_ignore_ascii_case(name))?;
         let mut part = self.root(root);
         while !rest.is_empty() {
             part = if let Some(behind) = rest.strip_prefix('.') {
@@ -378,7 +409,13 @@ fn instance_member(instance: &Instance<'_>, ty: TypeId) -> Member {
 /// Writes what stands in memory before the first scan.
 pub(crate) fn image(program: &Program<'_>, memory: &mut [u8]) {
     for global in &program.globals {
-        start::write(program, global.member.ty, &global.member.start, memory, global.member.offset);
+        start::write(
+            program,
+            global.member.ty,
+            &global.member.start,
+            memory,
+            global.member.offset,
+        );
     }
     for instance in &program.instances {
         start::members_of(program, instance.unit, memory, instance.address);
@@ -389,7 +426,13 @@ pub(crate) fn image(program: &Program<'_>, memory: &mut [u8]) {
 pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) -> Result<(), Diagnostic> {
     let mut found = Vec::new();
     for global in &program.globals {
-        references(program, global.member.ty, &global.member.name, global.member.offset, &mut found);
+        references(
+            program,
+            global.member.ty,
+            &global.member.name,
+            global.member.offset,
+            &mut found,
+        );
     }
     for instance in &program.instances {
         let members = &program.units[instance.unit.0 as usize].members;
@@ -398,7 +441,10 @@ pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) 
     }
     for (path, _, address) in &found {
         let name = path.rsplit('.').next().unwrap_or(path);
-        let axis = options.axes.iter().position(|axis| axis.eq_ignore_ascii_case(name));
+        let axis = options
+            .axes
+            .iter()
+            .position(|axis| axis.eq_ignore_ascii_case(name));
         if let Some(axis) = axis {
             put(memory, *address, axis as u32 + 1);
         }
@@ -410,7 +456,8 @@ pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) 
     for (path, number) in &options.bindings {
         let within = only.map(|name| format!("{name}.{path}"));
         let same = |known: &str| {
-            known.eq_ignore_ascii_case(path) || within.as_ref().is_some_and(|it| known.eq_ignore_ascii_case(it))
+            known.eq_ignore_ascii_case(path)
+                || within.as_ref().is_some_and(|it| known.eq_ignore_ascii_case(it))
         };
         match found.iter().find(|(known, ..)| same(known)) {
             Some((.., address)) => put(memory, *address, (*number).into()),
@@ -442,8 +489,12 @@ fn references(program: &Program<'_>, ty: TypeId, path: &str, address: u32, found
         return;
     }
     match program.types.get(ty) {
-        Type::Structure(structure) if structure.name == "AXIS_REF" => found.push((path.to_owned(), ty, address)),
-        Type::Structure(structure) => member_references(program, &structure.members.list, path, address, found),
+        Type::Structure(structure) if structure.name == "AXIS_REF" => {
+            found.push((path.to_owned(), ty, address))
+        }
+        Type::Structure(structure) => {
+            member_references(program, &structure.members.list, path, address, found)
+        }
         Type::Block(unit) => {
             let unit = &program.units[unit.0 as usize];
             if !matches!(unit.kind, UnitKind::Library(_)) {
@@ -454,7 +505,13 @@ fn references(program: &Program<'_>, ty: TypeId, path: &str, address: u32, found
             let before = found.len();
             for number in 0..array.count {
                 let index = array.bounds.first().map_or(0, |(low, _)| *low) + i64::from(number);
-                references(program, array.of, &format!("{path}[{index}]"), address + number * array.stride, found);
+                references(
+                    program,
+                    array.of,
+                    &format!("{path}[{index}]"),
+                    address + number * array.stride,
+                    found,
+                );
                 // What the first element does not have no other one has.
                 if found.len() == before {
                     return;
@@ -465,7 +522,13 @@ fn references(program: &Program<'_>, ty: TypeId, path: &str, address: u32, found
     }
 }
 
-fn member_references(program: &Program<'_>, members: &[Member], path: &str, address: u32, found: &mut References) {
+fn member_references(
+    program: &Program<'_>,
+    members: &[Member],
+    path: &str,
+    address: u32,
+    found: &mut References,
+) {
     for member in members {
         if !matches!(member.kind, MemberKind::InOut | MemberKind::External(_)) {
             let path = format!("{path}.{}", member.name);

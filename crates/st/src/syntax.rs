@@ -87,9 +87,19 @@ pub(crate) struct TypeSpec {
 #[derive(Debug)]
 pub(crate) enum SpecKind {
     Named(Ident),
-    Subrange { base: Ident, low: Expression, high: Expression },
-    Array { bounds: Vec<(Expression, Expression)>, of: Box<TypeSpec> },
-    Enumeration { base: Option<Ident>, elements: Vec<(Ident, Option<Expression>)> },
+    Subrange {
+        base: Ident,
+        low: Expression,
+        high: Expression,
+    },
+    Array {
+        bounds: Vec<(Expression, Expression)>,
+        of: Box<TypeSpec>,
+    },
+    Enumeration {
+        base: Option<Ident>,
+        elements: Vec<(Ident, Option<Expression>)>,
+    },
     Structure(Vec<Variables>),
     /// It has been told what is wrong with it.
     Wrong,

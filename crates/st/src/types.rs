@@ -68,7 +68,10 @@ impl Elementary {
     /// The type of this name, without regard to case.
     #[must_use]
     pub fn find(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|it| it.name().eq_ignore_ascii_case(name))
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|it| it.name().eq_ignore_ascii_case(name))
     }
 
     pub(crate) const fn is_integer(self) -> bool {
@@ -110,7 +113,11 @@ impl Elementary {
             return (value != 0) as i128;
         }
         let low = value & ((1 << bits) - 1);
-        if self.is_signed() && low >> (bits - 1) != 0 { low - (1 << bits) } else { low }
+        if self.is_signed() && low >> (bits - 1) != 0 {
+            low - (1 << bits)
+        } else {
+            low
+        }
     }
 
     /// Whether every value of it is one of `to`, so that it is converted without a word.
@@ -146,7 +153,12 @@ pub(crate) struct UnitId(pub u32);
 pub(crate) enum Type {
     Elementary(Elementary),
     Enumeration(Enumeration),
-    Subrange { name: String, base: Elementary, low: i128, high: i128 },
+    Subrange {
+        name: String,
+        base: Elementary,
+        low: i128,
+        high: i128,
+    },
     Structure(Structure),
     Array(Array),
     /// An instance of a function block or program.
@@ -252,13 +264,17 @@ impl Members {
 
     /// Adds a member whose place is known.
     pub(crate) fn put(&mut self, member: Member) {
-        self.index.insert(member.name.to_ascii_uppercase(), self.list.len());
+        self.index
+            .insert(member.name.to_ascii_uppercase(), self.list.len());
         self.list.push(member);
     }
 
     /// Adds a member behind the others.
     pub(crate) fn add(&mut self, mut member: Member, size: u32, align: u32) {
-        member.offset = self.size.checked_next_multiple_of(align.max(1)).unwrap_or(u32::MAX);
+        member.offset = self
+            .size
+            .checked_next_multiple_of(align.max(1))
+            .unwrap_or(u32::MAX);
         self.size = member.offset.saturating_add(size);
         self.put(member);
     }
@@ -349,7 +365,9 @@ impl Types {
     pub(crate) fn size(&self, id: TypeId, unit_size: impl Fn(UnitId) -> u32) -> (u32, u32) {
         match self.get(id) {
             Type::Elementary(it) => (it.size(), it.size()),
-            Type::Enumeration(Enumeration { base, .. }) | Type::Subrange { base, .. } => (base.size(), base.size()),
+            Type::Enumeration(Enumeration { base, .. }) | Type::Subrange { base, .. } => {
+                (base.size(), base.size())
+            }
             Type::Structure(structure) => (structure.members.size, 8),
             Type::Array(array) => {
                 let align = self.elementary(array.of).map_or(8, Elementary::size);

@@ -28,9 +28,21 @@ fn literals_have_their_values() {
     assert_eq!(real("LREAL", "1.0E-3"), 1e-3);
     assert_eq!(real("LREAL", "5"), 5.0);
     assert_eq!(real("REAL", "0.1"), f64::from(0.1_f32));
-    for (ty, literal) in [("INT", "40000"), ("USINT", "-1"), ("BYTE", "256"), ("BOOL", "2"), ("REAL", "1.0E39")] {
-        let told = wrong(&format!("PROGRAM P VAR x : {ty}; END_VAR x := {literal}; END_PROGRAM"));
-        assert_eq!(told.first().map(|it| it.0), Some("out_of_range"), "{literal}: {told:?}");
+    for (ty, literal) in [
+        ("INT", "40000"),
+        ("USINT", "-1"),
+        ("BYTE", "256"),
+        ("BOOL", "2"),
+        ("REAL", "1.0E39"),
+    ] {
+        let told = wrong(&format!(
+            "PROGRAM P VAR x : {ty}; END_VAR x := {literal}; END_PROGRAM"
+        ));
+        assert_eq!(
+            told.first().map(|it| it.0),
+            Some("out_of_range"),
+            "{literal}: {told:?}"
+        );
     }
 }
 
@@ -80,7 +92,11 @@ fn whole_numbers_wrap_in_their_width_and_divide_towards_zero() {
         };
         let wrap = |value: i128| {
             let kept = value & ((1 << bits) - 1);
-            if signed && kept >> (bits - 1) != 0 { kept - (1 << bits) } else { kept }
+            if signed && kept >> (bits - 1) != 0 {
+                kept - (1 << bits)
+            } else {
+                kept
+            }
         };
         let mut values = vec![low, low + 1, high - 1, high, 1, 7, 100];
         if signed {
@@ -89,8 +105,9 @@ fn whole_numbers_wrap_in_their_width_and_divide_towards_zero() {
         for a in &values {
             // Division by zero is a fault, which another test shows.
             for b in values.iter().filter(|b| **b != 0) {
-                let variables =
-                    format!("a : {ty} := {a}; b : {ty} := {b}; s, d, p, q, r : {ty}; lt, le, eq : BOOL; n, m : {ty};");
+                let variables = format!(
+                    "a : {ty} := {a}; b : {ty} := {b}; s, d, p, q, r : {ty}; lt, le, eq : BOOL; n, m : {ty};"
+                );
                 let run = ran(
                     &variables,
                     "s := a + b; d := a - b; p := a * b; q := a / b; r := a MOD b; lt := a < b; le := a <= b; \
@@ -203,7 +220,10 @@ fn bits_are_read_and_written() {
     assert_eq!(run.whole("w"), 8);
     assert_eq!((run.whole("a"), run.whole("b"), run.whole("c")), (1, 0, 1));
     assert_eq!(run.whole("d"), 1 << 63);
-    assert_eq!((run.whole("i"), run.whole("s[1]"), run.whole("s[0]")), (-2, 128, 0));
+    assert_eq!(
+        (run.whole("i"), run.whole("s[1]"), run.whole("s[0]")),
+        (-2, 128, 0)
+    );
 }
 
 /// Covers: ST40

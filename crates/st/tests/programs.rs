@@ -68,7 +68,14 @@ END_PROGRAM");
     ] {
         assert_eq!(run.whole(path), value, "{path}");
     }
-    for (path, value) in [("v", 2.5), ("p.X", 1.0), ("q.Y", 4.0), ("w[2]", 2.5), ("pp[0].X", 9.0), ("pp[1].X", 1.0)] {
+    for (path, value) in [
+        ("v", 2.5),
+        ("p.X", 1.0),
+        ("q.Y", 4.0),
+        ("w[2]", 2.5),
+        ("pp[0].X", 9.0),
+        ("pp[1].X", 1.0),
+    ] {
         assert_eq!(run.real(path), value, "{path}");
     }
 }
@@ -76,7 +83,8 @@ END_PROGRAM");
 /// Covers: ST12, ST15, ST23
 #[test]
 fn instances_keep_their_values_and_arrays_of_them_are_called() {
-    let mut run = Running::new("
+    let mut run = Running::new(
+        "
 FUNCTION_BLOCK Counter
 VAR_INPUT Step : INT := 1; END_VAR
 VAR_OUTPUT Value : INT; END_VAR
@@ -97,9 +105,13 @@ Units[2].Step := 10;
 Units[2](Total := Sum, Value => Read);
 a[0] := 7;
 b := a;
-END_PROGRAM");
+END_PROGRAM",
+    );
     run.scan().unwrap();
-    assert_eq!((run.whole("Sum"), run.whole("Read"), run.whole("b[0]")), (16, 12, 7));
+    assert_eq!(
+        (run.whole("Sum"), run.whole("Read"), run.whole("b[0]")),
+        (16, 12, 7)
+    );
     assert_eq!((run.whole("Units[1].Value"), run.whole("Units[3].Value")), (1, 3));
     run.scan().unwrap();
     assert_eq!((run.whole("Sum"), run.whole("Units[2].Value")), (32, 24));
@@ -109,26 +121,45 @@ END_PROGRAM");
 #[test]
 fn several_files_are_one_project() {
     let files = [
-        ("GVL.st", "VAR_GLOBAL CONSTANT N : INT := M + 1; M : INT := 3; END_VAR VAR_GLOBAL Count : INT := N; Lamp AT %QX0.1 : BOOL; END_VAR"),
-        ("cell.st", "PROGRAM Cell VAR_EXTERNAL Count : INT; END_VAR VAR a : ARRAY [1..N] OF INT; t : INT; END_VAR
-          Count := Count + GVL.N; a[N] := Double(x := Count, Twice => t); Lamp := TRUE; END_PROGRAM"),
-        ("f.st", "FUNCTION Double : INT VAR_INPUT x : INT; y : INT := 2; END_VAR VAR_OUTPUT Twice : INT; END_VAR
-          Double := x * y; Twice := Double * 2; END_FUNCTION"),
+        (
+            "GVL.st",
+            "VAR_GLOBAL CONSTANT N : INT := M + 1; M : INT := 3; END_VAR VAR_GLOBAL Count : INT := N; Lamp AT %QX0.1 : BOOL; END_VAR",
+        ),
+        (
+            "cell.st",
+            "PROGRAM Cell VAR_EXTERNAL Count : INT; END_VAR VAR a : ARRAY [1..N] OF INT; t : INT; END_VAR
+          Count := Count + GVL.N; a[N] := Double(x := Count, Twice => t); Lamp := TRUE; END_PROGRAM",
+        ),
+        (
+            "f.st",
+            "FUNCTION Double : INT VAR_INPUT x : INT; y : INT := 2; END_VAR VAR_OUTPUT Twice : INT; END_VAR
+          Double := x * y; Twice := Double * 2; END_FUNCTION",
+        ),
     ];
     let sources = files.map(|(name, text)| Source {
         name,
         bytes: text.as_bytes(),
     });
-    let compiled = standstill_st::compile(&sources, &Options::default()).unwrap_or_else(|report| panic!("{report}"));
+    let compiled =
+        standstill_st::compile(&sources, &Options::default()).unwrap_or_else(|report| panic!("{report}"));
     let mut run = Running::of(compiled);
     run.scan().unwrap();
-    assert_eq!((run.whole("Count"), run.whole("Cell.a[4]"), run.whole("t"), run.whole("%QX0.1")), (8, 16, 32, 1));
+    assert_eq!(
+        (
+            run.whole("Count"),
+            run.whole("Cell.a[4]"),
+            run.whole("t"),
+            run.whole("%QX0.1")
+        ),
+        (8, 16, 32, 1)
+    );
 }
 
 /// Covers: ST21, ST22
 #[test]
 fn temporary_variables_begin_anew_and_functions_have_no_state() {
-    let mut run = Running::new("
+    let mut run = Running::new(
+        "
 TYPE P : STRUCT A : INT := 4; B : ARRAY [0..1] OF INT; END_STRUCT; END_TYPE
 FUNCTION F : P
 VAR_INPUT x : INT; END_VAR
@@ -146,10 +177,14 @@ VAR_TEMP t : INT := 3; END_VAR
 t := t + 1;
 r := F(x := t, io := c);
 r := F(x := t, io := c);
-END_PROGRAM");
+END_PROGRAM",
+    );
     for scans in 1..=2 {
         run.scan().unwrap();
-        assert_eq!((run.whole("r.A"), run.whole("r.B[1]"), run.whole("t")), (5, 13, 4));
+        assert_eq!(
+            (run.whole("r.A"), run.whole("r.B[1]"), run.whole("t")),
+            (5, 13, 4)
+        );
         assert_eq!(run.whole("c"), 2 * scans);
     }
 }
@@ -173,8 +208,17 @@ END_CONFIGURATION");
     for _ in 0..5 {
         run.scan().unwrap();
     }
-    assert_eq!((run.whole("h"), run.whole("s.n"), run.whole("Order")), (42, 2, 1_211_121));
-    let tasks: Vec<_> = run.compiled.symbols.tasks().iter().map(|task| task.name.clone()).collect();
+    assert_eq!(
+        (run.whole("h"), run.whole("s.n"), run.whole("Order")),
+        (42, 2, 1_211_121)
+    );
+    let tasks: Vec<_> = run
+        .compiled
+        .symbols
+        .tasks()
+        .iter()
+        .map(|task| task.name.clone())
+        .collect();
     assert_eq!(tasks, ["Late", "Early"]);
 }
 
@@ -221,14 +265,14 @@ fn statements_do_what_they_say() {
 /// Covers: ST30
 #[test]
 fn for_ends_at_the_ends_of_the_range_of_its_type() {
-    let mut text = "PROGRAM P VAR from, to, i : SINT; by : INT; n : DINT; last : SINT; END_VAR
-        n := 0; FOR i := from TO to BY by DO n := n + 1; last := i; END_FOR; END_PROGRAM"
+    let mut text = "PROGRAM P VAR low, high, i : SINT; step : INT; n : DINT; last : SINT; END_VAR
+        n := 0; FOR i := low TO high BY step DO n := n + 1; last := i; END_FOR; END_PROGRAM"
         .to_owned();
     for known in [None, Some(1), Some(-1), Some(7), Some(-128), Some(300)] {
         if let Some(known) = known {
             text = format!(
-                "PROGRAM P VAR from, to, i : SINT; by : INT; n : DINT; last : SINT; END_VAR
-                 n := 0; FOR i := from TO to BY {known} DO n := n + 1; last := i; END_FOR; END_PROGRAM"
+                "PROGRAM P VAR low, high, i : SINT; step : INT; n : DINT; last : SINT; END_VAR
+                 n := 0; FOR i := low TO high BY {known} DO n := n + 1; last := i; END_FOR; END_PROGRAM"
             );
         }
         let mut run = Running::new(&text);
@@ -236,9 +280,9 @@ fn for_ends_at_the_ends_of_the_range_of_its_type() {
             for to in [-128_i128, -100, 0, 6, 127] {
                 for by in [1_i128, -1, 3, -3, 200, -255] {
                     let by = known.unwrap_or(by);
-                    run.set("from", from as u64);
-                    run.set("to", to as u64);
-                    run.set("by", by as u64);
+                    run.set("low", from as u64);
+                    run.set("high", to as u64);
+                    run.set("step", by as u64);
                     run.scan().unwrap();
                     let mut count = 0;
                     let mut at = from;
@@ -248,7 +292,11 @@ fn for_ends_at_the_ends_of_the_range_of_its_type() {
                     }
                     assert_eq!(run.whole("n"), count, "{from} {to} {by}");
                     let last = if (-128..=127).contains(&at) { at } else { at - by };
-                    assert_eq!(run.whole("i"), if count == 0 { from } else { last }, "{from} {to} {by}");
+                    assert_eq!(
+                        run.whole("i"),
+                        if count == 0 { from } else { last },
+                        "{from} {to} {by}"
+                    );
                 }
             }
         }
@@ -264,7 +312,13 @@ fn a_fault_names_its_place_and_value_and_writes_nothing_half() {
         ("x := 7;\na[x - 9] := 1;", FaultKind::Index, 6, 3, -2),
         ("x := 7;\ns := x;", FaultKind::Subrange, 6, 6, 7),
         ("x := 7;\nx := MUX(x, 1, 2);", FaultKind::Choice, 6, 6, 7),
-        ("x := 7;\nFOR i := 1 TO 5 BY z DO x := 1; END_FOR;", FaultKind::Step, 6, 20, 0),
+        (
+            "x := 7;\nFOR i := 1 TO 5 BY z DO x := 1; END_FOR;",
+            FaultKind::Step,
+            6,
+            20,
+            0,
+        ),
         ("x := 7;\nx := x MOD z;", FaultKind::DivisionByZero, 6, 8, 7),
     ] {
         let text = format!(
@@ -273,7 +327,11 @@ fn a_fault_names_its_place_and_value_and_writes_nothing_half() {
         let mut run = Running::new(&text);
         assert!(run.scan().is_err(), "{statements}");
         let (place, found) = run.fault();
-        assert_eq!((place.kind, place.position.line, place.position.column), (kind, line, column), "{statements}");
+        assert_eq!(
+            (place.kind, place.position.line, place.position.column),
+            (kind, line, column),
+            "{statements}"
+        );
         assert_eq!((found, place.file.as_str()), (value, "prog.st"), "{statements}");
         assert_eq!((run.whole("x"), run.whole("s")), (7, 0), "{statements}");
     }
@@ -282,13 +340,18 @@ fn a_fault_names_its_place_and_value_and_writes_nothing_half() {
 /// Covers: ST36
 #[test]
 fn an_endless_loop_uses_up_its_fuel_and_is_named() {
-    let mut run = Running::new("PROGRAM P VAR i : INT; END_VAR\nFOR i := 1 TO 3 DO ; END_FOR;\n  WHILE TRUE DO i := 0; END_WHILE;\nEND_PROGRAM");
+    let mut run = Running::new(
+        "PROGRAM P VAR i : INT; END_VAR\nFOR i := 1 TO 3 DO ; END_FOR;\n  WHILE TRUE DO i := 0; END_WHILE;\nEND_PROGRAM",
+    );
     assert!(matches!(run.scan(), Err(standstill_guest::Fault::Fuel { .. })));
     let bits = run.whole("i");
     assert_eq!(bits, 0);
     let site = run.loop_site();
     let place = run.compiled.symbols.place(site).unwrap();
-    assert_eq!((place.kind, place.position.line, place.position.column), (FaultKind::Loop, 3, 3));
+    assert_eq!(
+        (place.kind, place.position.line, place.position.column),
+        (FaultKind::Loop, 3, 3)
+    );
 }
 
 /// Covers: ST36
@@ -301,9 +364,19 @@ fn the_least_number_divided_by_minus_one_wraps_and_an_index_of_any_width_is_chec
     );
     assert_eq!(run.whole("q"), -(1 << 31));
     assert_eq!(run.whole("k"), -(1 << 63));
-    assert_eq!((run.whole("a[1]"), run.whole("a[0]"), run.whole("a[-2]")), (5, 6, 7));
-    for (ty, value) in [("UDINT", "4294967295"), ("ULINT", "18446744073709551615"), ("LINT", "-3"), ("DINT", "2")] {
-        let text = format!("PROGRAM P VAR i : {ty} := {value}; a : ARRAY [-2..1] OF INT; END_VAR a[i] := 1; END_PROGRAM");
+    assert_eq!(
+        (run.whole("a[1]"), run.whole("a[0]"), run.whole("a[-2]")),
+        (5, 6, 7)
+    );
+    for (ty, value) in [
+        ("UDINT", "4294967295"),
+        ("ULINT", "18446744073709551615"),
+        ("LINT", "-3"),
+        ("DINT", "2"),
+    ] {
+        let text = format!(
+            "PROGRAM P VAR i : {ty} := {value}; a : ARRAY [-2..1] OF INT; END_VAR a[i] := 1; END_PROGRAM"
+        );
         assert!(Running::new(&text).scan().is_err(), "{ty}");
     }
 }
@@ -330,8 +403,24 @@ END_PROGRAM");
     run.scan().unwrap();
     assert_eq!((run.whole("Q"), run.whole("s.Q")), (0, 1));
     run.scan().unwrap();
-    assert_eq!((run.whole("Q"), run.whole("n.CV"), run.whole("c.CV"), run.whole("l.CV")), (1, 1, 1, 1));
-    assert_eq!((run.whole("c.QU"), run.whole("c.QD"), run.whole("dir"), run.whole("t.Result")), (1, 0, 1, 0));
+    assert_eq!(
+        (
+            run.whole("Q"),
+            run.whole("n.CV"),
+            run.whole("c.CV"),
+            run.whole("l.CV")
+        ),
+        (1, 1, 1, 1)
+    );
+    assert_eq!(
+        (
+            run.whole("c.QU"),
+            run.whole("c.QD"),
+            run.whole("dir"),
+            run.whole("t.Result")
+        ),
+        (1, 0, 1, 0)
+    );
 }
 
 /// Every block of the registry is called with all of its pins: what imports it is valid, and it answers.
@@ -344,7 +433,11 @@ fn every_block_of_the_registry_can_be_called() {
         let mut arguments = Vec::new();
         for (place, pin) in info.pins().enumerate() {
             let reference = matches!(pin.ty, PinType::Axis(_) | PinType::Table(_));
-            let sign = if pin.direction == Direction::Output { "=>" } else { ":=" };
+            let sign = if pin.direction == Direction::Output {
+                "=>"
+            } else {
+                ":="
+            };
             variables += &format!("v{place} : {};\n", pin.ty.iec_name());
             if pin.direction != Direction::Input || reference {
                 arguments.push(format!("{} {sign} v{place}", pin.name));
@@ -358,7 +451,8 @@ fn every_block_of_the_registry_can_be_called() {
 /// Covers: ST12
 #[test]
 fn a_reference_begins_as_the_axis_of_its_name_or_the_one_it_is_bound_to() {
-    let text = "PROGRAM Cell VAR X, Feeder, Other : AXIS_REF; All : ARRAY [1..2] OF AXIS_REF; END_VAR END_PROGRAM";
+    let text =
+        "PROGRAM Cell VAR X, Feeder, Other : AXIS_REF; All : ARRAY [1..2] OF AXIS_REF; END_VAR END_PROGRAM";
     let source = Source {
         name: "cell.st",
         bytes: text.as_bytes(),
@@ -369,13 +463,19 @@ fn a_reference_begins_as_the_axis_of_its_name_or_the_one_it_is_bound_to() {
         ..Options::default()
     };
     let run = Running::of(standstill_st::compile(&[source], &options).unwrap());
-    let numbers = ["X", "Feeder", "Other", "All[1]", "All[2]"].map(|name| run.whole(&format!("{name}.Number")));
+    let numbers =
+        ["X", "Feeder", "Other", "All[1]", "All[2]"].map(|name| run.whole(&format!("{name}.Number")));
     assert_eq!(numbers, [2, 7, 0, 0, 9]);
     let wrong = Options {
         bindings: vec![("Feedr".to_owned(), 1)],
         ..Options::default()
     };
-    assert!(standstill_st::compile(&[source], &wrong).unwrap_err().render().contains("Feedr"));
+    assert!(
+        standstill_st::compile(&[source], &wrong)
+            .unwrap_err()
+            .render()
+            .contains("Feedr")
+    );
 }
 
 /// Covers: ST43
@@ -385,13 +485,26 @@ fn every_variable_has_a_path() {
         "FUNCTION_BLOCK U VAR_INPUT A : BOOL; END_VAR VAR T : TON; END_VAR T(IN := A, PT := T#1s); END_FUNCTION_BLOCK
          PROGRAM Cell VAR Units : ARRAY [1..2] OF U; END_VAR Units[1](A := TRUE); END_PROGRAM",
     );
-    let paths: Vec<_> = compiled.symbols.leaves(1000).into_iter().map(|symbol| symbol.path).collect();
+    let paths: Vec<_> = compiled
+        .symbols
+        .leaves(1000)
+        .into_iter()
+        .map(|symbol| symbol.path)
+        .collect();
     for path in ["Cell.Units[1].A", "Cell.Units[2].T.ET"] {
         assert!(paths.iter().any(|it| it == path), "{path}: {paths:?}");
         assert_eq!(compiled.symbols.find(&path.to_lowercase()).unwrap().path, path);
     }
     assert_eq!(compiled.symbols.block_of("cell.units[1].t"), Some("TON"));
-    for path in ["Cell.Units[3].A", "Cell.Units", "nothing", "Cell..A", "", "Cell.Units[", "Cell.Units[1,2].A"] {
+    for path in [
+        "Cell.Units[3].A",
+        "Cell.Units",
+        "nothing",
+        "Cell..A",
+        "",
+        "Cell.Units[",
+        "Cell.Units[1,2].A",
+    ] {
         assert_eq!(compiled.symbols.find(path), None, "{path}");
     }
 }
@@ -411,7 +524,11 @@ fn circles_are_shown() {
         ),
     ] {
         let told = wrong(text);
-        assert!(told.iter().any(|(code, message)| *code == "circle" && message.contains(circle)), "{text}: {told:?}");
+        assert!(
+            told.iter()
+                .any(|(code, message)| *code == "circle" && message.contains(circle)),
+            "{text}: {told:?}"
+        );
     }
     for text in [
         "FUNCTION_BLOCK A VAR b : A; END_VAR END_FUNCTION_BLOCK",
@@ -433,16 +550,29 @@ fn many_small_functions_and_scattered_values_make_a_module_that_runs() {
         text += &format!("FUNCTION F{n} : INT F{n} := {n}; END_FUNCTION\n");
         body += &format!("s := s + F{n}();\n");
     }
-    let globals: String = (0..2000).map(|n| format!("g{n} : LREAL := 1.5; h{n} : ARRAY [0..40] OF BYTE;\n")).collect();
-    let text = format!("{text} VAR_GLOBAL {globals} END_VAR PROGRAM P VAR s : INT; END_VAR {body} END_PROGRAM");
+    let globals: String = (0..2000)
+        .map(|n| format!("g{n} : LREAL := 1.5; h{n} : ARRAY [0..40] OF BYTE;\n"))
+        .collect();
+    let text =
+        format!("{text} VAR_GLOBAL {globals} END_VAR PROGRAM P VAR s : INT; END_VAR {body} END_PROGRAM");
     let run = run(&text);
     assert_eq!((run.whole("s"), run.real("g1999")), (19_900, 1.5));
 }
 
 #[test]
 fn what_cannot_run_is_told() {
-    for text in ["", "VAR_GLOBAL x : INT; END_VAR", "PROGRAM A END_PROGRAM PROGRAM B END_PROGRAM"] {
+    for text in [
+        "",
+        "VAR_GLOBAL x : INT; END_VAR",
+        "PROGRAM A END_PROGRAM PROGRAM B END_PROGRAM",
+    ] {
         let report = compile(text).unwrap_err();
-        assert!(report.diagnostics().iter().any(|it| it.code.name() == "no_program"), "{text}");
+        assert!(
+            report
+                .diagnostics()
+                .iter()
+                .any(|it| it.code.name() == "no_program"),
+            "{text}"
+        );
     }
 }

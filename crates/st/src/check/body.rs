@@ -24,7 +24,9 @@ impl Checker<'_> {
         let mut bodies = Vec::new();
         for index in 0..self.units.len() {
             let id = UnitId(index as u32);
-            let Some(syntax) = self.unit(id).syntax else { continue };
+            let Some(syntax) = self.unit(id).syntax else {
+                continue;
+            };
             self.body = BodyState::default();
             let statements = self.in_scope(Some(id), |checker| checker.statements(&syntax.body));
             self.check_kept();
@@ -63,15 +65,32 @@ impl Checker<'_> {
     /// An in_out that no call of an instance gives leads nowhere.
     pub(super) fn check_kept(&mut self) {
         for (instance, place, span, unit) in std::mem::take(&mut self.body.kept) {
-            let name = self.unit(unit).members.list.get(place).map_or("", |member| &member.name).to_owned();
-            let given = self.body.bound.get(&instance).is_some_and(|given| given.contains(&place));
+            let name = self
+                .unit(unit)
+                .members
+                .list
+                .get(place)
+                .map_or("", |member| &member.name)
+                .to_owned();
+            let given = self
+                .body
+                .bound
+                .get(&instance)
+                .is_some_and(|given| given.contains(&place));
             let message = format!("the call does not give `{name}`");
             if given {
                 let doubt = Diagnostic::warning(Code::Portability, span, message);
-                self.tell(doubt.help("it is the one of the call before; other compilers want it at every call"));
+                self.tell(
+                    doubt.help("it is the one of the call before; other compilers want it at every call"),
+                );
             } else {
                 let help = format!("write {name} := and a variable");
-                self.error(Code::MissingArgument, span, format!("{message}, and no other call does"), &help);
+                self.error(
+                    Code::MissingArgument,
+                    span,
+                    format!("{message}, and no other call does"),
+                    &help,
+                );
             }
         }
     }
@@ -79,7 +98,11 @@ impl Checker<'_> {
     /// Remembers who calls whom.
     pub(super) fn note_call(&mut self, callee: UnitId, span: Span) {
         if let Some(caller) = self.scope {
-            self.edges.entry(caller).or_default().entry(callee).or_insert(span);
+            self.edges
+                .entry(caller)
+                .or_default()
+                .entry(callee)
+                .or_insert(span);
         }
     }
 }

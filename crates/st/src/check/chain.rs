@@ -15,11 +15,17 @@ impl<'a> Checker<'a> {
         expected: Option<TypeId>,
         span: Span,
     ) -> Expr {
-        let compares = rest.first().is_some_and(|(operator, ..)| is_comparison(*operator));
+        let compares = rest
+            .first()
+            .is_some_and(|(operator, ..)| is_comparison(*operator));
         let wanted = if compares { None } else { expected };
         let mut left = self.expression(first, wanted);
         for (operator, at, right) in rest {
-            let hint = if self.types.is_enumeration(left.ty) { Some(left.ty) } else { wanted };
+            let hint = if self.types.is_enumeration(left.ty) {
+                Some(left.ty)
+            } else {
+                wanted
+            };
             let right = self.expression(right, hint);
             left = self.operate(left, *operator, right, *at, expected);
         }
@@ -72,7 +78,11 @@ impl<'a> Checker<'a> {
         if left.is_wrong() || right.is_wrong() {
             return None;
         }
-        let plain = |ty| self.types.elementary(ty).filter(|_| !self.types.is_enumeration(ty));
+        let plain = |ty| {
+            self.types
+                .elementary(ty)
+                .filter(|_| !self.types.is_enumeration(ty))
+        };
         let common = match (plain(left.ty), plain(right.ty)) {
             (Some(one), Some(other)) => one.common(other),
             _ => None,
@@ -83,14 +93,22 @@ impl<'a> Checker<'a> {
         };
         let ty = Types::of(common);
         // A chain that goes on is converted by its next step.
-        let left = if matches!(left.kind, Kind::Chain(..)) { left } else { self.convert(left, ty) };
+        let left = if matches!(left.kind, Kind::Chain(..)) {
+            left
+        } else {
+            self.convert(left, ty)
+        };
         let right = self.convert(right, ty);
         Some((left, right, common))
     }
 
     /// A literal without a type beside a value of type `other`.
     fn meet(&mut self, literal: Expr, other: TypeId, expected: Option<Elementary>) -> Expr {
-        let Some(of) = self.types.elementary(other).filter(|_| !self.types.is_enumeration(other)) else {
+        let Some(of) = self
+            .types
+            .elementary(other)
+            .filter(|_| !self.types.is_enumeration(other))
+        else {
             if self.types.is_enumeration(other) {
                 return self.convert(literal, other);
             }
@@ -102,7 +120,9 @@ impl<'a> Checker<'a> {
             }
             (Kind::Real(_), _) if of.is_real() => self.convert(literal, Types::of(of)),
             (Kind::Real(_), _) => {
-                let real = expected.filter(|it| it.is_real() && of.widens_to(*it)).unwrap_or(Elementary::Lreal);
+                let real = expected
+                    .filter(|it| it.is_real() && of.widens_to(*it))
+                    .unwrap_or(Elementary::Lreal);
                 self.convert(literal, Types::of(real))
             }
             _ if matches!(of.class(), Class::Bool | Class::Bits) => self.convert(literal, Types::of(of)),
@@ -117,8 +137,13 @@ impl<'a> Checker<'a> {
         let names = (self.types.elementary(left.ty), self.types.elementary(right.ty));
         wrong = match names {
             (Some(from), Some(to)) if one != other => {
-                let (from, to) = (self.conversion_name(left.ty, from), self.conversion_name(right.ty, to));
-                wrong.help(format!("convert one of them: {from}_TO_{to}(..) or {to}_TO_{from}(..)"))
+                let (from, to) = (
+                    self.conversion_name(left.ty, from),
+                    self.conversion_name(right.ty, to),
+                );
+                wrong.help(format!(
+                    "convert one of them: {from}_TO_{to}(..) or {to}_TO_{from}(..)"
+                ))
             }
             (Some(_), Some(_)) => wrong,
             _ => wrong.help("structures, arrays and blocks are not computed with: use their members"),
@@ -148,7 +173,11 @@ impl<'a> Checker<'a> {
                 return Expr::wrong(span);
             }
         }
-        let hint = expected.filter(|ty| self.types.elementary(*ty).is_some_and(|it| it.class() == Class::Bits));
+        let hint = expected.filter(|ty| {
+            self.types
+                .elementary(*ty)
+                .is_some_and(|it| it.class() == Class::Bits)
+        });
         let (left, right) = match hint {
             Some(ty) if left.ty == ANY_INTEGER && right.ty == ANY_INTEGER => {
                 (self.convert(left, ty), self.convert(right, ty))
@@ -156,7 +185,12 @@ impl<'a> Checker<'a> {
             _ => (left, right),
         };
         if left.ty == ANY_INTEGER && right.ty == ANY_INTEGER {
-            self.error(Code::WrongType, span, "these numbers have no type that has bits", "write WORD#16#FF");
+            self.error(
+                Code::WrongType,
+                span,
+                "these numbers have no type that has bits",
+                "write WORD#16#FF",
+            );
             return Expr::wrong(span);
         }
         let Some((left, right, ty)) = self.together(left, operator, right, at, None) else {
@@ -196,7 +230,11 @@ impl<'a> Checker<'a> {
         };
         let same = matches!(operation, Operation::Equal | Operation::NotEqual);
         let (left, right, ty) = if self.types.is_enumeration(left.ty) || self.types.is_enumeration(right.ty) {
-            let of = if self.types.is_enumeration(left.ty) { left.ty } else { right.ty };
+            let of = if self.types.is_enumeration(left.ty) {
+                left.ty
+            } else {
+                right.ty
+            };
             let (left, right) = (self.convert(left, of), self.convert(right, of));
             if left.is_wrong() || right.is_wrong() {
                 return Expr::wrong(span);
@@ -204,7 +242,12 @@ impl<'a> Checker<'a> {
             if !same {
                 let message = "elements of an enumeration are equal or not; they have no order";
                 let name = self.type_name(of);
-                self.error(Code::WrongType, at, message, &format!("compare numbers: {name}_TO_INT(..)"));
+                self.error(
+                    Code::WrongType,
+                    at,
+                    message,
+                    &format!("compare numbers: {name}_TO_INT(..)"),
+                );
                 return Expr::wrong(span);
             }
             let base = self.types.elementary(of).unwrap_or(Elementary::Int);
@@ -256,10 +299,19 @@ impl<'a> Checker<'a> {
             None => is_any(value),
         };
         let any = is_any(&left) && is_any(&right);
-        let real = self.types.elementary(left.ty) == Some(Elementary::Real) || any && expected == Some(Elementary::Real);
-        let ty = if real && narrow(&right, self) { Elementary::Real } else { Elementary::Lreal };
+        let real = self.types.elementary(left.ty) == Some(Elementary::Real)
+            || any && expected == Some(Elementary::Real);
+        let ty = if real && narrow(&right, self) {
+            Elementary::Real
+        } else {
+            Elementary::Lreal
+        };
         let of = Types::of(ty);
-        let left = if matches!(left.kind, Kind::Chain(..)) && left.ty == of { left } else { self.convert(left, of) };
+        let left = if matches!(left.kind, Kind::Chain(..)) && left.ty == of {
+            left
+        } else {
+            self.convert(left, of)
+        };
         let right = self.convert(right, of);
         if left.is_wrong() || right.is_wrong() {
             return Expr::wrong(span);
@@ -302,7 +354,10 @@ impl<'a> Checker<'a> {
         if !good {
             let message = format!("`{}` does not go with {}", operator.text(), ty.name());
             let help = match ty.class() {
-                Class::Bits => format!("convert it to a number: {0}_TO_UDINT(..), or the type you need", ty.name()),
+                Class::Bits => format!(
+                    "convert it to a number: {0}_TO_UDINT(..), or the type you need",
+                    ty.name()
+                ),
                 Class::Time => "multiply a TIME with a number, or divide it by one".to_owned(),
                 Class::Real => "MOD is for whole numbers; for a rest: x - y * FLOOR(x / y)".to_owned(),
                 _ => "BOOL is no number: use IF, SEL or BOOL_TO_INT(..)".to_owned(),
@@ -314,7 +369,9 @@ impl<'a> Checker<'a> {
             (Some(Constant::Real(one)), Some(Constant::Real(other))) => {
                 self.real(reals(one, operation, other), Types::of(ty), span)
             }
-            (one, Some(Constant::Integer(0))) if matches!(operation, Operation::Divide | Operation::Modulo) => {
+            (one, Some(Constant::Integer(0)))
+                if matches!(operation, Operation::Divide | Operation::Modulo) =>
+            {
                 let _ = one;
                 self.error(Code::OutOfRange, right.span, "this divides by zero", "");
                 Expr::wrong(span)
@@ -337,7 +394,10 @@ impl<'a> Checker<'a> {
                 return Expr::wrong(span);
             }
             if operation == Operation::Divide && one % other != 0 {
-                let message = format!("whole numbers are divided without a rest: this is {}", one / other);
+                let message = format!(
+                    "whole numbers are divided without a rest: this is {}",
+                    one / other
+                );
                 let doubt = Diagnostic::warning(Code::Doubtful, at, message);
                 self.tell(doubt.help(format!("for a fraction write {one}.0 / {other}.0")));
             }
@@ -376,7 +436,12 @@ impl<'a> Checker<'a> {
         if !time || !matches!(operation, Operation::Multiply | Operation::Divide) {
             let behind = class(self, right) == Some(Class::Time) && operation == Operation::Multiply;
             if behind && !time {
-                self.error(Code::WrongType, at, "the TIME stands before the number it is multiplied by", "write T#1s * n");
+                self.error(
+                    Code::WrongType,
+                    at,
+                    "the TIME stands before the number it is multiplied by",
+                    "write T#1s * n",
+                );
                 return Some(Expr::wrong(span));
             }
             return None;
@@ -388,10 +453,16 @@ impl<'a> Checker<'a> {
             ANY_INTEGER => self.convert(right.clone(), Types::of(Elementary::Lint)),
             _ => self.settle(right.clone()),
         };
-        let number = self.types.elementary(right.ty).filter(|it| it.is_integer() || it.is_real());
+        let number = self
+            .types
+            .elementary(right.ty)
+            .filter(|it| it.is_integer() || it.is_real());
         let Some(number) = number.filter(|_| !self.types.is_enumeration(right.ty)) else {
             if !right.is_wrong() {
-                let message = format!("a TIME is scaled by a number, not by {}", self.type_name(right.ty));
+                let message = format!(
+                    "a TIME is scaled by a number, not by {}",
+                    self.type_name(right.ty)
+                );
                 self.error(Code::WrongType, at, message, "");
             }
             return Some(Expr::wrong(span));
@@ -423,7 +494,15 @@ impl<'a> Checker<'a> {
     }
 
     /// Adds a step to the chain on the left, or begins one.
-    fn step(&mut self, left: Expr, operation: Operation, right: Expr, ty: Elementary, result: TypeId, at: Span) -> Expr {
+    fn step(
+        &mut self,
+        left: Expr,
+        operation: Operation,
+        right: Expr,
+        ty: Elementary,
+        result: TypeId,
+        at: Span,
+    ) -> Expr {
         let span = left.span.to(right.span);
         let before = self.types.elementary(left.ty).unwrap_or(ty);
         let mut step = Step {
@@ -444,7 +523,11 @@ impl<'a> Checker<'a> {
                 Kind::Chain(Box::new(first), vec![step])
             }
         };
-        Expr { kind, ty: result, span }
+        Expr {
+            kind,
+            ty: result,
+            span,
+        }
     }
 }
 

@@ -45,7 +45,11 @@ impl<'a> Checker<'a> {
         let first = configurations.next();
         if let (Some(first), Some(second)) = (first, configurations.next()) {
             let wrong = Diagnostic::error(Code::NoProgram, second.name.span, "there are two CONFIGURATIONs");
-            self.tell(wrong.related(first.name.span, "the other one").help("one project has one"));
+            self.tell(
+                wrong
+                    .related(first.name.span, "the other one")
+                    .help("one project has one"),
+            );
         }
         match (&self.options.program, first) {
             (None, Some(configuration)) => self.configured(configuration),
@@ -79,9 +83,17 @@ impl<'a> Checker<'a> {
         let found = self.unit_names.get(&name.to_ascii_uppercase()).copied();
         let found = found.filter(|unit| self.unit(*unit).kind == UnitKind::Program);
         let Some(unit) = found else {
-            let names: Vec<_> = self.programs().iter().map(|unit| self.unit(*unit).name.clone()).collect();
+            let names: Vec<_> = self
+                .programs()
+                .iter()
+                .map(|unit| self.unit(*unit).name.clone())
+                .collect();
             let message = format!("there is no PROGRAM {}", quoted(name));
-            let help = if names.is_empty() { "the sources have none".to_owned() } else { format!("there is {}", names.join(", ")) };
+            let help = if names.is_empty() {
+                "the sources have none".to_owned()
+            } else {
+                format!("there is {}", names.join(", "))
+            };
             self.error(Code::NoProgram, Span::default(), message, &help);
             return (Vec::new(), Vec::new());
         };
@@ -94,7 +106,12 @@ impl<'a> Checker<'a> {
             [] if self.options.library => (Vec::new(), Vec::new()),
             [] => {
                 let message = "there is no PROGRAM to run";
-                self.error(Code::NoProgram, Span::default(), message, "write PROGRAM Name .. END_PROGRAM");
+                self.error(
+                    Code::NoProgram,
+                    Span::default(),
+                    message,
+                    "write PROGRAM Name .. END_PROGRAM",
+                );
                 (Vec::new(), Vec::new())
             }
             [one] => {
@@ -171,7 +188,12 @@ impl<'a> Checker<'a> {
         }
         if configuration.programs.is_empty() && !self.options.library {
             let message = "the CONFIGURATION runs no PROGRAM";
-            self.error(Code::NoProgram, configuration.name.span, message, "write PROGRAM Name WITH Task : Type;");
+            self.error(
+                Code::NoProgram,
+                configuration.name.span,
+                message,
+                "write PROGRAM Name WITH Task : Type;",
+            );
         }
         (tasks, instances)
     }
@@ -181,7 +203,10 @@ impl<'a> Checker<'a> {
         if value.is_wrong() {
             return None;
         }
-        let time = self.types.elementary(value.ty).is_some_and(|it| it.class() == Class::Time);
+        let time = self
+            .types
+            .elementary(value.ty)
+            .is_some_and(|it| it.class() == Class::Time);
         match value.constant() {
             Some(Constant::Integer(ns)) if time && ns > 0 => i64::try_from(ns).ok(),
             _ => {
@@ -229,9 +254,17 @@ impl<'a> Checker<'a> {
             let ty = self.block_type(instance.unit);
             let place = plain(Base::Memory, instance.address, ty);
             let call = self.in_scope(None, |checker| {
-                checker.block_call(place, instance.unit, instance.arguments, instance.span, instance.span)
+                checker.block_call(
+                    place,
+                    instance.unit,
+                    instance.arguments,
+                    instance.span,
+                    instance.span,
+                )
             });
-            let Some(task) = tasks.get_mut(instance.task) else { continue };
+            let Some(task) = tasks.get_mut(instance.task) else {
+                continue;
+            };
             task.statements.extend(call.map(|kind| Stmt {
                 kind,
                 span: instance.span,

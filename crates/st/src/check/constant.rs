@@ -15,7 +15,8 @@ impl Checker<'_> {
         match entry.state {
             State::Done => {}
             State::Busy => {
-                let wrong = Diagnostic::error(Code::Circle, span, format!("the constant `{key}` needs itself"));
+                let wrong =
+                    Diagnostic::error(Code::Circle, span, format!("the constant `{key}` needs itself"));
                 self.tell(wrong.help("give one of the constants in the circle a number"));
                 return Some(Expr::wrong(span));
             }
@@ -26,7 +27,9 @@ impl Checker<'_> {
                     checker.in_scope(unit, |checker| {
                         let (ty, _) = checker.spec(spec);
                         checker.types.elementary(ty)?;
-                        let Some(Initial::Value(initial)) = initial else { return None };
+                        let Some(Initial::Value(initial)) = initial else {
+                            return None;
+                        };
                         let value = checker.expression(initial, Some(ty));
                         let value = checker.convert(value, ty);
                         Some((ty, value.constant()?))

@@ -27,13 +27,13 @@ impl Checker<'_> {
             return Expr::wrong(value.span);
         }
         if let Type::Subrange { base, low, high, .. } = *self.types.get(to) {
-            return self.into_subrange(value, base, low, high);
+            return self.subrange_value(value, base, low, high);
         }
         if value.ty == to {
             return value;
         }
         if self.types.is_enumeration(to) {
-            return self.into_enumeration(value, to);
+            return self.enumeration_value(value, to);
         }
         let Some(target) = self.types.elementary(to) else {
             return self.refuse(&value, to);
@@ -42,7 +42,10 @@ impl Checker<'_> {
             (ANY_INTEGER, Kind::Integer(number)) => self.literal(*number, target, value.span),
             (ANY_REAL, Kind::Real(number)) => self.real_literal(*number, target, value.span),
             _ => {
-                let from = self.types.elementary(value.ty).filter(|_| !self.types.is_enumeration(value.ty));
+                let from = self
+                    .types
+                    .elementary(value.ty)
+                    .filter(|_| !self.types.is_enumeration(value.ty));
                 match from {
                     Some(from) if from.widens_to(target) => widened(value, from, target),
                     _ => self.refuse(&value, to),
@@ -51,7 +54,7 @@ impl Checker<'_> {
         }
     }
 
-    fn into_subrange(&mut self, value: Expr, base: Elementary, low: i128, high: i128) -> Expr {
+    fn subrange_value(&mut self, value: Expr, base: Elementary, low: i128, high: i128) -> Expr {
         let value = self.convert(value, Types::of(base));
         let span = value.span;
         match value.kind {
@@ -70,7 +73,7 @@ impl Checker<'_> {
         }
     }
 
-    fn into_enumeration(&mut self, value: Expr, to: TypeId) -> Expr {
+    fn enumeration_value(&mut self, value: Expr, to: TypeId) -> Expr {
         if let Type::Enumeration(of) = self.types.get(to)
             && of.library
             && let (ANY_INTEGER, Kind::Integer(number)) = (value.ty, &value.kind)
@@ -86,13 +89,23 @@ impl Checker<'_> {
             Class::Real => Kind::Real(rounded(number as f64, to)),
             Class::Time => {
                 let message = format!("{} is a duration, and {number} is a number", to.name());
-                self.error(Code::WrongType, span, message, &format!("write T#{}ms, or another unit", number.unsigned_abs()));
+                self.error(
+                    Code::WrongType,
+                    span,
+                    message,
+                    &format!("write T#{}ms, or another unit", number.unsigned_abs()),
+                );
                 return Expr::wrong(span);
             }
             _ if !to.holds(number) => {
                 let (low, high) = to.range();
                 let message = format!("{} does not hold {number}", to.name());
-                self.error(Code::OutOfRange, span, message, &format!("it holds {low} to {high}"));
+                self.error(
+                    Code::OutOfRange,
+                    span,
+                    message,
+                    &format!("it holds {low} to {high}"),
+                );
                 return Expr::wrong(span);
             }
             _ => Kind::Integer(number),
@@ -107,14 +120,23 @@ impl Checker<'_> {
     fn real_literal(&mut self, number: f64, to: Elementary, span: Span) -> Expr {
         if !to.is_real() {
             let message = format!("{} does not hold {number:?}, a number with a point", to.name());
-            let help = if to.is_integer() { "write a whole number, or convert with ROUND and LREAL_TO_.." } else { "" };
+            let help = if to.is_integer() {
+                "write a whole number, or convert with ROUND and LREAL_TO_.."
+            } else {
+                ""
+            };
             self.error(Code::Conversion, span, message, help);
             return Expr::wrong(span);
         }
         let kept = rounded(number, to);
         if kept.is_infinite() && number.is_finite() {
             let message = format!("{} does not hold {number:?}", to.name());
-            self.error(Code::OutOfRange, span, message, "its largest number is about 3.4E38: use LREAL");
+            self.error(
+                Code::OutOfRange,
+                span,
+                message,
+                "its largest number is about 3.4E38: use LREAL",
+            );
             return Expr::wrong(span);
         }
         Expr {
@@ -139,7 +161,11 @@ impl Checker<'_> {
         let mut wrong = Diagnostic::error(Code::Conversion, value.span, message);
         let from = self.types.elementary(value.ty);
         if let (Some(from), Some(target)) = (from, self.types.elementary(to)) {
-            let function = format!("{}_TO_{}", self.conversion_name(value.ty, from), self.conversion_name(to, target));
+            let function = format!(
+                "{}_TO_{}",
+                self.conversion_name(value.ty, from),
+                self.conversion_name(to, target)
+            );
             wrong = wrong.help(match target.class() {
                 Class::Bool => "compare it: x <> 0".to_owned(),
                 _ if value.ty == ANY_INTEGER => format!("name an element of {to_name}"),
@@ -155,7 +181,11 @@ impl Checker<'_> {
 
 /// A number as a type of floating point keeps it.
 pub(super) fn rounded(number: f64, to: Elementary) -> f64 {
-    if to == Elementary::Real { f64::from(number as f32) } else { number }
+    if to == Elementary::Real {
+        f64::from(number as f32)
+    } else {
+        number
+    }
 }
 
 /// A value as one of a type that holds all of its values.

@@ -10,16 +10,25 @@ use std::collections::BTreeMap;
 
 /// Types of the language that are refused, and what to use.
 pub(super) const REFUSED_TYPES: &[(&str, &str)] = &[
-    ("STRING", "use a number or an enumeration; strings are not supported yet"),
+    (
+        "STRING",
+        "use a number or an enumeration; strings are not supported yet",
+    ),
     ("WSTRING", "use a number or an enumeration"),
     ("CHAR", "use BYTE"),
     ("WCHAR", "use WORD"),
     ("DATE", "use TIME, which counts from the start of the run: TIME()"),
     ("LDATE", "use LTIME"),
-    ("TIME_OF_DAY", "use TIME, which counts from the start of the run: TIME()"),
+    (
+        "TIME_OF_DAY",
+        "use TIME, which counts from the start of the run: TIME()",
+    ),
     ("TOD", "use TIME, which counts from the start of the run: TIME()"),
     ("LTOD", "use LTIME"),
-    ("DATE_AND_TIME", "use TIME, which counts from the start of the run: TIME()"),
+    (
+        "DATE_AND_TIME",
+        "use TIME, which counts from the start of the run: TIME()",
+    ),
     ("DT", "use TIME, which counts from the start of the run: TIME()"),
     ("LDT", "use LTIME"),
     ("ANY", "write a function for each type"),
@@ -49,22 +58,21 @@ impl<'a> Checker<'a> {
                     self.new_top_name(&unit.name, &mut taken);
                     self.declare_unit(unit);
                 }
-                Item::Globals(section) => self.declare_globals(section, false),
+                Item::Globals(section) => self.declare_globals(section),
                 Item::Configuration(configuration) => {
                     for section in &configuration.globals {
-                        self.declare_globals(section, true);
+                        self.declare_globals(section);
                     }
                 }
             }
         }
-        for (key, ty) in &self.library_types {
+        for ty in self.library_types.values() {
             if let Type::Enumeration(of) = self.types.get(*ty) {
                 for (name, _) in &of.elements {
                     let owners = self.elements.entry(name.to_ascii_uppercase()).or_default();
                     owners.push(ElementOf::Known(*ty));
                 }
             }
-            let _ = key;
         }
     }
 
@@ -82,7 +90,12 @@ impl<'a> Checker<'a> {
             || OPERATORS.iter().any(|(name, _)| *name == key);
         if library || function {
             let message = format!("`{}` has that name in the library", name.text);
-            self.error(Code::DuplicateName, name.span, message, "choose another name; the library needs no declaration");
+            self.error(
+                Code::DuplicateName,
+                name.span,
+                message,
+                "choose another name; the library needs no declaration",
+            );
         }
         taken.insert(key, name.span);
     }
@@ -90,7 +103,11 @@ impl<'a> Checker<'a> {
     pub(super) fn twice(&mut self, name: &Ident, other: Span) {
         let message = format!("the name `{}` is given twice", name.text);
         let wrong = Diagnostic::error(Code::DuplicateName, name.span, message);
-        self.tell(wrong.related(other, "here it is given first").help("names are compared without regard to case"));
+        self.tell(
+            wrong
+                .related(other, "here it is given first")
+                .help("names are compared without regard to case"),
+        );
     }
 
     /// Tells if a name is that of an elementary type, or is written in a way other compilers refuse.
@@ -101,7 +118,10 @@ impl<'a> Checker<'a> {
             self.error(Code::BadName, name.span, message, "choose another name");
         }
         if key.starts_with('_') || key.ends_with('_') || key.contains("__") {
-            let message = format!("`{}` begins or ends with `_`, or has two of them in a row", name.text);
+            let message = format!(
+                "`{}` begins or ends with `_`, or has two of them in a row",
+                name.text
+            );
             let doubt = Diagnostic::warning(Code::Portability, name.span, message);
             self.tell(doubt.help("the standard and some compilers refuse such names"));
         }
@@ -166,7 +186,7 @@ impl<'a> Checker<'a> {
         });
     }
 
-    fn declare_globals(&mut self, section: &'a Section, configured: bool) {
+    fn declare_globals(&mut self, section: &'a Section) {
         debug_assert_eq!(section.kind, SectionKind::Global);
         for variables in &section.variables {
             for (name, address) in &variables.names {
@@ -189,7 +209,6 @@ impl<'a> Checker<'a> {
                     initial: variables.initial.as_ref(),
                     file,
                     state: State::Todo,
-                    configured,
                 });
                 let stem = self.sources.stem(file).to_ascii_uppercase();
                 self.files.entry(stem).or_insert(file);
@@ -253,7 +272,12 @@ impl<'a> Checker<'a> {
             && self.unit(*unit).kind == UnitKind::Program
         {
             let message = format!("`{}` is a PROGRAM and no type", self.unit(*unit).name);
-            self.error(Code::WrongType, span, message, "make it a FUNCTION_BLOCK, or run it in a CONFIGURATION");
+            self.error(
+                Code::WrongType,
+                span,
+                message,
+                "make it a FUNCTION_BLOCK, or run it in a CONFIGURATION",
+            );
         }
     }
 }

@@ -16,7 +16,12 @@ impl<'a> Checker<'a> {
     pub(super) fn expression(&mut self, expression: &'a Expression, expected: Option<TypeId>) -> Expr {
         // The reader limits what stands in one expression; constants may lead to others.
         if self.depth > 2 * NESTING_MOST {
-            self.error(Code::TooDeep, expression.span, "constants are nested too deep within each other", "");
+            self.error(
+                Code::TooDeep,
+                expression.span,
+                "constants are nested too deep within each other",
+                "",
+            );
             return Expr::wrong(expression.span);
         }
         self.depth += 1;
@@ -32,7 +37,11 @@ impl<'a> Checker<'a> {
             ExpressionKind::Integer(value) => (Kind::Integer(*value), ANY_INTEGER),
             ExpressionKind::Real(value) => (Kind::Real(*value), ANY_REAL),
             ExpressionKind::Duration(ns, long) => {
-                let ty = if *long { Elementary::Ltime } else { Elementary::Time };
+                let ty = if *long {
+                    Elementary::Ltime
+                } else {
+                    Elementary::Time
+                };
                 (Kind::Integer((*ns).into()), Types::of(ty))
             }
             ExpressionKind::Typed(name, inner) => return self.typed(name, inner, span),
@@ -46,7 +55,11 @@ impl<'a> Checker<'a> {
             ExpressionKind::Path(path) => match self.named(path, expected) {
                 Named::Value(value) => return Expr { span, ..value },
                 Named::Place(place, _) => {
-                    let ty = if place.bit.is_some() { BOOL } else { self.types.value_type(place.ty) };
+                    let ty = if place.bit.is_some() {
+                        BOOL
+                    } else {
+                        self.types.value_type(place.ty)
+                    };
                     (Kind::Load(place), ty)
                 }
                 Named::Nothing => return Expr::wrong(span),
@@ -55,7 +68,12 @@ impl<'a> Checker<'a> {
                 let value = self.call_value(call, expected);
                 if let (Kind::Call(_), WRONG) = (&value.kind, value.ty) {
                     let message = format!("`{}` gives no value", call.callee.root.text);
-                    self.error(Code::WrongType, span, message, "give it a type: FUNCTION Name : INT");
+                    self.error(
+                        Code::WrongType,
+                        span,
+                        message,
+                        "give it a type: FUNCTION Name : INT",
+                    );
                     return Expr::wrong(span);
                 }
                 return value;
@@ -89,7 +107,11 @@ impl<'a> Checker<'a> {
     fn typed(&mut self, name: &Ident, inner: &'a Expression, span: Span) -> Expr {
         let (ty, _) = self.type_by_name(name);
         let value = self.expression(inner, Some(ty));
-        if self.types.elementary(ty).is_some_and(|it| it.class() == Class::Time) {
+        if self
+            .types
+            .elementary(ty)
+            .is_some_and(|it| it.class() == Class::Time)
+        {
             self.error(Code::BadLiteral, span, "a duration has units", "write T#10ms");
             return Expr::wrong(span);
         }
@@ -102,7 +124,10 @@ impl<'a> Checker<'a> {
         if value.is_wrong() {
             return value;
         }
-        let of = self.types.elementary(value.ty).filter(|it| it.is_signed() || it.is_real());
+        let of = self
+            .types
+            .elementary(value.ty)
+            .filter(|it| it.is_signed() || it.is_real());
         let of = of.filter(|_| !self.types.is_enumeration(value.ty));
         let ty = value.ty;
         let kind = match (value.kind, of) {
@@ -119,7 +144,12 @@ impl<'a> Checker<'a> {
             ),
             (_, None) => {
                 let message = format!("{} has no sign", self.type_name(ty));
-                self.error(Code::WrongType, span, message, "convert it to a signed type first");
+                self.error(
+                    Code::WrongType,
+                    span,
+                    message,
+                    "convert it to a signed type first",
+                );
                 return Expr::wrong(span);
             }
         };
@@ -129,13 +159,18 @@ impl<'a> Checker<'a> {
     fn not(&mut self, inner: &'a Expression, expected: Option<TypeId>, span: Span) -> Expr {
         let value = self.expression(inner, expected);
         let value = match expected.and_then(|ty| self.types.elementary(ty)) {
-            Some(it) if value.ty == ANY_INTEGER && it.class() == Class::Bits => self.convert(value, Types::of(it)),
+            Some(it) if value.ty == ANY_INTEGER && it.class() == Class::Bits => {
+                self.convert(value, Types::of(it))
+            }
             _ => self.settle(value),
         };
         if value.is_wrong() {
             return value;
         }
-        let of = self.types.elementary(value.ty).filter(|it| matches!(it.class(), Class::Bool | Class::Bits));
+        let of = self
+            .types
+            .elementary(value.ty)
+            .filter(|it| matches!(it.class(), Class::Bool | Class::Bits));
         let Some(of) = of.filter(|_| !self.types.is_enumeration(value.ty)) else {
             self.no_bits(&value, "NOT");
             return Expr::wrong(span);
@@ -150,7 +185,10 @@ impl<'a> Checker<'a> {
 
     /// Tells that a value is neither BOOL nor a row of bits.
     pub(super) fn no_bits(&mut self, value: &Expr, operator: &str) {
-        let message = format!("{operator} takes BOOL, BYTE, WORD, DWORD and LWORD, not {}", self.type_name(value.ty));
+        let message = format!(
+            "{operator} takes BOOL, BYTE, WORD, DWORD and LWORD, not {}",
+            self.type_name(value.ty)
+        );
         let help = match self.types.elementary(value.ty) {
             Some(it) if it.is_integer() => {
                 let bits = match it.size() {
@@ -159,7 +197,10 @@ impl<'a> Checker<'a> {
                     4 => "DWORD",
                     _ => "LWORD",
                 };
-                format!("for its bits convert it: {}_TO_{bits}(..); for a condition compare it: x <> 0", it.name())
+                format!(
+                    "for its bits convert it: {}_TO_{bits}(..); for a condition compare it: x <> 0",
+                    it.name()
+                )
             }
             _ => "compare it, which gives a BOOL".to_owned(),
         };

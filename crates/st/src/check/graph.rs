@@ -29,7 +29,11 @@ impl Checker<'_> {
             return;
         }
         let callees = |checker: &Self, unit: UnitId| -> Vec<UnitId> {
-            checker.edges.get(&unit).map(|edges| edges.keys().copied().collect()).unwrap_or_default()
+            checker
+                .edges
+                .get(&unit)
+                .map(|edges| edges.keys().copied().collect())
+                .unwrap_or_default()
         };
         let mut row = vec![(start, callees(self, start), 0_u32)];
         marks.insert(start, Mark::Open);
@@ -66,11 +70,18 @@ impl Checker<'_> {
     }
 
     fn circle(&mut self, circle: &[UnitId]) {
-        let (Some(first), Some(last)) = (circle.first(), circle.last()) else { return };
+        let (Some(first), Some(last)) = (circle.first(), circle.last()) else {
+            return;
+        };
         let mut names: Vec<_> = circle.iter().map(|unit| self.unit(*unit).name.as_str()).collect();
         names.push(&self.unit(*first).name);
         let message = format!("calls go round in a circle: {}", names.join(" -> "));
-        let span = self.edges.get(last).and_then(|edges| edges.get(first)).copied().unwrap_or_default();
+        let span = self
+            .edges
+            .get(last)
+            .and_then(|edges| edges.get(first))
+            .copied()
+            .unwrap_or_default();
         let wrong = Diagnostic::error(Code::Circle, span, message);
         self.tell(wrong.help("a program cannot call itself, not even through others: use a loop"));
     }

@@ -10,7 +10,12 @@ use crate::types::{ANY_INTEGER, ANY_REAL, BOOL, Class, Elementary, TypeId, Types
 
 impl<'a> Checker<'a> {
     /// A call of a function of the library; `None` if there is none of that name.
-    pub(super) fn library_call(&mut self, key: &str, call: &'a Call, expected: Option<TypeId>) -> Option<Expr> {
+    pub(super) fn library_call(
+        &mut self,
+        key: &str,
+        call: &'a Call,
+        expected: Option<TypeId>,
+    ) -> Option<Expr> {
         if let Some(function) = Function::find(key) {
             let arguments = self.inputs(function.name(), function.inputs(), function.is_open(), call);
             return Some(self.function_of_library(function, &arguments, call.span, expected));
@@ -26,20 +31,15 @@ impl<'a> Checker<'a> {
     }
 
     /// The inputs of a call in their order, none if something is wrong with them, which is told. `open`: more may follow the last one.
-    fn inputs(
-        &mut self,
-        function: &str,
-        names: &[&str],
-        open: bool,
-        call: &'a Call,
-    ) -> Vec<&'a Expression> {
+    fn inputs(&mut self, function: &str, names: &[&str], open: bool, call: &'a Call) -> Vec<&'a Expression> {
         let mut list: Vec<Option<&'a Expression>> = Vec::new();
         for (position, argument) in call.arguments.iter().enumerate() {
             let place = match &argument.name {
                 None => Some(position),
                 Some(name) => place_of(&name.key(), names, open),
             };
-            let fits = place.filter(|place| argument.way == Way::In && (open || *place < names.len()) && *place < 10_000);
+            let fits = place
+                .filter(|place| argument.way == Way::In && (open || *place < names.len()) && *place < 10_000);
             let Some(place) = fits else {
                 let message = format!("{function} has no such input");
                 let help = match names {
@@ -59,8 +59,17 @@ impl<'a> Checker<'a> {
         }
         let least = if open { names.len().max(2) } else { names.len() };
         if list.len() < least || list.iter().any(Option::is_none) {
-            let message = format!("{function} takes {}{} inputs", if open { "at least " } else { "" }, least);
-            self.error(Code::MissingArgument, call.span, message, &format!("they are {}", names.join(", ")));
+            let message = format!(
+                "{function} takes {}{} inputs",
+                if open { "at least " } else { "" },
+                least
+            );
+            self.error(
+                Code::MissingArgument,
+                call.span,
+                message,
+                &format!("they are {}", names.join(", ")),
+            );
             return Vec::new();
         }
         list.into_iter().flatten().collect()
@@ -73,7 +82,9 @@ impl<'a> Checker<'a> {
         span: Span,
         expected: Option<TypeId>,
     ) -> Expr {
-        let Some((first, rest)) = arguments.split_first() else { return Expr::wrong(span) };
+        let Some((first, rest)) = arguments.split_first() else {
+            return Expr::wrong(span);
+        };
         let extensible = matches!(
             operator,
             Operator::Add
@@ -91,7 +102,8 @@ impl<'a> Checker<'a> {
             self.error(Code::BadArgument, span, "this function takes two inputs", "");
             return Expr::wrong(span);
         }
-        let compares = operator.level() == Operator::Equal.level() || operator.level() == Operator::Less.level();
+        let compares =
+            operator.level() == Operator::Equal.level() || operator.level() == Operator::Less.level();
         let wanted = if compares { None } else { expected };
         let mut left = self.expression(first, wanted);
         if !compares {
@@ -104,7 +116,11 @@ impl<'a> Checker<'a> {
         // GT(a, b, c) is a > b AND b > c.
         let mut all: Option<Expr> = None;
         for right in rest {
-            let hint = if self.types.is_enumeration(left.ty) { Some(left.ty) } else { None };
+            let hint = if self.types.is_enumeration(left.ty) {
+                Some(left.ty)
+            } else {
+                None
+            };
             let right = self.expression(right, hint);
             let one = self.operate(left, operator, right.clone(), span, None);
             all = Some(match all {
@@ -135,7 +151,9 @@ impl<'a> Checker<'a> {
             Some(name) => Some(self.find_type(&name, call.span)?.0),
         };
         let arguments = self.inputs(key, &["IN"], false, call);
-        let Some(argument) = arguments.first() else { return Some(Expr::wrong(call.span)) };
+        let Some(argument) = arguments.first() else {
+            return Some(Expr::wrong(call.span));
+        };
         let value = match from {
             Some(from) => self.value(argument, from),
             None => {
@@ -152,7 +170,9 @@ impl<'a> Checker<'a> {
             return Some(Expr::wrong(call.span));
         };
         let kind = match value.kind {
-            Kind::Integer(number) if one.class() != Class::Time && other.class() != Class::Time && !other.is_real() => {
+            Kind::Integer(number)
+                if one.class() != Class::Time && other.class() != Class::Time && !other.is_real() =>
+            {
                 Kind::Integer(other.wrapped(number))
             }
             _ => Kind::Convert(Box::new(value), one, other),
@@ -173,9 +193,17 @@ impl<'a> Checker<'a> {
     ) -> Expr {
         let wrong = Expr::wrong(span);
         if function == Function::Time {
-            return made(function, Elementary::Time, Vec::new(), Types::of(Elementary::Time), span);
+            return made(
+                function,
+                Elementary::Time,
+                Vec::new(),
+                Types::of(Elementary::Time),
+                span,
+            );
         }
-        let Some(first) = arguments.first() else { return wrong };
+        let Some(first) = arguments.first() else {
+            return wrong;
+        };
         match function {
             Function::Abs => self.one_number(function, first, span, expected),
             Function::Sqrt
@@ -202,7 +230,9 @@ impl<'a> Checker<'a> {
             },
             Function::Atan2 => self.same(function, arguments, span, expected, |it| it.is_real()),
             Function::Min | Function::Max | Function::Limit => {
-                self.same(function, arguments, span, expected, |it| it.class() != Class::Bool)
+                self.same(function, arguments, span, expected, |it| {
+                    it.class() != Class::Bool
+                })
             }
             Function::Sel => self.choice(function, arguments, Some(BOOL), span, expected),
             Function::Mux => self.choice(function, arguments, None, span, expected),
@@ -210,15 +240,26 @@ impl<'a> Checker<'a> {
                 let value = self.expression(first, expected);
                 self.settle(value)
             }
-            Function::Shl | Function::Shr | Function::Rol | Function::Ror => self.shift(function, arguments, span, expected),
+            Function::Shl | Function::Shr | Function::Rol | Function::Ror => {
+                self.shift(function, arguments, span, expected)
+            }
             Function::Time => wrong,
         }
     }
 
-    fn one_number(&mut self, function: Function, value: &'a Expression, span: Span, expected: Option<TypeId>) -> Expr {
+    fn one_number(
+        &mut self,
+        function: Function,
+        value: &'a Expression,
+        span: Span,
+        expected: Option<TypeId>,
+    ) -> Expr {
         let value = self.expression(value, expected);
         let value = self.settle(value);
-        let of = self.types.elementary(value.ty).filter(|it| it.is_integer() || it.is_real());
+        let of = self
+            .types
+            .elementary(value.ty)
+            .filter(|it| it.is_integer() || it.is_real());
         match of.filter(|_| !self.types.is_enumeration(value.ty)) {
             Some(of) => {
                 let ty = value.ty;
@@ -228,7 +269,13 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn one_real(&mut self, function: Function, value: &'a Expression, span: Span, expected: Option<TypeId>) -> Expr {
+    fn one_real(
+        &mut self,
+        function: Function,
+        value: &'a Expression,
+        span: Span,
+        expected: Option<TypeId>,
+    ) -> Expr {
         let real = expected.filter(|ty| self.types.elementary(*ty).is_some_and(Elementary::is_real));
         let value = self.expression(value, real);
         let value = match (value.ty, real) {
@@ -236,12 +283,16 @@ impl<'a> Checker<'a> {
             (ANY_INTEGER, None) => self.convert(value, Types::of(Elementary::Lreal)),
             _ => self.settle(value),
         };
-        let of = self.types.elementary(value.ty).filter(|_| !self.types.is_enumeration(value.ty));
+        let of = self
+            .types
+            .elementary(value.ty)
+            .filter(|_| !self.types.is_enumeration(value.ty));
         let (value, of) = match of {
             Some(it) if it.is_real() => (value, it),
-            Some(it) if it.widens_to(Elementary::Lreal) => {
-                (self.convert(value, Types::of(Elementary::Lreal)), Elementary::Lreal)
-            }
+            Some(it) if it.widens_to(Elementary::Lreal) => (
+                self.convert(value, Types::of(Elementary::Lreal)),
+                Elementary::Lreal,
+            ),
             _ => return self.no_input(function, &value, "REAL or LREAL"),
         };
         made(function, of, vec![value], Types::of(of), span)
@@ -254,7 +305,9 @@ impl<'a> Checker<'a> {
         let Some(of) = self.types.elementary(value.ty).filter(|it| it.is_real()) else {
             return self.no_input(Function::Trunc, &value, "REAL or LREAL");
         };
-        let asked = expected.and_then(|ty| self.types.elementary(ty)).filter(|it| it.is_integer());
+        let asked = expected
+            .and_then(|ty| self.types.elementary(ty))
+            .filter(|it| it.is_integer());
         let to = asked.unwrap_or(Elementary::Dint);
         // It is cut first; then every conversion gives the same.
         let cut = made(Function::Trunc, of, vec![value], Types::of(of), span);
@@ -267,7 +320,11 @@ impl<'a> Checker<'a> {
 
     fn no_input(&mut self, function: Function, value: &Expr, wanted: &str) -> Expr {
         if !value.is_wrong() {
-            let message = format!("{} takes {wanted}, not {}", function.name(), self.type_name(value.ty));
+            let message = format!(
+                "{} takes {wanted}, not {}",
+                function.name(),
+                self.type_name(value.ty)
+            );
             self.error(Code::WrongType, value.span, message, "");
         }
         Expr::wrong(value.span)
@@ -282,7 +339,10 @@ impl<'a> Checker<'a> {
     ) -> Option<(Vec<Expr>, TypeId)> {
         let values: Vec<Expr> = arguments.iter().map(|it| self.expression(it, expected)).collect();
         let mut ty: Option<TypeId> = None;
-        for value in values.iter().filter(|value| value.ty != ANY_INTEGER && value.ty != ANY_REAL) {
+        for value in values
+            .iter()
+            .filter(|value| value.ty != ANY_INTEGER && value.ty != ANY_REAL)
+        {
             if value.is_wrong() {
                 return None;
             }
@@ -322,13 +382,20 @@ impl<'a> Checker<'a> {
             },
         };
         if self.types.elementary(ty).is_none() {
-            let message = format!("{} takes elementary values, not {}", function.name(), self.type_name(ty));
+            let message = format!(
+                "{} takes elementary values, not {}",
+                function.name(),
+                self.type_name(ty)
+            );
             let span = values.first().map_or_else(Span::default, |value| value.span);
             self.error(Code::WrongType, span, message, "choose with IF, and assign");
             return None;
         }
         let values: Vec<Expr> = values.into_iter().map(|value| self.convert(value, ty)).collect();
-        values.iter().all(|value| !value.is_wrong()).then_some((values, ty))
+        values
+            .iter()
+            .all(|value| !value.is_wrong())
+            .then_some((values, ty))
     }
 
     fn same(
@@ -339,13 +406,26 @@ impl<'a> Checker<'a> {
         expected: Option<TypeId>,
         good: impl Fn(Elementary) -> bool,
     ) -> Expr {
-        let Some((values, ty)) = self.unified(function, arguments, expected) else { return Expr::wrong(span) };
-        let of = self.types.elementary(ty).filter(|_| !self.types.is_enumeration(ty));
+        let Some((values, ty)) = self.unified(function, arguments, expected) else {
+            return Expr::wrong(span);
+        };
+        let of = self
+            .types
+            .elementary(ty)
+            .filter(|_| !self.types.is_enumeration(ty));
         match (of.filter(|it| good(*it)), values.first()) {
             (Some(of), _) => made(function, of, values, ty, span),
             (None, Some(first)) => {
                 let first = first.clone();
-                self.no_input(function, &first, if function == Function::Atan2 { "REAL or LREAL" } else { "numbers" })
+                self.no_input(
+                    function,
+                    &first,
+                    if function == Function::Atan2 {
+                        "REAL or LREAL"
+                    } else {
+                        "numbers"
+                    },
+                )
             }
             (None, None) => Expr::wrong(span),
         }
@@ -360,7 +440,9 @@ impl<'a> Checker<'a> {
         span: Span,
         expected: Option<TypeId>,
     ) -> Expr {
-        let Some((first, rest)) = arguments.split_first() else { return Expr::wrong(span) };
+        let Some((first, rest)) = arguments.split_first() else {
+            return Expr::wrong(span);
+        };
         let decider = match decides {
             Some(_) => self.condition(first),
             None => {
@@ -379,7 +461,9 @@ impl<'a> Checker<'a> {
         if decider.is_wrong() {
             return decider;
         }
-        let Some((values, ty)) = self.unified(function, rest, expected) else { return Expr::wrong(span) };
+        let Some((values, ty)) = self.unified(function, rest, expected) else {
+            return Expr::wrong(span);
+        };
         let of = self.types.elementary(ty).unwrap_or(Elementary::Lint);
         let mut all = vec![decider];
         all.extend(values);
@@ -393,9 +477,15 @@ impl<'a> Checker<'a> {
         span: Span,
         expected: Option<TypeId>,
     ) -> Expr {
-        let [value, by] = arguments else { return Expr::wrong(span) };
+        let [value, by] = arguments else {
+            return Expr::wrong(span);
+        };
         let value = self.expression(value, expected);
-        let bits = expected.filter(|ty| self.types.elementary(*ty).is_some_and(|it| it.class() == Class::Bits));
+        let bits = expected.filter(|ty| {
+            self.types
+                .elementary(*ty)
+                .is_some_and(|it| it.class() == Class::Bits)
+        });
         let value = match bits {
             Some(ty) if value.ty == ANY_INTEGER => self.convert(value, ty),
             _ => value,
@@ -403,9 +493,16 @@ impl<'a> Checker<'a> {
         if value.is_wrong() {
             return value;
         }
-        let of = self.types.elementary(value.ty).filter(|it| it.class() == Class::Bits);
+        let of = self
+            .types
+            .elementary(value.ty)
+            .filter(|it| it.class() == Class::Bits);
         let Some(of) = of else {
-            let message = format!("{} takes BYTE, WORD, DWORD or LWORD, not {}", function.name(), self.type_name(value.ty));
+            let message = format!(
+                "{} takes BYTE, WORD, DWORD or LWORD, not {}",
+                function.name(),
+                self.type_name(value.ty)
+            );
             let help = match self.types.elementary(value.ty) {
                 Some(it) if it.is_integer() => format!("convert it: {}_TO_DWORD(..)", it.name()),
                 _ => "write a literal with its type: WORD#16#FF".to_owned(),
@@ -415,7 +512,10 @@ impl<'a> Checker<'a> {
         };
         let by = self.expression(by, None);
         let by = self.settle(by);
-        let whole = self.types.elementary(by.ty).filter(|it| it.is_integer() || it.class() == Class::Bits);
+        let whole = self
+            .types
+            .elementary(by.ty)
+            .filter(|it| it.is_integer() || it.class() == Class::Bits);
         let Some(whole) = whole.filter(|_| !self.types.is_enumeration(by.ty)) else {
             return self.no_input(function, &by, "a whole number as N");
         };

@@ -83,8 +83,6 @@ pub(crate) struct Global<'a> {
     initial: Option<&'a Initial>,
     file: usize,
     state: State,
-    /// In a CONFIGURATION.
-    pub configured: bool,
 }
 
 /// A constant of a unit or of all.
@@ -275,7 +273,11 @@ impl<'a> Checker<'a> {
             Type::Subrange { name, .. } => name.clone(),
             Type::Structure(it) => it.name.clone(),
             Type::Array(it) => {
-                let bounds: Vec<_> = it.bounds.iter().map(|(low, high)| format!("{low}..{high}")).collect();
+                let bounds: Vec<_> = it
+                    .bounds
+                    .iter()
+                    .map(|(low, high)| format!("{low}..{high}"))
+                    .collect();
                 format!("ARRAY [{}] OF {}", bounds.join(", "), self.type_name(it.of))
             }
             Type::Block(unit) => self.unit(*unit).name.clone(),

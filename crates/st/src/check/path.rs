@@ -29,7 +29,9 @@ impl<'a> Checker<'a> {
         let root = self.variable(&key, path.root.span).or_else(|| {
             // A list of global variables by the name of its file: GVL.x
             let file = self.files.get(&key).copied()?;
-            let (Selector::Member(name), rest) = selectors.split_first()? else { return None };
+            let (Selector::Member(name), rest) = selectors.split_first()? else {
+                return None;
+            };
             let place = self.global_names.get(&name.key()).copied()?;
             if self.globals[place].file != file {
                 return None;
@@ -54,25 +56,38 @@ impl<'a> Checker<'a> {
             {
                 return Some(value);
             }
-            if self.unit(unit).members.find(key).is_some_and(|(_, it)| !matches!(it.kind, MemberKind::External(_))) {
+            if self
+                .unit(unit)
+                .members
+                .find(key)
+                .is_some_and(|(_, it)| !matches!(it.kind, MemberKind::External(_)))
+            {
                 return None;
             }
         }
         match selectors {
             [] => self.constant(None, key, span),
-            [Selector::Member(name)] if self.files.contains_key(key) && self.global_names.contains_key(&name.key()) => {
+            [Selector::Member(name)]
+                if self.files.contains_key(key) && self.global_names.contains_key(&name.key()) =>
+            {
                 let file = self.files.get(key).copied();
                 let place = self.global_names.get(&name.key()).copied()?;
                 let shadowed = self.variable_exists(key);
                 let same = Some(self.globals[place].file) == file;
-                if same && !shadowed { self.constant(None, &name.key(), span) } else { None }
+                if same && !shadowed {
+                    self.constant(None, &name.key(), span)
+                } else {
+                    None
+                }
             }
             _ => None,
         }
     }
 
     fn variable_exists(&self, key: &str) -> bool {
-        let local = self.scope.is_some_and(|unit| self.unit(unit).members.find(key).is_some());
+        let local = self
+            .scope
+            .is_some_and(|unit| self.unit(unit).members.find(key).is_some());
         local || self.global_names.contains_key(key)
     }
 
@@ -90,7 +105,9 @@ impl<'a> Checker<'a> {
 
     pub(super) fn global_place(&mut self, place: usize) -> (Place, Option<String>) {
         let member = &self.globals[place].member;
-        let fixed = member.constant.then(|| format!("`{}` is a CONSTANT", member.name));
+        let fixed = member
+            .constant
+            .then(|| format!("`{}` is a CONSTANT", member.name));
         (plain(Base::Memory, member.offset, member.ty), fixed)
     }
 
@@ -107,7 +124,10 @@ impl<'a> Checker<'a> {
         let fixed = if member.constant {
             Some(format!("`{}` is a CONSTANT", member.name))
         } else if self.body.controls.contains(&place) {
-            Some(format!("`{}` is the control variable of a FOR that is running", member.name))
+            Some(format!(
+                "`{}` is the control variable of a FOR that is running",
+                member.name
+            ))
         } else {
             None
         };
@@ -127,7 +147,8 @@ impl<'a> Checker<'a> {
             if place.ty == crate::types::WRONG {
                 return Named::Nothing;
             }
-            let (Selector::Bit(_, span) | Selector::Index(_, span) | Selector::Member(Ident { span, .. })) = selector;
+            let (Selector::Bit(_, span) | Selector::Index(_, span) | Selector::Member(Ident { span, .. })) =
+                selector;
             if place.bit.is_some() {
                 self.error(Code::UnknownMember, *span, "a bit has no parts", "");
                 return Named::Nothing;
@@ -154,7 +175,12 @@ impl<'a> Checker<'a> {
             Type::Block(unit) => &self.unit(*unit).members,
             _ => {
                 let message = format!("{} has no member `{}`", self.type_name(place.ty), name.text);
-                self.error(Code::UnknownMember, name.span, message, "only structures and blocks have members");
+                self.error(
+                    Code::UnknownMember,
+                    name.span,
+                    message,
+                    "only structures and blocks have members",
+                );
                 return false;
             }
         };
@@ -168,12 +194,23 @@ impl<'a> Checker<'a> {
         match kind {
             MemberKind::Field | MemberKind::Input => {}
             MemberKind::Output => {
-                *fixed = Some(format!("`{}` is an output, which only its block writes", member.name));
+                *fixed = Some(format!(
+                    "`{}` is an output, which only its block writes",
+                    member.name
+                ));
             }
             _ => {
-                let what = if kind == MemberKind::InOut { "a VAR_IN_OUT" } else { "a variable inside" };
+                let what = if kind == MemberKind::InOut {
+                    "a VAR_IN_OUT"
+                } else {
+                    "a variable inside"
+                };
                 let message = format!("`{}` is {what} of {}", member.name, self.type_name(place.ty));
-                let help = if kind == MemberKind::InOut { "use the variable that was handed over" } else { "make it VAR_OUTPUT to read it, VAR_INPUT to set it" };
+                let help = if kind == MemberKind::InOut {
+                    "use the variable that was handed over"
+                } else {
+                    "make it VAR_OUTPUT to read it, VAR_INPUT to set it"
+                };
                 self.error(Code::UnknownMember, name.span, message, help);
                 return false;
             }
@@ -191,7 +228,11 @@ impl<'a> Checker<'a> {
         };
         let array = array.clone();
         if given.len() != array.bounds.len() {
-            let message = format!("the array has {} dimensions, and {} indices are given", array.bounds.len(), given.len());
+            let message = format!(
+                "the array has {} dimensions, and {} indices are given",
+                array.bounds.len(),
+                given.len()
+            );
             self.error(Code::WrongType, span, message, "separate them by commas: a[i, j]");
             return false;
         }
@@ -226,11 +267,19 @@ impl<'a> Checker<'a> {
                     self.error(Code::OutOfRange, value.span, message, "");
                     return false;
                 }
-                place.offset = place.offset.saturating_add((from_low as u32).saturating_mul(stride));
+                place.offset = place
+                    .offset
+                    .saturating_add((from_low as u32).saturating_mul(stride));
             } else {
                 let span = value.span;
                 let value = Box::new(value);
-                place.indices.push(Index { value, low, count, stride, span });
+                place.indices.push(Index {
+                    value,
+                    low,
+                    count,
+                    stride,
+                    span,
+                });
             }
         }
         place.ty = array.of;
@@ -238,10 +287,18 @@ impl<'a> Checker<'a> {
     }
 
     fn bit(&mut self, place: &mut Place, bit: u32, span: Span) -> bool {
-        let of = self.types.elementary(place.ty).filter(|it| it.is_integer() || it.class() == Class::Bits);
+        let of = self
+            .types
+            .elementary(place.ty)
+            .filter(|it| it.is_integer() || it.class() == Class::Bits);
         let Some(of) = of.filter(|_| !self.types.is_enumeration(place.ty)) else {
             let message = format!("{} has no bits", self.type_name(place.ty));
-            self.error(Code::WrongType, span, message, "bits are those of BYTE, WORD, INT and the like");
+            self.error(
+                Code::WrongType,
+                span,
+                message,
+                "bits are those of BYTE, WORD, INT and the like",
+            );
             return false;
         };
         if bit >= of.bits() {
@@ -284,14 +341,25 @@ impl<'a> Checker<'a> {
             several => match expected.filter(|expected| several.contains(expected)) {
                 Some(expected) => expected,
                 None => {
-                    let names: Vec<_> = several.iter().map(|ty| format!("{}#{}", self.type_name(*ty), path.root.text)).collect();
+                    let names: Vec<_> = several
+                        .iter()
+                        .map(|ty| format!("{}#{}", self.type_name(*ty), path.root.text))
+                        .collect();
                     let message = format!("several enumerations have an element `{}`", path.root.text);
-                    self.error(Code::UnknownName, path.span, message, &format!("write {}", names.join(" or ")));
+                    self.error(
+                        Code::UnknownName,
+                        path.span,
+                        message,
+                        &format!("write {}", names.join(" or ")),
+                    );
                     return Some(Named::Nothing);
                 }
             },
         };
-        Some(self.element_of(ty, &path.root).map_or(Named::Nothing, Named::Value))
+        Some(
+            self.element_of(ty, &path.root)
+                .map_or(Named::Nothing, Named::Value),
+        )
     }
 
     /// The element of this name; one that is not there is told.
@@ -301,7 +369,10 @@ impl<'a> Checker<'a> {
             self.error(Code::WrongType, name.span, message, "");
             return None;
         };
-        let found = of.elements.iter().find(|(it, _)| it.eq_ignore_ascii_case(&name.text));
+        let found = of
+            .elements
+            .iter()
+            .find(|(it, _)| it.eq_ignore_ascii_case(&name.text));
         match found {
             Some((_, number)) => Some(Expr {
                 kind: Kind::Integer(*number),
@@ -320,10 +391,18 @@ impl<'a> Checker<'a> {
     fn unknown(&mut self, path: &Path) {
         let name = &path.root;
         let key = name.key();
-        let function = self.unit_names.get(&key).is_some_and(|unit| self.unit(*unit).kind == UnitKind::Function);
+        let function = self
+            .unit_names
+            .get(&key)
+            .is_some_and(|unit| self.unit(*unit).kind == UnitKind::Function);
         if function || Function::find(&key).is_some() || conversion(&key).is_some() {
             let message = format!("`{}` is a function", name.text);
-            self.error(Code::WrongType, name.span, message, &format!("call it: {}(..)", name.text));
+            self.error(
+                Code::WrongType,
+                name.span,
+                message,
+                &format!("call it: {}(..)", name.text),
+            );
             return;
         }
         if self.unit_names.contains_key(&key) || blocks::find(&key).is_some() {

@@ -7,8 +7,8 @@ use crate::library::blocks;
 use crate::source::Span;
 use crate::syntax::{Expression, Ident, SpecKind, TypeSpec, Variables};
 use crate::types::{
-    Array, Constant, Elementary, Enumeration, Member, MemberKind, Members, Start, Structure, Type, TypeId, Types,
-    WRONG,
+    Array, Constant, Elementary, Enumeration, Member, MemberKind, Members, Start, Structure, Type, TypeId,
+    Types, WRONG,
 };
 
 /// Most dimensions of an array.
@@ -49,9 +49,19 @@ impl<'a> Checker<'a> {
         {
             help = Some("it is a FUNCTION, which has no instances: call it by its name".to_owned());
         }
-        let candidates = self.named.keys().chain(self.library_types.keys()).chain(self.unit_names.keys());
+        let candidates = self
+            .named
+            .keys()
+            .chain(self.library_types.keys())
+            .chain(self.unit_names.keys());
         let candidates = candidates.map(String::as_str);
-        let candidates = candidates.chain(Elementary::ALL.iter().map(|it| it.name()).chain(blocks::names()).map(|it| it as &str));
+        let candidates = candidates.chain(
+            Elementary::ALL
+                .iter()
+                .map(|it| it.name())
+                .chain(blocks::names())
+                .map(|it| it as &str),
+        );
         let guess = self.guess(&key, candidates);
         let message = format!("there is no type or function block {}", quoted(&name.text));
         let wrong = Diagnostic::error(Code::UnknownType, name.span, message);
@@ -70,7 +80,11 @@ impl<'a> Checker<'a> {
         if let Some(ty) = self.library_types.get(key) {
             return Some((*ty, Start::Default));
         }
-        let unit = self.unit_names.get(key).copied().or_else(|| self.library_block(key))?;
+        let unit = self
+            .unit_names
+            .get(key)
+            .copied()
+            .or_else(|| self.library_block(key))?;
         if self.unit(unit).kind == UnitKind::Function {
             return None;
         }
@@ -86,14 +100,20 @@ impl<'a> Checker<'a> {
     /// A type that the sources declare, resolved now if it was not yet.
     pub(super) fn named_type(&mut self, key: &str, span: Span) -> (TypeId, Start) {
         let wrong = (WRONG, Start::Default);
-        let Some(named) = self.named.get_mut(key) else { return wrong };
+        let Some(named) = self.named.get_mut(key) else {
+            return wrong;
+        };
         let syntax = named.syntax;
         match named.state {
             State::Done => return named.found.clone(),
             State::Busy => {
                 let message = format!("the type `{}` contains itself", syntax.name.text);
                 let circle = Diagnostic::error(Code::Circle, span, message);
-                self.tell(circle.related(syntax.name.span, "it is declared here").help("a structure cannot hold one of its own kind"));
+                self.tell(
+                    circle
+                        .related(syntax.name.span, "it is declared here")
+                        .help("a structure cannot hold one of its own kind"),
+                );
                 return wrong;
             }
             State::Todo => named.state = State::Busy,
@@ -151,10 +171,18 @@ impl<'a> Checker<'a> {
     fn integer_base(&mut self, base: &Ident) -> Option<Elementary> {
         let key = base.key();
         let (ty, _) = self.type_by_name(base);
-        let found = self.types.elementary(ty).filter(|it| it.is_integer() || it.class() == crate::types::Class::Bits);
+        let found = self
+            .types
+            .elementary(ty)
+            .filter(|it| it.is_integer() || it.class() == crate::types::Class::Bits);
         if found.is_none() && ty != WRONG {
             let message = format!("{key} is no type of whole numbers");
-            self.error(Code::WrongType, base.span, message, "use INT, DINT, UINT and the like");
+            self.error(
+                Code::WrongType,
+                base.span,
+                message,
+                "use INT, DINT, UINT and the like",
+            );
         }
         found
     }
@@ -168,7 +196,9 @@ impl<'a> Checker<'a> {
     ) -> TypeId {
         let of = self.integer_base(base);
         let bounds = (self.whole(low), self.whole(high));
-        let (Some(of), (Some(first), Some(last))) = (of, bounds) else { return WRONG };
+        let (Some(of), (Some(first), Some(last))) = (of, bounds) else {
+            return WRONG;
+        };
         let span = low.span.to(high.span);
         if first > last {
             let message = format!("the range {first}..{last} is empty");
@@ -181,12 +211,19 @@ impl<'a> Checker<'a> {
             return WRONG;
         }
         let ty = Type::Subrange {
-            name: name.map_or_else(|| format!("{}({first}..{last})", of.name()), |name| name.text.clone()),
+            name: name.map_or_else(
+                || format!("{}({first}..{last})", of.name()),
+                |name| name.text.clone(),
+            ),
             base: of,
             low: first,
             high: last,
         };
-        if name.is_some() { self.types.add(ty) } else { self.types.shared(ty) }
+        if name.is_some() {
+            self.types.add(ty)
+        } else {
+            self.types.shared(ty)
+        }
     }
 
     fn enumeration(
@@ -213,22 +250,37 @@ impl<'a> Checker<'a> {
                 next = number;
             }
             if !base.holds(next) {
-                let message = format!("{} does not hold {next}, the number of `{}`", base.name(), element.text);
-                self.error(Code::OutOfRange, element.span, message, "give the enumeration a larger type: `(a, b) DINT`");
+                let message = format!(
+                    "{} does not hold {next}, the number of `{}`",
+                    base.name(),
+                    element.text
+                );
+                self.error(
+                    Code::OutOfRange,
+                    element.span,
+                    message,
+                    "give the enumeration a larger type: `(a, b) DINT`",
+                );
                 return WRONG;
             }
             list.push((element.text.clone(), next));
             next += 1;
         }
         let ty = self.types.add(Type::Enumeration(Enumeration {
-            name: name.map_or_else(|| "an enumeration without a name".to_owned(), |name| name.text.clone()),
+            name: name.map_or_else(
+                || "an enumeration without a name".to_owned(),
+                |name| name.text.clone(),
+            ),
             base,
             elements: list,
             library: false,
         }));
         if name.is_none() {
             for (element, _) in elements {
-                self.elements.entry(element.key()).or_default().push(ElementOf::Known(ty));
+                self.elements
+                    .entry(element.key())
+                    .or_default()
+                    .push(ElementOf::Known(ty));
             }
         }
         ty
@@ -238,12 +290,21 @@ impl<'a> Checker<'a> {
         let mut members = Members::default();
         for group in variables {
             let (ty, default) = self.spec(&group.spec);
-            let start = group.initial.as_ref().map(|initial| self.start(initial, ty)).unwrap_or(default);
+            let start = group
+                .initial
+                .as_ref()
+                .map(|initial| self.start(initial, ty))
+                .unwrap_or(default);
             self.no_program(ty, group.spec.span);
             for (name, address) in &group.names {
                 self.check_name(name);
                 if let Some(address) = address {
-                    self.error(Code::Misplaced, address.span, "a member has no address", "declare the variable AT it");
+                    self.error(
+                        Code::Misplaced,
+                        address.span,
+                        "a member has no address",
+                        "declare the variable AT it",
+                    );
                 }
                 if let Some((_, other)) = members.find(&name.key()) {
                     let other = other.span;
@@ -272,14 +333,22 @@ impl<'a> Checker<'a> {
             return WRONG;
         }
         self.types.add(Type::Structure(Structure {
-            name: name.map_or_else(|| "a structure without a name".to_owned(), |name| name.text.clone()),
+            name: name.map_or_else(
+                || "a structure without a name".to_owned(),
+                |name| name.text.clone(),
+            ),
             members,
         }))
     }
 
     pub(super) fn too_large(&mut self, span: Span) {
         let message = format!("this needs more than {BYTES_MOST} bytes");
-        self.error(Code::TooLarge, span, message, "a program has 16 MiB of memory in all");
+        self.error(
+            Code::TooLarge,
+            span,
+            message,
+            "a program has 16 MiB of memory in all",
+        );
     }
 
     fn array(
@@ -292,15 +361,27 @@ impl<'a> Checker<'a> {
         let mut found = Vec::new();
         let mut count = 1_u64;
         for (low, high) in bounds {
-            let (Some(first), Some(last)) = (self.whole(low), self.whole(high)) else { continue };
+            let (Some(first), Some(last)) = (self.whole(low), self.whole(high)) else {
+                continue;
+            };
             let fits = |bound: i128| i64::try_from(bound).ok().filter(|it| i32::try_from(*it).is_ok());
             let (Some(first), Some(last)) = (fits(first), fits(last)) else {
-                self.error(Code::OutOfRange, low.span.to(high.span), "bounds of arrays are DINT", "");
+                self.error(
+                    Code::OutOfRange,
+                    low.span.to(high.span),
+                    "bounds of arrays are DINT",
+                    "",
+                );
                 continue;
             };
             if first > last {
                 let message = format!("the bounds {first}..{last} leave no element");
-                self.error(Code::OutOfRange, low.span.to(high.span), message, "the smaller bound stands first");
+                self.error(
+                    Code::OutOfRange,
+                    low.span.to(high.span),
+                    message,
+                    "the smaller bound stands first",
+                );
                 continue;
             }
             found.push((first, last));

@@ -45,7 +45,9 @@ impl<'a> Checker<'a> {
         let mut total = 0_u64;
         for (times, value) in items {
             let times = times.as_ref().map_or(Some(1), |times| self.whole(times));
-            let times = times.and_then(|times| u32::try_from(times).ok()).unwrap_or(u32::MAX);
+            let times = times
+                .and_then(|times| u32::try_from(times).ok())
+                .unwrap_or(u32::MAX);
             total += u64::from(times);
             if total > u64::from(count) {
                 let message = format!("these are more values than the {count} elements of the array");
@@ -65,7 +67,12 @@ impl<'a> Checker<'a> {
                 Type::Block(unit) => &self.unit(*unit).members,
                 _ => {
                     let message = format!("{} has no members", self.type_name(ty));
-                    self.error(Code::WrongType, span, message, "`(A := 1, B := 2)` gives values to a structure");
+                    self.error(
+                        Code::WrongType,
+                        span,
+                        message,
+                        "`(A := 1, B := 2)` gives values to a structure",
+                    );
                     return Start::Default;
                 }
             };
@@ -77,9 +84,17 @@ impl<'a> Checker<'a> {
                 continue;
             };
             let (kind, of) = (member.kind, member.ty);
-            if !matches!(kind, MemberKind::Field | MemberKind::Input | MemberKind::Output | MemberKind::Var) {
+            if !matches!(
+                kind,
+                MemberKind::Field | MemberKind::Input | MemberKind::Output | MemberKind::Var
+            ) {
                 let message = format!("`{}` has no first value", name.text);
-                self.error(Code::NotWritable, name.span, message, "first values are given to inputs");
+                self.error(
+                    Code::NotWritable,
+                    name.span,
+                    message,
+                    "first values are given to inputs",
+                );
                 continue;
             }
             if list.iter().any(|(other, _)| *other == place) {

@@ -62,7 +62,12 @@ impl<'a> Checker<'a> {
                 if self.body.loops == 0 {
                     let what = if exit { "EXIT" } else { "CONTINUE" };
                     let message = format!("{what} stands outside of a FOR, WHILE or REPEAT");
-                    self.error(Code::Misplaced, statement.span, message, "RETURN leaves a program or block");
+                    self.error(
+                        Code::Misplaced,
+                        statement.span,
+                        message,
+                        "RETURN leaves a program or block",
+                    );
                     return None;
                 }
                 if exit { StmtKind::Exit } else { StmtKind::Continue }
@@ -110,7 +115,12 @@ impl<'a> Checker<'a> {
         let target = target?;
         if let Type::Block(_) = self.types.get(ty) {
             let message = format!("an instance of {} is not assigned", self.type_name(ty));
-            self.error(Code::WrongType, path.span, message, "set its inputs, or hand it over as VAR_IN_OUT");
+            self.error(
+                Code::WrongType,
+                path.span,
+                message,
+                "set its inputs, or hand it over as VAR_IN_OUT",
+            );
             return None;
         }
         if self.types.elementary(ty).is_none() && self.holds_block(ty) {
@@ -132,10 +142,16 @@ impl<'a> Checker<'a> {
     fn case(&mut self, case: &'a Case, span: Span) -> Option<StmtKind> {
         let selector = self.expression(&case.selector, None);
         let selector = self.settle(selector);
-        let of = self.types.elementary(selector.ty).filter(|it| !it.is_real() && *it != Elementary::Bool);
+        let of = self
+            .types
+            .elementary(selector.ty)
+            .filter(|it| !it.is_real() && *it != Elementary::Bool);
         let ty = selector.ty;
         if of.is_none() && !selector.is_wrong() {
-            let message = format!("CASE goes by whole numbers and enumerations, not by {}", self.type_name(ty));
+            let message = format!(
+                "CASE goes by whole numbers and enumerations, not by {}",
+                self.type_name(ty)
+            );
             self.error(Code::WrongType, selector.span, message, "use IF");
         }
         let mut seen: Vec<(i128, i128, Span)> = Vec::new();
@@ -148,10 +164,17 @@ impl<'a> Checker<'a> {
                     Some(high) => self.label(high, ty),
                     None => from,
                 };
-                let (Some(from), Some(to)) = (from, to) else { continue };
+                let (Some(from), Some(to)) = (from, to) else {
+                    continue;
+                };
                 let at = high.as_ref().map_or(low.span, |high| low.span.to(high.span));
                 if from > to {
-                    self.error(Code::OutOfRange, at, format!("the range {from}..{to} is empty"), "the smaller value stands first");
+                    self.error(
+                        Code::OutOfRange,
+                        at,
+                        format!("the range {from}..{to} is empty"),
+                        "the smaller value stands first",
+                    );
                     continue;
                 }
                 labels.push((from, to));
@@ -164,7 +187,11 @@ impl<'a> Checker<'a> {
         if case.other.is_none() {
             self.check_complete(ty, &seen, span);
         }
-        let other = case.other.as_ref().map(|body| self.statements(body)).unwrap_or_default();
+        let other = case
+            .other
+            .as_ref()
+            .map(|body| self.statements(body))
+            .unwrap_or_default();
         Some(StmtKind::Case(selector, of?, branches, other))
     }
 
@@ -188,8 +215,16 @@ impl<'a> Checker<'a> {
             if let Some((end, other)) = furthest
                 && *from <= end
             {
-                let (first, second) = if other < *span { (other, *span) } else { (*span, other) };
-                let wrong = Diagnostic::error(Code::DuplicateName, second, format!("the value {from} has two branches"));
+                let (first, second) = if other < *span {
+                    (other, *span)
+                } else {
+                    (*span, other)
+                };
+                let wrong = Diagnostic::error(
+                    Code::DuplicateName,
+                    second,
+                    format!("the value {from} has two branches"),
+                );
                 self.tell(wrong.related(first, "the other one"));
             }
             if furthest.is_none_or(|(end, _)| *to > end) {
@@ -200,13 +235,21 @@ impl<'a> Checker<'a> {
 
     /// Elements that no branch of a CASE without ELSE names.
     fn check_complete(&mut self, ty: TypeId, seen: &[(i128, i128, Span)], span: Span) {
-        let Type::Enumeration(of) = self.types.get(ty) else { return };
+        let Type::Enumeration(of) = self.types.get(ty) else {
+            return;
+        };
         let missing: Vec<_> = of
             .elements
             .iter()
             .filter(|(_, number)| {
                 let behind = seen.partition_point(|(from, ..)| from <= number);
-                !seen.get(..behind).unwrap_or_default().iter().rev().take(1).any(|(_, to, _)| number <= to)
+                !seen
+                    .get(..behind)
+                    .unwrap_or_default()
+                    .iter()
+                    .rev()
+                    .take(1)
+                    .any(|(_, to, _)| number <= to)
             })
             .map(|(name, _)| name.as_str())
             .take(4)
@@ -224,7 +267,10 @@ impl<'a> Checker<'a> {
 
     fn for_(&mut self, each: &'a For) -> Option<StmtKind> {
         let key = each.variable.key();
-        let member = self.scope.and_then(|unit| self.unit(unit).members.find(&key)).map(|(place, _)| place);
+        let member = self
+            .scope
+            .and_then(|unit| self.unit(unit).members.find(&key))
+            .map(|(place, _)| place);
         let path_span = each.variable.span;
         let found = match (self.scope, member) {
             (Some(unit), Some(place)) => Some(self.member_place(unit, place)),
@@ -232,7 +278,12 @@ impl<'a> Checker<'a> {
                 Some(place) => Some(self.global_place(place)),
                 None => {
                     let message = format!("there is no variable `{}`", each.variable.text);
-                    self.error(Code::UnknownName, path_span, message, "declare the control variable: `i : INT;`");
+                    self.error(
+                        Code::UnknownName,
+                        path_span,
+                        message,
+                        "declare the control variable: `i : INT;`",
+                    );
                     None
                 }
             },
@@ -246,13 +297,23 @@ impl<'a> Checker<'a> {
             None => None,
         };
         let declared = found.as_ref().map(|place| place.ty);
-        let of = declared.and_then(|ty| self.types.elementary(ty)).filter(|it| it.is_integer());
+        let of = declared
+            .and_then(|ty| self.types.elementary(ty))
+            .filter(|it| it.is_integer());
         let of = of.filter(|_| declared.is_some_and(|ty| !self.types.is_enumeration(ty)));
         if let (Some(ty), None) = (declared, of)
             && ty != crate::types::WRONG
         {
-            let message = format!("the control variable of FOR is a whole number, not {}", self.type_name(ty));
-            self.error(Code::WrongType, path_span, message, "use INT or DINT; for a REAL use WHILE");
+            let message = format!(
+                "the control variable of FOR is a whole number, not {}",
+                self.type_name(ty)
+            );
+            self.error(
+                Code::WrongType,
+                path_span,
+                message,
+                "use INT or DINT; for a REAL use WHILE",
+            );
         }
         let ty = of.map_or(crate::types::WRONG, Types::of);
         let from = self.value(&each.from, ty);
@@ -296,13 +357,21 @@ impl<'a> Checker<'a> {
         let span = value.span;
         let Some(it) = self.types.elementary(value.ty).filter(|it| it.is_integer()) else {
             if !value.is_wrong() {
-                let message = format!("the step of FOR is a whole number, not {}", self.type_name(value.ty));
+                let message = format!(
+                    "the step of FOR is a whole number, not {}",
+                    self.type_name(value.ty)
+                );
                 self.error(Code::WrongType, span, message, "");
             }
             return Expr::wrong(span);
         };
         if it == Elementary::Ulint {
-            self.error(Code::WrongType, span, "the step of FOR is LINT at most", "convert it: ULINT_TO_LINT(..)");
+            self.error(
+                Code::WrongType,
+                span,
+                "the step of FOR is LINT at most",
+                "convert it: ULINT_TO_LINT(..)",
+            );
             return Expr::wrong(span);
         }
         let ty = Types::of(Elementary::Lint);

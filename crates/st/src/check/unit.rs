@@ -12,7 +12,10 @@ impl<'a> Checker<'a> {
     pub(super) fn library_block(&mut self, key: &str) -> Option<UnitId> {
         let info = blocks::find(key)?;
         let members = blocks::members(info, &mut self.types, &mut self.library_types);
-        let same = self.units.iter().position(|unit| unit.kind == UnitKind::Library(info));
+        let same = self
+            .units
+            .iter()
+            .position(|unit| unit.kind == UnitKind::Library(info));
         let id = same.unwrap_or(self.units.len());
         if same.is_none() {
             self.units.push(UnitInfo {
@@ -45,14 +48,24 @@ impl<'a> Checker<'a> {
             }
             State::Todo => {}
         }
-        let Some(syntax) = self.unit(id).syntax else { return };
+        let Some(syntax) = self.unit(id).syntax else {
+            return;
+        };
         self.unit_mut(id).state = State::Busy;
         let span = syntax.name.span;
         self.needing(span, (), |checker| {
             checker.in_scope(Some(id), |checker| {
                 if let Some(result) = &syntax.result {
                     let (ty, start) = checker.spec(result);
-                    checker.add_member(id, &syntax.name, ty, MemberKind::Result, start, (false, false), None);
+                    checker.add_member(
+                        id,
+                        &syntax.name,
+                        ty,
+                        MemberKind::Result,
+                        start,
+                        (false, false),
+                        None,
+                    );
                     let unit = checker.unit_mut(id);
                     unit.result = Some(unit.members.list.len() - 1);
                 }
@@ -87,10 +100,19 @@ impl<'a> Checker<'a> {
             };
             if function && section.kind == SectionKind::Static {
                 let span = variables.spec.span;
-                self.error(Code::Misplaced, span, "a FUNCTION keeps nothing between calls", "make it a FUNCTION_BLOCK");
+                self.error(
+                    Code::Misplaced,
+                    span,
+                    "a FUNCTION keeps nothing between calls",
+                    "make it a FUNCTION_BLOCK",
+                );
             }
             let (ty, default) = self.spec(&variables.spec);
-            let start = variables.initial.as_ref().map(|initial| self.start(initial, ty)).unwrap_or(default);
+            let start = variables
+                .initial
+                .as_ref()
+                .map(|initial| self.start(initial, ty))
+                .unwrap_or(default);
             self.check_kind(id, kind, ty, variables);
             for (name, address) in &variables.names {
                 let flags = (section.constant, section.retain);
@@ -109,12 +131,26 @@ impl<'a> Checker<'a> {
             self.error(Code::WrongType, span, message, "hand it over as VAR_IN_OUT");
         }
         if holds_block && kind == MemberKind::Temp {
-            let what = if self.unit(id).kind == UnitKind::Function { "a FUNCTION" } else { "VAR_TEMP" };
+            let what = if self.unit(id).kind == UnitKind::Function {
+                "a FUNCTION"
+            } else {
+                "VAR_TEMP"
+            };
             let message = format!("{what} keeps nothing between calls, which a function block needs");
-            self.error(Code::Misplaced, span, message, "declare the instance in VAR of a FUNCTION_BLOCK or PROGRAM");
+            self.error(
+                Code::Misplaced,
+                span,
+                message,
+                "declare the instance in VAR of a FUNCTION_BLOCK or PROGRAM",
+            );
         }
         if kind == MemberKind::InOut && variables.initial.is_some() {
-            self.error(Code::Misplaced, span, "a VAR_IN_OUT has no first value: it is a variable of the caller", "");
+            self.error(
+                Code::Misplaced,
+                span,
+                "a VAR_IN_OUT has no first value: it is a variable of the caller",
+                "",
+            );
         }
     }
 
@@ -123,7 +159,11 @@ impl<'a> Checker<'a> {
         match self.types.get(ty) {
             Type::Block(_) => true,
             Type::Array(array) => self.holds_block(array.of),
-            Type::Structure(structure) => structure.members.list.iter().any(|member| self.holds_block(member.ty)),
+            Type::Structure(structure) => structure
+                .members
+                .list
+                .iter()
+                .any(|member| self.holds_block(member.ty)),
             _ => false,
         }
     }
@@ -145,7 +185,11 @@ impl<'a> Checker<'a> {
             self.twice(name, other);
             return;
         }
-        let (size, align) = if kind == MemberKind::InOut { (4, 4) } else { self.size(ty) };
+        let (size, align) = if kind == MemberKind::InOut {
+            (4, 4)
+        } else {
+            self.size(ty)
+        };
         let member = Member {
             name: name.text.clone(),
             ty,
@@ -170,7 +214,15 @@ impl<'a> Checker<'a> {
                 let wrong = Diagnostic::error(Code::UnknownName, name.span, message);
                 self.tell(wrong.maybe_help(guess.or_else(|| Some("declare it in VAR_GLOBAL".to_owned()))));
                 // It is known from here on, so that its uses are not told, too.
-                self.add_member(id, name, WRONG, MemberKind::Var, Start::Default, (false, false), None);
+                self.add_member(
+                    id,
+                    name,
+                    WRONG,
+                    MemberKind::Var,
+                    Start::Default,
+                    (false, false),
+                    None,
+                );
                 continue;
             };
             self.global(place);
@@ -183,7 +235,9 @@ impl<'a> Checker<'a> {
                     self.type_name(global.ty)
                 );
                 let other = global.span;
-                self.tell(Diagnostic::error(Code::WrongType, name.span, message).related(other, "declared here"));
+                self.tell(
+                    Diagnostic::error(Code::WrongType, name.span, message).related(other, "declared here"),
+                );
             }
             if let Some((_, other)) = self.unit(id).members.find(&name.key()) {
                 let other = other.span;

@@ -57,7 +57,10 @@ impl Emitter<'_, '_, '_> {
     pub(super) fn copy(&mut self, target: &Place, value: &Expr, bytes: u32) {
         self.whole_address(target);
         self.expression(value);
-        self.function.sink().i32_const(bytes.cast_signed()).memory_copy(0, 0);
+        self.function
+            .sink()
+            .i32_const(bytes.cast_signed())
+            .memory_copy(0, 0);
     }
 
     pub(super) fn block_call(&mut self, call: &BlockCall, span: Span) {
@@ -70,7 +73,9 @@ impl Emitter<'_, '_, '_> {
         let program = self.context.program;
         let members = &program.units[call.unit.0 as usize].members.list;
         for (member, bound) in &call.references {
-            let Some(member) = members.get(*member) else { continue };
+            let Some(member) = members.get(*member) else {
+                continue;
+            };
             match kind_of(program, call.unit) {
                 UnitKind::Library(_) => self.reference(root, offset + member.offset, bound),
                 _ => {
@@ -86,7 +91,10 @@ impl Emitter<'_, '_, '_> {
             for member in call.kept.iter().filter_map(|place| members.get(*place)) {
                 let site = self.site(span, FaultKind::Unbound);
                 self.push_root(root);
-                self.function.sink().i32_load(at(offset + member.offset, 2)).i32_eqz();
+                self.function
+                    .sink()
+                    .i32_load(at(offset + member.offset, 2))
+                    .i32_eqz();
                 self.function.if_(BlockType::Empty);
                 self.function.sink().i32_const(site).i64_const(0);
                 self.fault();
@@ -103,11 +111,15 @@ impl Emitter<'_, '_, '_> {
     /// What a block of the library takes for a variable: the number of an axis, or the records of a table.
     fn reference(&mut self, root: Root, offset: u32, bound: &Place) {
         let types = &self.context.program.types;
-        let table = matches!(types.get(bound.ty), Type::Structure(it) if it.members.find("RECORDS").is_some());
+        let table =
+            matches!(types.get(bound.ty), Type::Structure(it) if it.members.find("RECORDS").is_some());
         if !table {
             self.push_root(root);
             let from = self.address(bound);
-            self.function.sink().i32_load(at(from, 2)).i32_store(at(offset, 2));
+            self.function
+                .sink()
+                .i32_load(at(from, 2))
+                .i32_store(at(offset, 2));
             return;
         }
         let (from, start) = self.pinned(bound);
@@ -117,7 +129,10 @@ impl Emitter<'_, '_, '_> {
         self.function.sink().i32_store(at(offset, 2));
         self.push_root(root);
         self.push_root(from);
-        self.function.sink().i32_load(at(start, 2)).i32_store(at(offset + 4, 2));
+        self.function
+            .sink()
+            .i32_load(at(start, 2))
+            .i32_store(at(offset + 4, 2));
     }
 
     /// A block of the library: its key, inputs and outputs stand in the instance, and then its result.
@@ -130,8 +145,14 @@ impl Emitter<'_, '_, '_> {
             self.add_offset(offset + part);
         }
         self.function.call(import);
-        self.function.sink().i32_store(at(offset + blocks::result(info), 2));
-        debug_assert!(info.outputs().iter().all(|pin| !matches!(pin.ty, PinType::Table(_))));
+        self.function
+            .sink()
+            .i32_store(at(offset + blocks::result(info), 2));
+        debug_assert!(
+            info.outputs()
+                .iter()
+                .all(|pin| !matches!(pin.ty, PinType::Table(_)))
+        );
     }
 
     /// How a parameter of a FUNCTION is handed over.

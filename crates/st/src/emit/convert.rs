@@ -16,7 +16,7 @@ impl Emitter<'_, '_, '_> {
         }
         match (from.class(), to.class()) {
             (Class::Time, Class::Time) => {}
-            (_, Class::Bool) => self.to_bool(from),
+            (_, Class::Bool) => self.convert_to_bool(from),
             (Class::Time, Class::Real) => {
                 let mut sink = self.function.sink();
                 sink.f64_convert_i64_s();
@@ -34,7 +34,10 @@ impl Emitter<'_, '_, '_> {
             (Class::Real, Class::Time) => {
                 self.convert(from, Elementary::Lreal);
                 if to == Elementary::Time {
-                    self.function.sink().f64_const((MILLISECOND as f64).into()).f64_mul();
+                    self.function
+                        .sink()
+                        .f64_const((MILLISECOND as f64).into())
+                        .f64_mul();
                 }
                 self.convert(Elementary::Lreal, Elementary::Lint);
             }
@@ -57,7 +60,7 @@ impl Emitter<'_, '_, '_> {
         }
     }
 
-    fn to_bool(&mut self, from: Elementary) {
+    fn convert_to_bool(&mut self, from: Elementary) {
         let mut sink = self.function.sink();
         match value_type(from) {
             ValType::F32 => sink.f32_const(0.0.into()).f32_ne(),
@@ -138,7 +141,10 @@ impl Emitter<'_, '_, '_> {
     fn clamp(&mut self, limit: i32, upper: bool, signed: bool) {
         let local = self.function.local(ValType::I32);
         let mut sink = self.function.sink();
-        sink.local_tee(local).i32_const(limit).local_get(local).i32_const(limit);
+        sink.local_tee(local)
+            .i32_const(limit)
+            .local_get(local)
+            .i32_const(limit);
         match (upper, signed) {
             (true, true) => sink.i32_lt_s(),
             (true, false) => sink.i32_lt_u(),

@@ -163,13 +163,13 @@ impl<'c, 'p, 'a> Emitter<'c, 'p, 'a> {
         }
         self.function.if_(BlockType::Empty);
         self.function.sink().i32_const(site).local_get(local);
-        self.to_fault_value(of);
+        self.fault_value(of);
         self.fault();
         self.function.sink().local_get(local);
     }
 
     /// Turns a whole number on the stack into the value of a fault.
-    pub(super) fn to_fault_value(&mut self, of: Elementary) {
+    pub(super) fn fault_value(&mut self, of: Elementary) {
         if of.size() < 8 {
             if of.is_signed() {
                 self.function.sink().i64_extend_i32_s();

@@ -120,7 +120,11 @@ impl Emitter<'_, '_, '_> {
             _ => {
                 let (one, other) = (self.function.local(ty), self.function.local(ty));
                 let mut sink = self.function.sink();
-                sink.local_set(other).local_tee(one).local_get(other).local_get(one).local_get(other);
+                sink.local_set(other)
+                    .local_tee(one)
+                    .local_get(other)
+                    .local_get(one)
+                    .local_get(other);
                 match (ty == ValType::I64, of.is_signed(), least) {
                     (true, true, true) => sink.i64_lt_s(),
                     (true, false, true) => sink.i64_lt_u(),
@@ -148,11 +152,17 @@ impl Emitter<'_, '_, '_> {
     }
 
     fn mux(&mut self, of: Elementary, values: &[Expr], span: Span) {
-        let Some((decides, inputs)) = values.split_first() else { return };
+        let Some((decides, inputs)) = values.split_first() else {
+            return;
+        };
         let given = self.function.local(ValType::I64);
         self.expression(decides);
         let site = self.site(span, FaultKind::Choice);
-        self.function.sink().local_tee(given).i64_const(inputs.len() as i64).i64_ge_u();
+        self.function
+            .sink()
+            .local_tee(given)
+            .i64_const(inputs.len() as i64)
+            .i64_ge_u();
         self.function.if_(BlockType::Empty);
         self.function.sink().i32_const(site).local_get(given);
         self.fault();
@@ -161,7 +171,11 @@ impl Emitter<'_, '_, '_> {
             self.expression(input);
             if place > 0 {
                 let mut sink = self.function.sink();
-                sink.local_get(chosen).local_get(given).i64_const(place as i64).i64_eq().select();
+                sink.local_get(chosen)
+                    .local_get(given)
+                    .i64_const(place as i64)
+                    .i64_eq()
+                    .select();
             }
             self.function.sink().local_set(chosen);
         }
@@ -185,7 +199,10 @@ impl Emitter<'_, '_, '_> {
         self.narrow(of);
         self.constant(of, 0);
         let mut sink = self.function.sink();
-        sink.local_get(given).i64_const(of.bits().into()).i64_lt_u().select();
+        sink.local_get(given)
+            .i64_const(of.bits().into())
+            .i64_lt_u()
+            .select();
     }
 
     fn rotate(&mut self, function: Function, of: Elementary, values: &[Expr]) {
@@ -205,18 +222,27 @@ impl Emitter<'_, '_, '_> {
         }
         // In 8 and 16 bits by two shifts; the width is a power of two, so it cuts the distance.
         let bits = of.bits().cast_signed();
-        let (given, by_local) = (self.function.local(ValType::I32), self.function.local(ValType::I32));
+        let (given, by_local) = (
+            self.function.local(ValType::I32),
+            self.function.local(ValType::I32),
+        );
         self.function.sink().local_set(given);
         self.expression(by);
         let mut sink = self.function.sink();
-        sink.i32_wrap_i64().i32_const(bits - 1).i32_and().local_set(by_local);
+        sink.i32_wrap_i64()
+            .i32_const(bits - 1)
+            .i32_and()
+            .local_set(by_local);
         sink.local_get(given).local_get(by_local);
         if left {
             sink.i32_shl();
         } else {
             sink.i32_shr_u();
         }
-        sink.local_get(given).i32_const(bits).local_get(by_local).i32_sub();
+        sink.local_get(given)
+            .i32_const(bits)
+            .local_get(by_local)
+            .i32_sub();
         if left {
             sink.i32_shr_u();
         } else {

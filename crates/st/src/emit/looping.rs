@@ -14,13 +14,21 @@ use wasm_encoder::{BlockType, ValType};
 enum Stride {
     Known(i128),
     /// The local variables with its size, and with whether it goes up.
-    Local { size: u32, up: u32, signed: u32 },
+    Local {
+        size: u32,
+        up: u32,
+        signed: u32,
+    },
 }
 
 impl Emitter<'_, '_, '_> {
     /// Notes which loop is running: it is told if the fuel is used up.
     fn note_loop(&mut self, site: i32) {
-        self.function.sink().i32_const(0).i32_const(site).i32_store(at(layout::LOOP_SITE, 2));
+        self.function
+            .sink()
+            .i32_const(0)
+            .i32_const(site)
+            .i32_store(at(layout::LOOP_SITE, 2));
     }
 
     fn begin_loop(&mut self, span: Span) -> (i32, Label) {
@@ -118,13 +126,21 @@ impl Emitter<'_, '_, '_> {
         if let Some(number) = Self::is_constant(by) {
             return Stride::Known(number);
         }
-        let (signed, size) = (self.function.local(ValType::I64), self.function.local(ValType::I64));
+        let (signed, size) = (
+            self.function.local(ValType::I64),
+            self.function.local(ValType::I64),
+        );
         let up = self.function.local(ValType::I32);
         let site = self.site(by.span, FaultKind::Step);
         self.expression(by);
         let mut sink = self.function.sink();
         sink.local_tee(signed).i64_const(0).i64_gt_s().local_set(up);
-        sink.local_get(signed).i64_const(0).local_get(signed).i64_sub().local_get(up).select();
+        sink.local_get(signed)
+            .i64_const(0)
+            .local_get(signed)
+            .i64_sub()
+            .local_get(up)
+            .select();
         sink.local_tee(size).i64_eqz();
         self.function.if_(BlockType::Empty);
         self.function.sink().i32_const(site).i64_const(0);
@@ -153,7 +169,7 @@ impl Emitter<'_, '_, '_> {
         }
         self.function.if_(BlockType::Empty);
         self.function.sink().i32_const(site).local_get(local);
-        self.to_fault_value(each.ty);
+        self.fault_value(each.ty);
         self.fault();
     }
 

@@ -149,7 +149,11 @@ pub(crate) fn emit(program: &Program<'_>, image: &[u8]) -> Result<Emitted, Diagn
                 Target::Unit(unit) => program.units[unit.0 as usize].span,
                 _ => Span::default(),
             };
-            let wrong = Diagnostic::error(Code::TooLarge, span, "this is larger than a function of a module may be");
+            let wrong = Diagnostic::error(
+                Code::TooLarge,
+                span,
+                "this is larger than a function of a module may be",
+            );
             return Err(wrong.help("take parts of it out into function blocks"));
         }
         functions.push((target, function));
@@ -164,8 +168,16 @@ pub(crate) fn emit(program: &Program<'_>, image: &[u8]) -> Result<Emitted, Diagn
 /// Notes the place and the value of a fault, and traps.
 fn fault_function() -> Function {
     let mut function = Function::new(vec![ValType::I32, ValType::I64], None);
-    function.sink().i32_const(0).local_get(0).i32_store(function::at(layout::FAULT_SITE, 2));
-    function.sink().i32_const(0).local_get(1).i64_store(function::at(layout::FAULT_VALUE, 3));
+    function
+        .sink()
+        .i32_const(0)
+        .local_get(0)
+        .i32_store(function::at(layout::FAULT_SITE, 2));
+    function
+        .sink()
+        .i32_const(0)
+        .local_get(1)
+        .i64_store(function::at(layout::FAULT_VALUE, 3));
     function.sink().unreachable();
     function
 }
@@ -173,7 +185,11 @@ fn fault_function() -> Function {
 /// What the host calls: notes the time, and runs the tasks that are due.
 fn scan_function(tasks: &[Task], only: Option<usize>) -> Function {
     let mut function = Function::new(vec![ValType::I32, ValType::I64], None);
-    function.sink().i32_const(0).local_get(1).i64_store(function::at(layout::NOW, 3));
+    function
+        .sink()
+        .i32_const(0)
+        .local_get(1)
+        .i64_store(function::at(layout::NOW, 3));
     if let Some(task) = only {
         function.call(Target::Task(task));
         return function;
@@ -188,10 +204,18 @@ fn scan_function(tasks: &[Task], only: Option<usize>) -> Function {
         };
         let due = function::at(task.due, 3);
         let mut sink = function.sink();
-        sink.local_get(1).i32_const(0).i64_load(due).i64_ge_s().if_(BlockType::Empty);
+        sink.local_get(1)
+            .i32_const(0)
+            .i64_load(due)
+            .i64_ge_s()
+            .if_(BlockType::Empty);
         // Due again at the next multiple of the interval, however long the host waited.
         sink.i32_const(0).local_get(1).i64_const(interval).i64_div_s();
-        sink.i64_const(1).i64_add().i64_const(interval).i64_mul().i64_store(due);
+        sink.i64_const(1)
+            .i64_add()
+            .i64_const(interval)
+            .i64_mul()
+            .i64_store(due);
         function.call(Target::Task(place));
         function.sink().end();
     }
@@ -201,7 +225,11 @@ fn scan_function(tasks: &[Task], only: Option<usize>) -> Function {
 /// Puts the functions, the memory and the exports together.
 fn module(context: &Context<'_, '_>, mut functions: Vec<(Target, Function)>, image: &[u8]) -> Vec<u8> {
     let program = context.program;
-    let imported = context.wanted.iter().filter(|it| matches!(it, Target::Import(_))).count() as u32;
+    let imported = context
+        .wanted
+        .iter()
+        .filter(|it| matches!(it, Target::Import(_)))
+        .count() as u32;
     let mut indices: BTreeMap<Target, u32> = BTreeMap::new();
     let imports = context.wanted.iter().filter(|it| matches!(it, Target::Import(_)));
     indices.extend(imports.copied().zip(0..));
@@ -209,16 +237,19 @@ fn module(context: &Context<'_, '_>, mut functions: Vec<(Target, Function)>, ima
 
     // Functions that no other calls.
     let mut exported = vec![("plc_scan".to_owned(), scan_function(&program.tasks, None))];
-    for (place, task) in program.tasks.iter().enumerate().filter(|(_, task)| !task.name.is_empty()) {
+    for (place, task) in program
+        .tasks
+        .iter()
+        .enumerate()
+        .filter(|(_, task)| !task.name.is_empty())
+    {
         let name = format!("plc_task_{}", task.name.to_ascii_uppercase());
         exported.push((name, scan_function(&program.tasks, Some(place))));
     }
     let mut exports = ExportSection::new();
     exports.export("memory", ExportKind::Memory, 0);
-    let mut index = imported + functions.len() as u32;
-    for (name, function) in exported {
+    for (index, (name, function)) in (imported + functions.len() as u32..).zip(exported) {
         exports.export(&name, ExportKind::Func, index);
-        index += 1;
         // Whose target it is counts for nobody.
         functions.push((Target::Fault, function));
     }
@@ -226,7 +257,12 @@ fn module(context: &Context<'_, '_>, mut functions: Vec<(Target, Function)>, ima
     let mut types = TypeSection::new();
     let mut known: BTreeMap<Vec<u8>, u32> = BTreeMap::new();
     let mut type_of = |parameters: &[ValType], result: Option<ValType>| {
-        let key: Vec<u8> = parameters.iter().chain(&result).map(|ty| format!("{ty:?}").into_bytes()).flatten().chain([result.is_some() as u8]).collect();
+        let key: Vec<u8> = parameters
+            .iter()
+            .chain(&result)
+            .flat_map(|ty| format!("{ty:?}").into_bytes())
+            .chain([result.is_some() as u8])
+            .collect();
         let count = known.len() as u32;
         *known.entry(key).or_insert_with(|| {
             types.ty().function(parameters.iter().copied(), result);
@@ -241,7 +277,11 @@ fn module(context: &Context<'_, '_>, mut functions: Vec<(Target, Function)>, ima
             name if name.starts_with("math_") => (vec![ValType::F64], ValType::F64),
             _ => (vec![ValType::I32; 3], ValType::I32),
         };
-        import_section.import("standstill", name, EntityType::Function(type_of(&parameters, Some(result))));
+        import_section.import(
+            "standstill",
+            name,
+            EntityType::Function(type_of(&parameters, Some(result))),
+        );
     }
     let mut function_section = FunctionSection::new();
     let mut code = CodeSection::new();
@@ -262,7 +302,11 @@ fn module(context: &Context<'_, '_>, mut functions: Vec<(Target, Function)>, ima
     let variables = program.globals.iter().map(|global| &global.member);
     let variables = variables.filter(|member| program.types.elementary(member.ty).is_some());
     let free = |name: &str| name != "memory" && !name.starts_with("plc_");
-    for (place, member) in variables.filter(|member| free(&member.name)).take(EXPORTS_MOST).enumerate() {
+    for (place, member) in variables
+        .filter(|member| free(&member.name))
+        .take(EXPORTS_MOST)
+        .enumerate()
+    {
         let ty = GlobalType {
             val_type: ValType::I32,
             mutable: false,
@@ -306,7 +350,11 @@ fn segments(image: &[u8], at: u32, data: &mut DataSection) {
     for run in runs {
         let offset = at + run.start as u32;
         let bytes = image.get(run).unwrap_or_default();
-        data.active(0, &ConstExpr::i32_const(offset.cast_signed()), bytes.iter().copied());
+        data.active(
+            0,
+            &ConstExpr::i32_const(offset.cast_signed()),
+            bytes.iter().copied(),
+        );
     }
 }
 

@@ -165,7 +165,7 @@ impl Emitter<'_, '_, '_> {
         }
         self.function.if_(BlockType::Empty);
         self.function.sink().i32_const(site).local_get(left);
-        self.to_fault_value(of);
+        self.fault_value(of);
         self.fault();
         // The least number by -1 wraps around; the processor would trap.
         let guard = of.is_signed() && of.size() >= 4 && !rest;

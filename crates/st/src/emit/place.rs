@@ -93,17 +93,29 @@ impl Emitter<'_, '_, '_> {
                 self.function.sink().i64_extend_i32_u();
             }
             let given = self.function.local(ValType::I64);
-            self.function.sink().local_tee(given).i64_const(index.low).i64_sub();
+            self.function
+                .sink()
+                .local_tee(given)
+                .i64_const(index.low)
+                .i64_sub();
             self.function.sink().i64_const(index.count.into()).i64_ge_u();
             if of == Elementary::Ulint {
                 // Beyond LINT it is outside of every bound.
-                self.function.sink().local_get(given).i64_const(0).i64_lt_s().i32_or();
+                self.function
+                    .sink()
+                    .local_get(given)
+                    .i64_const(0)
+                    .i64_lt_s()
+                    .i32_or();
             }
             self.function.if_(BlockType::Empty);
             self.function.sink().i32_const(site).local_get(given);
             self.fault();
             let mut sink = self.function.sink();
-            sink.local_get(given).i64_const(index.low).i64_sub().i32_wrap_i64();
+            sink.local_get(given)
+                .i64_const(index.low)
+                .i64_sub()
+                .i32_wrap_i64();
         } else {
             let local = self.function.local(ValType::I32);
             let low = index.low as i32;
@@ -113,7 +125,12 @@ impl Emitter<'_, '_, '_> {
             let count = index.count.cast_signed();
             self.function.sink().local_tee(local).i32_const(count).i32_ge_u();
             self.function.if_(BlockType::Empty);
-            self.function.sink().i32_const(site).local_get(local).i32_const(low).i32_add();
+            self.function
+                .sink()
+                .i32_const(site)
+                .local_get(local)
+                .i32_const(low)
+                .i32_add();
             if of.is_signed() {
                 self.function.sink().i64_extend_i32_s();
             } else {
@@ -193,10 +210,17 @@ impl Emitter<'_, '_, '_> {
         let mut sink = self.function.sink();
         if of.size() == 8 {
             sink.i64_const(!(1_u64 << bit).cast_signed()).i64_and();
-            sink.local_get(given).i64_extend_i32_u().i64_const(bit.into()).i64_shl().i64_or();
+            sink.local_get(given)
+                .i64_extend_i32_u()
+                .i64_const(bit.into())
+                .i64_shl()
+                .i64_or();
         } else {
             sink.i32_const(!(1_u32 << bit).cast_signed()).i32_and();
-            sink.local_get(given).i32_const(bit.cast_signed()).i32_shl().i32_or();
+            sink.local_get(given)
+                .i32_const(bit.cast_signed())
+                .i32_shl()
+                .i32_or();
         }
         self.store(of, offset);
     }

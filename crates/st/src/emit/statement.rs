@@ -31,18 +31,27 @@ pub(super) fn unit(context: &mut Context<'_, '_>, id: UnitId) -> Function {
     let members = &info.members.list;
     let result = info.result.and_then(|place| members.get(place));
     let (parameters, value) = if is_function {
-        let taken = members.iter().filter(|member| matches!(member.kind, MemberKind::Input | MemberKind::InOut));
+        let taken = members
+            .iter()
+            .filter(|member| matches!(member.kind, MemberKind::Input | MemberKind::InOut));
         let taken = taken.map(|member| match member.kind {
             MemberKind::InOut => ValType::I32,
             _ => Emitter::parameter(program.types.elementary(member.ty)),
         });
-        (taken.collect(), result.map(|member| Emitter::parameter(program.types.elementary(member.ty))))
+        (
+            taken.collect(),
+            result.map(|member| Emitter::parameter(program.types.elementary(member.ty))),
+        )
     } else {
         (vec![ValType::I32], None)
     };
     let body = context.bodies.get(&id).copied();
     let mut emitter = Emitter::new(context, Function::new(parameters, value));
-    let (root, frame) = if is_function { (Root::Zero, info.frame) } else { (Root::Local(0), 0) };
+    let (root, frame) = if is_function {
+        (Root::Zero, info.frame)
+    } else {
+        (Root::Local(0), 0)
+    };
     if is_function {
         emitter.take_parameters(members, frame);
     }
@@ -74,12 +83,18 @@ const fn place(offset: u32, ty: TypeId) -> Place {
 impl Emitter<'_, '_, '_> {
     /// Puts the parameters of a FUNCTION where its variables stand.
     fn take_parameters(&mut self, members: &[Member], frame: u32) {
-        let taken = members.iter().filter(|member| matches!(member.kind, MemberKind::Input | MemberKind::InOut));
+        let taken = members
+            .iter()
+            .filter(|member| matches!(member.kind, MemberKind::Input | MemberKind::InOut));
         for (local, member) in (0..).zip(taken) {
             let offset = frame + member.offset;
             match (member.kind, self.type_of(member.ty)) {
                 (MemberKind::InOut, _) => {
-                    self.function.sink().i32_const(0).local_get(local).i32_store(at(offset, 2));
+                    self.function
+                        .sink()
+                        .i32_const(0)
+                        .local_get(local)
+                        .i32_store(at(offset, 2));
                 }
                 (_, Some(of)) => {
                     self.function.sink().i32_const(0).local_get(local);
@@ -97,7 +112,10 @@ impl Emitter<'_, '_, '_> {
 
     fn bytes(&self, ty: TypeId) -> u32 {
         let program = self.context.program;
-        program.types.size(ty, |unit| program.units[unit.0 as usize].members.size).0
+        program
+            .types
+            .size(ty, |unit| program.units[unit.0 as usize].members.size)
+            .0
     }
 
     /// Gives a variable its first value, as at every call.
@@ -128,7 +146,11 @@ impl Emitter<'_, '_, '_> {
         } else {
             let from = self.context.templates_at + self.context.templates.len() as u32;
             self.context.templates.extend(image);
-            self.function.sink().i32_const(from.cast_signed()).i32_const(size).memory_copy(0, 0);
+            self.function
+                .sink()
+                .i32_const(from.cast_signed())
+                .i32_const(size)
+                .memory_copy(0, 0);
         }
     }
 
@@ -233,7 +255,10 @@ impl Emitter<'_, '_, '_> {
             self.function.block();
         }
         let mut sink = self.function.sink();
-        sink.local_get(local).i32_const(low as i32).i32_sub().br_table(targets, count);
+        sink.local_get(local)
+            .i32_const(low as i32)
+            .i32_sub()
+            .br_table(targets, count);
         for branch in branches {
             self.function.end();
             self.statements(&branch.body);

@@ -5,7 +5,8 @@
 
 use crate::source::Span;
 use crate::types::{
-    Array, Constant, Elementary, Enumeration, Member, MemberKind, Members, Start, Structure, Type, TypeId, Types,
+    Array, Constant, Elementary, Enumeration, Member, MemberKind, Members, Start, Structure, Type, TypeId,
+    Types,
 };
 use standstill_blocks::REGISTRY;
 use standstill_fb::flat::Pointer;
@@ -28,7 +29,10 @@ pub(crate) fn result(info: &BlockInfo) -> u32 {
 /// The name of the function that does a block: `mc_move_absolute`.
 pub(crate) fn import(info: &BlockInfo) -> &'static str {
     let place = REGISTRY.iter().position(|it| it.name == info.name);
-    place.and_then(|place| IMPORTS.get(place)).copied().unwrap_or_default()
+    place
+        .and_then(|place| IMPORTS.get(place))
+        .copied()
+        .unwrap_or_default()
 }
 
 macro_rules! imports {
@@ -46,7 +50,9 @@ const PREFIX: &str = "STANDSTILL_";
 /// The block that a program calls so, in upper case.
 pub(crate) fn find(key: &str) -> Option<&'static BlockInfo> {
     let plain = key.strip_prefix(PREFIX);
-    let standard = plain.and_then(standstill_blocks::registry::find).filter(|info| info.group == Group::Standard);
+    let standard = plain
+        .and_then(standstill_blocks::registry::find)
+        .filter(|info| info.group == Group::Standard);
     standard.or_else(|| standstill_blocks::registry::find(key))
 }
 
@@ -75,7 +81,9 @@ fn pin_type(ty: PinType, types: &mut Types, named: &mut BTreeMap<String, TypeId>
         PinType::Axis(name) => return once(name, types, named, |_, _| reference(name)),
         PinType::Enum(info) => return once(info.name, types, named, |_, _| enumeration(&info)),
         PinType::Table(table) => {
-            return once(table.name, types, named, |types, named| table_type(&table, types, named));
+            return once(table.name, types, named, |types, named| {
+                table_type(&table, types, named)
+            });
         }
     };
     Types::of(elementary)
@@ -101,7 +109,11 @@ fn enumeration(info: &EnumInfo) -> Type {
     Type::Enumeration(Enumeration {
         name: info.name.to_owned(),
         base: Elementary::Dint,
-        elements: info.elements.iter().map(|(name, number)| ((*name).to_owned(), (*number).into())).collect(),
+        elements: info
+            .elements
+            .iter()
+            .map(|(name, number)| ((*name).to_owned(), (*number).into()))
+            .collect(),
         library: true,
     })
 }
@@ -157,8 +169,16 @@ fn table_type(table: &TableInfo, types: &mut Types, named: &mut BTreeMap<String,
     });
     let array = types.shared(array);
     let mut members = Members::default();
-    members.add(field("Count", Types::of(Elementary::Dint), MemberKind::Field, 0), 4, 4);
-    members.add(field("Records", array, MemberKind::Field, 0), stride * table.most as u32, 8);
+    members.add(
+        field("Count", Types::of(Elementary::Dint), MemberKind::Field, 0),
+        4,
+        4,
+    );
+    members.add(
+        field("Records", array, MemberKind::Field, 0),
+        stride * table.most as u32,
+        8,
+    );
     members.close();
     Type::Structure(Structure {
         name: table.name.to_owned(),
@@ -167,7 +187,11 @@ fn table_type(table: &TableInfo, types: &mut Types, named: &mut BTreeMap<String,
 }
 
 /// The pins of a block as members of its instance.
-pub(crate) fn members(info: &'static BlockInfo, types: &mut Types, named: &mut BTreeMap<String, TypeId>) -> Members {
+pub(crate) fn members(
+    info: &'static BlockInfo,
+    types: &mut Types,
+    named: &mut BTreeMap<String, TypeId>,
+) -> Members {
     let (inputs, out) = (info.flat_inputs(Pointer::Bits32), info.flat_outputs());
     let mut members = Members::default();
     for (index, pin) in info.inputs().iter().enumerate() {

@@ -58,7 +58,10 @@ functions! {
 
 impl Function {
     pub(crate) fn find(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|it| it.name().eq_ignore_ascii_case(name))
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|it| it.name().eq_ignore_ascii_case(name))
     }
 
     /// The function of the host that does it, of numbers of 64 bits.
@@ -135,7 +138,10 @@ mod tests {
     #[test]
     fn names_of_conversions_are_taken_apart_at_the_last_to() {
         assert_eq!(conversion("INT_TO_REAL"), Some((Some("INT"), Elementary::Real)));
-        assert_eq!(conversion("WAY_TO_GO_TO_INT"), Some((Some("WAY_TO_GO"), Elementary::Int)));
+        assert_eq!(
+            conversion("WAY_TO_GO_TO_INT"),
+            Some((Some("WAY_TO_GO"), Elementary::Int))
+        );
         assert_eq!(conversion("TO_LREAL"), Some((None, Elementary::Lreal)));
         assert_eq!(conversion("INT_TO_AXIS"), None);
         assert_eq!(conversion("ABS"), None);

@@ -18,8 +18,15 @@ impl Parser<'_> {
             if self.take(Token::Semicolon) {
                 return;
             }
-            let message = format!("a PROGRAM, FUNCTION_BLOCK, FUNCTION, TYPE or VAR_GLOBAL begins here, not {}", self.shown());
-            self.tell_here(Code::Syntax, message, "statements stand in a PROGRAM .. END_PROGRAM");
+            let message = format!(
+                "a PROGRAM, FUNCTION_BLOCK, FUNCTION, TYPE or VAR_GLOBAL begins here, not {}",
+                self.shown()
+            );
+            self.tell_here(
+                Code::Syntax,
+                message,
+                "statements stand in a PROGRAM .. END_PROGRAM",
+            );
             self.skip_to_item();
             return;
         };
@@ -46,7 +53,10 @@ impl Parser<'_> {
             _ => {
                 let message = match word.text().strip_prefix("END_") {
                     Some(opened) => format!("`{}` closes a {opened} that is not open", word.text()),
-                    None => format!("`{}` cannot stand outside of a PROGRAM, FUNCTION_BLOCK or FUNCTION", word.text()),
+                    None => format!(
+                        "`{}` cannot stand outside of a PROGRAM, FUNCTION_BLOCK or FUNCTION",
+                        word.text()
+                    ),
                 };
                 self.tell_here(Code::Syntax, message, "");
                 self.next();
@@ -87,7 +97,11 @@ impl Parser<'_> {
         let name = self.new_name("a type")?;
         if self.token() == Token::Word(Word::Extends) {
             let span = self.span();
-            self.unsupported(span, "EXTENDS", "repeat the members, or hold a member of the other type");
+            self.unsupported(
+                span,
+                "EXTENDS",
+                "repeat the members, or hold a member of the other type",
+            );
             self.next();
             self.ident("a type");
         }
@@ -113,20 +127,30 @@ impl Parser<'_> {
 
     /// Tells that something is open at a place where it cannot go on.
     pub(super) fn not_closed(&mut self, end: Word, open: Span, what: &str) {
-        let message = format!("{what} is not closed: `{}` is missing before {}", end.text(), self.shown());
+        let message = format!(
+            "{what} is not closed: `{}` is missing before {}",
+            end.text(),
+            self.shown()
+        );
         let wrong = Diagnostic::error(Code::NotClosed, self.span(), message);
         self.tell(wrong.related(open, format!("{what} is opened here")));
     }
 
     fn refused_section(&mut self, word: Word) {
         let span = self.next();
-        self.unsupported(span, word.text(), "use VAR_GLOBAL, or inputs and outputs of the PROGRAM");
+        self.unsupported(
+            span,
+            word.text(),
+            "use VAR_GLOBAL, or inputs and outputs of the PROGRAM",
+        );
         self.skip_past(Word::EndVar);
     }
 
     fn unit(&mut self, kind: UnitKind, end: Word) -> Option<Item> {
         let open = self.next();
-        while ["ABSTRACT", "FINAL", "PUBLIC", "PRIVATE", "INTERNAL", "PROTECTED"].iter().any(|it| self.is_name(it))
+        while ["ABSTRACT", "FINAL", "PUBLIC", "PRIVATE", "INTERNAL", "PROTECTED"]
+            .iter()
+            .any(|it| self.is_name(it))
             && matches!(self.ahead(1), Token::Name)
         {
             let span = self.next();
@@ -172,8 +196,15 @@ impl Parser<'_> {
                 Word::VarAccess | Word::VarConfig => self.refused_section(word),
                 Word::VarGlobal => {
                     let span = self.span();
-                    let wrong = Diagnostic::error(Code::Misplaced, span, "VAR_GLOBAL stands outside of programs and blocks");
-                    self.tell(wrong.help("move it to the top of the file; here VAR_EXTERNAL names global variables"));
+                    let wrong = Diagnostic::error(
+                        Code::Misplaced,
+                        span,
+                        "VAR_GLOBAL stands outside of programs and blocks",
+                    );
+                    self.tell(
+                        wrong
+                            .help("move it to the top of the file; here VAR_EXTERNAL names global variables"),
+                    );
                     self.section();
                 }
                 _ if skip::is_section(word) && word != Word::EndVar && word != Word::EndStruct => {
@@ -212,9 +243,15 @@ impl Parser<'_> {
                         _ => Word::EndProperty,
                     });
                 }
-                Token::Word(word) if skip::is_section(word) && word != Word::EndVar && word != Word::EndStruct => {
+                Token::Word(word)
+                    if skip::is_section(word) && word != Word::EndVar && word != Word::EndStruct =>
+                {
                     let message = format!("{} stands behind a statement", word.text());
-                    self.tell_here(Code::Misplaced, message, "declare variables before the first statement");
+                    self.tell_here(
+                        Code::Misplaced,
+                        message,
+                        "declare variables before the first statement",
+                    );
                     self.section();
                 }
                 _ => {
@@ -228,7 +265,9 @@ impl Parser<'_> {
     /// VAR .. END_VAR, of any kind.
     fn section(&mut self) -> Option<Section> {
         let open = self.span();
-        let Token::Word(word) = self.token() else { return None };
+        let Token::Word(word) = self.token() else {
+            return None;
+        };
         let kind = match word {
             Word::VarInput => SectionKind::Input,
             Word::VarOutput => SectionKind::Output,
@@ -250,8 +289,11 @@ impl Parser<'_> {
                 Token::Word(Word::Constant) => constant = true,
                 Token::Word(Word::Retain | Word::Persistent) => retain = true,
                 Token::Word(Word::NonRetain) => {}
-                Token::Name if ["PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL"].iter().any(|it| self.is_name(it))
-                    && matches!(self.ahead(1), Token::Name | Token::Word(_)) =>
+                Token::Name
+                    if ["PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL"]
+                        .iter()
+                        .any(|it| self.is_name(it))
+                        && matches!(self.ahead(1), Token::Name | Token::Word(_)) =>
                 {
                     let span = self.span();
                     self.unsupported(span, "access to single variables", "leave the word out");
@@ -288,8 +330,12 @@ impl Parser<'_> {
                     self.next();
                 }
                 Token::Name => list.extend(self.variable()),
-                Token::Word(_) if matches!(self.ahead(1), Token::Colon | Token::Comma) => list.extend(self.variable()),
-                Token::Word(word) if !skip::is_section(word) && !skip::is_item(word) && !skip::is_statement(word) => {
+                Token::Word(_) if matches!(self.ahead(1), Token::Colon | Token::Comma) => {
+                    list.extend(self.variable())
+                }
+                Token::Word(word)
+                    if !skip::is_section(word) && !skip::is_item(word) && !skip::is_statement(word) =>
+                {
                     self.new_name("a variable");
                     self.next();
                     self.skip_to_semicolon();
@@ -315,16 +361,25 @@ impl Parser<'_> {
                 self.skip_to_semicolon();
                 return None;
             };
-            let address = if self.take_word(Word::At) { self.address() } else { None };
+            let address = if self.take_word(Word::At) {
+                self.address()
+            } else {
+                None
+            };
             names.push((name, address));
             if !self.take(Token::Comma) {
                 break;
             }
         }
-        if self.token() == Token::Assign || self.token() == Token::Equal || self.token() == Token::Semicolon
+        if self.token() == Token::Assign
+            || self.token() == Token::Equal
+            || self.token() == Token::Semicolon
             || self.token() == Token::Name
         {
-            let message = format!("`:` and a type are missing behind the name, before {}", self.shown());
+            let message = format!(
+                "`:` and a type are missing behind the name, before {}",
+                self.shown()
+            );
             let wrong = Diagnostic::error(Code::Syntax, self.before().after(), message);
             self.tell(wrong.help("declare as `Name : INT := 5;`, or close the declarations with END_VAR"));
             self.skip_to_semicolon();
@@ -337,7 +392,11 @@ impl Parser<'_> {
         let mut initial = None;
         let spec = self.type_spec(&mut initial);
         if self.token() == Token::Equal {
-            self.tell_here(Code::Syntax, "`=` compares", "an initial value stands behind `:=`");
+            self.tell_here(
+                Code::Syntax,
+                "`=` compares",
+                "an initial value stands behind `:=`",
+            );
             self.next();
             initial = Some(self.initial());
         } else if self.take(Token::Assign) {
@@ -356,7 +415,10 @@ impl Parser<'_> {
     fn address(&mut self) -> Option<crate::syntax::Ident> {
         let span = self.span();
         if self.token() != Token::Address {
-            let message = format!("an address such as %IX0.0 is expected behind AT, not {}", self.shown());
+            let message = format!(
+                "an address such as %IX0.0 is expected behind AT, not {}",
+                self.shown()
+            );
             self.tell_here(Code::Syntax, message, "");
             return None;
         }
@@ -372,7 +434,9 @@ impl Parser<'_> {
         if !good {
             let message = format!("`{text}` is no address");
             let wrong = Diagnostic::error(Code::BadLiteral, span, message);
-            self.tell(wrong.help("write %IX0.0, %QW2 or %MD4: I, Q or M, then X, B, W, D or L, then numbers"));
+            self.tell(
+                wrong.help("write %IX0.0, %QW2 or %MD4: I, Q or M, then X, B, W, D or L, then numbers"),
+            );
         }
         Some(crate::syntax::Ident { text, span })
     }
@@ -402,7 +466,11 @@ impl Parser<'_> {
                     self.resource(&mut configuration, Some(resource));
                 }
                 Token::Word(Word::EndResource) => {
-                    self.tell_here(Code::Syntax, "`END_RESOURCE` closes a RESOURCE that is not open", "");
+                    self.tell_here(
+                        Code::Syntax,
+                        "`END_RESOURCE` closes a RESOURCE that is not open",
+                        "",
+                    );
                     self.next();
                 }
                 Token::Word(_) | Token::Name if self.resource_part(&mut configuration) => {}
@@ -461,7 +529,11 @@ impl Parser<'_> {
         };
         if self.token() == Token::Open {
             for argument in self.arguments() {
-                let key = argument.name.as_ref().map(crate::syntax::Ident::key).unwrap_or_default();
+                let key = argument
+                    .name
+                    .as_ref()
+                    .map(crate::syntax::Ident::key)
+                    .unwrap_or_default();
                 match key.as_str() {
                     "INTERVAL" => task.interval = argument.value,
                     "PRIORITY" => task.priority = argument.value,
@@ -490,7 +562,11 @@ impl Parser<'_> {
             self.skip_to_semicolon();
             return None;
         };
-        let task = if self.take_name("WITH") { self.ident("a task") } else { None };
+        let task = if self.take_name("WITH") {
+            self.ident("a task")
+        } else {
+            None
+        };
         self.expect(Token::Colon, ":", "before the type of the program");
         let Some(program) = self.ident("a PROGRAM") else {
             self.skip_to_semicolon();

@@ -107,8 +107,12 @@ impl Parser<'_> {
         let inner = inner.unwrap_or_else(|| self.given_up(from));
         if matches!(inner.kind, Kind::Chain(..)) && self.text_of(from) == "-" {
             self.found.add(
-                Diagnostic::warning(Code::Portability, from.to(inner.span), "compilers differ about `-a ** b`")
-                    .help("here it is -(a ** b); write the parentheses"),
+                Diagnostic::warning(
+                    Code::Portability,
+                    from.to(inner.span),
+                    "compilers differ about `-a ** b`",
+                )
+                .help("here it is -(a ** b); write the parentheses"),
             );
         }
         let span = from.to(inner.span);
@@ -136,7 +140,10 @@ impl Parser<'_> {
             // What is missing behind it has the same cause.
             self.told_at = Some(self.at);
         }
-        Expression { kind: Kind::Wrong, span }
+        Expression {
+            kind: Kind::Wrong,
+            span,
+        }
     }
 
     fn primary(&mut self) -> Expression {
@@ -153,7 +160,11 @@ impl Parser<'_> {
                 let inner = self.deeper(Self::expression);
                 let inner = inner.unwrap_or_else(|| self.given_up(from));
                 if self.token() == Token::Assign {
-                    self.tell_here(Code::Syntax, "`:=` assigns, and this is an expression", "compare with `=`");
+                    self.tell_here(
+                        Code::Syntax,
+                        "`:=` assigns, and this is an expression",
+                        "compare with `=`",
+                    );
                     self.given_up(from);
                 }
                 self.expect(Token::Close, ")", "behind this expression");
@@ -164,7 +175,9 @@ impl Parser<'_> {
             }
             Token::Name => return self.name_in_expression(),
             // As functions: AND(a, b).
-            Token::Word(word @ (Word::And | Word::Or | Word::Xor | Word::Mod)) if self.ahead(1) == Token::Open => {
+            Token::Word(word @ (Word::And | Word::Or | Word::Xor | Word::Mod))
+                if self.ahead(1) == Token::Open =>
+            {
                 let span = self.next();
                 let root = Ident {
                     text: word.text().to_owned(),
@@ -263,7 +276,11 @@ impl Parser<'_> {
                 }
                 Token::Caret => {
                     let span = self.next();
-                    self.unsupported(span, "`^`, which follows a pointer,", "hand variables over as VAR_IN_OUT");
+                    self.unsupported(
+                        span,
+                        "`^`, which follows a pointer,",
+                        "hand variables over as VAR_IN_OUT",
+                    );
                 }
                 _ => {
                     let span = root.span.to(self.before());
@@ -288,7 +305,11 @@ impl Parser<'_> {
                     Some(digits) => digits.to_owned(),
                     None => {
                         let what = format!("{} of a variable", quoted(text));
-                        self.unsupported(span, &what, "bits are read and written: w.3, w.%X3; shift with SHR for bytes");
+                        self.unsupported(
+                            span,
+                            &what,
+                            "bits are read and written: w.3, w.%X3; shift with SHR for bytes",
+                        );
                         self.next();
                         return None;
                     }
@@ -308,7 +329,8 @@ impl Parser<'_> {
             Some(bit) if bit < 64 => Some(Selector::Bit(bit, span)),
             _ => {
                 let message = format!("there is no bit {}", quoted(&digits));
-                self.found.add(Diagnostic::error(Code::OutOfRange, span, message).help("bits are 0 to 63 at most"));
+                self.found
+                    .add(Diagnostic::error(Code::OutOfRange, span, message).help("bits are 0 to 63 at most"));
                 None
             }
         }
@@ -336,7 +358,11 @@ impl Parser<'_> {
                     break;
                 }
                 if parser.token() == Token::Close {
-                    parser.tell_here(Code::Syntax, "an argument is missing behind the comma", "delete the comma");
+                    parser.tell_here(
+                        Code::Syntax,
+                        "an argument is missing behind the comma",
+                        "delete the comma",
+                    );
                 }
                 if parser.at == from {
                     break;
@@ -350,9 +376,11 @@ impl Parser<'_> {
         if !self.take(Token::Close) {
             let here = self.shown();
             let wrong = match self.token() {
-                Token::Semicolon | Token::End => {
-                    Diagnostic::error(Code::NotClosed, self.before().after(), format!("`)` is missing before {here}"))
-                }
+                Token::Semicolon | Token::End => Diagnostic::error(
+                    Code::NotClosed,
+                    self.before().after(),
+                    format!("`)` is missing before {here}"),
+                ),
                 _ => Diagnostic::error(
                     Code::Syntax,
                     self.before().after(),
@@ -414,7 +442,11 @@ impl Parser<'_> {
         }
         let value = self.expression();
         if self.token() == Token::Equal || self.token() == Token::Assign {
-            self.tell_here(Code::Syntax, "this is no name of an input", "inputs are given as Name := value");
+            self.tell_here(
+                Code::Syntax,
+                "this is no name of an input",
+                "inputs are given as Name := value",
+            );
             self.given_up(from);
         }
         Some(Argument {

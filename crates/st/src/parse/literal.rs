@@ -79,7 +79,11 @@ impl Parser<'_> {
             Ok(ns) => Kind::Duration(ns, long),
             Err(why) => {
                 let why = format!("{} is no duration: {why}", quoted(&text));
-                self.bad_literal(span, why, "write numbers with d, h, m, s, ms, us, ns in this order: T#1m30s, T#2.5ms")
+                self.bad_literal(
+                    span,
+                    why,
+                    "write numbers with d, h, m, s, ms, us, ns in this order: T#1m30s, T#2.5ms",
+                )
             }
         };
         self.next();
@@ -96,7 +100,11 @@ impl Parser<'_> {
             upper.as_str(),
             "D" | "DATE" | "LDATE" | "LD" | "TOD" | "TIME_OF_DAY" | "LTOD" | "DT" | "DATE_AND_TIME" | "LDT"
         ) {
-            self.unsupported(prefix, "dates and times of day", "use TIME, which counts from the start of the run: TIME()");
+            self.unsupported(
+                prefix,
+                "dates and times of day",
+                "use TIME, which counts from the start of the run: TIME()",
+            );
             self.skip_glued();
             return Kind::Wrong;
         }
@@ -167,12 +175,17 @@ fn nanoseconds(text: &str) -> Result<i64, String> {
     let mut total = 0_i128;
     let mut least = 0;
     while !rest.is_empty() {
-        let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
+        let end = rest
+            .find(|c: char| !c.is_ascii_digit() && c != '.')
+            .unwrap_or(rest.len());
         let (number, behind) = rest.split_at(end);
-        let end = behind.find(|c: char| !c.is_ascii_lowercase()).unwrap_or(behind.len());
+        let end = behind
+            .find(|c: char| !c.is_ascii_lowercase())
+            .unwrap_or(behind.len());
         let (unit, behind) = behind.split_at(end);
         let place = UNITS.iter().position(|(name, _)| *name == unit);
-        let place = place.ok_or_else(|| format!("a unit is missing behind `{number}`, or `{unit}` is none"))?;
+        let place =
+            place.ok_or_else(|| format!("a unit is missing behind `{number}`, or `{unit}` is none"))?;
         if place < least {
             return Err(format!("`{unit}` stands behind a smaller unit, or twice"));
         }
@@ -181,7 +194,8 @@ fn nanoseconds(text: &str) -> Result<i64, String> {
         if !fraction.is_empty() && !behind.is_empty() {
             return Err("only the last part may have a fraction".to_owned());
         }
-        total += part(whole, fraction, UNITS[place].1).ok_or_else(|| format!("`{number}` is no number that fits"))?;
+        total += part(whole, fraction, UNITS[place].1)
+            .ok_or_else(|| format!("`{number}` is no number that fits"))?;
         rest = behind;
     }
     let total = if negative { -total } else { total };
@@ -195,7 +209,11 @@ fn part(whole: &str, fraction: &str, unit: i128) -> Option<i128> {
     let digits = fraction.get(..fraction.len().min(DIGITS))?;
     let whole: u64 = whole.parse().ok()?;
     let scale = 10_i128.pow(digits.len() as u32);
-    let digits: i128 = if digits.is_empty() { 0 } else { digits.parse().ok()? };
+    let digits: i128 = if digits.is_empty() {
+        0
+    } else {
+        digits.parse().ok()?
+    };
     let rounded = (digits.checked_mul(unit)? * 2 + scale) / (2 * scale);
     i128::from(whole).checked_mul(unit)?.checked_add(rounded)
 }
@@ -217,7 +235,18 @@ mod tests {
         ] {
             assert_eq!(nanoseconds(text), Ok(ns), "{text}");
         }
-        for text in ["", "-", "5", "5x", "1s2h", "1s1s", "1.5m3s", "1..5s", "99999999999d", ".s"] {
+        for text in [
+            "",
+            "-",
+            "5",
+            "5x",
+            "1s2h",
+            "1s1s",
+            "1.5m3s",
+            "1..5s",
+            "99999999999d",
+            ".s",
+        ] {
             assert!(nanoseconds(text).is_err(), "{text}");
         }
     }

@@ -57,11 +57,15 @@ impl Parser<'_> {
     }
 
     fn ahead(&self, by: usize) -> Token {
-        self.tokens.get(self.at + by).map_or(Token::End, |(token, _)| *token)
+        self.tokens
+            .get(self.at + by)
+            .map_or(Token::End, |(token, _)| *token)
     }
 
     fn span(&self) -> Span {
-        self.tokens.get(self.at).map_or_else(Span::default, |(_, span)| *span)
+        self.tokens
+            .get(self.at)
+            .map_or_else(Span::default, |(_, span)| *span)
     }
 
     /// The last token that was taken.
@@ -178,7 +182,7 @@ impl Parser<'_> {
 
     /// A name to be declared. A keyword in its place is told and taken.
     fn new_name(&mut self, what: &str) -> Option<Ident> {
-        if let Token::Word(word) = self.token()
+        if matches!(self.token(), Token::Word(_))
             && matches!(
                 self.ahead(1),
                 Token::Colon | Token::Comma | Token::Assign | Token::Close | Token::Semicolon
@@ -187,7 +191,7 @@ impl Parser<'_> {
             let span = self.span();
             let text = self.text_of(span).to_owned();
             let message = format!("`{text}` is a keyword and cannot be the name of {what}");
-            let help = format!("choose another name, such as `{text}_` with a word behind it: `{}_1`", word.text());
+            let help = format!("choose another name, such as `{text}Value`");
             self.tell(Diagnostic::error(Code::BadName, span, message).help(help));
             self.next();
             return Some(Ident { text, span });
@@ -199,7 +203,11 @@ impl Parser<'_> {
     fn deeper<T>(&mut self, inner: impl FnOnce(&mut Self) -> T) -> Option<T> {
         if self.depth >= NESTING_MOST {
             let message = format!("this is nested more than {NESTING_MOST} levels deep");
-            self.tell_here(Code::TooDeep, message, "take parts of it out into variables, functions or types");
+            self.tell_here(
+                Code::TooDeep,
+                message,
+                "take parts of it out into variables, functions or types",
+            );
             return None;
         }
         self.depth += 1;

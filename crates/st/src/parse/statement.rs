@@ -27,8 +27,17 @@ impl Parser<'_> {
             Token::Word(Word::Else | Word::Elsif) => self.is_open(&[Word::EndIf, Word::EndCase]),
             Token::Word(Word::Until) => self.is_open(&[Word::EndRepeat]),
             Token::Word(Word::Method | Word::Property) => true,
-            Token::Word(word) => (self.open.contains(&word) || skip::is_section(word) && word != Word::EndVar)
-                || matches!(word, Word::Program | Word::FunctionBlock | Word::Function | Word::Type | Word::Configuration),
+            Token::Word(word) => {
+                (self.open.contains(&word) || skip::is_section(word) && word != Word::EndVar)
+                    || matches!(
+                        word,
+                        Word::Program
+                            | Word::FunctionBlock
+                            | Word::Function
+                            | Word::Type
+                            | Word::Configuration
+                    )
+            }
             _ => self.in_case() && self.is_label(),
         }
     }
@@ -131,7 +140,11 @@ impl Parser<'_> {
                 return None;
             }
             Word::This | Word::Super => {
-                self.unsupported(from, &format!("{}^", word.text()), "name the variables of the block directly");
+                self.unsupported(
+                    from,
+                    &format!("{}^", word.text()),
+                    "name the variables of the block directly",
+                );
                 self.skip_to_semicolon();
                 return None;
             }
@@ -149,13 +162,23 @@ impl Parser<'_> {
                 let text = word.text();
                 let message = match text.strip_prefix("END_") {
                     Some(opened) => format!("`{text}` closes a {opened} that is not open"),
-                    None if matches!(word, Word::Else | Word::Elsif) => format!("`{text}` without an IF or CASE"),
+                    None if matches!(word, Word::Else | Word::Elsif) => {
+                        format!("`{text}` without an IF or CASE")
+                    }
                     None if word == Word::Then => "`THEN` without an IF".to_owned(),
                     None => format!("a statement is expected, not the keyword `{text}`"),
                 };
                 let wrong_name = matches!(self.ahead(1), Token::Assign | Token::Dot);
-                let help = if wrong_name { "a keyword cannot be the name of a variable: choose another one" } else { "" };
-                self.tell_here(if wrong_name { Code::BadName } else { Code::Syntax }, message, help);
+                let help = if wrong_name {
+                    "a keyword cannot be the name of a variable: choose another one"
+                } else {
+                    ""
+                };
+                self.tell_here(
+                    if wrong_name { Code::BadName } else { Code::Syntax },
+                    message,
+                    help,
+                );
                 self.next();
                 if wrong_name {
                     self.skip_to_semicolon();
@@ -187,7 +210,10 @@ impl Parser<'_> {
     fn semicolon_after_end(&mut self) {
         let span = self.before();
         if !self.take(Token::Semicolon) {
-            let message = format!("`;` is missing behind {}", self.text_of(span).to_ascii_uppercase());
+            let message = format!(
+                "`;` is missing behind {}",
+                self.text_of(span).to_ascii_uppercase()
+            );
             let doubt = Diagnostic::warning(Code::Portability, span.after(), message);
             self.found.add(doubt.help("other compilers than CODESYS want it"));
         }
@@ -196,15 +222,24 @@ impl Parser<'_> {
     fn condition(&mut self, end: Word, after: &str) -> Expression {
         let mut condition = self.expression();
         if self.token() == Token::Assign {
-            self.tell_here(Code::Syntax, "`:=` assigns, and a condition is wanted", "compare with `=`");
+            self.tell_here(
+                Code::Syntax,
+                "`:=` assigns, and a condition is wanted",
+                "compare with `=`",
+            );
             self.next();
             self.expression();
             condition.kind = ExpressionKind::Wrong;
         }
         if !self.expect_word(end, after) {
             // A `;` or another word in its place; the statements follow.
-            let begins = matches!(self.ahead(1), Token::Assign | Token::Open | Token::Dot | Token::OpenBracket | Token::Equal);
-            if matches!(self.token(), Token::Semicolon | Token::Colon) || self.token() == Token::Name && !begins {
+            let begins = matches!(
+                self.ahead(1),
+                Token::Assign | Token::Open | Token::Dot | Token::OpenBracket | Token::Equal
+            );
+            if matches!(self.token(), Token::Semicolon | Token::Colon)
+                || self.token() == Token::Name && !begins
+            {
                 self.next();
             }
         }
@@ -236,7 +271,8 @@ impl Parser<'_> {
             if self.take_word(Word::Elsif) {
                 let condition = self.condition(Word::Then, "behind the condition of ELSIF");
                 branches.push((condition, self.inside(Word::EndIf)));
-            } else if self.token() == Token::Word(Word::Else) && self.ahead(1) == Token::Word(Word::If)
+            } else if self.token() == Token::Word(Word::Else)
+                && self.ahead(1) == Token::Word(Word::If)
                 && self.same_line(self.span(), self.ahead_span(1))
             {
                 // Every ELSE IF needs an END_IF of its own, which newcomers forget; it is legal.
@@ -253,7 +289,9 @@ impl Parser<'_> {
     }
 
     fn ahead_span(&self, by: usize) -> Span {
-        self.tokens.get(self.at + by).map_or_else(Span::default, |(_, span)| *span)
+        self.tokens
+            .get(self.at + by)
+            .map_or_else(Span::default, |(_, span)| *span)
     }
 
     fn same_line(&self, one: Span, other: Span) -> bool {
@@ -278,7 +316,11 @@ impl Parser<'_> {
                 let mut body = self.statements();
                 self.open.pop();
                 while self.is_label() {
-                    self.tell_here(Code::Misplaced, "a label stands behind ELSE", "move ELSE to the end of CASE");
+                    self.tell_here(
+                        Code::Misplaced,
+                        "a label stands behind ELSE",
+                        "move ELSE to the end of CASE",
+                    );
                     self.labels();
                     body.extend(self.statements());
                 }
@@ -287,7 +329,11 @@ impl Parser<'_> {
                 break;
             } else {
                 let message = format!("a label such as `10:` is expected, not {}", self.shown());
-                self.tell_here(Code::Syntax, message, "each branch of CASE begins with its values and a `:`");
+                self.tell_here(
+                    Code::Syntax,
+                    message,
+                    "each branch of CASE begins with its values and a `:`",
+                );
                 let from = self.at;
                 self.statements();
                 if self.at == from {
@@ -379,7 +425,11 @@ impl Parser<'_> {
     fn assignment_or_call(&mut self) -> Option<Kind> {
         if self.ahead(1) == Token::Colon {
             let span = self.span();
-            self.unsupported(span, "a label", "use IF, CASE, EXIT and CONTINUE in place of jumps");
+            self.unsupported(
+                span,
+                "a label",
+                "use IF, CASE, EXIT and CONTINUE in place of jumps",
+            );
             self.next();
             self.next();
             return None;
@@ -402,12 +452,19 @@ impl Parser<'_> {
                 self.next();
             }
             Token::Equal => {
-                self.tell_here(Code::Syntax, "`=` compares, and its result goes nowhere", "assign with `:=`");
+                self.tell_here(
+                    Code::Syntax,
+                    "`=` compares, and its result goes nowhere",
+                    "assign with `:=`",
+                );
                 self.next();
             }
             Token::Foreign => {
                 let message = format!("{} is no operator of Structured Text", self.shown());
-                let help = format!("write `{0} := {0} + 1;`, and compare with `=`", self.text_of(path.span));
+                let help = format!(
+                    "write `{0} := {0} + 1;`, and compare with `=`",
+                    self.text_of(path.span)
+                );
                 self.tell_here(Code::Syntax, message, &help);
                 self.skip_to_semicolon();
                 return None;
@@ -423,7 +480,10 @@ impl Parser<'_> {
                 return None;
             }
             _ => {
-                let message = format!("`:=` or `(` is expected behind {}", crate::error::quoted(self.text_of(path.span)));
+                let message = format!(
+                    "`:=` or `(` is expected behind {}",
+                    crate::error::quoted(self.text_of(path.span))
+                );
                 let wrong = Diagnostic::error(Code::Syntax, path.span.after(), message);
                 self.tell(wrong.help("a value is assigned with `:=`, a block is called with `()`"));
                 self.skip_to_semicolon();
@@ -432,7 +492,11 @@ impl Parser<'_> {
         }
         let value = self.expression();
         if self.token() == Token::Assign {
-            self.unsupported(self.span(), "to assign twice in one statement", "write two statements");
+            self.unsupported(
+                self.span(),
+                "to assign twice in one statement",
+                "write two statements",
+            );
             self.skip_to_semicolon();
             return None;
         }
@@ -448,6 +512,9 @@ impl Parser<'_> {
     /// Whether a word is an instruction of IL.
     fn is_instruction(&self, span: Span) -> bool {
         let text = self.text_of(span).to_ascii_uppercase();
-        ["LD", "LDN", "ST", "STN", "CAL", "CALC", "JMPC", "RET", "ANDN", "ORN"].contains(&text.as_str())
+        [
+            "LD", "LDN", "ST", "STN", "CAL", "CALC", "JMPC", "RET", "ANDN", "ORN",
+        ]
+        .contains(&text.as_str())
     }
 }

@@ -13,7 +13,9 @@ impl Parser<'_> {
     /// A type; `initial` becomes what stands in parentheses behind a function block, as CODESYS has it.
     pub(super) fn type_spec(&mut self, initial: &mut Option<Initial>) -> TypeSpec {
         let from = self.span();
-        let kind = self.deeper(|parser| parser.spec_kind(initial)).unwrap_or(SpecKind::Wrong);
+        let kind = self
+            .deeper(|parser| parser.spec_kind(initial))
+            .unwrap_or(SpecKind::Wrong);
         TypeSpec {
             kind,
             span: from.to(self.before()),
@@ -39,7 +41,11 @@ impl Parser<'_> {
                 SpecKind::Wrong
             }
             Token::Word(Word::Union) => {
-                self.unsupported(from, "UNION", "use a structure, and functions such as DWORD_TO_REAL to convert");
+                self.unsupported(
+                    from,
+                    "UNION",
+                    "use a structure, and functions such as DWORD_TO_REAL to convert",
+                );
                 self.skip_past(Word::EndUnion);
                 SpecKind::Wrong
             }
@@ -110,7 +116,11 @@ impl Parser<'_> {
         loop {
             if self.token() == Token::Star {
                 let span = self.next();
-                self.unsupported(span, "an array of any length", "declare the array with its bounds");
+                self.unsupported(
+                    span,
+                    "an array of any length",
+                    "declare the array with its bounds",
+                );
                 open_length = true;
             } else {
                 let low = self.expression();
@@ -192,7 +202,9 @@ impl Parser<'_> {
         let from = self.span();
         let initial = self.deeper(|parser| match parser.token() {
             Token::OpenBracket => parser.list(from),
-            Token::Open if parser.ahead(1) == Token::Name && parser.ahead(2) == Token::Assign => parser.members(from),
+            Token::Open if parser.ahead(1) == Token::Name && parser.ahead(2) == Token::Assign => {
+                parser.members(from)
+            }
             _ => Initial::Value(parser.expression()),
         });
         initial.unwrap_or_else(|| {

@@ -40,7 +40,10 @@ pub fn wrong(text: &str) -> Vec<(&'static str, String)> {
     let report = standstill_st::check(&[source], &options);
     // Rendering must not fail, whatever is wrong.
     let _shown = report.render();
-    let told = report.diagnostics().iter().map(|it| (it.code.name(), it.message.clone()));
+    let told = report
+        .diagnostics()
+        .iter()
+        .map(|it| (it.code.name(), it.message.clone()));
     told.collect()
 }
 
@@ -81,20 +84,37 @@ impl Running {
 
     /// The whole number in a variable.
     pub fn whole(&self, path: &str) -> i128 {
-        let symbol = self.compiled.symbols.find(path).unwrap_or_else(|| panic!("no {path}"));
+        let symbol = self
+            .compiled
+            .symbols
+            .find(path)
+            .unwrap_or_else(|| panic!("no {path}"));
         let bits = self.bits(symbol.address, symbol.ty.size());
         let width = symbol.ty.size() * 8;
         let signed = matches!(
             symbol.ty,
-            Elementary::Sint | Elementary::Int | Elementary::Dint | Elementary::Lint | Elementary::Time | Elementary::Ltime
+            Elementary::Sint
+                | Elementary::Int
+                | Elementary::Dint
+                | Elementary::Lint
+                | Elementary::Time
+                | Elementary::Ltime
         );
         let number = i128::from(bits);
-        if signed && number >> (width - 1) != 0 { number - (1 << width) } else { number }
+        if signed && number >> (width - 1) != 0 {
+            number - (1 << width)
+        } else {
+            number
+        }
     }
 
     /// The number in a REAL or LREAL.
     pub fn real(&self, path: &str) -> f64 {
-        let symbol = self.compiled.symbols.find(path).unwrap_or_else(|| panic!("no {path}"));
+        let symbol = self
+            .compiled
+            .symbols
+            .find(path)
+            .unwrap_or_else(|| panic!("no {path}"));
         let bits = self.bits(symbol.address, symbol.ty.size());
         match symbol.ty {
             Elementary::Real => f32::from_bits(bits as u32).into(),
@@ -109,19 +129,27 @@ impl Running {
                 ty: SymbolType::Byte,
                 address: address + place,
             };
-            let Value::Word(byte) = self.guest.read(&symbol).unwrap() else { panic!() };
+            let Value::Word(byte) = self.guest.read(&symbol).unwrap() else {
+                panic!()
+            };
             bits | u64::from(byte) << (8 * place)
         })
     }
 
     pub fn set(&mut self, path: &str, value: u64) {
-        let symbol = self.compiled.symbols.find(path).unwrap_or_else(|| panic!("no {path}"));
+        let symbol = self
+            .compiled
+            .symbols
+            .find(path)
+            .unwrap_or_else(|| panic!("no {path}"));
         for place in 0..symbol.ty.size() {
             let byte = standstill_guest::Symbol {
                 ty: SymbolType::Byte,
                 address: symbol.address + place,
             };
-            self.guest.write(&byte, Value::Word((value >> (8 * place)) as u16 & 0xFF)).unwrap();
+            self.guest
+                .write(&byte, Value::Word((value >> (8 * place)) as u16 & 0xFF))
+                .unwrap();
         }
     }
 
@@ -142,7 +170,9 @@ impl Running {
 pub fn ran(variables: &str, statements: &str) -> Running {
     let text = format!("PROGRAM Main\nVAR\n{variables}\nEND_VAR\n{statements}\nEND_PROGRAM\n");
     let mut running = Running::new(&text);
-    running.scan().unwrap_or_else(|fault| panic!("{fault}\n{statements}"));
+    running
+        .scan()
+        .unwrap_or_else(|fault| panic!("{fault}\n{statements}"));
     running
 }
 
