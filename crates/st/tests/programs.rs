@@ -560,6 +560,19 @@ fn many_small_functions_and_scattered_values_make_a_module_that_runs() {
 }
 
 #[test]
+fn a_function_has_as_many_inputs_as_the_interpreter_takes() {
+    let text = |count: usize| {
+        let inputs: String = (0..count).map(|n| format!("a{n} : INT := {n}; ")).collect();
+        format!(
+            "FUNCTION F : INT VAR_INPUT {inputs} END_VAR F := a0 + a{}; END_FUNCTION PROGRAM P VAR x : INT; END_VAR x := F(a0 := 5); END_PROGRAM",
+            count - 1
+        )
+    };
+    assert_eq!(run(&text(32)).whole("x"), 36);
+    assert!(wrong(&text(33)).iter().any(|(code, _)| *code == "too_large"));
+}
+
+#[test]
 fn what_cannot_run_is_told() {
     for text in [
         "",

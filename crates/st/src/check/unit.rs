@@ -7,6 +7,9 @@ use crate::source::Span;
 use crate::syntax::{Ident, Section, SectionKind, Variables};
 use crate::types::{Member, MemberKind, Start, Type, UnitId, WRONG};
 
+/// Most inputs of a FUNCTION: interpreters limit the parameters of one.
+const INPUTS_MOST: usize = 32;
+
 impl<'a> Checker<'a> {
     /// The unit of a block of the library, made when it is first named.
     pub(super) fn library_block(&mut self, key: &str) -> Option<UnitId> {
@@ -74,6 +77,13 @@ impl<'a> Checker<'a> {
                 }
             });
         });
+        let taken = |member: &&Member| matches!(member.kind, MemberKind::Input | MemberKind::InOut);
+        if self.unit(id).kind == UnitKind::Function
+            && self.unit(id).members.list.iter().filter(taken).count() > INPUTS_MOST
+        {
+            let message = format!("a FUNCTION has at most {INPUTS_MOST} inputs");
+            self.error(Code::TooLarge, span, message, "hand over a structure");
+        }
         let unit = self.unit_mut(id);
         unit.members.close();
         unit.state = State::Done;
