@@ -139,6 +139,12 @@ pub enum Command {
         #[arg(long, value_name = "NAME")]
         dialect: Option<String>,
     },
+    /// Check or compile programs in Structured Text
+    St {
+        /// What to do
+        #[command(subcommand)]
+        what: St,
+    },
     /// Print the JSON Schema of scripts, of machine files, of the maps of `compare`, or of sweeps
     Schema {
         /// Of what
@@ -230,6 +236,43 @@ pub enum Soak {
         #[arg(long, value_name = "FOLDER", default_value = FAILURES)]
         failures: PathBuf,
     },
+}
+
+/// What `st` does.
+#[derive(Debug, Subcommand)]
+pub enum St {
+    /// Say what is wrong or doubtful in the files of a project
+    Check {
+        /// The project
+        #[command(flatten)]
+        sources: StSources,
+        /// As JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Compile a project to a guest in WebAssembly, with a file of its symbols beside it
+    Build {
+        /// The project
+        #[command(flatten)]
+        sources: StSources,
+        /// Write the module to this file, and its symbols to FILE.symbols.json
+        #[arg(long, short, value_name = "FILE.wasm")]
+        output: PathBuf,
+        /// A name of an axis, the first one is number 1: variables of type AXIS_REF with that name begin as it
+        #[arg(long, value_name = "NAME")]
+        axis: Vec<String>,
+    },
+}
+
+/// The files of a project in Structured Text.
+#[derive(Args, Debug)]
+pub struct StSources {
+    /// All files of the project
+    #[arg(value_name = "FILE.st", required = true)]
+    pub files: Vec<PathBuf>,
+    /// The PROGRAM to run in every scan, if neither a CONFIGURATION says nor there is only one
+    #[arg(long, value_name = "NAME")]
+    pub program: Option<String>,
 }
 
 /// Where `soak blocks` writes failing programs.

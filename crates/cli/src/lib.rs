@@ -22,13 +22,14 @@ mod progress;
 mod report;
 mod run;
 mod soak;
+mod st;
 mod suggest;
 mod sweep;
 mod table;
 mod test;
 mod watch;
 
-use args::{Arguments, Command, Schema, Soak};
+use args::{Arguments, Command, Schema, Soak, St};
 use clap::Parser;
 use exit::{Exit, Failure};
 use out::Out;
@@ -74,6 +75,7 @@ fn is_data(command: &Command) -> bool {
         | Command::Sweep(_)
         | Command::Blocks { .. }
         | Command::Schema { .. } => true,
+        Command::St { what } => matches!(what, St::Check { json: true, .. }),
         Command::Fmt { paths, .. } => paths.iter().any(|path| is_standard(path)),
         Command::Run(_)
         | Command::Live(_)
@@ -173,6 +175,17 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             prefix,
             dialect,
         } => export::export(*target, folder, prefix, dialect.as_deref(), out),
+        Command::St {
+            what: St::Check { sources, json },
+        } => st::check(sources, *json, out),
+        Command::St {
+            what:
+                St::Build {
+                    sources,
+                    output,
+                    axis,
+                },
+        } => st::build(sources, output, axis, out),
         Command::Schema { of } => {
             let text = match of {
                 Schema::Script => standstill_script::schema(),

@@ -3,7 +3,7 @@
 //! A host function needs what a block may touch, which is borrowed for one scan only, and what the interpreter holds
 //! lives longer. So the scan lends it to [`crate::tick`], where the functions find it.
 
-use crate::host::{Host, Import};
+use crate::host::{FUNCTIONS, FUNCTIONS_OF_TWO, Host, Import};
 use crate::tick::TICK;
 use crate::{Fault, LoadError, MODULE_MOST, PAGE, Program, Settings, tick};
 use std::fmt;
@@ -67,6 +67,14 @@ fn signature(import: Import) -> (FuncType, &'static str) {
         Import::LogRead => (
             FuncType::new([ValType::I32; 5], [ValType::I32]),
             "a function (i32, i32, i32, i32, i32) -> i32",
+        ),
+        Import::Function(_) => (
+            FuncType::new([ValType::F64], [ValType::F64]),
+            "a function (f64) -> f64",
+        ),
+        Import::FunctionOfTwo(_) => (
+            FuncType::new([ValType::F64; 2], [ValType::F64]),
+            "a function (f64, f64) -> f64",
         ),
         Import::Block(_) => (
             FuncType::new([ValType::I32; 3], [ValType::I32]),
@@ -341,6 +349,11 @@ macro_rules! blocks {
     };
 }
 
+/// Every NaN of a guest is the same one.
+fn one_nan(number: f64) -> f64 {
+    if number.is_nan() { f64::NAN } else { number }
+}
+
 type Link = for<'l> fn(&'l mut Linker<Own>, &str, &str) -> Result<&'l mut Linker<Own>, LinkerError>;
 
 standstill_blocks::for_every_block!(blocks);
@@ -377,6 +390,14 @@ fn link(program: &Program) -> Result<Linker<Own>, LoadError> {
                         .map_err(stop)
                 },
             ),
+            Import::Function(place) => match FUNCTIONS.get(place) {
+                Some((_, function)) => linker.func_wrap(from, name, |x: f64| one_nan(function(x))),
+                None => continue,
+            },
+            Import::FunctionOfTwo(place) => match FUNCTIONS_OF_TWO.get(place) {
+                Some((_, function)) => linker.func_wrap(from, name, |x: f64, y: f64| one_nan(function(x, y))),
+                None => continue,
+            },
             Import::Block(block) => match LINK.get(block) {
                 Some(link) => link(&mut linker, from, name),
                 None => continue,

@@ -63,9 +63,34 @@ pub(crate) enum Import {
     Log,
     /// Records of the diagnostic ring.
     LogRead,
+    /// A function of one number, by its place in [`FUNCTIONS`].
+    Function(usize),
+    /// A function of two, by its place in [`FUNCTIONS_OF_TWO`].
+    FunctionOfTwo(usize),
     /// A block, by its place in the registry.
     Block(usize),
 }
+
+type OfOne = fn(f64) -> f64;
+
+type OfTwo = fn(f64, f64) -> f64;
+
+/// Functions of one number: their names, and what does them. In software, so that their bits are the same everywhere.
+pub(crate) const FUNCTIONS: [(&str, OfOne); 9] = [
+    ("math_acos", libm::acos),
+    ("math_asin", libm::asin),
+    ("math_atan", libm::atan),
+    ("math_cos", libm::cos),
+    ("math_exp", libm::exp),
+    ("math_ln", libm::log),
+    ("math_log", libm::log10),
+    ("math_sin", libm::sin),
+    ("math_tan", libm::tan),
+];
+
+/// Functions of two numbers.
+pub(crate) const FUNCTIONS_OF_TWO: [(&str, OfTwo); 2] =
+    [("math_atan2", libm::atan2), ("math_pow", libm::pow)];
 
 macro_rules! names {
     ($($group:ident :: $name:ident :: $block:ident)*) => {
@@ -82,6 +107,12 @@ impl Import {
             "log" => return Some(Self::Log),
             "log_read" => return Some(Self::LogRead),
             _ => {}
+        }
+        if let Some(place) = FUNCTIONS.iter().position(|(known, _)| *known == name) {
+            return Some(Self::Function(place));
+        }
+        if let Some(place) = FUNCTIONS_OF_TWO.iter().position(|(known, _)| *known == name) {
+            return Some(Self::FunctionOfTwo(place));
         }
         NAMES.iter().position(|known| *known == name).map(Self::Block)
     }

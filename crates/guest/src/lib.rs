@@ -1,9 +1,9 @@
 //! Guests: control programs in WebAssembly that call the function blocks.
 //!
 //! A guest exports `plc_scan(tick: i32, now_ns: i64)`, `memory` and, if it likes, `plc_init()`; it imports functions of
-//! blocks, `(key, in, out) -> result` of addresses in its memory, `log(text, bytes)`, and `log_read`, which copies records
-//! of the diagnostic ring. Nothing else can be imported.
-//! `standstill export wasm` writes all of them out, with the layout of every structure.
+//! blocks, `(key, in, out) -> result` of addresses in its memory, `log(text, bytes)`, `log_read`, which copies records
+//! of the diagnostic ring, and `math_sin` and its kin. Nothing else can be imported.
+//! `standstill export wasm` writes the blocks out, with the layout of every structure.
 //!
 //! A guest is not trusted. It is checked and compiled before it runs; every call of it has a budget of instructions,
 //! so that it ends and does so at the same instruction everywhere; its memory has a limit that is checked before it is

@@ -190,6 +190,11 @@ fn layers_depend_only_downwards() {
             "standstill-guest",
             &["standstill-axis", "standstill-blocks", "standstill-fb"],
         ),
+        (
+            "crates/st",
+            "standstill-st",
+            &["standstill-blocks", "standstill-fb"],
+        ),
         ("crates/trace", "standstill-trace", &[]),
         ("crates/report", "standstill-report", &["standstill-trace"]),
         (
@@ -246,6 +251,7 @@ fn layers_depend_only_downwards() {
                 "standstill-report",
                 "standstill-script",
                 "standstill-soak",
+                "standstill-st",
                 "standstill-sweep",
                 "standstill-trace",
                 "standstill-watch",

@@ -13,6 +13,7 @@ mod reports;
 mod run;
 mod soak;
 mod soak_blocks;
+mod st;
 mod support;
 mod sweep;
 mod test;

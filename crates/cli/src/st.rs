@@ -1,0 +1,172 @@
+//! `standstill st`: what the compiler of Structured Text has to say, and its modules.
+
+use crate::args::StSources;
+use crate::exit::{Exit, Failure, complain};
+use crate::json::{Object, list, string};
+use standstill_script::suite::shown;
+use standstill_st::{
+    Diagnostic, FAULT_SITE, FAULT_VALUE, LOOP_SITE, Options, Report, Severity, Source, Symbols, Value,
+};
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Most variables that a file of symbols lists.
+const SYMBOLS_MOST: usize = 65_536;
+
+/// The files of a project: their names and what stands in them.
+fn read(paths: &[PathBuf]) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let read = |path: &PathBuf| {
+        let name = shown(path);
+        let bytes = fs::read(path).map_err(|error| Failure::io(&name, &error))?;
+        Ok((name, bytes))
+    };
+    paths.iter().map(read).collect()
+}
+
+fn sources(files: &[(String, Vec<u8>)]) -> Vec<Source<'_>> {
+    files.iter().map(|(name, bytes)| Source { name, bytes }).collect()
+}
+
+/// Says what is wrong and doubtful.
+pub fn check(given: &StSources, json: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
+    let files = read(&given.files)?;
+    let options = Options {
+        program: given.program.clone(),
+        library: true,
+        ..Options::default()
+    };
+    let report = standstill_st::check(&sources(&files), &options);
+    if json {
+        let told = report.diagnostics().iter().map(|it| diagnostic(&report, it));
+        let object = Object::new()
+            .with("standstill_json", "1")
+            .with("hidden", report.hidden().to_string())
+            .with("diagnostics", list(told));
+        writeln!(out, "{}", object.text())?;
+    } else if !report.diagnostics().is_empty() {
+        writeln!(out, "{report}")?;
+    }
+    Ok(if report.has_errors() {
+        Exit::BadInput
+    } else {
+        Exit::Passed
+    })
+}
+
+fn diagnostic(report: &Report, it: &Diagnostic) -> String {
+    let (from, to) = report.positions(it.span);
+    let severity = match it.severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+    };
+    Object::new()
+        .with("file", string(report.file_name(it.span)))
+        .with("line", from.line.to_string())
+        .with("column", from.column.to_string())
+        .with("end_line", to.line.to_string())
+        .with("end_column", to.column.to_string())
+        .with("severity", string(severity))
+        .with("code", string(it.code.name()))
+        .with("message", string(&it.message))
+        .with_some("help", it.help.as_deref().map(string))
+        .text()
+}
+
+/// Compiles to a module, and writes its symbols beside it.
+pub fn build(
+    given: &StSources,
+    output: &Path,
+    axes: &[String],
+    out: &mut dyn Write,
+) -> Result<Exit, Failure> {
+    let files = read(&given.files)?;
+    let options = Options {
+        program: given.program.clone(),
+        axes: axes.to_vec(),
+        ..Options::default()
+    };
+    let compiled = standstill_st::compile(&sources(&files), &options)
+        .map_err(|report| Failure::Told(Exit::BadInput, report.render()))?;
+    if !compiled.report.diagnostics().is_empty() {
+        complain(&compiled.report.render());
+    }
+    let table = output.with_extension("symbols.json");
+    replace(&table, format!("{}\n", symbols(&compiled.symbols)).as_bytes())?;
+    replace(output, &compiled.wasm)?;
+    writeln!(out, "{}\n{}", shown(output), shown(&table))?;
+    Ok(Exit::Passed)
+}
+
+/// Writes a file whole or not at all: beside its place first.
+fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".partial");
+    let partial = path.with_file_name(name);
+    let written = fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, path));
+    written.map_err(|error| {
+        // It is there only if the disk was full or the place is a folder.
+        let _gone = fs::remove_file(&partial);
+        Failure::io(&shown(path), &error)
+    })
+}
+
+fn symbols(symbols: &Symbols) -> String {
+    let variables = symbols.leaves(SYMBOLS_MOST).into_iter().map(|symbol| {
+        let elements = match symbol.value {
+            Value::Plain => None,
+            Value::Element(elements) => {
+                let pair = |(name, number): (String, i128)| {
+                    Object::new()
+                        .with("name", string(&name))
+                        .with("number", number.to_string())
+                        .text()
+                };
+                Some(list(elements.into_iter().map(pair)))
+            }
+        };
+        Object::new()
+            .with("path", string(&symbol.path))
+            .with("type", string(symbol.ty.name()))
+            .with("address", symbol.address.to_string())
+            .with("section", string(section(symbol.section)))
+            .with("retain", symbol.retain.to_string())
+            .with_some("at", symbol.at.as_deref().map(string))
+            .with_some("elements", elements)
+            .text()
+    });
+    let places = symbols.places().iter().map(|place| {
+        Object::new()
+            .with("file", string(&place.file))
+            .with("line", place.position.line.to_string())
+            .with("column", place.position.column.to_string())
+            .with("kind", string(place.kind.text()))
+            .text()
+    });
+    let tasks = symbols.tasks().iter().map(|task| {
+        Object::new()
+            .with("name", string(&task.name))
+            .with_some("interval_ns", task.interval_ns.map(|ns| ns.to_string()))
+            .with("priority", task.priority.to_string())
+            .text()
+    });
+    Object::new()
+        .with("standstill_json", "1")
+        .with("fault_site", FAULT_SITE.to_string())
+        .with("fault_value", FAULT_VALUE.to_string())
+        .with("loop_site", LOOP_SITE.to_string())
+        .with("tasks", list(tasks))
+        .with("variables", list(variables))
+        .with("places", list(places))
+        .text()
+}
+
+const fn section(section: standstill_st::Section) -> &'static str {
+    use standstill_st::Section;
+    match section {
+        Section::Global => "global",
+        Section::Input => "input",
+        Section::Output => "output",
+        Section::Internal => "internal",
+    }
+}

@@ -1,0 +1,481 @@
+//! Calls of functions and of instances of blocks.
+
+use super::path::{Named, plain};
+use super::{Checker, UnitKind};
+use crate::error::{Code, Diagnostic, quoted};
+use crate::library::{Function, blocks, conversion};
+use crate::source::Span;
+use crate::syntax::{self, Call, Expression, ExpressionKind, Way};
+use crate::typed::{Argument, Base, BlockCall, Expr, FunctionCall, Kind, Place, StmtKind};
+use crate::types::{Member, MemberKind, Type, TypeId, UnitId, WRONG};
+
+impl<'a> Checker<'a> {
+    /// A call that is an expression.
+    pub(super) fn call_value(&mut self, call: &'a Call, expected: Option<TypeId>) -> Expr {
+        let wrong = Expr::wrong(call.span);
+        let name = &call.callee.root;
+        let key = name.key();
+        let local = self
+            .scope
+            .is_some_and(|unit| self.unit(unit).members.find(&key).is_some());
+        let own_name = self
+            .scope
+            .is_some_and(|unit| self.unit(unit).kind == UnitKind::Function);
+        let shadowed = (local && !own_name) || self.global_names.contains_key(&key);
+        if !call.callee.selectors.is_empty() || shadowed {
+            if let Named::Place(place, _) = self.named(&call.callee, None) {
+                let message = match self.types.get(place.ty) {
+                    Type::Block(_) => "a block has no value".to_owned(),
+                    _ => format!("{} cannot be called", self.type_name(place.ty)),
+                };
+                self.error(
+                    Code::WrongType,
+                    call.span,
+                    message,
+                    "call a block in a statement, and read its outputs",
+                );
+            }
+            return wrong;
+        }
+        if let Some(unit) = self.unit_names.get(&key).copied() {
+            if self.unit(unit).kind == UnitKind::Function {
+                return self.function(unit, call);
+            }
+            let message = format!("`{}` is no function", name.text);
+            let help = format!(
+                "declare an instance, call it in a statement, and read its outputs: `My{0} : {0};`",
+                name.text
+            );
+            self.error(Code::WrongType, name.span, message, &help);
+            return wrong;
+        }
+        if let Some(value) = self.library_call(&key, call, expected) {
+            return value;
+        }
+        let names = self.unit_names.keys().map(String::as_str);
+        let guess = self.guess(&key, names.chain(Function::ALL.iter().map(|it| it.name())));
+        let block = blocks::find(&key).map(|_| {
+            format!(
+                "it is a function block: declare an instance, `My{0} : {0};`",
+                name.text
+            )
+        });
+        let message = format!("there is no function {}", quoted(&name.text));
+        let message = match key.rsplit_once("_TO_") {
+            Some((from, to)) if conversion(&key).is_none() => {
+                format!("there is no conversion from {from} to {to}")
+            }
+            _ => message,
+        };
+        let wrong_name = Diagnostic::error(Code::UnknownName, name.span, message);
+        self.tell(wrong_name.maybe_help(guess).maybe_help(block));
+        wrong
+    }
+
+    /// The member each argument is for, in the order of the text.
+    fn matched(
+        &mut self,
+        unit: UnitId,
+        arguments: &'a [syntax::Argument],
+        span: Span,
+    ) -> Vec<(usize, &'a syntax::Argument)> {
+        let mut matched: Vec<(usize, &'a syntax::Argument)> = Vec::new();
+        let takes = |kind: MemberKind| matches!(kind, MemberKind::Input | MemberKind::InOut);
+        let mut positions = Vec::new();
+        for (place, member) in self.unit(unit).members.list.iter().enumerate() {
+            if takes(member.kind) {
+                positions.push(place);
+            }
+        }
+        let mut positions = positions.into_iter();
+        for argument in arguments {
+            let info = self.unit(unit);
+            let place = match &argument.name {
+                None => positions.next(),
+                Some(name) => info.members.find(&name.key()).map(|(place, _)| place),
+            };
+            let Some(place) = place else {
+                self.no_such_argument(unit, argument, span);
+                continue;
+            };
+            let member = &info.members.list[place];
+            let shown = member.name.clone();
+            let good = match argument.way {
+                Way::In => takes(member.kind),
+                Way::Out | Way::OutInverted => member.kind == MemberKind::Output,
+            };
+            if !good {
+                let (message, help) = match (argument.way, member.kind) {
+                    (Way::In, MemberKind::Output) => (
+                        format!("`{shown}` is an output"),
+                        format!("write {shown} => variable"),
+                    ),
+                    (Way::In, _) => (
+                        format!("`{shown}` is no input of {}", info.name),
+                        "make it VAR_INPUT".to_owned(),
+                    ),
+                    (_, MemberKind::Input | MemberKind::InOut) => (
+                        format!("`{shown}` is an input"),
+                        format!("write {shown} := value"),
+                    ),
+                    _ => (
+                        format!("`{shown}` is no output of {}", info.name),
+                        "make it VAR_OUTPUT".to_owned(),
+                    ),
+                };
+                self.error(Code::BadArgument, argument.span, message, &help);
+                continue;
+            }
+            // One output may go to several variables; an input has one value.
+            if argument.way == Way::In
+                && matched
+                    .iter()
+                    .any(|(other, it)| *other == place && it.way == Way::In)
+            {
+                self.error(
+                    Code::BadArgument,
+                    argument.span,
+                    format!("`{shown}` is given twice"),
+                    "",
+                );
+                continue;
+            }
+            matched.push((place, argument));
+        }
+        matched
+    }
+
+    fn no_such_argument(&mut self, unit: UnitId, argument: &syntax::Argument, span: Span) {
+        let info = self.unit(unit);
+        match &argument.name {
+            None => {
+                let message = format!("{} takes fewer arguments", info.name);
+                let _ = span;
+                self.error(Code::BadArgument, argument.span, message, "");
+            }
+            Some(name) => {
+                let guess = self.guess(
+                    &name.text,
+                    info.members.list.iter().map(|member| member.name.as_str()),
+                );
+                let message = format!("{} has no pin `{}`", info.name, name.text);
+                self.tell(Diagnostic::error(Code::BadArgument, name.span, message).maybe_help(guess));
+            }
+        }
+    }
+
+    /// The variable that is bound to an in_out.
+    fn bound(&mut self, member: &Member, value: &'a Expression) -> Option<Place> {
+        let ExpressionKind::Path(path) = &value.kind else {
+            let message = format!("`{}` is VAR_IN_OUT and takes a variable", member.name);
+            self.error(
+                Code::WrongType,
+                value.span,
+                message,
+                "put the value into a variable first",
+            );
+            return None;
+        };
+        match self.named(path, None) {
+            Named::Nothing => None,
+            Named::Value(_) => {
+                let message = format!(
+                    "`{}` is VAR_IN_OUT and takes a variable, no constant",
+                    member.name
+                );
+                self.error(
+                    Code::NotWritable,
+                    value.span,
+                    message,
+                    "put the value into a variable first",
+                );
+                None
+            }
+            Named::Place(place, fixed) => {
+                if let Some(why) = fixed {
+                    let message = format!("{why}, and VAR_IN_OUT may write it");
+                    self.error(
+                        Code::NotWritable,
+                        value.span,
+                        message,
+                        "put the value into a variable first",
+                    );
+                    return None;
+                }
+                if place.bit.is_some() {
+                    self.error(
+                        Code::WrongType,
+                        value.span,
+                        "a bit has no address",
+                        "put it into a BOOL first",
+                    );
+                    return None;
+                }
+                if place.ty != member.ty && member.ty != WRONG {
+                    let (wanted, found) = (self.type_name(member.ty), self.type_name(place.ty));
+                    let message = format!("`{}` takes a variable of type {wanted}, not {found}", member.name);
+                    self.error(
+                        Code::WrongType,
+                        value.span,
+                        message,
+                        "VAR_IN_OUT converts nothing",
+                    );
+                    return None;
+                }
+                Some(place)
+            }
+        }
+    }
+
+    /// Where an output goes, and what it is then.
+    fn output(&mut self, member: Place, argument: &'a syntax::Argument) -> Option<(Place, Expr)> {
+        let value = argument.value.as_ref()?;
+        let ExpressionKind::Path(path) = &value.kind else {
+            self.error(Code::WrongType, value.span, "an output goes to a variable", "");
+            return None;
+        };
+        let target = self.target(path)?;
+        let ty = self.types.value_type(member.ty);
+        let mut loaded = Expr {
+            kind: Kind::Load(member),
+            ty,
+            span: argument.span,
+        };
+        if argument.way == Way::OutInverted {
+            match self
+                .types
+                .elementary(ty)
+                .filter(|it| it.size() == 1 && *it == crate::types::Elementary::Bool)
+            {
+                Some(of) => loaded.kind = Kind::Not(of, Box::new(loaded.clone())),
+                None => self.error(
+                    Code::WrongType,
+                    argument.span,
+                    "NOT goes with outputs that are BOOL",
+                    "",
+                ),
+            }
+        }
+        let wanted = if target.bit.is_some() {
+            crate::types::BOOL
+        } else {
+            target.ty
+        };
+        let converted = self.convert(loaded, wanted);
+        (!converted.is_wrong()).then_some((target, converted))
+    }
+
+    fn function(&mut self, unit: UnitId, call: &'a Call) -> Expr {
+        self.resolve_unit(unit, call.span);
+        self.note_call(unit, call.span);
+        let matched = self.matched(unit, &call.arguments, call.span);
+        let info = self.unit(unit);
+        let frame = info.frame;
+        let result = info
+            .result
+            .and_then(|place| info.members.list.get(place))
+            .map(|member| member.ty);
+        let members = info.members.list.clone();
+        let mut arguments = Vec::new();
+        let mut outputs = Vec::new();
+        let mut wrong = false;
+        for (place, member) in members.iter().enumerate() {
+            let given = matched
+                .iter()
+                .find(|(it, argument)| *it == place && argument.way == Way::In);
+            let value = given.and_then(|(_, argument)| argument.value.as_ref());
+            match member.kind {
+                MemberKind::Input => {
+                    let value = match value {
+                        Some(value) => self.value(value, member.ty),
+                        None => match self.default_value(member, call.span) {
+                            Some(value) => value,
+                            None => {
+                                self.missing(&member.name, &call.callee.root.text, call.span);
+                                Expr::wrong(call.span)
+                            }
+                        },
+                    };
+                    wrong |= value.is_wrong();
+                    arguments.push(Argument::Value(value));
+                }
+                MemberKind::InOut => match value {
+                    Some(value) => match self.bound(member, value) {
+                        Some(place) => arguments.push(Argument::Reference(place)),
+                        None => wrong = true,
+                    },
+                    None => {
+                        self.missing(&member.name, &call.callee.root.text, call.span);
+                        wrong = true;
+                    }
+                },
+                MemberKind::Output => {
+                    for (_, argument) in matched.iter().filter(|(it, _)| *it == place) {
+                        let from = plain(Base::Memory, frame.saturating_add(member.offset), member.ty);
+                        outputs.extend(self.output(from, argument));
+                    }
+                }
+                _ => {}
+            }
+        }
+        let Some(result) = result.filter(|ty| *ty != WRONG && !wrong) else {
+            if !wrong && self.unit(unit).result.is_none() {
+                // A function without a type is called in statements only.
+                return Expr {
+                    kind: Kind::Call(Box::new(FunctionCall {
+                        unit,
+                        arguments,
+                        outputs,
+                    })),
+                    ty: WRONG,
+                    span: call.span,
+                };
+            }
+            return Expr::wrong(call.span);
+        };
+        Expr {
+            kind: Kind::Call(Box::new(FunctionCall {
+                unit,
+                arguments,
+                outputs,
+            })),
+            ty: self.types.value_type(result),
+            span: call.span,
+        }
+    }
+
+    /// What an input of a function is that a call leaves out.
+    fn default_value(&mut self, member: &Member, span: Span) -> Option<Expr> {
+        use crate::types::{Constant, Start};
+        let elementary = self.types.elementary(member.ty)?;
+        let kind = match &member.start {
+            Start::Value(Constant::Integer(number)) => Kind::Integer(*number),
+            Start::Value(Constant::Real(number)) => Kind::Real(*number),
+            Start::Default => match crate::start::first(&self.types, member.ty) {
+                number if elementary.is_real() => Kind::Real(number as f64),
+                number => Kind::Integer(number),
+            },
+            _ => return None,
+        };
+        Some(Expr {
+            kind,
+            ty: self.types.value_type(member.ty),
+            span,
+        })
+    }
+
+    fn missing(&mut self, pin: &str, of: &str, span: Span) {
+        let message = format!("the call of {of} does not give `{pin}`");
+        self.error(
+            Code::MissingArgument,
+            span,
+            message,
+            &format!("write {pin} := .."),
+        );
+    }
+
+    /// A call that is a statement.
+    pub(super) fn call_statement(&mut self, call: &'a Call) -> Option<StmtKind> {
+        let key = call.callee.root.key();
+        let local = self
+            .scope
+            .is_some_and(|unit| self.unit(unit).members.find(&key).is_some());
+        let variable = local || self.global_names.contains_key(&key) || !call.callee.selectors.is_empty();
+        if !variable {
+            let block = self
+                .unit_names
+                .get(&key)
+                .copied()
+                .or_else(|| self.library_block(&key));
+            if let Some(unit) = block.filter(|unit| self.unit(*unit).kind != UnitKind::Function) {
+                let name = self.unit(unit).name.clone();
+                let program = self.unit(unit).kind == UnitKind::Program;
+                let message = format!(
+                    "`{name}` is {}, not an instance",
+                    if program { "a PROGRAM" } else { "a function block" }
+                );
+                let help = if program {
+                    "run it in a CONFIGURATION, or make it a FUNCTION_BLOCK".to_owned()
+                } else {
+                    format!("declare one in VAR, `My{name} : {name};`, and call that")
+                };
+                self.error(Code::WrongType, call.callee.root.span, message, &help);
+                return None;
+            }
+            let value = self.call_value(call, None);
+            return match &value.kind {
+                Kind::Wrong => None,
+                _ => Some(StmtKind::Evaluate(value)),
+            };
+        }
+        let Named::Place(instance, _) = self.named(&call.callee, None) else {
+            return None;
+        };
+        let Type::Block(unit) = *self.types.get(instance.ty) else {
+            let message = format!("{} cannot be called", self.type_name(instance.ty));
+            self.error(
+                Code::WrongType,
+                call.callee.span,
+                message,
+                "only functions and instances of blocks are called",
+            );
+            return None;
+        };
+        self.block_call(instance, unit, &call.arguments, call.span, call.callee.span)
+    }
+
+    /// A call of an instance of a block or program.
+    pub(super) fn block_call(
+        &mut self,
+        instance: Place,
+        unit: UnitId,
+        arguments: &'a [syntax::Argument],
+        span: Span,
+        callee: Span,
+    ) -> Option<StmtKind> {
+        self.note_call(unit, span);
+        let matched = self.matched(unit, arguments, span);
+        let members = self.unit(unit).members.list.clone();
+        let mut made = BlockCall {
+            instance,
+            unit,
+            inputs: Vec::new(),
+            references: Vec::new(),
+            kept: Vec::new(),
+            outputs: Vec::new(),
+        };
+        let mut wrong = false;
+        for (place, argument) in &matched {
+            let member = &members[*place];
+            let own = plain(Base::Callee, member.offset, member.ty);
+            match (argument.way, &argument.value) {
+                (Way::In, Some(value)) if member.kind == MemberKind::InOut => match self.bound(member, value)
+                {
+                    Some(bound) => made.references.push((*place, bound)),
+                    None => wrong = true,
+                },
+                (Way::In, Some(value)) => {
+                    let value = self.value(value, member.ty);
+                    wrong |= value.is_wrong();
+                    made.inputs.push((own, value));
+                }
+                _ => made.outputs.extend(self.output(own, argument)),
+            }
+        }
+        for (place, member) in members.iter().enumerate() {
+            let given = matched.iter().any(|(it, _)| *it == place);
+            if member.kind == MemberKind::InOut && !given {
+                made.kept.push(place);
+            }
+        }
+        let text = self.sources.text(callee).to_ascii_uppercase();
+        self.note_bound(
+            &text,
+            matched.iter().map(|(place, _)| *place),
+            &made.kept,
+            span,
+            unit,
+        );
+        (!wrong).then(|| StmtKind::Block(Box::new(made)))
+    }
+}

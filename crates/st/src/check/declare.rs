@@ -1,0 +1,283 @@
+//! Who has which name: all declarations of all files, before any of them is looked at closely.
+
+use super::{Checker, ConstantEntry, ElementOf, Global, NamedType, State, UnitInfo, UnitKind};
+use crate::error::{Code, Diagnostic};
+use crate::library::{Function, OPERATORS, blocks, conversion};
+use crate::source::Span;
+use crate::syntax::{self, Ident, Item, Section, SectionKind, SpecKind, TypeSpec};
+use crate::types::{Elementary, Member, MemberKind, Members, Start, Type, UnitId, WRONG};
+use std::collections::BTreeMap;
+
+/// Types of the language that are refused, and what to use.
+pub(super) const REFUSED_TYPES: &[(&str, &str)] = &[
+    (
+        "STRING",
+        "use a number or an enumeration; strings are not supported yet",
+    ),
+    ("WSTRING", "use a number or an enumeration"),
+    ("CHAR", "use BYTE"),
+    ("WCHAR", "use WORD"),
+    ("DATE", "use TIME, which counts from the start of the run: TIME()"),
+    ("LDATE", "use LTIME"),
+    (
+        "TIME_OF_DAY",
+        "use TIME, which counts from the start of the run: TIME()",
+    ),
+    ("TOD", "use TIME, which counts from the start of the run: TIME()"),
+    ("LTOD", "use LTIME"),
+    (
+        "DATE_AND_TIME",
+        "use TIME, which counts from the start of the run: TIME()",
+    ),
+    ("DT", "use TIME, which counts from the start of the run: TIME()"),
+    ("LDT", "use LTIME"),
+    ("ANY", "write a function for each type"),
+    ("ANY_NUM", "write a function for each type"),
+    ("ANY_INT", "write a function for each type"),
+    ("ANY_REAL", "write a function for each type"),
+    ("ANY_BIT", "write a function for each type"),
+    ("ANY_ELEMENTARY", "write a function for each type"),
+    ("ANY_DERIVED", "write a function for each type"),
+    ("ANY_MAGNITUDE", "write a function for each type"),
+    ("ANY_STRING", "write a function for each type"),
+    ("ANY_DATE", "write a function for each type"),
+    ("POINTER", "hand variables over as VAR_IN_OUT"),
+];
+
+impl<'a> Checker<'a> {
+    /// Notes the names of everything that stands at the top of files.
+    pub(super) fn declare(&mut self, items: &'a [Item]) {
+        let mut taken: BTreeMap<String, Span> = BTreeMap::new();
+        for item in items {
+            match item {
+                Item::Type(ty) => {
+                    self.new_top_name(&ty.name, &mut taken);
+                    self.declare_type(ty);
+                }
+                Item::Unit(unit) => {
+                    self.new_top_name(&unit.name, &mut taken);
+                    self.declare_unit(unit);
+                }
+                Item::Globals(section) => self.declare_globals(section),
+                Item::Configuration(configuration) => {
+                    for section in &configuration.globals {
+                        self.declare_globals(section);
+                    }
+                }
+            }
+        }
+        for ty in self.library_types.values() {
+            if let Type::Enumeration(of) = self.types.get(*ty) {
+                for (name, _) in &of.elements {
+                    let owners = self.elements.entry(name.to_ascii_uppercase()).or_default();
+                    owners.push(ElementOf::Known(*ty));
+                }
+            }
+        }
+    }
+
+    /// Tells if a name at the top of a file is had already.
+    fn new_top_name(&mut self, name: &Ident, taken: &mut BTreeMap<String, Span>) {
+        let key = name.key();
+        self.check_name(name);
+        if let Some(other) = taken.get(&key) {
+            self.twice(name, *other);
+            return;
+        }
+        let library = blocks::find(&key).is_some() || self.library_types.contains_key(&key);
+        let function = Function::find(&key).is_some()
+            || conversion(&key).is_some()
+            || OPERATORS.iter().any(|(name, _)| *name == key);
+        if library || function {
+            let message = format!("`{}` has that name in the library", name.text);
+            self.error(
+                Code::DuplicateName,
+                name.span,
+                message,
+                "choose another name; the library needs no declaration",
+            );
+        }
+        taken.insert(key, name.span);
+    }
+
+    pub(super) fn twice(&mut self, name: &Ident, other: Span) {
+        let message = format!("the name `{}` is given twice", name.text);
+        let wrong = Diagnostic::error(Code::DuplicateName, name.span, message);
+        self.tell(
+            wrong
+                .related(other, "here it is given first")
+                .help("names are compared without regard to case"),
+        );
+    }
+
+    /// Tells if a name is that of an elementary type, or is written in a way other compilers refuse.
+    pub(super) fn check_name(&mut self, name: &Ident) {
+        let key = name.key();
+        if Elementary::find(&key).is_some() || REFUSED_TYPES.iter().any(|(it, _)| *it == key) {
+            let message = format!("`{}` is the name of a type of the language", name.text);
+            self.error(Code::BadName, name.span, message, "choose another name");
+        }
+        if key.starts_with('_') || key.ends_with('_') || key.contains("__") {
+            let message = format!(
+                "`{}` begins or ends with `_`, or has two of them in a row",
+                name.text
+            );
+            let doubt = Diagnostic::warning(Code::Portability, name.span, message);
+            self.tell(doubt.help("the standard and some compilers refuse such names"));
+        }
+    }
+
+    fn declare_type(&mut self, ty: &'a syntax::TypeDeclaration) {
+        let key = ty.name.key();
+        if let SpecKind::Enumeration { elements, .. } = &ty.spec.kind {
+            for (element, _) in elements {
+                let owners = self.elements.entry(element.key()).or_default();
+                let owner = ElementOf::Named(key.clone());
+                if !owners.contains(&owner) {
+                    owners.push(owner);
+                }
+            }
+        }
+        self.named.entry(key).or_insert(NamedType {
+            syntax: ty,
+            state: State::Todo,
+            found: (WRONG, Start::Default),
+        });
+    }
+
+    fn declare_unit(&mut self, unit: &'a syntax::Unit) {
+        let id = UnitId(self.units.len() as u32);
+        self.units.push(UnitInfo {
+            kind: match unit.kind {
+                syntax::UnitKind::Function => UnitKind::Function,
+                syntax::UnitKind::FunctionBlock => UnitKind::Block,
+                syntax::UnitKind::Program => UnitKind::Program,
+            },
+            name: unit.name.text.clone(),
+            span: unit.name.span,
+            syntax: Some(unit),
+            state: State::Todo,
+            members: Members::default(),
+            result: None,
+            frame: 0,
+        });
+        self.unit_names.entry(unit.name.key()).or_insert(id);
+        for section in unit.sections.iter().filter(|section| section.constant) {
+            for variables in &section.variables {
+                for (name, _) in &variables.names {
+                    self.declare_constant(Some(id), name, &variables.spec, variables.initial.as_ref());
+                }
+            }
+        }
+    }
+
+    fn declare_constant(
+        &mut self,
+        unit: Option<UnitId>,
+        name: &Ident,
+        spec: &'a TypeSpec,
+        initial: Option<&'a syntax::Initial>,
+    ) {
+        self.constants.entry((unit, name.key())).or_insert(ConstantEntry {
+            spec,
+            initial,
+            state: State::Todo,
+            value: None,
+        });
+    }
+
+    fn declare_globals(&mut self, section: &'a Section) {
+        debug_assert_eq!(section.kind, SectionKind::Global);
+        for variables in &section.variables {
+            for (name, address) in &variables.names {
+                self.check_name(name);
+                let file = self.sources.file_index(name.span);
+                let place = self.globals.len();
+                self.globals.push(Global {
+                    member: Member {
+                        name: name.text.clone(),
+                        ty: WRONG,
+                        kind: MemberKind::External(place),
+                        offset: 0,
+                        start: Start::Default,
+                        span: name.span,
+                        constant: section.constant,
+                        retain: section.retain,
+                        address: address.as_ref().map(|address| address.text.clone()),
+                    },
+                    spec: &variables.spec,
+                    initial: variables.initial.as_ref(),
+                    file,
+                    state: State::Todo,
+                });
+                let stem = self.sources.stem(file).to_ascii_uppercase();
+                self.files.entry(stem).or_insert(file);
+                match self.global_names.get(&name.key()) {
+                    Some(other) => {
+                        let other = self.globals[*other].member.span;
+                        self.twice(name, other);
+                    }
+                    None => {
+                        self.global_names.insert(name.key(), place);
+                        if section.constant {
+                            self.declare_constant(None, name, &variables.spec, variables.initial.as_ref());
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Looks closely at every type, variable and unit, each after what it needs.
+    pub(super) fn resolve(&mut self) {
+        let names: Vec<_> = self.named.keys().cloned().collect();
+        for name in names {
+            self.named_type(&name, Span::default());
+        }
+        for place in 0..self.globals.len() {
+            self.global(place);
+        }
+        let mut unit = 0;
+        while unit < self.units.len() {
+            self.resolve_unit(UnitId(unit as u32), Span::default());
+            unit += 1;
+        }
+    }
+
+    /// Finds out the type and the first value of a global variable.
+    pub(super) fn global(&mut self, place: usize) {
+        let global = &mut self.globals[place];
+        if global.state != State::Todo {
+            return;
+        }
+        global.state = State::Busy;
+        let (spec, initial, span) = (global.spec, global.initial, global.member.span);
+        let (ty, start) = self.in_scope(None, |checker| {
+            let (ty, default) = checker.spec(spec);
+            // The first value may need this variable's type.
+            checker.globals[place].member.ty = ty;
+            let start = initial.map(|initial| checker.start(initial, ty));
+            (ty, start.unwrap_or(default))
+        });
+        self.no_program(ty, span);
+        let global = &mut self.globals[place];
+        global.member.ty = ty;
+        global.member.start = start;
+        global.state = State::Done;
+    }
+
+    /// Programs are made in a CONFIGURATION only.
+    pub(super) fn no_program(&mut self, ty: crate::types::TypeId, span: Span) {
+        if let Type::Block(unit) = self.types.get(ty)
+            && self.unit(*unit).kind == UnitKind::Program
+        {
+            let message = format!("`{}` is a PROGRAM and no type", self.unit(*unit).name);
+            self.error(
+                Code::WrongType,
+                span,
+                message,
+                "make it a FUNCTION_BLOCK, or run it in a CONFIGURATION",
+            );
+        }
+    }
+}

@@ -1,0 +1,289 @@
+//! From the syntax tree to the checked program: names, types, constants, calls.
+
+mod body;
+mod call;
+mod chain;
+mod configuration;
+mod constant;
+mod convert;
+mod declare;
+mod expression;
+mod graph;
+mod library_call;
+mod path;
+mod spec;
+mod start;
+mod statement;
+mod unit;
+
+use crate::error::{Code, DIAGNOSTICS_MOST, Diagnostic, Found, did_you_mean};
+use crate::layout::Layout;
+use crate::library::blocks;
+use crate::source::{Sources, Span};
+use crate::syntax::{Initial, Item, TypeDeclaration, TypeSpec, Unit};
+use crate::typed::Stmt;
+use crate::types::{Constant, Member, Members, TypeId, Types, UnitId};
+use crate::{Options, parse::NESTING_MOST};
+use standstill_fb::BlockInfo;
+use std::collections::BTreeMap;
+
+pub(crate) use configuration::{Instance, Task};
+
+/// What can be called or instantiated.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum UnitKind {
+    Function,
+    Block,
+    Program,
+    Library(&'static BlockInfo),
+}
+
+impl PartialEq for UnitKind {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Library(one), Self::Library(other)) => one.name == other.name,
+            _ => std::mem::discriminant(self) == std::mem::discriminant(other),
+        }
+    }
+}
+
+#[derive(Debug)]
+pub(crate) struct UnitInfo<'a> {
+    pub kind: UnitKind,
+    pub name: String,
+    pub span: Span,
+    syntax: Option<&'a Unit>,
+    state: State,
+    pub members: Members,
+    /// The member that is the value of a function.
+    pub result: Option<usize>,
+    /// Where the variables of a function stand.
+    pub frame: u32,
+}
+
+/// How far something is that may need other things first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Todo,
+    Busy,
+    Done,
+}
+
+#[derive(Debug)]
+struct NamedType<'a> {
+    syntax: &'a TypeDeclaration,
+    state: State,
+    found: (TypeId, crate::types::Start),
+}
+
+#[derive(Debug)]
+pub(crate) struct Global<'a> {
+    pub member: Member,
+    spec: &'a TypeSpec,
+    initial: Option<&'a Initial>,
+    file: usize,
+    state: State,
+}
+
+/// A constant of a unit or of all.
+#[derive(Debug)]
+struct ConstantEntry<'a> {
+    spec: &'a TypeSpec,
+    initial: Option<&'a Initial>,
+    state: State,
+    value: Option<(TypeId, Constant)>,
+}
+
+/// How many levels of an expression a declaration stands for that another one needs: so much more stack it takes.
+const NEED: usize = 4;
+
+/// Whose an element of an enumeration is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum ElementOf {
+    Named(String),
+    Known(TypeId),
+}
+
+/// A unit's statements, checked.
+#[derive(Debug)]
+pub(crate) struct Body {
+    pub unit: UnitId,
+    pub statements: Vec<Stmt>,
+    /// What a call begins with: VAR_TEMP, and all variables of a function.
+    pub fresh: Vec<usize>,
+}
+
+/// The checked program.
+#[derive(Debug)]
+pub(crate) struct Program<'a> {
+    pub types: Types,
+    pub units: Vec<UnitInfo<'a>>,
+    pub globals: Vec<Global<'a>>,
+    pub bodies: Vec<Body>,
+    pub instances: Vec<Instance<'a>>,
+    pub tasks: Vec<Task>,
+    pub layout: Layout,
+}
+
+pub(crate) struct Checker<'a> {
+    sources: &'a Sources,
+    options: &'a Options,
+    pub(crate) found: Found,
+    types: Types,
+    /// Of the library, in upper case.
+    library_types: BTreeMap<String, TypeId>,
+    named: BTreeMap<String, NamedType<'a>>,
+    units: Vec<UnitInfo<'a>>,
+    unit_names: BTreeMap<String, UnitId>,
+    globals: Vec<Global<'a>>,
+    global_names: BTreeMap<String, usize>,
+    constants: BTreeMap<(Option<UnitId>, String), ConstantEntry<'a>>,
+    elements: BTreeMap<String, Vec<ElementOf>>,
+    /// Stems of files with global variables.
+    files: BTreeMap<String, usize>,
+    layout: Layout,
+    /// The unit whose names count.
+    scope: Option<UnitId>,
+    depth: usize,
+    body: body::BodyState,
+    edges: BTreeMap<UnitId, BTreeMap<UnitId, Span>>,
+}
+
+/// Checks a project. There is a program if nothing is wrong.
+pub(crate) fn check<'a>(
+    sources: &'a Sources,
+    items: &'a [Item],
+    options: &'a Options,
+    found: Found,
+) -> (Option<Program<'a>>, Found) {
+    let mut types = Types::new();
+    let library_types = blocks::types(&mut types);
+    let mut checker = Checker {
+        sources,
+        options,
+        found,
+        types,
+        library_types,
+        named: BTreeMap::new(),
+        units: Vec::new(),
+        unit_names: BTreeMap::new(),
+        globals: Vec::new(),
+        global_names: BTreeMap::new(),
+        constants: BTreeMap::new(),
+        elements: BTreeMap::new(),
+        files: BTreeMap::new(),
+        layout: Layout::default(),
+        scope: None,
+        depth: 0,
+        body: body::BodyState::default(),
+        edges: BTreeMap::new(),
+    };
+    checker.declare(items);
+    checker.resolve();
+    let (mut tasks, mut instances) = checker.configuration(items);
+    checker.place_all(&mut tasks, &mut instances);
+    let bodies = checker.bodies();
+    checker.run(&mut tasks, &instances);
+    checker.check_calls();
+    let Checker {
+        found,
+        types,
+        units,
+        globals,
+        layout,
+        ..
+    } = checker;
+    if found.has_errors() {
+        return (None, found);
+    }
+    let program = Program {
+        types,
+        units,
+        globals,
+        bodies,
+        instances,
+        tasks,
+        layout,
+    };
+    (Some(program), found)
+}
+
+impl<'a> Checker<'a> {
+    fn tell(&mut self, diagnostic: Diagnostic) {
+        self.found.add(diagnostic);
+    }
+
+    fn error(&mut self, code: Code, span: Span, message: impl Into<String>, help: &str) {
+        let mut wrong = Diagnostic::error(code, span, message);
+        if !help.is_empty() {
+            wrong = wrong.help(help);
+        }
+        self.found.add(wrong);
+    }
+
+    /// A guess at what was meant. To guess is slow, so it ends with the messages that are shown.
+    fn guess<'n>(&self, name: &str, candidates: impl Iterator<Item = &'n str>) -> Option<String> {
+        if self.found.shown() >= DIAGNOSTICS_MOST {
+            return None;
+        }
+        did_you_mean(name, candidates)
+    }
+
+    fn unit(&self, id: UnitId) -> &UnitInfo<'a> {
+        &self.units[id.0 as usize]
+    }
+
+    fn unit_mut(&mut self, id: UnitId) -> &mut UnitInfo<'a> {
+        &mut self.units[id.0 as usize]
+    }
+
+    /// Does something that something else needs first, unless the row of such is too long.
+    fn needing<T>(&mut self, span: Span, other: T, inner: impl FnOnce(&mut Self) -> T) -> T {
+        if self.depth + NEED >= NESTING_MOST {
+            let most = NESTING_MOST / NEED;
+            let message = format!("this needs more than {most} other declarations one through another");
+            self.error(Code::TooDeep, span, message, "declare with fewer steps between");
+            return other;
+        }
+        self.depth += NEED;
+        let result = inner(self);
+        self.depth -= NEED;
+        result
+    }
+
+    /// Does something with the names of a unit.
+    fn in_scope<T>(&mut self, scope: Option<UnitId>, inner: impl FnOnce(&mut Self) -> T) -> T {
+        let before = std::mem::replace(&mut self.scope, scope);
+        let result = inner(self);
+        self.scope = before;
+        result
+    }
+
+    /// Bytes and alignment of a type.
+    fn size(&self, ty: TypeId) -> (u32, u32) {
+        self.types.size(ty, |unit| self.unit(unit).members.size)
+    }
+
+    /// What a type is called in messages.
+    fn type_name(&self, ty: TypeId) -> String {
+        use crate::types::Type;
+        match self.types.get(ty) {
+            Type::Elementary(it) => it.name().to_owned(),
+            Type::Enumeration(it) => it.name.clone(),
+            Type::Subrange { name, .. } => name.clone(),
+            Type::Structure(it) => it.name.clone(),
+            Type::Array(it) => {
+                let bounds: Vec<_> = it
+                    .bounds
+                    .iter()
+                    .map(|(low, high)| format!("{low}..{high}"))
+                    .collect();
+                format!("ARRAY [{}] OF {}", bounds.join(", "), self.type_name(it.of))
+            }
+            Type::Block(unit) => self.unit(*unit).name.clone(),
+            Type::AnyInteger => "a whole number".to_owned(),
+            Type::AnyReal => "a number with a point".to_owned(),
+            Type::Wrong => "?".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,434 @@
+//! From a path in the text to a place in memory.
+
+use super::{Checker, ElementOf, UnitKind};
+use crate::error::{Code, Diagnostic, quoted};
+use crate::library::{Function, blocks, conversion};
+use crate::source::Span;
+use crate::syntax::{Expression, Ident, Path, Selector};
+use crate::typed::{Base, Expr, Index, Kind, Place};
+use crate::types::{Class, Constant, MemberKind, Type, TypeId, UnitId};
+
+/// What a path leads to.
+pub(super) enum Named {
+    /// A variable, and why it must not be written, if so.
+    Place(Place, Option<String>),
+    /// A constant or an element of an enumeration.
+    Value(Expr),
+    /// It has been told what is wrong.
+    Nothing,
+}
+
+impl<'a> Checker<'a> {
+    /// What a path leads to. Elements of enumerations are those of type `expected`, where several have the name.
+    pub(super) fn named(&mut self, path: &'a Path, expected: Option<TypeId>) -> Named {
+        let key = path.root.key();
+        let mut selectors = path.selectors.as_slice();
+        if let Some(value) = self.constant_named(&key, selectors, path.root.span) {
+            return Named::Value(value);
+        }
+        let root = self.variable(&key, path.root.span).or_else(|| {
+            // A list of global variables by the name of its file: GVL.x
+            let file = self.files.get(&key).copied()?;
+            let (Selector::Member(name), rest) = selectors.split_first()? else {
+                return None;
+            };
+            let place = self.global_names.get(&name.key()).copied()?;
+            if self.globals[place].file != file {
+                return None;
+            }
+            selectors = rest;
+            Some(self.global_place(place))
+        });
+        if let Some((place, fixed)) = root {
+            return self.select(place, fixed, selectors);
+        }
+        if let Some(value) = self.element(path, &key, expected) {
+            return value;
+        }
+        self.unknown(path);
+        Named::Nothing
+    }
+
+    fn constant_named(&mut self, key: &str, selectors: &[Selector], span: Span) -> Option<Expr> {
+        if let Some(unit) = self.scope {
+            if selectors.is_empty()
+                && let Some(value) = self.constant(Some(unit), key, span)
+            {
+                return Some(value);
+            }
+            if self
+                .unit(unit)
+                .members
+                .find(key)
+                .is_some_and(|(_, it)| !matches!(it.kind, MemberKind::External(_)))
+            {
+                return None;
+            }
+        }
+        match selectors {
+            [] => self.constant(None, key, span),
+            [Selector::Member(name)]
+                if self.files.contains_key(key) && self.global_names.contains_key(&name.key()) =>
+            {
+                let file = self.files.get(key).copied();
+                let place = self.global_names.get(&name.key()).copied()?;
+                let shadowed = self.variable_exists(key);
+                let same = Some(self.globals[place].file) == file;
+                if same && !shadowed {
+                    self.constant(None, &name.key(), span)
+                } else {
+                    None
+                }
+            }
+            _ => None,
+        }
+    }
+
+    fn variable_exists(&self, key: &str) -> bool {
+        let local = self
+            .scope
+            .is_some_and(|unit| self.unit(unit).members.find(key).is_some());
+        local || self.global_names.contains_key(key)
+    }
+
+    /// A variable of the unit, or a global one.
+    fn variable(&mut self, key: &str, _span: Span) -> Option<(Place, Option<String>)> {
+        if let Some(unit) = self.scope
+            && let Some((place, _)) = self.unit(unit).members.find(key)
+        {
+            return Some(self.member_place(unit, place));
+        }
+        let place = self.global_names.get(key).copied()?;
+        self.global(place);
+        Some(self.global_place(place))
+    }
+
+    pub(super) fn global_place(&mut self, place: usize) -> (Place, Option<String>) {
+        let member = &self.globals[place].member;
+        let fixed = member
+            .constant
+            .then(|| format!("`{}` is a CONSTANT", member.name));
+        (plain(Base::Memory, member.offset, member.ty), fixed)
+    }
+
+    /// A variable of the unit whose statements these are.
+    pub(super) fn member_place(&mut self, unit: UnitId, place: usize) -> (Place, Option<String>) {
+        let info = self.unit(unit);
+        let Some(member) = info.members.list.get(place) else {
+            return (plain(Base::Memory, 0, crate::types::WRONG), None);
+        };
+        if let MemberKind::External(global) = member.kind {
+            return self.global_place(global);
+        }
+        let function = info.kind == UnitKind::Function;
+        let fixed = if member.constant {
+            Some(format!("`{}` is a CONSTANT", member.name))
+        } else if self.body.controls.contains(&place) {
+            Some(format!(
+                "`{}` is the control variable of a FOR that is running",
+                member.name
+            ))
+        } else {
+            None
+        };
+        let (frame, offset, ty) = (info.frame, member.offset, member.ty);
+        let place = match (member.kind, function) {
+            (MemberKind::InOut, true) => plain(Base::MemoryPointer(frame.saturating_add(offset)), 0, ty),
+            (MemberKind::InOut, false) => plain(Base::ThisPointer(offset), 0, ty),
+            (_, true) => plain(Base::Memory, frame.saturating_add(offset), ty),
+            (_, false) => plain(Base::This, offset, ty),
+        };
+        (place, fixed)
+    }
+
+    /// Members, elements and bits of a place.
+    fn select(&mut self, mut place: Place, mut fixed: Option<String>, selectors: &'a [Selector]) -> Named {
+        for selector in selectors {
+            if place.ty == crate::types::WRONG {
+                return Named::Nothing;
+            }
+            let (Selector::Bit(_, span) | Selector::Index(_, span) | Selector::Member(Ident { span, .. })) =
+                selector;
+            if place.bit.is_some() {
+                self.error(Code::UnknownMember, *span, "a bit has no parts", "");
+                return Named::Nothing;
+            }
+            let good = match selector {
+                Selector::Member(name) => self.member(&mut place, &mut fixed, name),
+                Selector::Index(indices, span) => self.index(&mut place, indices, *span),
+                Selector::Bit(bit, span) => self.bit(&mut place, *bit, *span),
+            };
+            if !good {
+                return Named::Nothing;
+            }
+        }
+        if place.ty == crate::types::WRONG {
+            return Named::Nothing;
+        }
+        Named::Place(place, fixed)
+    }
+
+    fn member(&mut self, place: &mut Place, fixed: &mut Option<String>, name: &Ident) -> bool {
+        let key = name.key();
+        let members = match self.types.get(place.ty) {
+            Type::Structure(structure) => &structure.members,
+            Type::Block(unit) => &self.unit(*unit).members,
+            _ => {
+                let message = format!("{} has no member `{}`", self.type_name(place.ty), name.text);
+                self.error(
+                    Code::UnknownMember,
+                    name.span,
+                    message,
+                    "only structures and blocks have members",
+                );
+                return false;
+            }
+        };
+        let Some((_, member)) = members.find(&key) else {
+            let guess = self.guess(&name.text, members.list.iter().map(|member| member.name.as_str()));
+            let message = format!("{} has no member `{}`", self.type_name(place.ty), name.text);
+            self.tell(Diagnostic::error(Code::UnknownMember, name.span, message).maybe_help(guess));
+            return false;
+        };
+        let (ty, offset, kind) = (member.ty, member.offset, member.kind);
+        match kind {
+            MemberKind::Field | MemberKind::Input => {}
+            MemberKind::Output => {
+                *fixed = Some(format!(
+                    "`{}` is an output, which only its block writes",
+                    member.name
+                ));
+            }
+            _ => {
+                let what = if kind == MemberKind::InOut {
+                    "a VAR_IN_OUT"
+                } else {
+                    "a variable inside"
+                };
+                let message = format!("`{}` is {what} of {}", member.name, self.type_name(place.ty));
+                let help = if kind == MemberKind::InOut {
+                    "use the variable that was handed over"
+                } else {
+                    "make it VAR_OUTPUT to read it, VAR_INPUT to set it"
+                };
+                self.error(Code::UnknownMember, name.span, message, help);
+                return false;
+            }
+        }
+        place.ty = ty;
+        place.offset = place.offset.saturating_add(offset);
+        true
+    }
+
+    fn index(&mut self, place: &mut Place, given: &'a [Expression], span: Span) -> bool {
+        let Type::Array(array) = self.types.get(place.ty) else {
+            let message = format!("{} has no elements", self.type_name(place.ty));
+            self.error(Code::WrongType, span, message, "only arrays are indexed");
+            return false;
+        };
+        let array = array.clone();
+        if given.len() != array.bounds.len() {
+            let message = format!(
+                "the array has {} dimensions, and {} indices are given",
+                array.bounds.len(),
+                given.len()
+            );
+            self.error(Code::WrongType, span, message, "separate them by commas: a[i, j]");
+            return false;
+        }
+        let mut stride = array.stride;
+        let mut parts = Vec::new();
+        for (index, (low, high)) in given.iter().zip(&array.bounds).rev() {
+            parts.push((index, *low, (high - low + 1) as u32, stride));
+            stride = stride.saturating_mul((high - low + 1) as u32);
+        }
+        // Evaluated in the order of the text.
+        for (index, low, count, stride) in parts.into_iter().rev() {
+            let value = self.expression(index, None);
+            let value = self.settle(value);
+            if value.is_wrong() {
+                return false;
+            }
+            let whole = self.types.elementary(value.ty).filter(|it| it.is_integer());
+            if whole.is_none() || self.types.is_enumeration(value.ty) {
+                let message = format!("an index is a whole number, not {}", self.type_name(value.ty));
+                let help = match self.types.elementary(value.ty) {
+                    Some(it) => format!("convert it: {}_TO_INT(..)", self.conversion_name(value.ty, it)),
+                    None => String::new(),
+                };
+                self.error(Code::WrongType, value.span, message, &help);
+                return false;
+            }
+            if let Some(Constant::Integer(number)) = value.constant() {
+                let from_low = number - i128::from(low);
+                if from_low < 0 || from_low >= i128::from(count) {
+                    let high = low + i64::from(count) - 1;
+                    let message = format!("the index {number} is outside {low}..{high}");
+                    self.error(Code::OutOfRange, value.span, message, "");
+                    return false;
+                }
+                place.offset = place
+                    .offset
+                    .saturating_add((from_low as u32).saturating_mul(stride));
+            } else {
+                let span = value.span;
+                let value = Box::new(value);
+                place.indices.push(Index {
+                    value,
+                    low,
+                    count,
+                    stride,
+                    span,
+                });
+            }
+        }
+        place.ty = array.of;
+        true
+    }
+
+    fn bit(&mut self, place: &mut Place, bit: u32, span: Span) -> bool {
+        let of = self
+            .types
+            .elementary(place.ty)
+            .filter(|it| it.is_integer() || it.class() == Class::Bits);
+        let Some(of) = of.filter(|_| !self.types.is_enumeration(place.ty)) else {
+            let message = format!("{} has no bits", self.type_name(place.ty));
+            self.error(
+                Code::WrongType,
+                span,
+                message,
+                "bits are those of BYTE, WORD, INT and the like",
+            );
+            return false;
+        };
+        if bit >= of.bits() {
+            let message = format!("{} has the bits 0 to {}", of.name(), of.bits() - 1);
+            self.error(Code::OutOfRange, span, message, "");
+            return false;
+        }
+        place.bit = Some(bit);
+        true
+    }
+
+    /// An element of an enumeration by its bare name, or as `E.a`.
+    fn element(&mut self, path: &'a Path, key: &str, expected: Option<TypeId>) -> Option<Named> {
+        match path.selectors.as_slice() {
+            [] => {}
+            [Selector::Member(name)] => {
+                let known = self.named.contains_key(key) || self.library_types.contains_key(key);
+                let (ty, _) = known.then(|| self.find_type(key, path.root.span)).flatten()?;
+                if !self.types.is_enumeration(ty) {
+                    return None;
+                }
+                return Some(self.element_of(ty, name).map_or(Named::Nothing, Named::Value));
+            }
+            _ => return None,
+        }
+        let owners = self.elements.get(key)?.clone();
+        let mut types: Vec<TypeId> = Vec::new();
+        for owner in owners {
+            let ty = match owner {
+                ElementOf::Known(ty) => ty,
+                ElementOf::Named(name) => self.named_type(&name, path.span).0,
+            };
+            if self.types.is_enumeration(ty) && !types.contains(&ty) {
+                types.push(ty);
+            }
+        }
+        let ty = match types.as_slice() {
+            [] => return Some(Named::Nothing),
+            [one] => *one,
+            several => match expected.filter(|expected| several.contains(expected)) {
+                Some(expected) => expected,
+                None => {
+                    let names: Vec<_> = several
+                        .iter()
+                        .map(|ty| format!("{}#{}", self.type_name(*ty), path.root.text))
+                        .collect();
+                    let message = format!("several enumerations have an element `{}`", path.root.text);
+                    self.error(
+                        Code::UnknownName,
+                        path.span,
+                        message,
+                        &format!("write {}", names.join(" or ")),
+                    );
+                    return Some(Named::Nothing);
+                }
+            },
+        };
+        Some(
+            self.element_of(ty, &path.root)
+                .map_or(Named::Nothing, Named::Value),
+        )
+    }
+
+    /// The element of this name; one that is not there is told.
+    pub(super) fn element_of(&mut self, ty: TypeId, name: &Ident) -> Option<Expr> {
+        let Type::Enumeration(of) = self.types.get(ty) else {
+            let message = format!("{} is no enumeration", self.type_name(ty));
+            self.error(Code::WrongType, name.span, message, "");
+            return None;
+        };
+        let found = of
+            .elements
+            .iter()
+            .find(|(it, _)| it.eq_ignore_ascii_case(&name.text));
+        match found {
+            Some((_, number)) => Some(Expr {
+                kind: Kind::Integer(*number),
+                ty,
+                span: name.span,
+            }),
+            None => {
+                let guess = self.guess(&name.text, of.elements.iter().map(|(name, _)| name.as_str()));
+                let message = format!("{} has no element `{}`", of.name, name.text);
+                self.tell(Diagnostic::error(Code::UnknownMember, name.span, message).maybe_help(guess));
+                None
+            }
+        }
+    }
+
+    fn unknown(&mut self, path: &Path) {
+        let name = &path.root;
+        let key = name.key();
+        let function = self
+            .unit_names
+            .get(&key)
+            .is_some_and(|unit| self.unit(*unit).kind == UnitKind::Function);
+        if function || Function::find(&key).is_some() || conversion(&key).is_some() {
+            let message = format!("`{}` is a function", name.text);
+            self.error(
+                Code::WrongType,
+                name.span,
+                message,
+                &format!("call it: {}(..)", name.text),
+            );
+            return;
+        }
+        if self.unit_names.contains_key(&key) || blocks::find(&key).is_some() {
+            let message = format!("`{}` is a function block, not an instance of it", name.text);
+            let help = format!("declare an instance: `My{0} : {0};`", name.text);
+            self.error(Code::WrongType, name.span, message, &help);
+            return;
+        }
+        let local = self.scope.map(|unit| &self.unit(unit).members);
+        let local = local.into_iter().flat_map(|members| members.index.keys());
+        let names = local.chain(self.global_names.keys()).chain(self.elements.keys());
+        let guess = self.guess(&key, names.map(String::as_str));
+        // The name as it is declared.
+        let message = format!("there is no variable {}", quoted(&name.text));
+        let wrong = Diagnostic::error(Code::UnknownName, name.span, message);
+        self.tell(wrong.maybe_help(guess.or_else(|| Some("declare it in VAR .. END_VAR".to_owned()))));
+    }
+}
+
+/// A place without indices.
+pub(super) const fn plain(base: Base, offset: u32, ty: TypeId) -> Place {
+    Place {
+        base,
+        offset,
+        indices: Vec::new(),
+        ty,
+        bit: None,
+    }
+}

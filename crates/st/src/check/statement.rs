@@ -1,0 +1,398 @@
+//! Statements.
+
+use super::Checker;
+use super::path::Named;
+use crate::error::{Code, Diagnostic};
+use crate::source::Span;
+use crate::syntax::{Case, Expression, For, Path, Statement, StatementKind};
+use crate::typed::{Branch, Expr, Kind, Place, Stmt, StmtKind};
+use crate::types::{BOOL, Constant, Elementary, Type, TypeId, Types};
+
+impl<'a> Checker<'a> {
+    pub(super) fn statements(&mut self, list: &'a [Statement]) -> Vec<Stmt> {
+        let mut checked = Vec::with_capacity(list.len());
+        let mut after: Option<Span> = None;
+        for statement in list {
+            if let Some(end) = after.take()
+                && !matches!(statement.kind, StatementKind::Empty)
+            {
+                let doubt = Diagnostic::warning(Code::Doubtful, statement.span, "this is never reached");
+                self.tell(doubt.related(end, "the statements before end here"));
+            }
+            let kind = self.statement(statement);
+            if matches!(kind, Some(StmtKind::Exit | StmtKind::Continue | StmtKind::Return)) {
+                after = Some(statement.span);
+            }
+            checked.extend(kind.map(|kind| Stmt {
+                kind,
+                span: statement.span,
+            }));
+        }
+        checked
+    }
+
+    fn statement(&mut self, statement: &'a Statement) -> Option<StmtKind> {
+        Some(match &statement.kind {
+            StatementKind::Empty => return None,
+            StatementKind::Assign(path, value) => return self.assignment(path, value),
+            StatementKind::Call(call) => return self.call_statement(call),
+            StatementKind::If(branches, other) => {
+                let mut checked = Vec::new();
+                for (condition, body) in branches {
+                    let condition = self.condition(condition);
+                    checked.push((condition, self.statements(body)));
+                }
+                let other = self.statements(other);
+                StmtKind::If(checked, other)
+            }
+            StatementKind::Case(case) => return self.case(case, statement.span),
+            StatementKind::For(each) => return self.for_(each),
+            StatementKind::While(condition, body) => {
+                let condition = self.condition(condition);
+                let body = self.looped(body);
+                StmtKind::While(condition, body)
+            }
+            StatementKind::Repeat(body, condition) => {
+                let body = self.looped(body);
+                let condition = self.condition(condition);
+                StmtKind::Repeat(body, condition)
+            }
+            StatementKind::Exit | StatementKind::Continue => {
+                let exit = matches!(statement.kind, StatementKind::Exit);
+                if self.body.loops == 0 {
+                    let what = if exit { "EXIT" } else { "CONTINUE" };
+                    let message = format!("{what} stands outside of a FOR, WHILE or REPEAT");
+                    self.error(
+                        Code::Misplaced,
+                        statement.span,
+                        message,
+                        "RETURN leaves a program or block",
+                    );
+                    return None;
+                }
+                if exit { StmtKind::Exit } else { StmtKind::Continue }
+            }
+            StatementKind::Return => StmtKind::Return,
+        })
+    }
+
+    fn looped(&mut self, body: &'a [Statement]) -> Vec<Stmt> {
+        self.body.loops += 1;
+        let body = self.statements(body);
+        self.body.loops -= 1;
+        body
+    }
+
+    /// A variable that is written.
+    pub(super) fn target(&mut self, path: &'a Path) -> Option<Place> {
+        match self.named(path, None) {
+            Named::Nothing => None,
+            Named::Value(_) => {
+                let message = format!("`{}` is a constant", path.root.text);
+                self.error(Code::NotWritable, path.span, message, "assign to a variable");
+                None
+            }
+            Named::Place(place, Some(why)) => {
+                let _ = place;
+                self.error(Code::NotWritable, path.span, why, "assign to another variable");
+                None
+            }
+            Named::Place(place, None) => Some(place),
+        }
+    }
+
+    fn assignment(&mut self, path: &'a Path, value: &'a Expression) -> Option<StmtKind> {
+        let target = self.target(path);
+        let ty = match &target {
+            Some(place) if place.bit.is_some() => BOOL,
+            Some(place) => place.ty,
+            None => {
+                // Its own mistakes are told all the same.
+                self.expression(value, None);
+                return None;
+            }
+        };
+        let target = target?;
+        if let Type::Block(_) = self.types.get(ty) {
+            let message = format!("an instance of {} is not assigned", self.type_name(ty));
+            self.error(
+                Code::WrongType,
+                path.span,
+                message,
+                "set its inputs, or hand it over as VAR_IN_OUT",
+            );
+            return None;
+        }
+        if self.types.elementary(ty).is_none() && self.holds_block(ty) {
+            let message = "what holds an instance of a block is not assigned";
+            self.error(Code::WrongType, path.span, message, "assign its members");
+            return None;
+        }
+        let value = self.value(value, ty);
+        if value.is_wrong() {
+            return None;
+        }
+        if self.types.elementary(ty).is_some() {
+            return Some(StmtKind::Assign(target, value));
+        }
+        let (size, _) = self.size(ty);
+        Some(StmtKind::Copy(target, value, size))
+    }
+
+    fn case(&mut self, case: &'a Case, span: Span) -> Option<StmtKind> {
+        let selector = self.expression(&case.selector, None);
+        let selector = self.settle(selector);
+        let of = self
+            .types
+            .elementary(selector.ty)
+            .filter(|it| !it.is_real() && *it != Elementary::Bool);
+        let ty = selector.ty;
+        if of.is_none() && !selector.is_wrong() {
+            let message = format!(
+                "CASE goes by whole numbers and enumerations, not by {}",
+                self.type_name(ty)
+            );
+            self.error(Code::WrongType, selector.span, message, "use IF");
+        }
+        let mut seen: Vec<(i128, i128, Span)> = Vec::new();
+        let mut branches = Vec::new();
+        for branch in &case.branches {
+            let mut labels = Vec::new();
+            for (low, high) in &branch.labels {
+                let from = self.label(low, ty);
+                let to = match high {
+                    Some(high) => self.label(high, ty),
+                    None => from,
+                };
+                let (Some(from), Some(to)) = (from, to) else {
+                    continue;
+                };
+                let at = high.as_ref().map_or(low.span, |high| low.span.to(high.span));
+                if from > to {
+                    self.error(
+                        Code::OutOfRange,
+                        at,
+                        format!("the range {from}..{to} is empty"),
+                        "the smaller value stands first",
+                    );
+                    continue;
+                }
+                labels.push((from, to));
+                seen.push((from, to, at));
+            }
+            let body = self.statements(&branch.body);
+            branches.push(Branch { labels, body });
+        }
+        self.check_labels(&mut seen);
+        if case.other.is_none() {
+            self.check_complete(ty, &seen, span);
+        }
+        let other = case
+            .other
+            .as_ref()
+            .map(|body| self.statements(body))
+            .unwrap_or_default();
+        Some(StmtKind::Case(selector, of?, branches, other))
+    }
+
+    fn label(&mut self, label: &'a Expression, ty: TypeId) -> Option<i128> {
+        let value = self.value(label, ty);
+        match value.constant() {
+            Some(Constant::Integer(number)) => Some(number),
+            _ if value.is_wrong() => None,
+            _ => {
+                self.not_constant(value.span);
+                None
+            }
+        }
+    }
+
+    /// Two branches for one value are a mistake.
+    fn check_labels(&mut self, seen: &mut [(i128, i128, Span)]) {
+        seen.sort_by_key(|(from, _, span)| (*from, *span));
+        let mut furthest: Option<(i128, Span)> = None;
+        for (from, to, span) in seen.iter() {
+            if let Some((end, other)) = furthest
+                && *from <= end
+            {
+                let (first, second) = if other < *span {
+                    (other, *span)
+                } else {
+                    (*span, other)
+                };
+                let wrong = Diagnostic::error(
+                    Code::DuplicateName,
+                    second,
+                    format!("the value {from} has two branches"),
+                );
+                self.tell(wrong.related(first, "the other one"));
+            }
+            if furthest.is_none_or(|(end, _)| *to > end) {
+                furthest = Some((*to, *span));
+            }
+        }
+    }
+
+    /// Elements that no branch of a CASE without ELSE names.
+    fn check_complete(&mut self, ty: TypeId, seen: &[(i128, i128, Span)], span: Span) {
+        let Type::Enumeration(of) = self.types.get(ty) else {
+            return;
+        };
+        let missing: Vec<_> = of
+            .elements
+            .iter()
+            .filter(|(_, number)| {
+                let behind = seen.partition_point(|(from, ..)| from <= number);
+                !seen
+                    .get(..behind)
+                    .unwrap_or_default()
+                    .iter()
+                    .rev()
+                    .take(1)
+                    .any(|(_, to, _)| number <= to)
+            })
+            .map(|(name, _)| name.as_str())
+            .take(4)
+            .collect();
+        if !missing.is_empty() {
+            let message = format!("CASE has no branch for {}", missing.join(", "));
+            let at = Span {
+                start: span.start,
+                end: span.start + 4,
+            };
+            let doubt = Diagnostic::warning(Code::Doubtful, at, message);
+            self.tell(doubt.help("add the branches, or an ELSE"));
+        }
+    }
+
+    fn for_(&mut self, each: &'a For) -> Option<StmtKind> {
+        let key = each.variable.key();
+        let member = self
+            .scope
+            .and_then(|unit| self.unit(unit).members.find(&key))
+            .map(|(place, _)| place);
+        let path_span = each.variable.span;
+        let found = match (self.scope, member) {
+            (Some(unit), Some(place)) => Some(self.member_place(unit, place)),
+            _ => match self.global_names.get(&key).copied() {
+                Some(place) => Some(self.global_place(place)),
+                None => {
+                    let message = format!("there is no variable `{}`", each.variable.text);
+                    self.error(
+                        Code::UnknownName,
+                        path_span,
+                        message,
+                        "declare the control variable: `i : INT;`",
+                    );
+                    None
+                }
+            },
+        };
+        let found = match found {
+            Some((_, Some(why))) => {
+                self.error(Code::NotWritable, path_span, why, "use another control variable");
+                None
+            }
+            Some((place, None)) => Some(place),
+            None => None,
+        };
+        let declared = found.as_ref().map(|place| place.ty);
+        let of = declared
+            .and_then(|ty| self.types.elementary(ty))
+            .filter(|it| it.is_integer());
+        let of = of.filter(|_| declared.is_some_and(|ty| !self.types.is_enumeration(ty)));
+        if let (Some(ty), None) = (declared, of)
+            && ty != crate::types::WRONG
+        {
+            let message = format!(
+                "the control variable of FOR is a whole number, not {}",
+                self.type_name(ty)
+            );
+            self.error(
+                Code::WrongType,
+                path_span,
+                message,
+                "use INT or DINT; for a REAL use WHILE",
+            );
+        }
+        let ty = of.map_or(crate::types::WRONG, Types::of);
+        let from = self.value(&each.from, ty);
+        let to = self.value(&each.to, ty);
+        let by = match &each.by {
+            Some(by) => self.step_value(by, of),
+            None => Expr {
+                kind: Kind::Integer(1),
+                ty: Types::of(Elementary::Lint),
+                span: each.from.span,
+            },
+        };
+        self.body.controls.extend(member);
+        let body = self.looped(&each.body);
+        if member.is_some() {
+            self.body.controls.pop();
+        }
+        let (variable, of) = (found?, of?);
+        if from.is_wrong() || to.is_wrong() || by.is_wrong() {
+            return None;
+        }
+        let range = match self.types.get(variable.ty) {
+            Type::Subrange { low, high, .. } => (*low, *high),
+            _ => of.range(),
+        };
+        Some(StmtKind::For(Box::new(crate::typed::For {
+            variable,
+            ty: of,
+            range,
+            from,
+            to,
+            by,
+            body,
+        })))
+    }
+
+    /// The step of FOR as a LINT: it may be negative where the control variable has no sign.
+    fn step_value(&mut self, by: &'a Expression, of: Option<Elementary>) -> Expr {
+        let value = self.expression(by, None);
+        let value = self.settle(value);
+        let span = value.span;
+        let Some(it) = self.types.elementary(value.ty).filter(|it| it.is_integer()) else {
+            if !value.is_wrong() {
+                let message = format!(
+                    "the step of FOR is a whole number, not {}",
+                    self.type_name(value.ty)
+                );
+                self.error(Code::WrongType, span, message, "");
+            }
+            return Expr::wrong(span);
+        };
+        if it == Elementary::Ulint {
+            self.error(
+                Code::WrongType,
+                span,
+                "the step of FOR is LINT at most",
+                "convert it: ULINT_TO_LINT(..)",
+            );
+            return Expr::wrong(span);
+        }
+        let ty = Types::of(Elementary::Lint);
+        match value.kind {
+            Kind::Integer(0) => {
+                self.error(Code::OutOfRange, span, "a FOR with a step of 0 never ends", "");
+                Expr::wrong(span)
+            }
+            Kind::Integer(number) => Expr {
+                kind: Kind::Integer(number),
+                ty,
+                span,
+            },
+            _ => {
+                let _ = of;
+                Expr {
+                    kind: Kind::Convert(Box::new(value), it, Elementary::Lint),
+                    ty,
+                    span,
+                }
+            }
+        }
+    }
+}

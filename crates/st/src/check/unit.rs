@@ -1,0 +1,266 @@
+//! The variables of programs, function blocks and functions.
+
+use super::{Checker, State, UnitInfo, UnitKind};
+use crate::error::{Code, Diagnostic, quoted};
+use crate::library::blocks;
+use crate::source::Span;
+use crate::syntax::{Ident, Section, SectionKind, Variables};
+use crate::types::{Member, MemberKind, Start, Type, UnitId, WRONG};
+
+/// Most inputs of a FUNCTION: interpreters limit the parameters of one.
+const INPUTS_MOST: usize = 32;
+
+impl<'a> Checker<'a> {
+    /// The unit of a block of the library, made when it is first named.
+    pub(super) fn library_block(&mut self, key: &str) -> Option<UnitId> {
+        let info = blocks::find(key)?;
+        let members = blocks::members(info, &mut self.types, &mut self.library_types);
+        let same = self
+            .units
+            .iter()
+            .position(|unit| unit.kind == UnitKind::Library(info));
+        let id = same.unwrap_or(self.units.len());
+        if same.is_none() {
+            self.units.push(UnitInfo {
+                kind: UnitKind::Library(info),
+                name: info.name.to_owned(),
+                span: Span::default(),
+                syntax: None,
+                state: State::Done,
+                members,
+                result: None,
+                frame: 0,
+            });
+        }
+        let id = UnitId(id as u32);
+        self.unit_names.insert(key.to_owned(), id);
+        Some(id)
+    }
+
+    /// Finds out the variables of a unit and their places in its instances.
+    pub(super) fn resolve_unit(&mut self, id: UnitId, span: Span) {
+        match self.unit(id).state {
+            State::Done => return,
+            State::Busy => {
+                let unit = self.unit(id);
+                let message = format!("`{}` contains an instance of itself", unit.name);
+                let wrong = Diagnostic::error(Code::Circle, span, message);
+                let wrong = wrong.related(unit.span, "it is declared here");
+                self.tell(wrong.help("a block can hold instances of other blocks only, and not in a circle"));
+                return;
+            }
+            State::Todo => {}
+        }
+        let Some(syntax) = self.unit(id).syntax else {
+            return;
+        };
+        self.unit_mut(id).state = State::Busy;
+        let span = syntax.name.span;
+        self.needing(span, (), |checker| {
+            checker.in_scope(Some(id), |checker| {
+                if let Some(result) = &syntax.result {
+                    let (ty, start) = checker.spec(result);
+                    checker.add_member(
+                        id,
+                        &syntax.name,
+                        ty,
+                        MemberKind::Result,
+                        start,
+                        (false, false),
+                        None,
+                    );
+                    let unit = checker.unit_mut(id);
+                    unit.result = Some(unit.members.list.len() - 1);
+                }
+                for section in &syntax.sections {
+                    checker.section(id, section);
+                }
+            });
+        });
+        let taken = |member: &&Member| matches!(member.kind, MemberKind::Input | MemberKind::InOut);
+        if self.unit(id).kind == UnitKind::Function
+            && self.unit(id).members.list.iter().filter(taken).count() > INPUTS_MOST
+        {
+            let message = format!("a FUNCTION has at most {INPUTS_MOST} inputs");
+            self.error(Code::TooLarge, span, message, "hand over a structure");
+        }
+        let unit = self.unit_mut(id);
+        unit.members.close();
+        unit.state = State::Done;
+        if u64::from(self.unit(id).members.size) > super::spec::BYTES_MOST {
+            self.unit_mut(id).members.size = 0;
+            self.too_large(span);
+        }
+    }
+
+    fn section(&mut self, id: UnitId, section: &'a Section) {
+        let function = self.unit(id).kind == UnitKind::Function;
+        for variables in &section.variables {
+            if section.kind == SectionKind::External {
+                self.externals(id, variables);
+                continue;
+            }
+            let kind = match section.kind {
+                SectionKind::Input => MemberKind::Input,
+                SectionKind::Output => MemberKind::Output,
+                SectionKind::InOut => MemberKind::InOut,
+                SectionKind::Temp => MemberKind::Temp,
+                _ if function => MemberKind::Temp,
+                _ => MemberKind::Var,
+            };
+            if function && section.kind == SectionKind::Static {
+                let span = variables.spec.span;
+                self.error(
+                    Code::Misplaced,
+                    span,
+                    "a FUNCTION keeps nothing between calls",
+                    "make it a FUNCTION_BLOCK",
+                );
+            }
+            let (ty, default) = self.spec(&variables.spec);
+            let start = variables
+                .initial
+                .as_ref()
+                .map(|initial| self.start(initial, ty))
+                .unwrap_or(default);
+            self.check_kind(id, kind, ty, variables);
+            for (name, address) in &variables.names {
+                let flags = (section.constant, section.retain);
+                self.add_member(id, name, ty, kind, start.clone(), flags, address.as_ref());
+            }
+        }
+    }
+
+    /// What cannot be declared in a section of this kind.
+    fn check_kind(&mut self, id: UnitId, kind: MemberKind, ty: crate::types::TypeId, variables: &Variables) {
+        let span = variables.spec.span;
+        self.no_program(ty, span);
+        let holds_block = self.holds_block(ty);
+        if holds_block && matches!(kind, MemberKind::Input | MemberKind::Output) {
+            let message = format!("{} is a function block, which is not copied", self.type_name(ty));
+            self.error(Code::WrongType, span, message, "hand it over as VAR_IN_OUT");
+        }
+        if holds_block && kind == MemberKind::Temp {
+            let what = if self.unit(id).kind == UnitKind::Function {
+                "a FUNCTION"
+            } else {
+                "VAR_TEMP"
+            };
+            let message = format!("{what} keeps nothing between calls, which a function block needs");
+            self.error(
+                Code::Misplaced,
+                span,
+                message,
+                "declare the instance in VAR of a FUNCTION_BLOCK or PROGRAM",
+            );
+        }
+        if kind == MemberKind::InOut && variables.initial.is_some() {
+            self.error(
+                Code::Misplaced,
+                span,
+                "a VAR_IN_OUT has no first value: it is a variable of the caller",
+                "",
+            );
+        }
+    }
+
+    /// Whether a block is in it.
+    pub(super) fn holds_block(&self, ty: crate::types::TypeId) -> bool {
+        match self.types.get(ty) {
+            Type::Block(_) => true,
+            Type::Array(array) => self.holds_block(array.of),
+            Type::Structure(structure) => structure
+                .members
+                .list
+                .iter()
+                .any(|member| self.holds_block(member.ty)),
+            _ => false,
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn add_member(
+        &mut self,
+        id: UnitId,
+        name: &Ident,
+        ty: crate::types::TypeId,
+        kind: MemberKind,
+        start: Start,
+        (constant, retain): (bool, bool),
+        address: Option<&Ident>,
+    ) {
+        self.check_name(name);
+        if let Some((_, other)) = self.unit(id).members.find(&name.key()) {
+            let other = other.span;
+            self.twice(name, other);
+            return;
+        }
+        let (size, align) = if kind == MemberKind::InOut {
+            (4, 4)
+        } else {
+            self.size(ty)
+        };
+        let member = Member {
+            name: name.text.clone(),
+            ty,
+            kind,
+            offset: 0,
+            start,
+            span: name.span,
+            constant,
+            retain,
+            address: address.map(|address| address.text.clone()),
+        };
+        self.unit_mut(id).members.add(member, size, align);
+    }
+
+    /// VAR_EXTERNAL: names of global variables, with their types.
+    fn externals(&mut self, id: UnitId, variables: &'a Variables) {
+        let (ty, _) = self.spec(&variables.spec);
+        for (name, _) in &variables.names {
+            let Some(place) = self.global_names.get(&name.key()).copied() else {
+                let guess = self.guess(&name.text, self.global_names.keys().map(String::as_str));
+                let message = format!("there is no global variable {}", quoted(&name.text));
+                let wrong = Diagnostic::error(Code::UnknownName, name.span, message);
+                self.tell(wrong.maybe_help(guess.or_else(|| Some("declare it in VAR_GLOBAL".to_owned()))));
+                // It is known from here on, so that its uses are not told, too.
+                self.add_member(
+                    id,
+                    name,
+                    WRONG,
+                    MemberKind::Var,
+                    Start::Default,
+                    (false, false),
+                    None,
+                );
+                continue;
+            };
+            self.global(place);
+            let global = &self.globals[place].member;
+            if global.ty != ty && ty != WRONG && global.ty != WRONG {
+                let message = format!(
+                    "`{}` is declared as {} here, and as {} in VAR_GLOBAL",
+                    name.text,
+                    self.type_name(ty),
+                    self.type_name(global.ty)
+                );
+                let other = global.span;
+                self.tell(
+                    Diagnostic::error(Code::WrongType, name.span, message).related(other, "declared here"),
+                );
+            }
+            if let Some((_, other)) = self.unit(id).members.find(&name.key()) {
+                let other = other.span;
+                self.twice(name, other);
+                continue;
+            }
+            let global = &self.globals[place].member;
+            let member = Member {
+                kind: MemberKind::External(place),
+                span: name.span,
+                ..global.clone()
+            };
+            self.unit_mut(id).members.put(member);
+        }
+    }
+}

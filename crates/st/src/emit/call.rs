@@ -1,0 +1,162 @@
+//! Calls of functions and of instances.
+
+use super::expression::Emitter;
+use super::function::{at, value_type};
+use super::place::Root;
+use super::{FaultKind, Target, kind_of};
+use crate::check::UnitKind;
+use crate::library::blocks;
+use crate::source::Span;
+use crate::typed::{Argument, BlockCall, Expr, FunctionCall, Place};
+use crate::types::{Elementary, Type};
+use standstill_fb::{BlockInfo, PinType};
+use wasm_encoder::{BlockType, ValType};
+
+/// Where the records of a table begin, behind their count.
+const RECORDS: u32 = 8;
+
+impl Emitter<'_, '_, '_> {
+    /// A call of a FUNCTION; its value stays on the stack.
+    pub(super) fn function_call(&mut self, call: &FunctionCall) {
+        for argument in &call.arguments {
+            match argument {
+                Argument::Value(value) => self.expression(value),
+                Argument::Reference(place) => self.whole_address(place),
+            }
+        }
+        self.context.want(Target::Unit(call.unit));
+        self.function.call(Target::Unit(call.unit));
+        self.outputs(&call.outputs);
+    }
+
+    /// Writes outputs to their variables.
+    fn outputs(&mut self, outputs: &[(Place, Expr)]) {
+        for (target, value) in outputs {
+            self.assign(target, value);
+        }
+    }
+
+    /// Writes a value of any type.
+    pub(super) fn assign(&mut self, target: &Place, value: &Expr) {
+        let program = self.context.program;
+        match (program.types.elementary(target.ty), target.bit) {
+            (Some(of), Some(bit)) => self.write_bit(target, of, bit, value),
+            (Some(of), None) => {
+                let offset = self.address(target);
+                self.expression(value);
+                self.store(of, offset);
+            }
+            (None, _) => {
+                let size = |unit: crate::types::UnitId| program.units[unit.0 as usize].members.size;
+                let (bytes, _) = program.types.size(target.ty, size);
+                self.copy(target, value, bytes);
+            }
+        }
+    }
+
+    pub(super) fn copy(&mut self, target: &Place, value: &Expr, bytes: u32) {
+        self.whole_address(target);
+        self.expression(value);
+        self.function
+            .sink()
+            .i32_const(bytes.cast_signed())
+            .memory_copy(0, 0);
+    }
+
+    pub(super) fn block_call(&mut self, call: &BlockCall, span: Span) {
+        let before = self.callee;
+        self.callee = self.pinned(&call.instance);
+        let (root, offset) = self.callee;
+        for (place, value) in &call.inputs {
+            self.assign(place, value);
+        }
+        let program = self.context.program;
+        let members = &program.units[call.unit.0 as usize].members.list;
+        for (member, bound) in &call.references {
+            let Some(member) = members.get(*member) else {
+                continue;
+            };
+            match kind_of(program, call.unit) {
+                UnitKind::Library(_) => self.reference(root, offset + member.offset, bound),
+                _ => {
+                    self.push_root(root);
+                    self.whole_address(bound);
+                    self.function.sink().i32_store(at(offset + member.offset, 2));
+                }
+            }
+        }
+        if let UnitKind::Library(info) = kind_of(program, call.unit) {
+            self.library_block(info, root, offset);
+        } else {
+            for member in call.kept.iter().filter_map(|place| members.get(*place)) {
+                let site = self.site(span, FaultKind::Unbound);
+                self.push_root(root);
+                self.function
+                    .sink()
+                    .i32_load(at(offset + member.offset, 2))
+                    .i32_eqz();
+                self.function.if_(BlockType::Empty);
+                self.function.sink().i32_const(site).i64_const(0);
+                self.fault();
+            }
+            self.push_root(root);
+            self.add_offset(offset);
+            self.context.want(Target::Unit(call.unit));
+            self.function.call(Target::Unit(call.unit));
+        }
+        self.outputs(&call.outputs);
+        self.callee = before;
+    }
+
+    /// What a block of the library takes for a variable: the number of an axis, or the records of a table.
+    fn reference(&mut self, root: Root, offset: u32, bound: &Place) {
+        let types = &self.context.program.types;
+        let table =
+            matches!(types.get(bound.ty), Type::Structure(it) if it.members.find("RECORDS").is_some());
+        if !table {
+            self.push_root(root);
+            let from = self.address(bound);
+            self.function
+                .sink()
+                .i32_load(at(from, 2))
+                .i32_store(at(offset, 2));
+            return;
+        }
+        let (from, start) = self.pinned(bound);
+        self.push_root(root);
+        self.push_root(from);
+        self.add_offset(start + RECORDS);
+        self.function.sink().i32_store(at(offset, 2));
+        self.push_root(root);
+        self.push_root(from);
+        self.function
+            .sink()
+            .i32_load(at(start, 2))
+            .i32_store(at(offset + 4, 2));
+    }
+
+    /// A block of the library: its key, inputs and outputs stand in the instance, and then its result.
+    fn library_block(&mut self, info: &'static BlockInfo, root: Root, offset: u32) {
+        let import = Target::Import(blocks::import(info));
+        self.context.want(import);
+        self.push_root(root);
+        for part in [0, blocks::INPUTS, blocks::outputs(info)] {
+            self.push_root(root);
+            self.add_offset(offset + part);
+        }
+        self.function.call(import);
+        self.function
+            .sink()
+            .i32_store(at(offset + blocks::result(info), 2));
+        debug_assert!(
+            info.outputs()
+                .iter()
+                .all(|pin| !matches!(pin.ty, PinType::Table(_)))
+        );
+    }
+
+    /// How a parameter of a FUNCTION is handed over.
+    pub(super) fn parameter(of: Option<Elementary>) -> ValType {
+        of.map_or(ValType::I32, value_type)
+    }
+}

@@ -1,0 +1,376 @@
+//! From the checked program to a module.
+//!
+//! Every unit that is called becomes a function: of an instance, whose address it gets, or with parameters, for a
+//! FUNCTION. Calls are written with room for any number and filled in at the end, when it is known who is called.
+
+mod call;
+mod convert;
+mod expression;
+mod function;
+mod library;
+mod looping;
+mod operator;
+mod place;
+mod statement;
+
+use crate::check::{Body, Program, Task, UnitKind};
+use crate::error::{Code, Diagnostic};
+use crate::layout;
+use crate::source::Span;
+use crate::types::UnitId;
+use function::Function;
+use std::collections::BTreeMap;
+use wasm_encoder::{
+    BlockType, CodeSection, ConstExpr, DataSection, EntityType, ExportKind, ExportSection, FunctionSection,
+    GlobalSection, GlobalType, ImportSection, MemorySection, MemoryType, Module, TypeSection, ValType,
+};
+
+/// Most bytes of a function; interpreters and browsers refuse more.
+const FUNCTION_MOST: usize = 7_000_000;
+
+/// Most variables that are exported by name; all are in the table of symbols.
+const EXPORTS_MOST: usize = 900;
+
+/// What a call leads to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Target {
+    /// `(site, value)`: notes a fault, and traps.
+    Fault,
+    Unit(UnitId),
+    Task(usize),
+    Import(&'static str),
+}
+
+/// What a fault is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FaultKind {
+    /// A division of whole numbers by zero; the value is the dividend.
+    DivisionByZero,
+    /// An index outside its bounds; the value is the index.
+    Index,
+    /// A value outside its subrange; the value is that.
+    Subrange,
+    /// MUX chose an input that it does not have; the value is K.
+    Choice,
+    /// FOR has a step of 0.
+    Step,
+    /// A VAR_IN_OUT was never given.
+    Unbound,
+    /// No fault: a loop, which is told if the fuel is used up.
+    Loop,
+}
+
+impl FaultKind {
+    /// In a sentence behind "the program stopped: ".
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::DivisionByZero => "a division by zero",
+            Self::Index => "an index outside the bounds of its array",
+            Self::Subrange => "a value outside its subrange",
+            Self::Choice => "MUX has no such input",
+            Self::Step => "a FOR with a step of 0",
+            Self::Unbound => "a VAR_IN_OUT that was never given",
+            Self::Loop => "a loop that did not end",
+        }
+    }
+}
+
+/// A place where a fault can happen.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Site {
+    pub span: Span,
+    pub kind: FaultKind,
+}
+
+/// What is known of the module while its functions are written.
+struct Context<'p, 'a> {
+    program: &'p Program<'a>,
+    bodies: BTreeMap<UnitId, &'p Body>,
+    /// All that is called, in the order of its first call.
+    wanted: Vec<Target>,
+    numbers: BTreeMap<Target, usize>,
+    sites: Vec<Site>,
+    /// What variables begin as that are made at every call, behind everything else.
+    templates: Vec<u8>,
+    templates_at: u32,
+}
+
+impl Context<'_, '_> {
+    fn want(&mut self, target: Target) -> usize {
+        if let Some(number) = self.numbers.get(&target) {
+            return *number;
+        }
+        let number = self.wanted.len();
+        self.wanted.push(target);
+        self.numbers.insert(target, number);
+        number
+    }
+
+    fn site(&mut self, span: Span, kind: FaultKind) -> i32 {
+        self.sites.push(Site { span, kind });
+        i32::try_from(self.sites.len()).unwrap_or(i32::MAX)
+    }
+}
+
+/// A module and its places.
+pub(crate) struct Emitted {
+    pub wasm: Vec<u8>,
+    pub sites: Vec<Site>,
+}
+
+/// Writes the module; `image` is what stands in memory before the first scan.
+pub(crate) fn emit(program: &Program<'_>, image: &[u8]) -> Result<Emitted, Diagnostic> {
+    let mut context = Context {
+        program,
+        bodies: program.bodies.iter().map(|body| (body.unit, body)).collect(),
+        wanted: Vec::new(),
+        numbers: BTreeMap::new(),
+        sites: Vec::new(),
+        templates: Vec::new(),
+        templates_at: program.layout.end.next_multiple_of(8),
+    };
+    context.want(Target::Fault);
+    for task in 0..program.tasks.len() {
+        context.want(Target::Task(task));
+    }
+    let mut functions: Vec<(Target, Function)> = Vec::new();
+    let mut next = 0;
+    while let Some(target) = context.wanted.get(next).copied() {
+        next += 1;
+        let function = match target {
+            Target::Import(_) => continue,
+            Target::Fault => fault_function(),
+            Target::Task(task) => statement::task(&mut context, task),
+            Target::Unit(unit) => statement::unit(&mut context, unit),
+        };
+        if function.code.len() > FUNCTION_MOST {
+            let span = match target {
+                Target::Unit(unit) => program.units[unit.0 as usize].span,
+                _ => Span::default(),
+            };
+            let wrong = Diagnostic::error(
+                Code::TooLarge,
+                span,
+                "this is larger than a function of a module may be",
+            );
+            return Err(wrong.help("take parts of it out into function blocks"));
+        }
+        functions.push((target, function));
+    }
+    let wasm = module(&context, functions, image);
+    Ok(Emitted {
+        wasm,
+        sites: context.sites,
+    })
+}
+
+/// Notes the place and the value of a fault, and traps.
+fn fault_function() -> Function {
+    let mut function = Function::new(vec![ValType::I32, ValType::I64], None);
+    function
+        .sink()
+        .i32_const(0)
+        .local_get(0)
+        .i32_store(function::at(layout::FAULT_SITE, 2));
+    function
+        .sink()
+        .i32_const(0)
+        .local_get(1)
+        .i64_store(function::at(layout::FAULT_VALUE, 3));
+    function.sink().unreachable();
+    function
+}
+
+/// What the host calls: notes the time, and runs the tasks that are due.
+fn scan_function(tasks: &[Task], only: Option<usize>) -> Function {
+    let mut function = Function::new(vec![ValType::I32, ValType::I64], None);
+    function
+        .sink()
+        .i32_const(0)
+        .local_get(1)
+        .i64_store(function::at(layout::NOW, 3));
+    if let Some(task) = only {
+        function.call(Target::Task(task));
+        return function;
+    }
+    let mut order: Vec<usize> = (0..tasks.len()).collect();
+    order.sort_by_key(|place| tasks[*place].priority);
+    for place in order {
+        let task = &tasks[place];
+        let Some(interval) = task.interval_ns else {
+            function.call(Target::Task(place));
+            continue;
+        };
+        let due = function::at(task.due, 3);
+        let mut sink = function.sink();
+        sink.local_get(1)
+            .i32_const(0)
+            .i64_load(due)
+            .i64_ge_s()
+            .if_(BlockType::Empty);
+        // Due again at the next multiple of the interval, however long the host waited.
+        sink.i32_const(0).local_get(1).i64_const(interval).i64_div_s();
+        sink.i64_const(1)
+            .i64_add()
+            .i64_const(interval)
+            .i64_mul()
+            .i64_store(due);
+        function.call(Target::Task(place));
+        function.sink().end();
+    }
+    function
+}
+
+/// Puts the functions, the memory and the exports together.
+fn module(context: &Context<'_, '_>, mut functions: Vec<(Target, Function)>, image: &[u8]) -> Vec<u8> {
+    let program = context.program;
+    let imported = context
+        .wanted
+        .iter()
+        .filter(|it| matches!(it, Target::Import(_)))
+        .count() as u32;
+    let mut indices: BTreeMap<Target, u32> = BTreeMap::new();
+    let imports = context.wanted.iter().filter(|it| matches!(it, Target::Import(_)));
+    indices.extend(imports.copied().zip(0..));
+    indices.extend(functions.iter().map(|(target, _)| *target).zip(imported..));
+
+    // Functions that no other calls.
+    let mut exported = vec![("plc_scan".to_owned(), scan_function(&program.tasks, None))];
+    for (place, task) in program
+        .tasks
+        .iter()
+        .enumerate()
+        .filter(|(_, task)| !task.name.is_empty())
+    {
+        let name = format!("plc_task_{}", task.name.to_ascii_uppercase());
+        exported.push((name, scan_function(&program.tasks, Some(place))));
+    }
+    let mut exports = ExportSection::new();
+    exports.export("memory", ExportKind::Memory, 0);
+    for (index, (name, function)) in (imported + functions.len() as u32..).zip(exported) {
+        exports.export(&name, ExportKind::Func, index);
+        // Whose target it is counts for nobody.
+        functions.push((Target::Fault, function));
+    }
+
+    let mut types = TypeSection::new();
+    let mut known: BTreeMap<Vec<u8>, u32> = BTreeMap::new();
+    let mut type_of = |parameters: &[ValType], result: Option<ValType>| {
+        let key: Vec<u8> = parameters
+            .iter()
+            .chain(&result)
+            .flat_map(|ty| format!("{ty:?}").into_bytes())
+            .chain([result.is_some() as u8])
+            .collect();
+        let count = known.len() as u32;
+        *known.entry(key).or_insert_with(|| {
+            types.ty().function(parameters.iter().copied(), result);
+            count
+        })
+    };
+    let mut import_section = ImportSection::new();
+    for target in &context.wanted {
+        let Target::Import(name) = target else { continue };
+        let (parameters, result) = match *name {
+            "math_pow" | "math_atan2" => (vec![ValType::F64; 2], ValType::F64),
+            name if name.starts_with("math_") => (vec![ValType::F64], ValType::F64),
+            _ => (vec![ValType::I32; 3], ValType::I32),
+        };
+        import_section.import(
+            "standstill",
+            name,
+            EntityType::Function(type_of(&parameters, Some(result))),
+        );
+    }
+    let mut function_section = FunctionSection::new();
+    let mut code = CodeSection::new();
+    for (_, function) in functions {
+        function_section.function(type_of(&function.parameters, function.result));
+        code.raw(&function.finish(|target| indices.get(&target).copied().unwrap_or(0)));
+    }
+    let mut memory = MemorySection::new();
+    let end = u64::from(context.templates_at) + context.templates.len() as u64;
+    memory.memory(MemoryType {
+        minimum: end.div_ceil(1 << 16).max(1),
+        maximum: None,
+        memory64: false,
+        shared: false,
+        page_size_log2: None,
+    });
+    let mut globals = GlobalSection::new();
+    let variables = program.globals.iter().map(|global| &global.member);
+    let variables = variables.filter(|member| program.types.elementary(member.ty).is_some());
+    let free = |name: &str| name != "memory" && !name.starts_with("plc_");
+    for (place, member) in variables
+        .filter(|member| free(&member.name))
+        .take(EXPORTS_MOST)
+        .enumerate()
+    {
+        let ty = GlobalType {
+            val_type: ValType::I32,
+            mutable: false,
+            shared: false,
+        };
+        globals.global(ty, &ConstExpr::i32_const(member.offset.cast_signed()));
+        exports.export(&member.name, ExportKind::Global, place as u32);
+    }
+
+    let mut module = Module::new();
+    module.section(&types);
+    if imported > 0 {
+        module.section(&import_section);
+    }
+    module.section(&function_section);
+    module.section(&memory);
+    if !globals.is_empty() {
+        module.section(&globals);
+    }
+    module.section(&exports);
+    module.section(&code);
+    let mut data = DataSection::new();
+    segments(image, 0, &mut data);
+    segments(&context.templates, context.templates_at, &mut data);
+    if !data.is_empty() {
+        module.section(&data);
+    }
+    module.finish()
+}
+
+/// The parts of the memory that are not 0; at most 400, because interpreters limit them.
+fn segments(image: &[u8], at: u32, data: &mut DataSection) {
+    let mut gap = 16;
+    let runs = loop {
+        let runs = runs(image, gap);
+        if runs.len() <= 400 {
+            break runs;
+        }
+        gap *= 2;
+    };
+    for run in runs {
+        let offset = at + run.start as u32;
+        let bytes = image.get(run).unwrap_or_default();
+        data.active(
+            0,
+            &ConstExpr::i32_const(offset.cast_signed()),
+            bytes.iter().copied(),
+        );
+    }
+}
+
+/// Runs of bytes with less than `gap` zeros in a row within.
+fn runs(image: &[u8], gap: usize) -> Vec<std::ops::Range<usize>> {
+    let mut runs: Vec<std::ops::Range<usize>> = Vec::new();
+    for (place, _) in image.iter().enumerate().filter(|(_, byte)| **byte != 0) {
+        match runs.last_mut() {
+            Some(last) if place - last.end < gap => last.end = place + 1,
+            _ => runs.push(place..place + 1),
+        }
+    }
+    runs
+}
+
+/// Whether a unit is a function with a value that is handed over as an address.
+fn kind_of(program: &Program<'_>, unit: UnitId) -> UnitKind {
+    program.units[unit.0 as usize].kind
+}

@@ -1,0 +1,300 @@
+//! Statements, and the functions that units and tasks become.
+
+use super::expression::Emitter;
+use super::function::{Function, at, value_type};
+use super::place::Root;
+use super::{Context, kind_of};
+use crate::check::UnitKind;
+use crate::start;
+use crate::typed::{Base, Branch, Expr, Place, Stmt, StmtKind};
+use crate::types::{Elementary, Member, MemberKind, TypeId, UnitId};
+use wasm_encoder::{BlockType, ValType};
+
+/// Most entries of a table of branches, for each label.
+const SPARSE: i128 = 8;
+
+/// The calls of the programs of a task.
+pub(super) fn task(context: &mut Context<'_, '_>, task: usize) -> Function {
+    let program = context.program;
+    let mut emitter = Emitter::new(context, Function::new(Vec::new(), None));
+    if let Some(task) = program.tasks.get(task) {
+        emitter.statements(&task.statements);
+    }
+    emitter.function
+}
+
+/// A program, a function block or a FUNCTION.
+pub(super) fn unit(context: &mut Context<'_, '_>, id: UnitId) -> Function {
+    let program = context.program;
+    let info = &program.units[id.0 as usize];
+    let is_function = kind_of(program, id) == UnitKind::Function;
+    let members = &info.members.list;
+    let result = info.result.and_then(|place| members.get(place));
+    let (parameters, value) = if is_function {
+        let taken = members
+            .iter()
+            .filter(|member| matches!(member.kind, MemberKind::Input | MemberKind::InOut));
+        let taken = taken.map(|member| match member.kind {
+            MemberKind::InOut => ValType::I32,
+            _ => Emitter::parameter(program.types.elementary(member.ty)),
+        });
+        (
+            taken.collect(),
+            result.map(|member| Emitter::parameter(program.types.elementary(member.ty))),
+        )
+    } else {
+        (vec![ValType::I32], None)
+    };
+    let body = context.bodies.get(&id).copied();
+    let mut emitter = Emitter::new(context, Function::new(parameters, value));
+    let (root, frame) = if is_function {
+        (Root::Zero, info.frame)
+    } else {
+        (Root::Local(0), 0)
+    };
+    if is_function {
+        emitter.take_parameters(members, frame);
+    }
+    if let Some(body) = body {
+        for member in body.fresh.iter().filter_map(|place| members.get(*place)) {
+            emitter.fresh(member, root, frame);
+        }
+        emitter.end = Some(emitter.function.block());
+        emitter.statements(&body.statements);
+        emitter.function.end();
+    }
+    if let Some(member) = result {
+        let place = place(frame + member.offset, member.ty);
+        emitter.read(&place);
+    }
+    emitter.function
+}
+
+const fn place(offset: u32, ty: TypeId) -> Place {
+    Place {
+        base: Base::Memory,
+        offset,
+        indices: Vec::new(),
+        ty,
+        bit: None,
+    }
+}
+
+impl Emitter<'_, '_, '_> {
+    /// Puts the parameters of a FUNCTION where its variables stand.
+    fn take_parameters(&mut self, members: &[Member], frame: u32) {
+        let taken = members
+            .iter()
+            .filter(|member| matches!(member.kind, MemberKind::Input | MemberKind::InOut));
+        for (local, member) in (0..).zip(taken) {
+            let offset = frame + member.offset;
+            match (member.kind, self.type_of(member.ty)) {
+                (MemberKind::InOut, _) => {
+                    self.function
+                        .sink()
+                        .i32_const(0)
+                        .local_get(local)
+                        .i32_store(at(offset, 2));
+                }
+                (_, Some(of)) => {
+                    self.function.sink().i32_const(0).local_get(local);
+                    self.store(of, offset);
+                }
+                (_, None) => {
+                    let bytes = self.bytes(member.ty);
+                    let mut sink = self.function.sink();
+                    sink.i32_const(offset.cast_signed()).local_get(local);
+                    sink.i32_const(bytes.cast_signed()).memory_copy(0, 0);
+                }
+            }
+        }
+    }
+
+    fn bytes(&self, ty: TypeId) -> u32 {
+        let program = self.context.program;
+        program
+            .types
+            .size(ty, |unit| program.units[unit.0 as usize].members.size)
+            .0
+    }
+
+    /// Gives a variable its first value, as at every call.
+    fn fresh(&mut self, member: &Member, root: Root, frame: u32) {
+        let program = self.context.program;
+        let bytes = self.bytes(member.ty);
+        let mut image = vec![0; bytes as usize];
+        start::write(program, member.ty, &member.start, &mut image, 0);
+        let offset = frame + member.offset;
+        if let Some(of) = self.type_of(member.ty) {
+            let mut number = [0; 8];
+            number[..image.len().min(8)].copy_from_slice(&image[..image.len().min(8)]);
+            let bits = u64::from_le_bytes(number);
+            self.push_root(root);
+            match value_type(of) {
+                ValType::F32 => self.real_constant(of, f32::from_bits(bits as u32).into()),
+                ValType::F64 => self.real_constant(of, f64::from_bits(bits)),
+                _ => self.constant(of, bits.cast_signed().into()),
+            }
+            self.store(of, offset);
+            return;
+        }
+        self.push_root(root);
+        self.add_offset(offset);
+        let size = bytes.cast_signed();
+        if image.iter().all(|byte| *byte == 0) {
+            self.function.sink().i32_const(0).i32_const(size).memory_fill(0);
+        } else {
+            let from = self.context.templates_at + self.context.templates.len() as u32;
+            self.context.templates.extend(image);
+            self.function
+                .sink()
+                .i32_const(from.cast_signed())
+                .i32_const(size)
+                .memory_copy(0, 0);
+        }
+    }
+
+    pub(super) fn statements(&mut self, list: &[Stmt]) {
+        for statement in list {
+            let mark = self.function.mark();
+            self.statement(statement);
+            self.function.release(mark);
+        }
+    }
+
+    fn statement(&mut self, statement: &Stmt) {
+        let span = statement.span;
+        match &statement.kind {
+            StmtKind::Assign(target, value) => self.assign(target, value),
+            StmtKind::Copy(target, value, bytes) => self.copy(target, value, *bytes),
+            StmtKind::Evaluate(value) => {
+                self.expression(value);
+                let empty = value.ty == crate::types::WRONG;
+                if !empty {
+                    self.function.sink().drop();
+                }
+            }
+            StmtKind::Block(call) => self.block_call(call, span),
+            StmtKind::If(branches, other) => self.if_(branches, other),
+            StmtKind::Case(selector, of, branches, other) => self.case(selector, *of, branches, other),
+            StmtKind::For(each) => self.for_(each, span),
+            StmtKind::While(condition, body) => self.while_(condition, body, span),
+            StmtKind::Repeat(body, condition) => self.repeat(body, condition, span),
+            StmtKind::Exit => {
+                if let Some(exit) = self.loops.last().map(|it| it.exit) {
+                    self.function.branch(exit);
+                }
+            }
+            StmtKind::Continue => {
+                if let Some(again) = self.loops.last().map(|it| it.again) {
+                    self.function.branch(again);
+                }
+            }
+            StmtKind::Return => {
+                if let Some(end) = self.end {
+                    self.function.branch(end);
+                }
+            }
+        }
+    }
+
+    fn if_(&mut self, branches: &[(Expr, Vec<Stmt>)], other: &[Stmt]) {
+        if let [(condition, body)] = branches {
+            self.expression(condition);
+            self.function.if_(BlockType::Empty);
+            self.statements(body);
+            if !other.is_empty() {
+                self.function.else_();
+                self.statements(other);
+            }
+            self.function.end();
+            return;
+        }
+        // Side by side, so that a long row of ELSIFs is not deep.
+        let end = self.function.block();
+        for (condition, body) in branches {
+            self.expression(condition);
+            self.function.if_(BlockType::Empty);
+            self.statements(body);
+            self.function.branch(end);
+            self.function.end();
+        }
+        self.statements(other);
+        self.function.end();
+    }
+
+    fn case(&mut self, selector: &Expr, of: Elementary, branches: &[Branch], other: &[Stmt]) {
+        let ty = value_type(of);
+        let local = self.function.local(ty);
+        self.expression(selector);
+        self.function.sink().local_set(local);
+        let labels = || branches.iter().flat_map(|branch| &branch.labels);
+        let low = labels().map(|(from, _)| *from).min().unwrap_or(0);
+        let high = labels().map(|(_, to)| *to).max().unwrap_or(0);
+        let count = labels().count() as i128;
+        if ty == ValType::I32 && count >= 3 && high - low < count * SPARSE {
+            self.table(local, low, high, branches, other);
+        } else {
+            self.comparisons(local, of, branches, other);
+        }
+    }
+
+    /// A branch by table: one jump however many labels there are.
+    fn table(&mut self, local: u32, low: i128, high: i128, branches: &[Branch], other: &[Stmt]) {
+        let count = branches.len() as u32;
+        let mut targets = vec![count; (high - low + 1) as usize];
+        for (place, branch) in (0..).zip(branches) {
+            for (from, to) in &branch.labels {
+                let range = (from - low) as usize..=(to - low) as usize;
+                targets.get_mut(range).unwrap_or_default().fill(place);
+            }
+        }
+        let end = self.function.block();
+        let _otherwise = self.function.block();
+        for _ in branches {
+            self.function.block();
+        }
+        let mut sink = self.function.sink();
+        sink.local_get(local)
+            .i32_const(low as i32)
+            .i32_sub()
+            .br_table(targets, count);
+        for branch in branches {
+            self.function.end();
+            self.statements(&branch.body);
+            self.function.branch(end);
+        }
+        self.function.end();
+        self.statements(other);
+        self.function.end();
+    }
+
+    /// One comparison after the other.
+    fn comparisons(&mut self, local: u32, of: Elementary, branches: &[Branch], other: &[Stmt]) {
+        let wide = of.size() == 8;
+        let end = self.function.block();
+        for branch in branches {
+            self.function.sink().i32_const(0);
+            for (from, to) in &branch.labels {
+                self.function.sink().local_get(local);
+                self.constant(of, *from);
+                if wide {
+                    self.function.sink().i64_sub();
+                    self.constant(of, to - from);
+                    self.function.sink().i64_le_u();
+                } else {
+                    self.function.sink().i32_sub();
+                    self.constant(Elementary::Udint, to - from);
+                    self.function.sink().i32_le_u();
+                }
+                self.function.sink().i32_or();
+            }
+            self.function.if_(BlockType::Empty);
+            self.statements(&branch.body);
+            self.function.branch(end);
+            self.function.end();
+        }
+        self.statements(other);
+        self.function.end();
+    }
+}

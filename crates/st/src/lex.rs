@@ -1,0 +1,474 @@
+//! From text to words, numbers and signs.
+
+use crate::error::{Code, Diagnostic, Found, quoted};
+use crate::source::Span;
+
+macro_rules! keywords {
+    ($($variant:ident = $text:literal,)*) => {
+        /// The reserved words. Those that mean something in one place only (TASK, WITH, INTERVAL) are names elsewhere.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        pub(crate) enum Word { $($variant,)* }
+
+        impl Word {
+            const ALL: &'static [(&'static str, Self)] = &[$(($text, Self::$variant),)*];
+
+            pub(crate) const fn text(self) -> &'static str {
+                match self { $(Self::$variant => $text,)* }
+            }
+        }
+    };
+}
+
+// In alphabetical order, because they are searched for by halves.
+keywords! {
+    And = "AND", AndThen = "AND_THEN", Array = "ARRAY", At = "AT", By = "BY", Case = "CASE", Class = "CLASS",
+    Configuration = "CONFIGURATION", Constant = "CONSTANT", Continue = "CONTINUE", Do = "DO", Else = "ELSE",
+    Elsif = "ELSIF", EndCase = "END_CASE", EndClass = "END_CLASS", EndConfiguration = "END_CONFIGURATION",
+    EndFor = "END_FOR", EndFunction = "END_FUNCTION", EndFunctionBlock = "END_FUNCTION_BLOCK", EndIf = "END_IF",
+    EndInterface = "END_INTERFACE", EndMethod = "END_METHOD", EndNamespace = "END_NAMESPACE",
+    EndProgram = "END_PROGRAM", EndProperty = "END_PROPERTY", EndRepeat = "END_REPEAT",
+    EndResource = "END_RESOURCE", EndStruct = "END_STRUCT", EndType = "END_TYPE", EndUnion = "END_UNION",
+    EndVar = "END_VAR", EndWhile = "END_WHILE", Exit = "EXIT", Extends = "EXTENDS", False = "FALSE",
+    For = "FOR", Function = "FUNCTION", FunctionBlock = "FUNCTION_BLOCK", Goto = "GOTO", If = "IF",
+    Implements = "IMPLEMENTS", InitialStep = "INITIAL_STEP", Interface = "INTERFACE", Jmp = "JMP",
+    Method = "METHOD", Mod = "MOD", Namespace = "NAMESPACE", NonRetain = "NON_RETAIN", Not = "NOT", Of = "OF",
+    Or = "OR", OrElse = "OR_ELSE", Persistent = "PERSISTENT", Pointer = "POINTER", Program = "PROGRAM",
+    Property = "PROPERTY", Reference = "REFERENCE", RefTo = "REF_TO", Repeat = "REPEAT", Resource = "RESOURCE",
+    Retain = "RETAIN", Return = "RETURN", Struct = "STRUCT", Super = "SUPER", Then = "THEN", This = "THIS",
+    To = "TO", True = "TRUE", Type = "TYPE", Union = "UNION", Until = "UNTIL", Var = "VAR",
+    VarAccess = "VAR_ACCESS", VarConfig = "VAR_CONFIG", VarExternal = "VAR_EXTERNAL", VarGlobal = "VAR_GLOBAL",
+    VarInput = "VAR_INPUT", VarInst = "VAR_INST", VarInOut = "VAR_IN_OUT", VarOutput = "VAR_OUTPUT",
+    VarStat = "VAR_STAT", VarTemp = "VAR_TEMP", While = "WHILE", Xor = "XOR",
+}
+
+impl Word {
+    pub(crate) fn find(text: &str) -> Option<Self> {
+        if text.len() > 20 {
+            return None;
+        }
+        let upper = text.to_ascii_uppercase();
+        let place = Self::ALL
+            .binary_search_by(|(word, _)| (*word).cmp(upper.as_str()))
+            .ok()?;
+        Self::ALL.get(place).map(|(_, word)| *word)
+    }
+}
+
+/// What a token is; its text stands in the source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Token {
+    Name,
+    Word(Word),
+    /// `123`, `1_000`
+    Integer,
+    /// `16#FF`
+    Based,
+    /// `1.5`, `1.0E-3`
+    Real,
+    /// What stands behind `T#`, with it.
+    Duration,
+    /// `INT#`, `E#`: the literal or element follows.
+    Typed,
+    /// `'text'`
+    Text,
+    /// `"text"`
+    WideText,
+    /// `%IX0.0`, `%X3`
+    Address,
+    Assign,
+    Output,
+    Equal,
+    NotEqual,
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+    Plus,
+    Minus,
+    Star,
+    Power,
+    Slash,
+    Ampersand,
+    Open,
+    Close,
+    OpenBracket,
+    CloseBracket,
+    Comma,
+    Semicolon,
+    Colon,
+    Dot,
+    Range,
+    Caret,
+    /// Signs of other languages; the text says which.
+    Foreign,
+    End,
+}
+
+/// Cuts a text into tokens, the last of which is [`Token::End`]. Places count from `start`.
+pub(crate) fn lex(text: &str, start: u32, found: &mut Found) -> Vec<(Token, Span)> {
+    let mut lexer = Lexer {
+        text,
+        bytes: text.as_bytes(),
+        at: 0,
+        start,
+        found,
+    };
+    let mut tokens = Vec::with_capacity(text.len() / 4);
+    loop {
+        lexer.skip_blank();
+        let from = lexer.at;
+        if from >= text.len() {
+            tokens.push((Token::End, lexer.span(from)));
+            return tokens;
+        }
+        if let Some(token) = lexer.token() {
+            tokens.push((token, lexer.span(from)));
+        }
+    }
+}
+
+struct Lexer<'a> {
+    text: &'a str,
+    bytes: &'a [u8],
+    at: usize,
+    start: u32,
+    found: &'a mut Found,
+}
+
+const SIGNS: &[(&str, Token)] = &[
+    (":=", Token::Assign),
+    ("=>", Token::Output),
+    ("==", Token::Foreign),
+    ("<>", Token::NotEqual),
+    ("<=", Token::LessEqual),
+    (">=", Token::GreaterEqual),
+    ("**", Token::Power),
+    ("..", Token::Range),
+    ("!=", Token::Foreign),
+    ("&&", Token::Foreign),
+    ("||", Token::Foreign),
+    ("+=", Token::Foreign),
+    ("-=", Token::Foreign),
+    ("++", Token::Foreign),
+    ("=", Token::Equal),
+    ("<", Token::Less),
+    (">", Token::Greater),
+    ("+", Token::Plus),
+    ("-", Token::Minus),
+    ("*", Token::Star),
+    ("/", Token::Slash),
+    ("&", Token::Ampersand),
+    ("(", Token::Open),
+    (")", Token::Close),
+    ("[", Token::OpenBracket),
+    ("]", Token::CloseBracket),
+    (",", Token::Comma),
+    (";", Token::Semicolon),
+    (":", Token::Colon),
+    (".", Token::Dot),
+    ("^", Token::Caret),
+    ("!", Token::Foreign),
+];
+
+const fn is_name(byte: u8) -> bool {
+    byte.is_ascii_alphanumeric() || byte == b'_'
+}
+
+const fn is_name_start(byte: u8) -> bool {
+    byte.is_ascii_alphabetic() || byte == b'_'
+}
+
+const fn is_digit(byte: u8) -> bool {
+    byte.is_ascii_digit() || byte == b'_'
+}
+
+impl Lexer<'_> {
+    fn span(&self, from: usize) -> Span {
+        Span {
+            start: self.start + from as u32,
+            end: self.start + self.at as u32,
+        }
+    }
+
+    fn peek(&self, ahead: usize) -> u8 {
+        self.bytes.get(self.at + ahead).copied().unwrap_or(0)
+    }
+
+    fn starts_with(&self, sign: &str) -> bool {
+        self.bytes
+            .get(self.at..)
+            .is_some_and(|rest| rest.starts_with(sign.as_bytes()))
+    }
+
+    fn skip_while(&mut self, wanted: impl Fn(u8) -> bool) {
+        while self.at < self.bytes.len() && wanted(self.peek(0)) {
+            self.at += 1;
+        }
+    }
+
+    /// Whites, comments and pragmas.
+    fn skip_blank(&mut self) {
+        loop {
+            self.skip_while(|byte| byte.is_ascii_whitespace() || byte == 0x0B);
+            let from = self.at;
+            if self.starts_with("//") {
+                self.skip_while(|byte| byte != b'\n');
+            } else if self.starts_with("(*") {
+                self.nested(from, "(*", "*)");
+            } else if self.starts_with("/*") {
+                self.nested(from, "/*", "*/");
+            } else if self.peek(0) == b'{' {
+                self.pragma(from);
+            } else {
+                return;
+            }
+        }
+    }
+
+    fn nested(&mut self, from: usize, open: &str, close: &str) {
+        let mut depth = 0_usize;
+        while self.at < self.bytes.len() {
+            if self.starts_with(open) {
+                depth += 1;
+                self.at += 2;
+            } else if self.starts_with(close) {
+                depth -= 1;
+                self.at += 2;
+                if depth == 0 {
+                    return;
+                }
+            } else {
+                self.at += 1;
+            }
+        }
+        let span = Span {
+            start: self.start + from as u32,
+            end: self.start + from as u32 + 2,
+        };
+        self.found.add(
+            Diagnostic::error(Code::NotClosed, span, "a comment is opened here and not closed")
+                .help(format!("comments nest: each `{open}` needs its `{close}`")),
+        );
+    }
+
+    fn pragma(&mut self, from: usize) {
+        const KNOWN: [&str; 5] = ["attribute", "region", "endregion", "lint", "warning"];
+        self.skip_while(|byte| byte != b'}');
+        if self.at >= self.bytes.len() {
+            self.at = from + 1;
+            let span = self.span(from);
+            self.at = self.bytes.len();
+            let wrong = Diagnostic::error(Code::NotClosed, span, "a pragma is opened here and not closed");
+            self.found
+                .add(wrong.help("write `}` at its end, or `(* .. *)` for a comment"));
+            return;
+        }
+        self.at += 1;
+        let inner = self.text.get(from + 1..self.at - 1).unwrap_or_default().trim();
+        let word = inner
+            .split(|c: char| !c.is_ascii_alphabetic())
+            .next()
+            .unwrap_or_default();
+        if !KNOWN.iter().any(|known| known.eq_ignore_ascii_case(word)) {
+            let message = format!("the pragma {} is not known and has no effect", quoted(inner));
+            let span = self.span(from);
+            self.found.add(Diagnostic::warning(Code::Doubtful, span, message));
+        }
+    }
+
+    /// The next token; nothing if what stands here is none, which has been told then.
+    fn token(&mut self) -> Option<Token> {
+        let byte = self.peek(0);
+        if is_name_start(byte) || !byte.is_ascii() {
+            return self.name();
+        }
+        match byte {
+            b'0'..=b'9' => return Some(self.number()),
+            b'\'' => return self.quoted_text(b'\'', Token::Text),
+            b'"' => return self.quoted_text(b'"', Token::WideText),
+            b'%' if is_name_start(self.peek(1)) => {
+                self.at += 1;
+                self.skip_while(|byte| is_name(byte) || byte == b'.' || byte == b'*');
+                return Some(Token::Address);
+            }
+            _ => {}
+        }
+        if let Some((sign, token)) = SIGNS.iter().find(|(sign, _)| self.starts_with(sign)) {
+            self.at += sign.len();
+            return Some(*token);
+        }
+        let from = self.at;
+        self.at += 1;
+        let span = self.span(from);
+        let sign = char::from(byte);
+        let wrong = match sign {
+            _ if byte < b' ' => Diagnostic::error(
+                Code::Syntax,
+                span,
+                format!("a control character (16#{byte:02X}) stands in the text"),
+            ),
+            '}' => Diagnostic::error(Code::Syntax, span, "`}` closes a pragma that is not open"),
+            '%' => Diagnostic::error(Code::Syntax, span, "`%` begins an address such as %IX0.0")
+                .help("the rest of a division is `MOD`"),
+            '#' => Diagnostic::error(
+                Code::Syntax,
+                span,
+                "`#` stands behind a type or a base, without a space: INT#5, 16#FF",
+            ),
+            '|' => Diagnostic::error(Code::Syntax, span, "`|` is no operator of Structured Text")
+                .help("write `OR`"),
+            '~' => Diagnostic::error(Code::Syntax, span, "`~` is no operator of Structured Text")
+                .help("write `NOT`"),
+            _ => Diagnostic::error(
+                Code::Syntax,
+                span,
+                format!("`{sign}` has no meaning in Structured Text"),
+            ),
+        };
+        self.found.add(wrong);
+        None
+    }
+
+    fn name(&mut self) -> Option<Token> {
+        let from = self.at;
+        self.skip_while(|byte| is_name(byte) || !byte.is_ascii());
+        let text = self.text.get(from..self.at).unwrap_or_default();
+        if !text.is_ascii() {
+            return self.foreign_letters(from);
+        }
+        if self.peek(0) == b'#' {
+            self.at += 1;
+            let kind = text.to_ascii_uppercase();
+            if matches!(kind.as_str(), "T" | "TIME" | "LTIME" | "LT") {
+                self.skip_while(|byte| is_name(byte) || byte == b'.' || byte == b'-' || byte == b'+');
+                return Some(Token::Duration);
+            }
+            return Some(Token::Typed);
+        }
+        Some(Word::find(text).map_or(Token::Name, Token::Word))
+    }
+
+    /// A word with letters that no identifier has, or signs of a word processor.
+    fn foreign_letters(&mut self, from: usize) -> Option<Token> {
+        let text = self.text.get(from..self.at).unwrap_or_default();
+        let letter = text.chars().find(|c| !c.is_ascii()).unwrap_or(' ');
+        let span = self.span(from);
+        let wrong = Diagnostic::error(
+            Code::BadName,
+            span,
+            format!(
+                "{} has `{letter}`, and names are made of A to Z, 0 to 9 and `_`",
+                quoted(text)
+            ),
+        );
+        let help = match letter {
+            'ä' | 'Ä' => "write `ae`",
+            'ö' | 'Ö' => "write `oe`",
+            'ü' | 'Ü' => "write `ue`",
+            'ß' => "write `ss`",
+            '‘' | '’' | '“' | '”' | '„' => {
+                "these quotes come from a word processor; strings stand between `'`"
+            }
+            '–' | '—' => "this dash comes from a word processor; minus is `-`",
+            '\u{a0}' | '\u{200b}' | '\u{feff}' => {
+                "this is a space of a word processor; delete it and type a space"
+            }
+            _ => "use other letters; comments and strings may have any",
+        };
+        self.found.add(wrong.help(help));
+        // What is a name but for its letters goes on as one, so that only this is told.
+        text.starts_with(char::is_alphabetic).then_some(Token::Name)
+    }
+
+    fn number(&mut self) -> Token {
+        self.skip_while(is_digit);
+        if self.peek(0) == b'#' {
+            self.at += 1;
+            self.skip_while(is_name);
+            return Token::Based;
+        }
+        let mut token = Token::Integer;
+        // `1..5` is a range, and `w.3` a bit.
+        if self.peek(0) == b'.' && self.peek(1).is_ascii_digit() {
+            token = Token::Real;
+            self.at += 1;
+            self.skip_while(is_digit);
+        }
+        let exponent = matches!(self.peek(0), b'e' | b'E');
+        let signed = usize::from(matches!(self.peek(1), b'+' | b'-'));
+        if exponent && self.peek(1 + signed).is_ascii_digit() {
+            token = Token::Real;
+            self.at += 1 + signed;
+            self.skip_while(is_digit);
+        }
+        token
+    }
+
+    fn quoted_text(&mut self, quote: u8, token: Token) -> Option<Token> {
+        let from = self.at;
+        self.at += 1;
+        while self.at < self.bytes.len() && self.peek(0) != b'\n' {
+            match self.peek(0) {
+                b'$' => self.at += 2,
+                byte if byte == quote => {
+                    self.at += 1;
+                    return Some(token);
+                }
+                _ => self.at += 1,
+            }
+        }
+        // An escape may have led past the end, or into the middle of a character.
+        self.at = self.at.min(self.bytes.len());
+        while !self.text.is_char_boundary(self.at) {
+            self.at += 1;
+        }
+        let span = self.span(from);
+        let wrong = Diagnostic::error(Code::NotClosed, span, "a string is not closed in its line");
+        self.found
+            .add(wrong.help("a quote inside of a string is `$'`, a new line `$N`"));
+        Some(token)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kinds(text: &str) -> Vec<Token> {
+        let mut found = Found::default();
+        let tokens = lex(text, 0, &mut found);
+        assert!(!found.has_errors(), "{text}");
+        tokens
+            .into_iter()
+            .map(|(token, _)| token)
+            .filter(|token| *token != Token::End)
+            .collect()
+    }
+
+    #[test]
+    fn keywords_are_in_order_so_that_each_is_found() {
+        for (text, word) in Word::ALL {
+            assert_eq!(Word::find(&text.to_lowercase()), Some(*word));
+            assert_eq!(word.text(), *text);
+        }
+    }
+
+    /// Covers: ST2
+    #[test]
+    fn comments_of_all_forms_and_pragmas_are_skipped() {
+        let text = "a (* one (* two *) one *) b // c\n/* d /* e */ */ {attribute 'qualified_only'} f";
+        assert_eq!(kinds(text), [Token::Name; 3]);
+    }
+
+    /// Covers: ST3
+    #[test]
+    fn a_range_is_no_real_and_a_bit_is_no_fraction() {
+        assert_eq!(kinds("1..5"), [Token::Integer, Token::Range, Token::Integer]);
+        assert_eq!(kinds("w.3"), [Token::Name, Token::Dot, Token::Integer]);
+        assert_eq!(kinds("1_0.5E-3 2E5"), [Token::Real, Token::Real]);
+        assert_eq!(
+            kinds("16#FF_0 T#1d_2h3.5s INT#5"),
+            [Token::Based, Token::Duration, Token::Typed, Token::Integer]
+        );
+    }
+}

@@ -1,0 +1,125 @@
+//! Structured Text of IEC 61131-3: checked, with places in every message, and compiled to a guest.
+//!
+//! [`compile`] takes the files of a project and gives a module in WebAssembly, as `standstill-guest` and the hosts of
+//! other languages run it, with a table of [`Symbols`]: where every variable stands, and where in the text a fault
+//! happened. [`check`] only says what is wrong. Function blocks are those of the table of blocks; a new one is known here
+//! without a line.
+//!
+//! What stands here: text to tokens (`lex`), to a tree (`parse`), to a checked program (`check`), to a module (`emit`).
+//! What does not: files, clocks, an interpreter, machine code.
+#![forbid(unsafe_code)]
+
+mod check;
+mod emit;
+mod error;
+mod layout;
+mod lex;
+mod library;
+mod parse;
+mod source;
+mod start;
+mod symbols;
+mod syntax;
+mod typed;
+mod types;
+
+pub use emit::FaultKind;
+pub use error::{Code, DIAGNOSTICS_MOST, Diagnostic, Report, Severity};
+pub use layout::{FAULT_SITE, FAULT_VALUE, LOOP_SITE};
+pub use parse::NESTING_MOST;
+pub use source::{Position, SOURCES_MOST, Source, Sources, Span};
+pub use symbols::{Place, Section, Symbol, Symbols, Task, Value};
+pub use types::Elementary;
+
+use crate::error::Found;
+
+/// What is asked of the compiler beside the sources.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// The PROGRAM to run in every scan. Without it a CONFIGURATION says, or it is the only one there is.
+    pub program: Option<String>,
+    /// Whether it is a library: there need not be a PROGRAM.
+    pub library: bool,
+    /// Names of axes, the first one is number 1: a variable of type AXIS_REF of such a name begins as that axis.
+    pub axes: Vec<String>,
+    /// Which axis a variable of type AXIS_REF begins as: its path, and the number of the axis.
+    pub bindings: Vec<(String, u16)>,
+}
+
+/// A program that was compiled.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    /// The module.
+    pub wasm: Vec<u8>,
+    /// Its variables and places.
+    pub symbols: Symbols,
+    /// What is doubtful.
+    pub report: Report,
+}
+
+/// What is wrong or doubtful in the sources. Cost: linear in their bytes.
+#[must_use]
+pub fn check(sources: &[Source<'_>], options: &Options) -> Report {
+    match build(sources, options, false) {
+        Ok((_, report)) | Err(report) => report,
+    }
+}
+
+/// Compiles the files of a project. Cost: linear in their bytes.
+///
+/// # Errors
+/// The [`Report`], in which something is wrong.
+pub fn compile(sources: &[Source<'_>], options: &Options) -> Result<Compiled, Box<Report>> {
+    match build(sources, options, true) {
+        Ok((Some((wasm, symbols)), report)) => Ok(Compiled {
+            wasm,
+            symbols,
+            report,
+        }),
+        Ok((None, report)) | Err(report) => Err(Box::new(report)),
+    }
+}
+
+type Built = (Option<(Vec<u8>, Symbols)>, Report);
+
+fn build(given: &[Source<'_>], options: &Options, module: bool) -> Result<Built, Report> {
+    let mut files = given.to_vec();
+    let prelude = library::prelude();
+    files.push(Source {
+        name: "library",
+        bytes: prelude.as_bytes(),
+    });
+    let (sources, wrong) = Sources::new(&files);
+    let mut found = Found::default();
+    let unreadable = !wrong.is_empty();
+    for diagnostic in wrong {
+        found.add(diagnostic);
+    }
+    if unreadable {
+        return Err(found.report(sources));
+    }
+    let items = parse::parse(&sources, &mut found);
+    let (program, mut found) = check::check(&sources, &items, options, found);
+    let Some(program) = program else {
+        return Err(found.report(sources));
+    };
+    if !module || program.instances.is_empty() {
+        return Ok((None, found.report(sources)));
+    }
+    let mut image = vec![0; program.layout.end as usize];
+    symbols::image(&program, &mut image);
+    if let Err(wrong) = symbols::bind(&program, options, &mut image) {
+        found.add(wrong);
+        return Err(found.report(sources));
+    }
+    match emit::emit(&program, &image) {
+        Ok(emitted) => {
+            let symbols = Symbols::new(program, emitted.sites, &sources);
+            Ok((Some((emitted.wasm, symbols)), found.report(sources)))
+        }
+        Err(wrong) => {
+            found.add(wrong);
+            Err(found.report(sources))
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! What every program has: functions here, blocks and types from the table of blocks in [`blocks`].
+
+pub(crate) mod blocks;
+
+use crate::types::Elementary;
+
+macro_rules! functions {
+    ($($variant:ident = $name:literal, $inputs:expr;)*) => {
+        /// The functions that are no conversions and no operators.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) enum Function { $($variant,)* }
+
+        impl Function {
+            pub(crate) const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            pub(crate) const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
+            }
+
+            /// The names of its inputs; `IN1` alone stands for any number of them.
+            pub(crate) const fn inputs(self) -> &'static [&'static str] {
+                match self { $(Self::$variant => $inputs,)* }
+            }
+        }
+    };
+}
+
+functions! {
+    Abs = "ABS", &["IN"];
+    Sqrt = "SQRT", &["IN"];
+    Ln = "LN", &["IN"];
+    Log = "LOG", &["IN"];
+    Exp = "EXP", &["IN"];
+    Expt = "EXPT", &["IN1", "IN2"];
+    Sin = "SIN", &["IN"];
+    Cos = "COS", &["IN"];
+    Tan = "TAN", &["IN"];
+    Asin = "ASIN", &["IN"];
+    Acos = "ACOS", &["IN"];
+    Atan = "ATAN", &["IN"];
+    Atan2 = "ATAN2", &["Y", "X"];
+    Trunc = "TRUNC", &["IN"];
+    Round = "ROUND", &["IN"];
+    Floor = "FLOOR", &["IN"];
+    Ceil = "CEIL", &["IN"];
+    Min = "MIN", &["IN1"];
+    Max = "MAX", &["IN1"];
+    Limit = "LIMIT", &["MN", "IN", "MX"];
+    Sel = "SEL", &["G", "IN0", "IN1"];
+    Mux = "MUX", &["K", "IN0"];
+    Move = "MOVE", &["IN"];
+    Shl = "SHL", &["IN", "N"];
+    Shr = "SHR", &["IN", "N"];
+    Rol = "ROL", &["IN", "N"];
+    Ror = "ROR", &["IN", "N"];
+    Time = "TIME", &[];
+}
+
+impl Function {
+    pub(crate) fn find(name: &str) -> Option<Self> {
+        Self::ALL
+            .iter()
+            .copied()
+            .find(|it| it.name().eq_ignore_ascii_case(name))
+    }
+
+    /// The function of the host that does it, of numbers of 64 bits.
+    pub(crate) const fn import(self) -> Option<&'static str> {
+        Some(match self {
+            Self::Ln => "math_ln",
+            Self::Log => "math_log",
+            Self::Exp => "math_exp",
+            Self::Expt => "math_pow",
+            Self::Sin => "math_sin",
+            Self::Cos => "math_cos",
+            Self::Tan => "math_tan",
+            Self::Asin => "math_asin",
+            Self::Acos => "math_acos",
+            Self::Atan => "math_atan",
+            Self::Atan2 => "math_atan2",
+            _ => return None,
+        })
+    }
+
+    /// Whether it takes any number of inputs.
+    pub(crate) const fn is_open(self) -> bool {
+        matches!(self, Self::Min | Self::Max | Self::Mux)
+    }
+}
+
+/// The functions that are operators with another name.
+pub(crate) const OPERATORS: &[(&str, crate::syntax::Operator)] = {
+    use crate::syntax::Operator as O;
+    &[
+        ("ADD", O::Add),
+        ("SUB", O::Subtract),
+        ("MUL", O::Multiply),
+        ("DIV", O::Divide),
+        ("MOD", O::Modulo),
+        ("GT", O::Greater),
+        ("GE", O::GreaterEqual),
+        ("EQ", O::Equal),
+        ("LE", O::LessEqual),
+        ("LT", O::Less),
+        ("NE", O::NotEqual),
+        ("AND", O::And),
+        ("OR", O::Or),
+        ("XOR", O::Xor),
+    ]
+};
+
+/// `X_TO_Y`, `TO_Y`: from what, if it is said, and to what.
+pub(crate) fn conversion(name: &str) -> Option<(Option<&str>, Elementary)> {
+    if let Some(to) = name.strip_prefix("TO_") {
+        return Some((None, Elementary::find(to)?));
+    }
+    let (from, to) = name.rsplit_once("_TO_")?;
+    Some((Some(from), Elementary::find(to)?))
+}
+
+/// Counters for numbers of other widths than INT, in Structured Text: what the table of blocks does not have.
+pub(crate) fn prelude() -> String {
+    use Elementary::{Dint, Lint, Udint, Ulint};
+    let counters = [Dint, Lint, Udint, Ulint].map(|ty| {
+        let (lowest, highest) = ty.range();
+        include_str!("counters.st")
+            .replace("LOWEST", &lowest.to_string())
+            .replace("HIGHEST", &highest.to_string())
+            .replace("NUMBER", ty.name())
+    });
+    counters.concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_conversions_are_taken_apart_at_the_last_to() {
+        assert_eq!(conversion("INT_TO_REAL"), Some((Some("INT"), Elementary::Real)));
+        assert_eq!(
+            conversion("WAY_TO_GO_TO_INT"),
+            Some((Some("WAY_TO_GO"), Elementary::Int))
+        );
+        assert_eq!(conversion("TO_LREAL"), Some((None, Elementary::Lreal)));
+        assert_eq!(conversion("INT_TO_AXIS"), None);
+        assert_eq!(conversion("ABS"), None);
+    }
+}

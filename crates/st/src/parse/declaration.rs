@@ -1,0 +1,590 @@
+//! What stands at the top of a file, and sections of variables.
+
+use super::{Parser, skip};
+use crate::error::{Code, Diagnostic};
+use crate::lex::{Token, Word};
+use crate::source::Span;
+use crate::syntax::{
+    Configuration, Instance, Item, Section, SectionKind, Task, TypeDeclaration, Unit, UnitKind, Variables,
+};
+
+const FLAT: &str = "write FUNCTION_BLOCKs that hold instances of others, and FUNCTIONs";
+
+impl Parser<'_> {
+    pub(super) fn item(&mut self, items: &mut Vec<Item>) {
+        let from = self.span();
+        let Token::Word(word) = self.token() else {
+            // Between two programs a `;` does no harm.
+            if self.take(Token::Semicolon) {
+                return;
+            }
+            let message = format!(
+                "a PROGRAM, FUNCTION_BLOCK, FUNCTION, TYPE or VAR_GLOBAL begins here, not {}",
+                self.shown()
+            );
+            self.tell_here(
+                Code::Syntax,
+                message,
+                "statements stand in a PROGRAM .. END_PROGRAM",
+            );
+            self.skip_to_item();
+            return;
+        };
+        match word {
+            Word::Type => self.types(items),
+            Word::VarGlobal => {
+                let section = self.section();
+                items.extend(section.map(Item::Globals));
+            }
+            Word::Program => items.extend(self.unit(UnitKind::Program, Word::EndProgram)),
+            Word::FunctionBlock => items.extend(self.unit(UnitKind::FunctionBlock, Word::EndFunctionBlock)),
+            Word::Function => items.extend(self.unit(UnitKind::Function, Word::EndFunction)),
+            Word::Configuration => items.extend(self.configuration()),
+            Word::Class | Word::Interface | Word::Namespace => {
+                self.unsupported(from, word.text(), FLAT);
+                self.next();
+                self.skip_past(match word {
+                    Word::Class => Word::EndClass,
+                    Word::Interface => Word::EndInterface,
+                    _ => Word::EndNamespace,
+                });
+            }
+            Word::VarAccess | Word::VarConfig => self.refused_section(word),
+            _ => {
+                let message = match word.text().strip_prefix("END_") {
+                    Some(opened) => format!("`{}` closes a {opened} that is not open", word.text()),
+                    None => format!(
+                        "`{}` cannot stand outside of a PROGRAM, FUNCTION_BLOCK or FUNCTION",
+                        word.text()
+                    ),
+                };
+                self.tell_here(Code::Syntax, message, "");
+                self.next();
+                self.skip_to_item();
+            }
+        }
+    }
+
+    fn types(&mut self, items: &mut Vec<Item>) {
+        let open = self.next();
+        self.open.push(Word::EndType);
+        loop {
+            match self.token() {
+                Token::Word(Word::EndType) => {
+                    self.next();
+                    break;
+                }
+                Token::Semicolon => {
+                    self.next();
+                }
+                Token::Name => items.extend(self.type_declaration()),
+                Token::Word(_) if self.ahead(1) == Token::Colon => items.extend(self.type_declaration()),
+                Token::Word(word) if !skip::is_item(word) && !skip::is_section(word) => {
+                    self.new_name("a type");
+                    self.next();
+                    self.skip_to_semicolon();
+                }
+                _ => {
+                    self.not_closed(Word::EndType, open, "TYPE");
+                    break;
+                }
+            }
+        }
+        self.open.pop();
+    }
+
+    fn type_declaration(&mut self) -> Option<Item> {
+        let name = self.new_name("a type")?;
+        if self.token() == Token::Word(Word::Extends) {
+            let span = self.span();
+            self.unsupported(
+                span,
+                "EXTENDS",
+                "repeat the members, or hold a member of the other type",
+            );
+            self.next();
+            self.ident("a type");
+        }
+        if !self.expect(Token::Colon, ":", "behind the name of a type") {
+            self.skip_to_semicolon();
+            return None;
+        }
+        let mut initial = None;
+        let spec = self.type_spec(&mut initial);
+        if self.take(Token::Assign) {
+            initial = Some(self.initial());
+        }
+        // Behind END_STRUCT and an enumeration it may be absent, as in CODESYS.
+        let may_miss = matches!(spec.kind, crate::syntax::SpecKind::Structure(_));
+        if !self.take(Token::Semicolon) && !may_miss {
+            self.expect(Token::Semicolon, ";", "behind the declaration of a type");
+            if !matches!(self.token(), Token::Name) {
+                self.skip_to_semicolon();
+            }
+        }
+        Some(Item::Type(TypeDeclaration { name, spec, initial }))
+    }
+
+    /// Tells that something is open at a place where it cannot go on.
+    pub(super) fn not_closed(&mut self, end: Word, open: Span, what: &str) {
+        let message = format!(
+            "{what} is not closed: `{}` is missing before {}",
+            end.text(),
+            self.shown()
+        );
+        let wrong = Diagnostic::error(Code::NotClosed, self.span(), message);
+        self.tell(wrong.related(open, format!("{what} is opened here")));
+    }
+
+    fn refused_section(&mut self, word: Word) {
+        let span = self.next();
+        self.unsupported(
+            span,
+            word.text(),
+            "use VAR_GLOBAL, or inputs and outputs of the PROGRAM",
+        );
+        self.skip_past(Word::EndVar);
+    }
+
+    fn unit(&mut self, kind: UnitKind, end: Word) -> Option<Item> {
+        let open = self.next();
+        while ["ABSTRACT", "FINAL", "PUBLIC", "PRIVATE", "INTERNAL", "PROTECTED"]
+            .iter()
+            .any(|it| self.is_name(it))
+            && matches!(self.ahead(1), Token::Name)
+        {
+            let span = self.next();
+            let what = self.text_of(span).to_ascii_uppercase();
+            self.unsupported(span, &what, "leave it out");
+        }
+        let what = match kind {
+            UnitKind::Program => "a program",
+            UnitKind::FunctionBlock => "a function block",
+            UnitKind::Function => "a function",
+        };
+        let Some(name) = self.new_name(what).or_else(|| {
+            self.next();
+            None
+        }) else {
+            self.skip_to_item();
+            if self.token() == Token::Word(end) {
+                self.next();
+            }
+            return None;
+        };
+        while let Token::Word(word @ (Word::Extends | Word::Implements)) = self.token() {
+            let span = self.next();
+            self.unsupported(span, word.text(), FLAT);
+            while self.ident("a name").is_some() && self.take(Token::Comma) {}
+        }
+        let mut result = None;
+        if kind == UnitKind::Function {
+            if self.take(Token::Colon) {
+                result = Some(self.type_spec(&mut None));
+            }
+        } else if self.token() == Token::Colon {
+            let message = format!("only a FUNCTION has a type, and {} is {what}", name.text);
+            self.tell_here(Code::Syntax, message, "give results by VAR_OUTPUT");
+            self.next();
+            self.type_spec(&mut None);
+        }
+        self.take(Token::Semicolon);
+        self.open.push(end);
+        let mut sections = Vec::new();
+        while let Token::Word(word) = self.token() {
+            match word {
+                Word::VarAccess | Word::VarConfig => self.refused_section(word),
+                Word::VarGlobal => {
+                    let span = self.span();
+                    let wrong = Diagnostic::error(
+                        Code::Misplaced,
+                        span,
+                        "VAR_GLOBAL stands outside of programs and blocks",
+                    );
+                    self.tell(
+                        wrong
+                            .help("move it to the top of the file; here VAR_EXTERNAL names global variables"),
+                    );
+                    self.section();
+                }
+                _ if skip::is_section(word) && word != Word::EndVar && word != Word::EndStruct => {
+                    sections.extend(self.section());
+                }
+                _ => break,
+            }
+        }
+        let body = self.body(end, open, &name.text);
+        self.open.pop();
+        Some(Item::Unit(Unit {
+            kind,
+            name,
+            result,
+            sections,
+            body,
+        }))
+    }
+
+    /// The statements of a unit, up to and with its end.
+    fn body(&mut self, end: Word, open: Span, name: &str) -> Vec<crate::syntax::Statement> {
+        let mut body = Vec::new();
+        loop {
+            body.extend(self.statements());
+            match self.token() {
+                Token::Word(word) if word == end => {
+                    self.next();
+                    return body;
+                }
+                Token::Word(word @ (Word::Method | Word::Property)) => {
+                    let span = self.next();
+                    let what = format!("{} of a function block", word.text());
+                    self.unsupported(span, &what, "make it a function block or a FUNCTION of its own");
+                    self.skip_past(match word {
+                        Word::Method => Word::EndMethod,
+                        _ => Word::EndProperty,
+                    });
+                }
+                Token::Word(word)
+                    if skip::is_section(word) && word != Word::EndVar && word != Word::EndStruct =>
+                {
+                    let message = format!("{} stands behind a statement", word.text());
+                    self.tell_here(
+                        Code::Misplaced,
+                        message,
+                        "declare variables before the first statement",
+                    );
+                    self.section();
+                }
+                _ => {
+                    self.not_closed(end, open, name);
+                    return body;
+                }
+            }
+        }
+    }
+
+    /// VAR .. END_VAR, of any kind.
+    fn section(&mut self) -> Option<Section> {
+        let open = self.span();
+        let Token::Word(word) = self.token() else {
+            return None;
+        };
+        let kind = match word {
+            Word::VarInput => SectionKind::Input,
+            Word::VarOutput => SectionKind::Output,
+            Word::VarInOut => SectionKind::InOut,
+            Word::VarTemp => SectionKind::Temp,
+            Word::VarStat => SectionKind::Static,
+            Word::VarExternal => SectionKind::External,
+            Word::VarGlobal => SectionKind::Global,
+            Word::VarInst => {
+                self.unsupported(open, "VAR_INST", "use VAR of the function block");
+                SectionKind::Var
+            }
+            _ => SectionKind::Var,
+        };
+        self.next();
+        let (mut constant, mut retain) = (false, false);
+        loop {
+            match self.token() {
+                Token::Word(Word::Constant) => constant = true,
+                Token::Word(Word::Retain | Word::Persistent) => retain = true,
+                Token::Word(Word::NonRetain) => {}
+                Token::Name
+                    if ["PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL"]
+                        .iter()
+                        .any(|it| self.is_name(it))
+                        && matches!(self.ahead(1), Token::Name | Token::Word(_)) =>
+                {
+                    let span = self.span();
+                    self.unsupported(span, "access to single variables", "leave the word out");
+                }
+                _ => break,
+            }
+            self.next();
+        }
+        self.open.push(Word::EndVar);
+        let variables = self.variables(Word::EndVar, open, word.text());
+        self.open.pop();
+        Some(Section {
+            kind,
+            constant,
+            retain,
+            variables,
+        })
+    }
+
+    /// Declarations up to and with `end`.
+    pub(super) fn variables(&mut self, end: Word, open: Span, what: &str) -> Vec<Variables> {
+        let mut list = Vec::new();
+        loop {
+            match self.token() {
+                Token::Word(word) if word == end => {
+                    self.next();
+                    // CODESYS and others let a `;` stand there.
+                    if end == Word::EndVar {
+                        self.take(Token::Semicolon);
+                    }
+                    return list;
+                }
+                Token::Semicolon => {
+                    self.next();
+                }
+                Token::Name => list.extend(self.variable()),
+                Token::Word(_) if matches!(self.ahead(1), Token::Colon | Token::Comma) => {
+                    list.extend(self.variable())
+                }
+                Token::Word(word)
+                    if !skip::is_section(word) && !skip::is_item(word) && !skip::is_statement(word) =>
+                {
+                    self.new_name("a variable");
+                    self.next();
+                    self.skip_to_semicolon();
+                }
+                Token::End | Token::Word(_) => {
+                    self.not_closed(end, open, what);
+                    return list;
+                }
+                _ => {
+                    let message = format!("the name of a variable is expected, not {}", self.shown());
+                    self.tell_here(Code::Syntax, message, "declare as `Name : INT := 5;`");
+                    self.next();
+                    self.skip_to_semicolon();
+                }
+            }
+        }
+    }
+
+    fn variable(&mut self) -> Option<Variables> {
+        let mut names = Vec::new();
+        loop {
+            let Some(name) = self.new_name("a variable") else {
+                self.skip_to_semicolon();
+                return None;
+            };
+            let address = if self.take_word(Word::At) {
+                self.address()
+            } else {
+                None
+            };
+            names.push((name, address));
+            if !self.take(Token::Comma) {
+                break;
+            }
+        }
+        if self.token() == Token::Assign
+            || self.token() == Token::Equal
+            || self.token() == Token::Semicolon
+            || self.token() == Token::Name
+        {
+            let message = format!(
+                "`:` and a type are missing behind the name, before {}",
+                self.shown()
+            );
+            let wrong = Diagnostic::error(Code::Syntax, self.before().after(), message);
+            self.tell(wrong.help("declare as `Name : INT := 5;`, or close the declarations with END_VAR"));
+            self.skip_to_semicolon();
+            return None;
+        }
+        if !self.expect(Token::Colon, ":", "behind the name of a variable") {
+            self.skip_to_semicolon();
+            return None;
+        }
+        let mut initial = None;
+        let spec = self.type_spec(&mut initial);
+        if self.token() == Token::Equal {
+            self.tell_here(
+                Code::Syntax,
+                "`=` compares",
+                "an initial value stands behind `:=`",
+            );
+            self.next();
+            initial = Some(self.initial());
+        } else if self.take(Token::Assign) {
+            initial = Some(self.initial());
+        }
+        if !self.take(Token::Semicolon) {
+            self.expect(Token::Semicolon, ";", "behind the declaration");
+            if !matches!(self.token(), Token::Name) {
+                self.skip_to_semicolon();
+            }
+        }
+        Some(Variables { names, spec, initial })
+    }
+
+    /// What stands behind AT.
+    fn address(&mut self) -> Option<crate::syntax::Ident> {
+        let span = self.span();
+        if self.token() != Token::Address {
+            let message = format!(
+                "an address such as %IX0.0 is expected behind AT, not {}",
+                self.shown()
+            );
+            self.tell_here(Code::Syntax, message, "");
+            return None;
+        }
+        self.next();
+        let text = self.text_of(span).to_ascii_uppercase();
+        let body = text.get(1..).unwrap_or_default();
+        let (area, rest) = body.split_at(body.len().min(1));
+        let good = ["I", "Q", "M"].contains(&area)
+            && (rest == "*" || {
+                let digits = rest.strip_prefix(['X', 'B', 'W', 'D', 'L']).unwrap_or(rest);
+                !digits.is_empty() && digits.split('.').all(|part| part.parse::<u32>().is_ok())
+            });
+        if !good {
+            let message = format!("`{text}` is no address");
+            let wrong = Diagnostic::error(Code::BadLiteral, span, message);
+            self.tell(
+                wrong.help("write %IX0.0, %QW2 or %MD4: I, Q or M, then X, B, W, D or L, then numbers"),
+            );
+        }
+        Some(crate::syntax::Ident { text, span })
+    }
+
+    fn configuration(&mut self) -> Option<Item> {
+        let open = self.next();
+        let name = self.new_name("a configuration")?;
+        let mut configuration = Configuration {
+            name,
+            globals: Vec::new(),
+            tasks: Vec::new(),
+            programs: Vec::new(),
+        };
+        self.open.push(Word::EndConfiguration);
+        loop {
+            match self.token() {
+                Token::Word(Word::EndConfiguration) => {
+                    self.next();
+                    break;
+                }
+                Token::Word(Word::Resource) => {
+                    let resource = self.next();
+                    self.new_name("a resource");
+                    if self.take_name("ON") {
+                        self.ident("the kind of a processor");
+                    }
+                    self.resource(&mut configuration, Some(resource));
+                }
+                Token::Word(Word::EndResource) => {
+                    self.tell_here(
+                        Code::Syntax,
+                        "`END_RESOURCE` closes a RESOURCE that is not open",
+                        "",
+                    );
+                    self.next();
+                }
+                Token::Word(_) | Token::Name if self.resource_part(&mut configuration) => {}
+                _ => {
+                    self.not_closed(Word::EndConfiguration, open, "CONFIGURATION");
+                    break;
+                }
+            }
+        }
+        self.open.pop();
+        Some(Item::Configuration(configuration))
+    }
+
+    fn resource(&mut self, into: &mut Configuration, open: Option<Span>) {
+        loop {
+            if self.take_word(Word::EndResource) {
+                return;
+            }
+            if !self.resource_part(into) {
+                if let Some(open) = open {
+                    self.not_closed(Word::EndResource, open, "RESOURCE");
+                }
+                return;
+            }
+        }
+    }
+
+    /// A TASK, a PROGRAM or global variables; whether there was one.
+    fn resource_part(&mut self, into: &mut Configuration) -> bool {
+        match self.token() {
+            Token::Word(Word::VarGlobal) => into.globals.extend(self.section()),
+            Token::Word(word @ (Word::VarAccess | Word::VarConfig)) => self.refused_section(word),
+            Token::Word(Word::Program) => {
+                let instance = self.program_instance();
+                into.programs.extend(instance);
+            }
+            Token::Name if self.is_name("TASK") => {
+                let task = self.task();
+                into.tasks.extend(task);
+            }
+            Token::Semicolon => {
+                self.next();
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    fn task(&mut self) -> Option<Task> {
+        self.next();
+        let name = self.new_name("a task")?;
+        let mut task = Task {
+            name,
+            interval: None,
+            priority: None,
+        };
+        if self.token() == Token::Open {
+            for argument in self.arguments() {
+                let key = argument
+                    .name
+                    .as_ref()
+                    .map(crate::syntax::Ident::key)
+                    .unwrap_or_default();
+                match key.as_str() {
+                    "INTERVAL" => task.interval = argument.value,
+                    "PRIORITY" => task.priority = argument.value,
+                    "SINGLE" => {
+                        self.told_at = None;
+                        self.unsupported(argument.span, "SINGLE", "use INTERVAL, and R_TRIG in the program");
+                    }
+                    _ => {
+                        self.told_at = None;
+                        let message = "a TASK has INTERVAL and PRIORITY";
+                        self.tell(Diagnostic::error(Code::BadArgument, argument.span, message));
+                    }
+                }
+            }
+        }
+        if !self.expect(Token::Semicolon, ";", "behind a TASK") {
+            self.skip_to_semicolon();
+        }
+        Some(task)
+    }
+
+    fn program_instance(&mut self) -> Option<Instance> {
+        let from = self.next();
+        self.take_word(Word::Retain);
+        let Some(name) = self.new_name("a program") else {
+            self.skip_to_semicolon();
+            return None;
+        };
+        let task = if self.take_name("WITH") {
+            self.ident("a task")
+        } else {
+            None
+        };
+        self.expect(Token::Colon, ":", "before the type of the program");
+        let Some(program) = self.ident("a PROGRAM") else {
+            self.skip_to_semicolon();
+            return None;
+        };
+        let mut arguments = Vec::new();
+        if self.token() == Token::Open {
+            arguments = self.arguments();
+        }
+        if !self.expect(Token::Semicolon, ";", "behind a PROGRAM") {
+            self.skip_to_semicolon();
+        }
+        Some(Instance {
+            name,
+            task,
+            program,
+            arguments,
+            span: from.to(self.before()),
+        })
+    }
+}

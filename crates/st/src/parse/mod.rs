@@ -1,0 +1,228 @@
+//! From tokens to the syntax tree. A mistake is told where it stands, and reading goes on behind it.
+
+mod declaration;
+mod expression;
+mod literal;
+mod skip;
+mod statement;
+mod type_spec;
+
+use crate::error::{Code, Diagnostic, Found, quoted};
+use crate::lex::{Token, Word, lex};
+use crate::source::{Sources, Span};
+use crate::syntax::{Ident, Item};
+
+/// How deep expressions, statements, types and initial values may be nested.
+pub const NESTING_MOST: usize = 200;
+
+/// Reads all files.
+pub(crate) fn parse(sources: &Sources, found: &mut Found) -> Vec<Item> {
+    let mut items = Vec::new();
+    for file in 0..sources.count() {
+        let (text, start) = sources.text_of(file);
+        let tokens = lex(text, start, found);
+        let mut parser = Parser {
+            text,
+            start,
+            tokens,
+            at: 0,
+            told_at: None,
+            depth: 0,
+            open: Vec::new(),
+            found,
+        };
+        parser.file(&mut items);
+    }
+    items
+}
+
+struct Parser<'a> {
+    text: &'a str,
+    /// Place of the text's first byte.
+    start: u32,
+    /// Ends with [`Token::End`].
+    tokens: Vec<(Token, Span)>,
+    at: usize,
+    /// The token at which something was told last: one mistake has one message.
+    told_at: Option<usize>,
+    depth: usize,
+    /// The words that close what is open, from the outside in.
+    open: Vec<Word>,
+    found: &'a mut Found,
+}
+
+impl Parser<'_> {
+    fn token(&self) -> Token {
+        self.ahead(0)
+    }
+
+    fn ahead(&self, by: usize) -> Token {
+        self.tokens
+            .get(self.at + by)
+            .map_or(Token::End, |(token, _)| *token)
+    }
+
+    fn span(&self) -> Span {
+        self.tokens
+            .get(self.at)
+            .map_or_else(Span::default, |(_, span)| *span)
+    }
+
+    /// The last token that was taken.
+    fn before(&self) -> Span {
+        let place = self.at.checked_sub(1).and_then(|place| self.tokens.get(place));
+        place.map_or_else(|| self.span().before(), |(_, span)| *span)
+    }
+
+    fn text_of(&self, span: Span) -> &str {
+        let range = (span.start - self.start) as usize..(span.end - self.start) as usize;
+        self.text.get(range).unwrap_or_default()
+    }
+
+    /// What stands here, for a message.
+    fn shown(&self) -> String {
+        match self.token() {
+            Token::End => "the end of the file".to_owned(),
+            _ => quoted(self.text_of(self.span())),
+        }
+    }
+
+    /// Takes the token; the end of the file stays.
+    fn next(&mut self) -> Span {
+        let span = self.span();
+        if self.token() != Token::End {
+            self.at += 1;
+        }
+        span
+    }
+
+    fn take(&mut self, token: Token) -> bool {
+        let there = self.token() == token;
+        if there {
+            self.next();
+        }
+        there
+    }
+
+    fn take_word(&mut self, word: Word) -> bool {
+        self.take(Token::Word(word))
+    }
+
+    /// Takes a name that means something in one place only.
+    fn take_name(&mut self, name: &str) -> bool {
+        let there = self.is_name(name);
+        if there {
+            self.next();
+        }
+        there
+    }
+
+    fn is_name(&self, name: &str) -> bool {
+        self.token() == Token::Name && self.text_of(self.span()).eq_ignore_ascii_case(name)
+    }
+
+    /// Tells a mistake, unless one was told at this token.
+    fn tell(&mut self, diagnostic: Diagnostic) {
+        if self.told_at != Some(self.at) {
+            self.told_at = Some(self.at);
+            self.found.add(diagnostic);
+        }
+    }
+
+    fn tell_here(&mut self, code: Code, message: impl Into<String>, help: &str) {
+        let mut wrong = Diagnostic::error(code, self.span(), message);
+        if !help.is_empty() {
+            wrong = wrong.help(help);
+        }
+        self.tell(wrong);
+    }
+
+    fn unsupported(&mut self, span: Span, what: &str, instead: &str) {
+        let message = format!("{what} is not supported");
+        self.tell(Diagnostic::error(Code::Unsupported, span, message).help(instead));
+    }
+
+    /// Takes `token`, or tells that it is missing behind what was taken last.
+    fn expect(&mut self, token: Token, sign: &str, after: &str) -> bool {
+        if self.take(token) {
+            return true;
+        }
+        let message = format!("`{sign}` is missing {after}, before {}", self.shown());
+        let place = self.before().after();
+        self.tell(Diagnostic::error(Code::Syntax, place, message).label(format!("`{sign}` belongs here")));
+        false
+    }
+
+    fn expect_word(&mut self, word: Word, after: &str) -> bool {
+        self.expect(Token::Word(word), word.text(), after)
+    }
+
+    /// A name to be declared or used; what stands instead is told and left.
+    fn ident(&mut self, what: &str) -> Option<Ident> {
+        match self.token() {
+            Token::Name => {
+                let span = self.next();
+                Some(Ident {
+                    text: self.text_of(span).to_owned(),
+                    span,
+                })
+            }
+            Token::Word(word) => {
+                let message = format!("{what} is expected, and `{}` is a keyword", word.text());
+                self.tell_here(Code::BadName, message, "");
+                None
+            }
+            _ => {
+                let message = format!("{what} is expected, not {}", self.shown());
+                self.tell_here(Code::Syntax, message, "");
+                None
+            }
+        }
+    }
+
+    /// A name to be declared. A keyword in its place is told and taken.
+    fn new_name(&mut self, what: &str) -> Option<Ident> {
+        if matches!(self.token(), Token::Word(_))
+            && matches!(
+                self.ahead(1),
+                Token::Colon | Token::Comma | Token::Assign | Token::Close | Token::Semicolon
+            )
+        {
+            let span = self.span();
+            let text = self.text_of(span).to_owned();
+            let message = format!("`{text}` is a keyword and cannot be the name of {what}");
+            let help = format!("choose another name, such as `{text}Value`");
+            self.tell(Diagnostic::error(Code::BadName, span, message).help(help));
+            self.next();
+            return Some(Ident { text, span });
+        }
+        self.ident(&format!("the name of {what}"))
+    }
+
+    /// Goes one level down, if that is not too deep; `None` and a message otherwise.
+    fn deeper<T>(&mut self, inner: impl FnOnce(&mut Self) -> T) -> Option<T> {
+        if self.depth >= NESTING_MOST {
+            let message = format!("this is nested more than {NESTING_MOST} levels deep");
+            self.tell_here(
+                Code::TooDeep,
+                message,
+                "take parts of it out into variables, functions or types",
+            );
+            return None;
+        }
+        self.depth += 1;
+        let result = inner(self);
+        self.depth -= 1;
+        Some(result)
+    }
+
+    fn file(&mut self, items: &mut Vec<Item>) {
+        while self.token() != Token::End {
+            let from = self.at;
+            self.item(items);
+            if self.at == from {
+                self.next();
+            }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Where reading goes on behind a mistake.
+
+use super::Parser;
+use crate::lex::{Token, Word};
+
+/// Words that open something at the top of a file.
+const ITEMS: &[Word] = &[
+    Word::Program,
+    Word::FunctionBlock,
+    Word::Function,
+    Word::Type,
+    Word::VarGlobal,
+    Word::Configuration,
+    Word::Class,
+    Word::Interface,
+    Word::Namespace,
+    Word::EndProgram,
+    Word::EndFunction,
+    Word::EndFunctionBlock,
+    Word::EndConfiguration,
+    Word::EndType,
+];
+
+/// Words that begin or end a statement.
+const STATEMENTS: &[Word] = &[
+    Word::If,
+    Word::Case,
+    Word::For,
+    Word::While,
+    Word::Repeat,
+    Word::Exit,
+    Word::Continue,
+    Word::Return,
+    Word::Elsif,
+    Word::Else,
+    Word::Until,
+    Word::EndIf,
+    Word::EndCase,
+    Word::EndFor,
+    Word::EndWhile,
+    Word::EndRepeat,
+];
+
+/// Words that begin or end a section of variables.
+const SECTIONS: &[Word] = &[
+    Word::Var,
+    Word::VarInput,
+    Word::VarOutput,
+    Word::VarInOut,
+    Word::VarTemp,
+    Word::VarStat,
+    Word::VarExternal,
+    Word::VarGlobal,
+    Word::VarInst,
+    Word::VarAccess,
+    Word::VarConfig,
+    Word::EndVar,
+    Word::EndStruct,
+];
+
+pub(super) fn is_item(word: Word) -> bool {
+    ITEMS.contains(&word)
+}
+
+pub(super) fn is_statement(word: Word) -> bool {
+    STATEMENTS.contains(&word)
+}
+
+pub(super) fn is_section(word: Word) -> bool {
+    SECTIONS.contains(&word)
+}
+
+impl Parser<'_> {
+    /// To the end of the statement or declaration: behind its `;`, or before what can only be another one.
+    pub(super) fn skip_to_semicolon(&mut self) {
+        loop {
+            match self.token() {
+                Token::Semicolon => {
+                    self.next();
+                    return;
+                }
+                Token::End => return,
+                Token::Word(word) if is_item(word) || is_statement(word) || is_section(word) => return,
+                _ => {
+                    self.next();
+                }
+            }
+        }
+    }
+
+    /// Behind one of these words, or before something at the top of a file.
+    pub(super) fn skip_past(&mut self, end: Word) {
+        loop {
+            match self.token() {
+                Token::End => return,
+                Token::Word(word) if word == end => {
+                    self.next();
+                    return;
+                }
+                _ => {
+                    self.next();
+                }
+            }
+        }
+    }
+
+    /// Before the next thing at the top of a file.
+    pub(super) fn skip_to_item(&mut self) {
+        while !matches!(self.token(), Token::End) {
+            if let Token::Word(word) = self.token()
+                && is_item(word)
+            {
+                return;
+            }
+            self.next();
+        }
+    }
+}

@@ -1,0 +1,520 @@
+//! Statements.
+
+use super::{Parser, skip};
+use crate::error::{Code, Diagnostic};
+use crate::lex::{Token, Word};
+use crate::source::Span;
+use crate::syntax::{Branch, Case, Expression, ExpressionKind, For, Statement, StatementKind as Kind};
+
+impl Parser<'_> {
+    /// Statements up to a word that none begins with and that something open waits for.
+    pub(super) fn statements(&mut self) -> Vec<Statement> {
+        let mut list = Vec::new();
+        while !self.at_end() {
+            let from = self.at;
+            list.extend(self.statement());
+            if self.at == from && !self.at_end() {
+                self.next();
+            }
+        }
+        list
+    }
+
+    /// Whether the statements end here.
+    fn at_end(&mut self) -> bool {
+        match self.token() {
+            Token::End => true,
+            Token::Word(Word::Else | Word::Elsif) => self.is_open(&[Word::EndIf, Word::EndCase]),
+            Token::Word(Word::Until) => self.is_open(&[Word::EndRepeat]),
+            Token::Word(Word::Method | Word::Property) => true,
+            Token::Word(word) => {
+                (self.open.contains(&word) || skip::is_section(word) && word != Word::EndVar)
+                    || matches!(
+                        word,
+                        Word::Program
+                            | Word::FunctionBlock
+                            | Word::Function
+                            | Word::Type
+                            | Word::Configuration
+                    )
+            }
+            _ => self.in_case() && self.is_label(),
+        }
+    }
+
+    fn is_open(&self, words: &[Word]) -> bool {
+        self.open.iter().any(|word| words.contains(word))
+    }
+
+    fn in_case(&self) -> bool {
+        self.open.last() == Some(&Word::EndCase)
+    }
+
+    /// Whether a label of CASE stands here: names and numbers up to a `:`.
+    fn is_label(&self) -> bool {
+        let mut ahead = 0;
+        loop {
+            match self.ahead(ahead) {
+                Token::Colon => return ahead > 0,
+                Token::Name
+                | Token::Integer
+                | Token::Based
+                | Token::Typed
+                | Token::Duration
+                | Token::Real
+                | Token::Dot
+                | Token::Comma
+                | Token::Range
+                | Token::Minus
+                | Token::Plus
+                | Token::Star
+                | Token::Word(Word::True | Word::False) => ahead += 1,
+                _ => return false,
+            }
+        }
+    }
+
+    fn statement(&mut self) -> Option<Statement> {
+        let from = self.span();
+        let kind = match self.token() {
+            Token::Semicolon => {
+                self.next();
+                Some(Kind::Empty)
+            }
+            Token::Word(word) => self.keyword_statement(word),
+            Token::Name => self.assignment_or_call(),
+            Token::Address => {
+                self.unsupported(
+                    from,
+                    "an address in a statement",
+                    "declare a variable at the address: `Lamp AT %QX0.0 : BOOL;`",
+                );
+                self.skip_to_semicolon();
+                None
+            }
+            _ => {
+                let message = format!("a statement is expected, not {}", self.shown());
+                self.tell_here(Code::Syntax, message, "");
+                self.next();
+                self.skip_to_semicolon();
+                None
+            }
+        };
+        kind.map(|kind| Statement {
+            kind,
+            span: from.to(self.before()),
+        })
+    }
+
+    fn keyword_statement(&mut self, word: Word) -> Option<Kind> {
+        let from = self.span();
+        let compound = match word {
+            Word::If => Self::if_,
+            Word::Case => Self::case,
+            Word::For => Self::for_,
+            Word::While => Self::while_,
+            Word::Repeat => Self::repeat,
+            _ => return self.simple_statement(word),
+        };
+        match self.deeper(compound) {
+            Some(kind) => kind,
+            None => {
+                // Reading goes on behind the whole of it, which ends nobody knows where.
+                self.skip_to_item();
+                self.told_at = Some(self.at);
+                let _ = from;
+                None
+            }
+        }
+    }
+
+    fn simple_statement(&mut self, word: Word) -> Option<Kind> {
+        let from = self.span();
+        let kind = match word {
+            Word::Exit => Kind::Exit,
+            Word::Continue => Kind::Continue,
+            Word::Return => Kind::Return,
+            Word::Jmp | Word::Goto => {
+                self.unsupported(from, word.text(), "use IF, CASE, EXIT and CONTINUE");
+                self.skip_to_semicolon();
+                return None;
+            }
+            Word::This | Word::Super => {
+                self.unsupported(
+                    from,
+                    &format!("{}^", word.text()),
+                    "name the variables of the block directly",
+                );
+                self.skip_to_semicolon();
+                return None;
+            }
+            Word::InitialStep => {
+                self.unsupported(from, "SFC", "write the steps as CASE State OF ..");
+                self.skip_to_item();
+                return None;
+            }
+            Word::EndVar => {
+                self.tell_here(Code::Syntax, "`END_VAR` closes a VAR that is not open", "");
+                self.next();
+                return None;
+            }
+            _ => {
+                let text = word.text();
+                let message = match text.strip_prefix("END_") {
+                    Some(opened) => format!("`{text}` closes a {opened} that is not open"),
+                    None if matches!(word, Word::Else | Word::Elsif) => {
+                        format!("`{text}` without an IF or CASE")
+                    }
+                    None if word == Word::Then => "`THEN` without an IF".to_owned(),
+                    None => format!("a statement is expected, not the keyword `{text}`"),
+                };
+                let wrong_name = matches!(self.ahead(1), Token::Assign | Token::Dot);
+                let help = if wrong_name {
+                    "a keyword cannot be the name of a variable: choose another one"
+                } else {
+                    ""
+                };
+                self.tell_here(
+                    if wrong_name { Code::BadName } else { Code::Syntax },
+                    message,
+                    help,
+                );
+                self.next();
+                if wrong_name {
+                    self.skip_to_semicolon();
+                } else {
+                    self.take(Token::Semicolon);
+                }
+                return None;
+            }
+        };
+        self.next();
+        self.semicolon("behind this statement");
+        Some(kind)
+    }
+
+    /// The `;` of a statement.
+    fn semicolon(&mut self, after: &str) {
+        if self.take(Token::Semicolon) {
+            return;
+        }
+        self.expect(Token::Semicolon, ";", after);
+        // What begins a statement does so; anything else belongs to this one.
+        if self.token() == Token::Name {
+            return;
+        }
+        self.skip_to_semicolon();
+    }
+
+    /// The `;` behind END_IF and its kin, which may be absent.
+    fn semicolon_after_end(&mut self) {
+        let span = self.before();
+        if !self.take(Token::Semicolon) {
+            let message = format!(
+                "`;` is missing behind {}",
+                self.text_of(span).to_ascii_uppercase()
+            );
+            let doubt = Diagnostic::warning(Code::Portability, span.after(), message);
+            self.found.add(doubt.help("other compilers than CODESYS want it"));
+        }
+    }
+
+    fn condition(&mut self, end: Word, after: &str) -> Expression {
+        let mut condition = self.expression();
+        if self.token() == Token::Assign {
+            self.tell_here(
+                Code::Syntax,
+                "`:=` assigns, and a condition is wanted",
+                "compare with `=`",
+            );
+            self.next();
+            self.expression();
+            condition.kind = ExpressionKind::Wrong;
+        }
+        if !self.expect_word(end, after) {
+            // A `;` or another word in its place; the statements follow.
+            let begins = matches!(
+                self.ahead(1),
+                Token::Assign | Token::Open | Token::Dot | Token::OpenBracket | Token::Equal
+            );
+            if matches!(self.token(), Token::Semicolon | Token::Colon)
+                || self.token() == Token::Name && !begins
+            {
+                self.next();
+            }
+        }
+        condition
+    }
+
+    fn end(&mut self, end: Word, open: Span, what: &str) {
+        if self.take_word(end) {
+            self.semicolon_after_end();
+        } else {
+            self.not_closed(end, open, what);
+        }
+    }
+
+    fn inside(&mut self, end: Word) -> Vec<Statement> {
+        self.open.push(end);
+        let body = self.statements();
+        self.open.pop();
+        body
+    }
+
+    fn if_(&mut self) -> Option<Kind> {
+        let open = self.next();
+        let mut branches = Vec::new();
+        let condition = self.condition(Word::Then, "behind the condition of IF");
+        branches.push((condition, self.inside(Word::EndIf)));
+        let mut other = Vec::new();
+        loop {
+            if self.take_word(Word::Elsif) {
+                let condition = self.condition(Word::Then, "behind the condition of ELSIF");
+                branches.push((condition, self.inside(Word::EndIf)));
+            } else if self.token() == Token::Word(Word::Else)
+                && self.ahead(1) == Token::Word(Word::If)
+                && self.same_line(self.span(), self.ahead_span(1))
+            {
+                // Every ELSE IF needs an END_IF of its own, which newcomers forget; it is legal.
+                self.next();
+                other = self.inside(Word::EndIf);
+            } else if self.take_word(Word::Else) {
+                other = self.inside(Word::EndIf);
+            } else {
+                break;
+            }
+        }
+        self.end(Word::EndIf, open, "IF");
+        Some(Kind::If(branches, other))
+    }
+
+    fn ahead_span(&self, by: usize) -> Span {
+        self.tokens
+            .get(self.at + by)
+            .map_or_else(Span::default, |(_, span)| *span)
+    }
+
+    fn same_line(&self, one: Span, other: Span) -> bool {
+        !self.text_of(one.to(other)).contains('\n')
+    }
+
+    fn case(&mut self) -> Option<Kind> {
+        let open = self.next();
+        let selector = self.condition(Word::Of, "behind the selector of CASE");
+        let mut branches: Vec<Branch> = Vec::new();
+        let mut other = None;
+        self.open.push(Word::EndCase);
+        loop {
+            if self.is_label() {
+                let labels = self.labels();
+                let body = self.statements();
+                branches.push(Branch { labels, body });
+            } else if self.take_word(Word::Else) {
+                self.take(Token::Colon);
+                // A name before a `:` is no label any more.
+                self.open.push(Word::EndCase);
+                let mut body = self.statements();
+                self.open.pop();
+                while self.is_label() {
+                    self.tell_here(
+                        Code::Misplaced,
+                        "a label stands behind ELSE",
+                        "move ELSE to the end of CASE",
+                    );
+                    self.labels();
+                    body.extend(self.statements());
+                }
+                other = Some(body);
+            } else if self.token() == Token::Word(Word::EndCase) || self.at_end() {
+                break;
+            } else {
+                let message = format!("a label such as `10:` is expected, not {}", self.shown());
+                self.tell_here(
+                    Code::Syntax,
+                    message,
+                    "each branch of CASE begins with its values and a `:`",
+                );
+                let from = self.at;
+                self.statements();
+                if self.at == from {
+                    self.next();
+                }
+            }
+        }
+        self.open.pop();
+        self.end(Word::EndCase, open, "CASE");
+        Some(Kind::Case(Case {
+            selector,
+            branches,
+            other,
+        }))
+    }
+
+    fn labels(&mut self) -> Vec<(Expression, Option<Expression>)> {
+        let mut labels = Vec::new();
+        loop {
+            let from = self.expression();
+            let to = self.take(Token::Range).then(|| self.expression());
+            labels.push((from, to));
+            if !self.take(Token::Comma) {
+                break;
+            }
+        }
+        if !self.expect(Token::Colon, ":", "behind a label") {
+            // There is one: that is how a label was known.
+            while !matches!(self.token(), Token::End | Token::Colon) {
+                self.next();
+            }
+            self.take(Token::Colon);
+        }
+        labels
+    }
+
+    fn for_(&mut self) -> Option<Kind> {
+        let open = self.next();
+        let variable = self.ident("the control variable of FOR");
+        if self.token() == Token::Equal {
+            self.tell_here(Code::Syntax, "`=` compares", "FOR i := 1 TO 10 DO");
+            self.next();
+        } else {
+            self.expect(Token::Assign, ":=", "behind the control variable of FOR");
+        }
+        let from = self.expression();
+        self.expect_word(Word::To, "behind the first value of FOR");
+        let to = self.expression();
+        let by = self.take_word(Word::By).then(|| self.expression());
+        if !self.expect_word(Word::Do, "behind the last value of FOR") {
+            self.take(Token::Semicolon);
+        }
+        let body = self.inside(Word::EndFor);
+        self.end(Word::EndFor, open, "FOR");
+        variable.map(|variable| {
+            Kind::For(Box::new(For {
+                variable,
+                from,
+                to,
+                by,
+                body,
+            }))
+        })
+    }
+
+    fn while_(&mut self) -> Option<Kind> {
+        let open = self.next();
+        let condition = self.condition(Word::Do, "behind the condition of WHILE");
+        let body = self.inside(Word::EndWhile);
+        self.end(Word::EndWhile, open, "WHILE");
+        Some(Kind::While(condition, body))
+    }
+
+    fn repeat(&mut self) -> Option<Kind> {
+        let open = self.next();
+        let body = self.inside(Word::EndRepeat);
+        if !self.take_word(Word::Until) {
+            self.not_closed(Word::Until, open, "REPEAT");
+            self.take_word(Word::EndRepeat);
+            self.take(Token::Semicolon);
+            return None;
+        }
+        let condition = self.expression();
+        self.take(Token::Semicolon);
+        self.end(Word::EndRepeat, open, "REPEAT");
+        Some(Kind::Repeat(body, condition))
+    }
+
+    fn assignment_or_call(&mut self) -> Option<Kind> {
+        if self.ahead(1) == Token::Colon {
+            let span = self.span();
+            self.unsupported(
+                span,
+                "a label",
+                "use IF, CASE, EXIT and CONTINUE in place of jumps",
+            );
+            self.next();
+            self.next();
+            return None;
+        }
+        if self.ahead(1) == Token::Name {
+            let words = ["STEP", "TRANSITION", "ACTION"];
+            if words.iter().any(|word| self.is_name(word)) {
+                let span = self.span();
+                self.unsupported(span, "SFC", "write the steps as CASE State OF ..");
+                self.skip_to_item();
+                return None;
+            }
+        }
+        let Some(path) = self.path() else {
+            self.skip_to_semicolon();
+            return None;
+        };
+        match self.token() {
+            Token::Assign => {
+                self.next();
+            }
+            Token::Equal => {
+                self.tell_here(
+                    Code::Syntax,
+                    "`=` compares, and its result goes nowhere",
+                    "assign with `:=`",
+                );
+                self.next();
+            }
+            Token::Foreign => {
+                let message = format!("{} is no operator of Structured Text", self.shown());
+                let help = format!(
+                    "write `{0} := {0} + 1;`, and compare with `=`",
+                    self.text_of(path.span)
+                );
+                self.tell_here(Code::Syntax, message, &help);
+                self.skip_to_semicolon();
+                return None;
+            }
+            Token::Open => {
+                let call = self.call(path);
+                self.semicolon("behind the call");
+                return Some(Kind::Call(call));
+            }
+            Token::Name if path.selectors.is_empty() && self.is_instruction(path.span) => {
+                self.unsupported(path.span, "Instruction List", "write it as Structured Text");
+                self.skip_to_item();
+                return None;
+            }
+            _ => {
+                let message = format!(
+                    "`:=` or `(` is expected behind {}",
+                    crate::error::quoted(self.text_of(path.span))
+                );
+                let wrong = Diagnostic::error(Code::Syntax, path.span.after(), message);
+                self.tell(wrong.help("a value is assigned with `:=`, a block is called with `()`"));
+                self.skip_to_semicolon();
+                return None;
+            }
+        }
+        let value = self.expression();
+        if self.token() == Token::Assign {
+            self.unsupported(
+                self.span(),
+                "to assign twice in one statement",
+                "write two statements",
+            );
+            self.skip_to_semicolon();
+            return None;
+        }
+        // A statement that was never ended goes on with the next one's name, which stands on another line.
+        if matches!(value.kind, ExpressionKind::Wrong) && self.told_at == Some(self.at) {
+            self.skip_to_semicolon();
+        } else {
+            self.semicolon("behind the assignment");
+        }
+        Some(Kind::Assign(path, value))
+    }
+
+    /// Whether a word is an instruction of IL.
+    fn is_instruction(&self, span: Span) -> bool {
+        let text = self.text_of(span).to_ascii_uppercase();
+        [
+            "LD", "LDN", "ST", "STN", "CAL", "CALC", "JMPC", "RET", "ANDN", "ORN",
+        ]
+        .contains(&text.as_str())
+    }
+}

@@ -1,0 +1,196 @@
+//! The checked program: every name is a place, every expression has a type, every conversion is said.
+
+use crate::source::Span;
+use crate::types::{Elementary, TypeId, UnitId};
+
+/// A variable or a part of one.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    pub base: Base,
+    pub offset: u32,
+    pub indices: Vec<Index>,
+    pub ty: TypeId,
+    /// One bit of it.
+    pub bit: Option<u32>,
+}
+
+/// What the offset of a place counts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Base {
+    /// The beginning of memory.
+    Memory,
+    /// The instance of this unit.
+    This,
+    /// What the address that stands at this offset of the instance leads to: an in_out.
+    ThisPointer(u32),
+    /// What the address that stands here in memory leads to: an in_out of a function.
+    MemoryPointer(u32),
+    /// The instance that is being called.
+    Callee,
+}
+
+/// An index that is known at work only.
+#[derive(Clone, Debug)]
+pub(crate) struct Index {
+    pub value: Box<Expr>,
+    pub low: i64,
+    pub count: u32,
+    pub stride: u32,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Expr {
+    pub kind: Kind,
+    pub ty: TypeId,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Kind {
+    /// Whole numbers, BOOL, bits, TIME, enumerations.
+    Integer(i128),
+    Real(f64),
+    /// What stands at a place; of a type with members or elements: its address.
+    Load(Place),
+    Negate(Elementary, Box<Expr>),
+    Not(Elementary, Box<Expr>),
+    Chain(Box<Expr>, Vec<Step>),
+    Convert(Box<Expr>, Elementary, Elementary),
+    /// Its value, which must lie in a subrange.
+    Within(Box<Expr>, Elementary, i128, i128),
+    Call(Box<FunctionCall>),
+    /// A function of the library, done in this type.
+    Library(crate::library::Function, Elementary, Vec<Expr>),
+    Wrong,
+}
+
+/// An operator and what stands behind it; what stands before it is converted first.
+#[derive(Clone, Debug)]
+pub(crate) struct Step {
+    pub convert: Option<(Elementary, Elementary)>,
+    pub operation: Operation,
+    pub right: Expr,
+    /// The type in which it is done.
+    pub ty: Elementary,
+    pub span: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Operation {
+    Or,
+    OrElse,
+    Xor,
+    And,
+    AndThen,
+    Equal,
+    NotEqual,
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Modulo,
+    Power,
+    /// TIME and a number of the type given: `Multiply` or `Divide`.
+    TimeMultiply(Elementary),
+    TimeDivide(Elementary),
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct FunctionCall {
+    pub unit: UnitId,
+    /// In the order of its parameters.
+    pub arguments: Vec<Argument>,
+    /// Where outputs go, and what they are then.
+    pub outputs: Vec<(Place, Expr)>,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Argument {
+    /// A value, or the address of one with members or elements, which is copied.
+    Value(Expr),
+    /// The address of a variable.
+    Reference(Place),
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct BlockCall {
+    pub instance: Place,
+    pub unit: UnitId,
+    /// Inputs, of the instance called, and their values.
+    pub inputs: Vec<(Place, Expr)>,
+    /// In_outs, by member, and what they are bound to.
+    pub references: Vec<(usize, Place)>,
+    /// In_outs that this call does not give: the address must have been given before.
+    pub kept: Vec<usize>,
+    pub outputs: Vec<(Place, Expr)>,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Stmt {
+    pub kind: StmtKind,
+    pub span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum StmtKind {
+    /// A variable of an elementary type, or one of its bits.
+    Assign(Place, Expr),
+    /// A variable with members or elements: so many bytes.
+    Copy(Place, Expr, u32),
+    /// A function whose value goes nowhere.
+    Evaluate(Expr),
+    Block(Box<BlockCall>),
+    If(Vec<(Expr, Vec<Stmt>)>, Vec<Stmt>),
+    Case(Expr, Elementary, Vec<Branch>, Vec<Stmt>),
+    For(Box<For>),
+    While(Expr, Vec<Stmt>),
+    Repeat(Vec<Stmt>, Expr),
+    Exit,
+    Continue,
+    Return,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Branch {
+    pub labels: Vec<(i128, i128)>,
+    pub body: Vec<Stmt>,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct For {
+    pub variable: Place,
+    pub ty: Elementary,
+    /// What the variable can hold.
+    pub range: (i128, i128),
+    pub from: Expr,
+    pub to: Expr,
+    pub by: Expr,
+    pub body: Vec<Stmt>,
+}
+
+impl Expr {
+    pub(crate) const fn wrong(span: Span) -> Self {
+        Self {
+            kind: Kind::Wrong,
+            ty: crate::types::WRONG,
+            span,
+        }
+    }
+
+    pub(crate) fn is_wrong(&self) -> bool {
+        self.ty == crate::types::WRONG
+    }
+
+    pub(crate) fn constant(&self) -> Option<crate::types::Constant> {
+        match self.kind {
+            Kind::Integer(value) => Some(crate::types::Constant::Integer(value)),
+            Kind::Real(value) => Some(crate::types::Constant::Real(value)),
+            _ => None,
+        }
+    }
+}

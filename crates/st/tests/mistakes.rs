@@ -1,0 +1,805 @@
+//! Mistakes: each is told at its place, with its reason, and never ends in a panic or takes long.
+
+mod common;
+
+use common::wrong;
+use standstill_st::{Code, Options, Severity, Source};
+use std::time::Instant;
+
+/// A mistake, its code, the piece of the text it is told at (empty: between two characters), and a word of the message or
+/// of the help.
+const MISTAKES: &[(&str, Code, &str, &str)] = &[
+    (
+        "PROGRAM P VAR x : INT; END_VAR x := 1 x := 2; END_PROGRAM",
+        Code::Syntax,
+        "",
+        "`;`",
+    ),
+    (
+        "PROGRAM P VAR x : INT END_VAR END_PROGRAM",
+        Code::Syntax,
+        "",
+        "`;`",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR x = 1; END_PROGRAM",
+        Code::Syntax,
+        "=",
+        "`:=`",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR IF x == 1 THEN x := 2; END_IF; END_PROGRAM",
+        Code::Syntax,
+        "==",
+        "`=`",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR IF x := 1 THEN x := 2; END_IF; END_PROGRAM",
+        Code::Syntax,
+        ":=",
+        "compare with `=`",
+    ),
+    (
+        "PROGRAM P VAR x : BOOL; END_VAR IF x && x THEN ; END_IF; END_PROGRAM",
+        Code::Syntax,
+        "&&",
+        "`AND`",
+    ),
+    (
+        "PROGRAM P VAR x : BOOL; END_VAR x := !x; END_PROGRAM",
+        Code::Syntax,
+        "!",
+        "`NOT`",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR x != 1; END_PROGRAM",
+        Code::Syntax,
+        "!=",
+        "Structured Text",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR x += 1; END_PROGRAM",
+        Code::Syntax,
+        "+=",
+        "x := x + 1",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR IF x = 1 THEN x := 2; END_PROGRAM",
+        Code::NotClosed,
+        "END_PROGRAM",
+        "END_IF",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR FOR x := 1 TO 2 DO ; END_IF; END_FOR; END_PROGRAM",
+        Code::Syntax,
+        "END_IF",
+        "not open",
+    ),
+    (
+        "PROGRAM P VAR x : INT; x := 1; END_PROGRAM",
+        Code::Syntax,
+        "",
+        "END_VAR",
+    ),
+    ("PROGRAM P VAR END_VAR ; ", Code::NotClosed, "", "END_PROGRAM"),
+    (
+        "PROGRAM P VAR while : INT; END_VAR END_PROGRAM",
+        Code::BadName,
+        "while",
+        "keyword",
+    ),
+    (
+        "PROGRAM P VAR int : INT; END_VAR END_PROGRAM",
+        Code::BadName,
+        "int",
+        "type",
+    ),
+    (
+        "PROGRAM P VAR Zähler : INT; END_VAR END_PROGRAM",
+        Code::BadName,
+        "Zähler",
+        "`ae`",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR x := (1 + 2; END_PROGRAM",
+        Code::Syntax,
+        "",
+        "`)`",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR (* not closed x := 1; END_PROGRAM",
+        Code::NotClosed,
+        "(*",
+        "comment",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR x := y; END_PROGRAM",
+        Code::UnknownName,
+        "y",
+        "y",
+    ),
+    (
+        "PROGRAM P VAR Counter : INT; END_VAR Countr := 1; END_PROGRAM",
+        Code::UnknownName,
+        "Countr",
+        "COUNTER",
+    ),
+    (
+        "PROGRAM P VAR x : INTT; END_VAR END_PROGRAM",
+        Code::UnknownType,
+        "INTT",
+        "`INT`",
+    ),
+    (
+        "PROGRAM P VAR x : INT; y : DINT; END_VAR x := y; END_PROGRAM",
+        Code::Conversion,
+        "y",
+        "DINT_TO_INT",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR x := 1.5; END_PROGRAM",
+        Code::Conversion,
+        "1.5",
+        "point",
+    ),
+    (
+        "PROGRAM P VAR x : REAL; y : LREAL; END_VAR x := y; END_PROGRAM",
+        Code::Conversion,
+        "y",
+        "LREAL_TO_REAL",
+    ),
+    (
+        "PROGRAM P VAR x : LREAL; y : LINT; END_VAR x := y; END_PROGRAM",
+        Code::Conversion,
+        "y",
+        "LINT_TO_LREAL",
+    ),
+    (
+        "PROGRAM P VAR x : BOOL; END_VAR x := x + 1; END_PROGRAM",
+        Code::WrongType,
+        "+",
+        "BOOL",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR IF x THEN ; END_IF; END_PROGRAM",
+        Code::WrongType,
+        "x",
+        "x <> 0",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR x := x AND 1; END_PROGRAM",
+        Code::WrongType,
+        "x",
+        "INT_TO_WORD",
+    ),
+    (
+        "PROGRAM P VAR t : TIME; END_VAR t := 100; END_PROGRAM",
+        Code::WrongType,
+        "100",
+        "T#100ms",
+    ),
+    (
+        "PROGRAM P VAR a : ARRAY [0..3] OF INT; END_VAR a[4] := 1; END_PROGRAM",
+        Code::OutOfRange,
+        "4",
+        "0..3",
+    ),
+    (
+        "PROGRAM P VAR a : ARRAY [0..3] OF INT; END_VAR a[1, 2] := 1; END_PROGRAM",
+        Code::WrongType,
+        "[1, 2]",
+        "1 dimensions",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR x := 10 / 0; END_PROGRAM",
+        Code::OutOfRange,
+        "0",
+        "zero",
+    ),
+    (
+        "PROGRAM P VAR x, X : INT; END_VAR END_PROGRAM",
+        Code::DuplicateName,
+        "X",
+        "twice",
+    ),
+    (
+        "PROGRAM P VAR CONSTANT x : INT := 1; END_VAR x := 2; END_PROGRAM",
+        Code::NotWritable,
+        "x",
+        "constant",
+    ),
+    (
+        "PROGRAM P VAR t : TON; END_VAR t.Q := TRUE; END_PROGRAM",
+        Code::NotWritable,
+        "t.Q",
+        "output",
+    ),
+    (
+        "PROGRAM P VAR i : INT; END_VAR FOR i := 1 TO 3 DO i := 2; END_FOR; END_PROGRAM",
+        Code::NotWritable,
+        "i",
+        "FOR",
+    ),
+    (
+        "PROGRAM P VAR i : INT; END_VAR FOR i := 1 TO 3 BY 0 DO ; END_FOR; END_PROGRAM",
+        Code::OutOfRange,
+        "0",
+        "never ends",
+    ),
+    (
+        "PROGRAM P VAR t : TON; END_VAR t(INN := TRUE); END_PROGRAM",
+        Code::BadArgument,
+        "INN",
+        "`IN`",
+    ),
+    (
+        "PROGRAM P VAR t : TON; END_VAR t(IN := TRUE, IN := FALSE); END_PROGRAM",
+        Code::BadArgument,
+        "IN := FALSE",
+        "twice",
+    ),
+    (
+        "PROGRAM P VAR t : TON; b : BOOL; END_VAR t(Q := b); END_PROGRAM",
+        Code::BadArgument,
+        "Q := b",
+        "=>",
+    ),
+    (
+        "PROGRAM P VAR m : MC_MoveAbsolute; END_VAR m(Execute := TRUE); END_PROGRAM",
+        Code::MissingArgument,
+        "m(Execute := TRUE)",
+        "Axis",
+    ),
+    (
+        "PROGRAM P TON(IN := TRUE); END_PROGRAM",
+        Code::WrongType,
+        "TON",
+        "declare",
+    ),
+    ("PROGRAM P EXIT; END_PROGRAM", Code::Misplaced, "EXIT;", "outside"),
+    (
+        "PROGRAM P VAR x : INT; END_VAR CASE x OF 1: ; 1: ; END_CASE; END_PROGRAM",
+        Code::DuplicateName,
+        "1",
+        "two branches",
+    ),
+    (
+        "PROGRAM P VAR x : INT(5..1); END_VAR END_PROGRAM",
+        Code::OutOfRange,
+        "5..1",
+        "empty",
+    ),
+    (
+        "PROGRAM P VAR a : ARRAY [5..1] OF INT; END_VAR END_PROGRAM",
+        Code::OutOfRange,
+        "5..1",
+        "element",
+    ),
+    (
+        "PROGRAM P VAR n : INT; a : ARRAY [0..n] OF INT; END_VAR END_PROGRAM",
+        Code::NotConstant,
+        "n",
+        "CONSTANT",
+    ),
+    (
+        "PROGRAM P VAR x : INT; END_VAR x := 'text'; END_PROGRAM",
+        Code::Unsupported,
+        "'text'",
+        "STRING",
+    ),
+    (
+        "PROGRAM P VAR x : STRING[20]; END_VAR END_PROGRAM",
+        Code::Unsupported,
+        "STRING",
+        "STRING",
+    ),
+    (
+        "PROGRAM P VAR x : WSTRING; END_VAR END_PROGRAM",
+        Code::Unsupported,
+        "WSTRING",
+        "WSTRING",
+    ),
+    (
+        "PROGRAM P VAR x : DATE; END_VAR END_PROGRAM",
+        Code::Unsupported,
+        "DATE",
+        "TIME",
+    ),
+    (
+        "PROGRAM P VAR x : DT := DT#2020-01-01-00:00:00; END_VAR END_PROGRAM",
+        Code::Unsupported,
+        "DT",
+        "TIME",
+    ),
+    (
+        "PROGRAM P VAR x : POINTER TO INT; END_VAR END_PROGRAM",
+        Code::Unsupported,
+        "POINTER",
+        "VAR_IN_OUT",
+    ),
+    (
+        "PROGRAM P VAR x : REFERENCE TO INT; END_VAR END_PROGRAM",
+        Code::Unsupported,
+        "REFERENCE",
+        "VAR_IN_OUT",
+    ),
+    (
+        "PROGRAM P VAR x : REF_TO INT; END_VAR END_PROGRAM",
+        Code::Unsupported,
+        "REF_TO",
+        "VAR_IN_OUT",
+    ),
+    ("CLASS C END_CLASS", Code::Unsupported, "CLASS", "FUNCTION_BLOCK"),
+    (
+        "INTERFACE I END_INTERFACE",
+        Code::Unsupported,
+        "INTERFACE",
+        "FUNCTION_BLOCK",
+    ),
+    (
+        "NAMESPACE N END_NAMESPACE",
+        Code::Unsupported,
+        "NAMESPACE",
+        "FUNCTION_BLOCK",
+    ),
+    (
+        "FUNCTION_BLOCK A EXTENDS B END_FUNCTION_BLOCK",
+        Code::Unsupported,
+        "EXTENDS",
+        "EXTENDS",
+    ),
+    (
+        "FUNCTION_BLOCK A IMPLEMENTS B END_FUNCTION_BLOCK",
+        Code::Unsupported,
+        "IMPLEMENTS",
+        "IMPLEMENTS",
+    ),
+    (
+        "FUNCTION_BLOCK A METHOD M : INT END_METHOD END_FUNCTION_BLOCK",
+        Code::Unsupported,
+        "METHOD",
+        "METHOD",
+    ),
+    (
+        "FUNCTION_BLOCK A PROPERTY P : INT END_PROPERTY END_FUNCTION_BLOCK",
+        Code::Unsupported,
+        "PROPERTY",
+        "PROPERTY",
+    ),
+    ("PROGRAM P JMP a; END_PROGRAM", Code::Unsupported, "JMP", "CASE"),
+    ("PROGRAM P a: ; END_PROGRAM", Code::Unsupported, "a", "label"),
+    (
+        "PROGRAM P INITIAL_STEP a: END_STEP END_PROGRAM",
+        Code::Unsupported,
+        "INITIAL_STEP",
+        "CASE",
+    ),
+    (
+        "PROGRAM P LD a ST b END_PROGRAM",
+        Code::Unsupported,
+        "LD",
+        "Structured Text",
+    ),
+    (
+        "VAR_ACCESS a : B : INT; END_VAR",
+        Code::Unsupported,
+        "VAR_ACCESS",
+        "VAR_GLOBAL",
+    ),
+    (
+        "VAR_CONFIG a : INT; END_VAR",
+        Code::Unsupported,
+        "VAR_CONFIG",
+        "VAR_GLOBAL",
+    ),
+    (
+        "PROGRAM P VAR t : TON; END_VAR t(EN := TRUE); END_PROGRAM",
+        Code::Unsupported,
+        "EN",
+        "IF",
+    ),
+    (
+        "PROGRAM P VAR x : BOOL; END_VAR x := %IX0.0; END_PROGRAM",
+        Code::Unsupported,
+        "%IX0.0",
+        "AT",
+    ),
+    (
+        "FUNCTION F : INT VAR_INPUT x : ANY_NUM; END_VAR END_FUNCTION",
+        Code::Unsupported,
+        "ANY_NUM",
+        "each type",
+    ),
+    (
+        "TYPE U : UNION a : INT; END_UNION END_TYPE",
+        Code::Unsupported,
+        "UNION",
+        "structure",
+    ),
+    (
+        "FUNCTION_BLOCK TON END_FUNCTION_BLOCK",
+        Code::DuplicateName,
+        "TON",
+        "library",
+    ),
+    (
+        "TYPE A : (x, y); B : (x, z); END_TYPE PROGRAM P VAR i : INT; END_VAR i := x; END_PROGRAM",
+        Code::UnknownName,
+        "x",
+        "A#x",
+    ),
+    (
+        "TYPE E : (a, b); END_TYPE PROGRAM P VAR i : INT; e : E; END_VAR i := e; END_PROGRAM",
+        Code::Conversion,
+        "e",
+        "E_TO_INT",
+    ),
+    (
+        "TYPE S : STRUCT a : INT; END_STRUCT; END_TYPE PROGRAM P VAR s, t : S; b : BOOL; END_VAR b := s = t; END_PROGRAM",
+        Code::WrongType,
+        "s",
+        "members",
+    ),
+    (
+        "PROGRAM P VAR x : INT := T#1s; END_VAR END_PROGRAM",
+        Code::Conversion,
+        "T#1s",
+        "TIME_TO_INT",
+    ),
+    (
+        "PROGRAM P VAR x : TIME := T#1x; END_VAR END_PROGRAM",
+        Code::BadLiteral,
+        "T#1x",
+        "duration",
+    ),
+    (
+        "PROGRAM P VAR x : INT := 3#12; END_VAR END_PROGRAM",
+        Code::BadLiteral,
+        "3#12",
+        "base",
+    ),
+    (
+        "FUNCTION F : INT VAR t : TON; END_VAR END_FUNCTION",
+        Code::Misplaced,
+        "TON",
+        "FUNCTION_BLOCK",
+    ),
+    (
+        "FUNCTION_BLOCK A VAR_INPUT t : TON; END_VAR END_FUNCTION_BLOCK",
+        Code::WrongType,
+        "TON",
+        "VAR_IN_OUT",
+    ),
+    (
+        "CONFIGURATION C TASK t(INTERVAL := T#0s); END_CONFIGURATION",
+        Code::WrongType,
+        "T#0s",
+        "INTERVAL",
+    ),
+    (
+        "CONFIGURATION C TASK t(SINGLE := TRUE); END_CONFIGURATION",
+        Code::Unsupported,
+        "SINGLE := TRUE",
+        "R_TRIG",
+    ),
+];
+
+/// Covers: ST5, ST13, ST15, ST20, ST23, ST24
+#[test]
+fn every_mistake_is_told_at_its_place_with_what_to_do() {
+    let mut failures = Vec::new();
+    for (text, code, piece, word) in MISTAKES {
+        let source = Source {
+            name: "prog.st",
+            bytes: text.as_bytes(),
+        };
+        let options = Options {
+            library: true,
+            ..Options::default()
+        };
+        let report = standstill_st::check(&[source], &options);
+        let shown = report.render();
+        let found = report
+            .diagnostics()
+            .iter()
+            .find(|it| it.severity == Severity::Error);
+        let good = found.is_some_and(|it| {
+            let at = &text[it.span.start as usize..it.span.end as usize];
+            it.code == *code && at == *piece
+        });
+        if !good || !shown.to_lowercase().contains(&word.to_lowercase()) {
+            failures.push(format!(
+                "{text}\nwanted {} at `{piece}` with {word}\n{shown}\n",
+                code.name()
+            ));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// One mistake has one message, and what follows it is looked at, too.
+#[test]
+fn reading_goes_on_behind_a_mistake() {
+    let text = "PROGRAM P\nVAR\n  a : INT\n  b : INTT;\n  c : INT;\nEND_VAR\nIF a = 1 THE\n  c := 2;\nEND_IF;\nd := 1;\nc = 3;\nEND_PROGRAM\n";
+    let told = wrong(text);
+    let codes: Vec<_> = told.iter().map(|it| it.0).collect();
+    assert_eq!(
+        codes,
+        ["syntax", "unknown_type", "syntax", "unknown_name", "syntax"],
+        "{told:#?}"
+    );
+}
+
+#[test]
+fn at_most_fifty_are_kept_and_the_others_counted() {
+    let body: String = (0..500).map(|n| format!("x{n} := 1;\n")).collect();
+    let text = format!("PROGRAM P\n{body}END_PROGRAM");
+    let source = Source {
+        name: "prog.st",
+        bytes: text.as_bytes(),
+    };
+    let report = standstill_st::check(&[source], &Options::default());
+    assert_eq!((report.diagnostics().len(), report.hidden()), (50, 450));
+}
+
+/// Covers: ST5
+#[test]
+fn what_is_nested_too_deep_or_too_large_is_told_at_once() {
+    let deep = 100_000;
+    let program = |body: String| {
+        format!("PROGRAM P VAR x : INT; b : BOOL; a : ARRAY [0..1] OF INT; END_VAR {body} END_PROGRAM")
+    };
+    let texts = [
+        program(format!("x := {}1{};", "(".repeat(deep), ")".repeat(deep))),
+        program(format!("x := {}1;", "(".repeat(deep))),
+        program(format!("b := {}TRUE;", "NOT ".repeat(deep))),
+        program(format!("x := {}1;", "- ".repeat(deep))),
+        program(format!("x := {}0{};", "a[".repeat(deep), "]".repeat(deep))),
+        program(format!("x := {}0{};", "ABS(".repeat(deep), ")".repeat(deep))),
+        program("IF b THEN ".repeat(deep)),
+        program("WHILE b DO ".repeat(deep)),
+        program("CASE x OF 1: ".repeat(deep)),
+        format!("TYPE T : {} INT; END_TYPE", "ARRAY [0..0] OF ".repeat(deep)),
+        format!("TYPE T : {}", "STRUCT a : ".repeat(deep)),
+        format!("VAR_GLOBAL x : INT := {}1; END_VAR", "[".repeat(deep)),
+        "(*".repeat(deep),
+        (0..10_000)
+            .map(|n| format!("TYPE T{n} : T{}; END_TYPE ", n + 1))
+            .collect(),
+        format!(
+            "VAR_GLOBAL CONSTANT {} END_VAR",
+            (0..10_000)
+                .map(|n| format!("c{n} : INT := c{}; ", n + 1))
+                .collect::<String>()
+        ),
+    ];
+    for text in texts {
+        let begin = Instant::now();
+        let told = wrong(&text);
+        assert!(!told.is_empty(), "{}", &text[..80]);
+        assert!(begin.elapsed().as_secs() < 10, "{}", &text[..80]);
+    }
+    let large = vec![b' '; standstill_st::SOURCES_MOST + 1];
+    let source = Source {
+        name: "large.st",
+        bytes: &large,
+    };
+    let report = standstill_st::check(&[source], &Options::default());
+    assert_eq!(report.diagnostics()[0].code, Code::TooLarge);
+    let latin = Source {
+        name: "latin1.st",
+        bytes: b"PROGRAM P (* f\xFCr *) END_PROGRAM",
+    };
+    let report = standstill_st::check(&[latin], &Options::default());
+    assert_eq!(report.diagnostics()[0].code, Code::Encoding);
+    assert!(report.render().contains("latin1.st:1:15"), "{}", report.render());
+}
+
+/// Long rows are no depth: they are compiled, in time that grows with their length.
+#[test]
+fn long_rows_are_compiled() {
+    let terms = 20_000;
+    let sum = vec!["x"; terms].join(" + ");
+    let branches: String = (0..terms)
+        .map(|n| format!("ELSIF x = {} THEN x := {}; ", n % 30_000, n % 100))
+        .collect();
+    let labels: String = (0..5000)
+        .map(|n| format!("{}: x := {}; ", n * 6, n % 100))
+        .collect();
+    let text = format!(
+        "PROGRAM P VAR x : INT; END_VAR x := {sum}; IF x = -1 THEN x := 0; {branches} END_IF; CASE x OF {labels} END_CASE; END_PROGRAM"
+    );
+    let compiled = common::compiled(&text);
+    assert!(compiled.wasm.len() < 2 << 20);
+    let mut run = common::Running::of(compiled);
+    run.scan().unwrap();
+}
+
+/// A stream of numbers that follow from a seed.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, most: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % most as u64) as usize
+    }
+}
+
+const SOUP: &[&str] = &[
+    "PROGRAM",
+    "END_PROGRAM",
+    "FUNCTION",
+    "END_FUNCTION",
+    "FUNCTION_BLOCK",
+    "END_FUNCTION_BLOCK",
+    "TYPE",
+    "END_TYPE",
+    "STRUCT",
+    "END_STRUCT",
+    "VAR",
+    "VAR_INPUT",
+    "VAR_OUTPUT",
+    "VAR_IN_OUT",
+    "VAR_TEMP",
+    "VAR_EXTERNAL",
+    "VAR_GLOBAL",
+    "CONSTANT",
+    "END_VAR",
+    "CONFIGURATION",
+    "END_CONFIGURATION",
+    "RESOURCE",
+    "END_RESOURCE",
+    "TASK",
+    "WITH",
+    "ON",
+    "AT",
+    "IF",
+    "THEN",
+    "ELSIF",
+    "ELSE",
+    "END_IF",
+    "CASE",
+    "OF",
+    "END_CASE",
+    "FOR",
+    "TO",
+    "BY",
+    "DO",
+    "END_FOR",
+    "WHILE",
+    "END_WHILE",
+    "REPEAT",
+    "UNTIL",
+    "END_REPEAT",
+    "EXIT",
+    "CONTINUE",
+    "RETURN",
+    "ARRAY",
+    "INT",
+    "LREAL",
+    "BOOL",
+    "TIME",
+    "TON",
+    "MC_Power",
+    "AXIS_REF",
+    "a",
+    "b",
+    "P",
+    "Q",
+    "x",
+    "1",
+    "0",
+    "16#FF",
+    "1.5",
+    "T#1s",
+    "INT#",
+    "E#",
+    "'s'",
+    "%IX0.0",
+    ":=",
+    "=>",
+    "=",
+    "<>",
+    "<",
+    "..",
+    "+",
+    "-",
+    "*",
+    "/",
+    "**",
+    "(",
+    ")",
+    "[",
+    "]",
+    ",",
+    ";",
+    ":",
+    ".",
+    "^",
+    "AND",
+    "NOT",
+    "ABS",
+    "INT_TO_LREAL",
+    "METHOD",
+    "CLASS",
+    "(*",
+    "*)",
+    "{",
+    "}",
+    "ü",
+    "$",
+    "#",
+    "==",
+];
+
+/// Nothing that is made of words of the language leads to a panic or an endless loop; what compiles is a valid module.
+#[test]
+fn no_soup_of_tokens_and_no_cut_program_leads_to_a_panic() {
+    let whole = "TYPE E : (a, b); S : STRUCT p : LREAL; q : ARRAY [0..3] OF INT; END_STRUCT; END_TYPE
+        VAR_GLOBAL CONSTANT N : INT := 3; END_VAR VAR_GLOBAL g : S; END_VAR
+        FUNCTION F : INT VAR_INPUT x : INT; END_VAR F := x * 2 + N; END_FUNCTION
+        FUNCTION_BLOCK B VAR_INPUT x : INT; END_VAR VAR_OUTPUT y : INT; END_VAR VAR t : TON; END_VAR
+          t(IN := x > 1, PT := T#1s); y := SEL(t.Q, x, F(x)); END_FUNCTION_BLOCK
+        PROGRAM P VAR i : INT; e : E; m : ARRAY [1..2] OF B; w : WORD; END_VAR
+          FOR i := 1 TO 2 DO m[i](x := i); IF m[i].y > 3 THEN EXIT; END_IF; END_FOR;
+          CASE e OF a: e := b; b: w.3 := TRUE; END_CASE; g.q[i] := LREAL_TO_INT(g.p ** 2.0);
+          REPEAT i := i - 1; UNTIL i < 0 END_REPEAT; END_PROGRAM";
+    let words: Vec<&str> = whole.split_inclusive([' ', ';', '(', ')', '.', ':']).collect();
+    for seed in 1..=3000_u64 {
+        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        let text = if seed % 2 == 0 {
+            let count = random.below(120);
+            let soup: Vec<_> = (0..count).map(|_| SOUP[random.below(SOUP.len())]).collect();
+            soup.join(" ")
+        } else {
+            // The program with a few words left out, doubled, or replaced.
+            let mut words = words.clone();
+            for _ in 0..=random.below(4) {
+                let at = random.below(words.len());
+                match random.below(3) {
+                    0 => drop(words.remove(at)),
+                    1 => words.insert(at, words[at]),
+                    _ => words[at] = SOUP[random.below(SOUP.len())],
+                }
+            }
+            words.concat()
+        };
+        let result = std::panic::catch_unwind(|| match common::compile(&text) {
+            Ok(compiled) => wasmparser::validate(&compiled.wasm)
+                .map(|_| ())
+                .map_err(|error| error.to_string()),
+            Err(report) => {
+                let _shown = report.render();
+                Ok(())
+            }
+        });
+        assert!(matches!(result, Ok(Ok(()))), "seed {seed}: {result:?}\n{text}");
+    }
+    assert!(common::compile(whole).is_ok());
+}
+
+/// Twice the text takes about twice the time: a thousand lines and ten thousand are compared generously, because other
+/// work runs beside this.
+#[test]
+fn time_grows_with_the_text_and_not_with_its_square() {
+    let text = |lines: usize| {
+        let body: String = (0..lines)
+            .map(|n| format!("v{n} := v{} * 2 + {};\n", n / 2, n % 100))
+            .collect();
+        let variables: String = (0..lines).map(|n| format!("v{n} : DINT;\n")).collect();
+        format!("PROGRAM P\nVAR\n{variables}END_VAR\n{body}END_PROGRAM\n")
+    };
+    let time = |lines: usize| {
+        let text = text(lines);
+        let best = (0..3).map(|_| {
+            let begin = Instant::now();
+            assert!(common::compile(&text).is_ok());
+            begin.elapsed()
+        });
+        best.min().unwrap().as_secs_f64()
+    };
+    let (short, long) = (time(2000), time(20_000));
+    assert!(long < short * 60.0, "{short} {long}");
+}
