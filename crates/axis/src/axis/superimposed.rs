@@ -414,7 +414,8 @@ impl<P: Planner> Axis<P> {
         let next = layer.sum();
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scan, log);
-        } else if !self.is_step(&next) {
+        } else if !self.is_following() && !self.is_step(&next) {
+            // What follows the feedback is no plan's.
             self.fail(ErrorId::SetpointStep, scan, log);
         } else if self.parameters.software_limits.is_some() && self.would_leave(&next) {
             self.fail(ErrorId::SoftwareLimitReached, scan, log);
