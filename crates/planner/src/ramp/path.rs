@@ -14,6 +14,9 @@ const CRUISING: f64 = 1e-10;
 /// By how much, relative to itself, the time of a boundary added up from spans may be off.
 const SAME_TIME: f64 = 16.0 * f64::EPSILON;
 
+/// How far beyond its ends a piece goes on, relative to its duration: no limit is exceeded by more than that.
+const BEYOND: f64 = 1.0 / (1_u64 << 40) as f64;
+
 /// The latest instant that may be `boundary`.
 fn latest(boundary: f64) -> f64 {
     boundary * (1.0 + SAME_TIME)
@@ -64,7 +67,8 @@ impl Current {
 }
 
 impl Current {
-    /// The time from its anchor (s), inside the piece: what rounding puts beyond its ends is not part of it.
+    /// The time from its anchor (s), inside the piece but for [`BEYOND`]: what rounding puts further beyond its ends is
+    /// not part of it.
     #[inline(always)]
     fn since(&self, time: f64) -> f64 {
         (time - self.anchor).max(self.from).min(self.to)
@@ -262,10 +266,11 @@ impl<const N: usize> Path<N> {
         for (stretch, _) in self.stretches() {
             let end = begin + stretch.duration;
             if time <= latest(end) {
+                let slack = BEYOND * stretch.duration;
                 let (anchor, from, to) = if stretch.is_last {
-                    (end, -stretch.duration, 0.0)
+                    (end, -stretch.duration - slack, slack)
                 } else {
-                    (begin, 0.0, stretch.duration)
+                    (begin, -slack, stretch.duration + slack)
                 };
                 return Some(Current {
                     begin: latest(begin),

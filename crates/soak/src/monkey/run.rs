@@ -299,7 +299,9 @@ impl<H: Hands> Run<'_, H> {
                 .find(|id| axis.active_command() == Some(*id));
             instance.given = [Some(axis.newest_command()), moving];
         } else if now.error && instance.command.is_some() {
-            instance.given = [None; 2];
+            // What has completed and goes on, as a profile with a velocity at its end, needs nobody.
+            let is_over = |id: &CommandId| axis.fate(*id) == Fate::Done;
+            instance.given = instance.given.map(|id| id.filter(is_over));
         }
         if instance.kind == Kind::Jog {
             // Its commands follow each other; what became of one of them is not what it shows.
