@@ -98,7 +98,7 @@ impl Plan for Note {
 
     fn at(&self, scan: u64) -> Setpoint {
         VISITED.with_borrow_mut(|visited| visited.push(self.0));
-        Setpoint::at_rest(scan as f64)
+        Setpoint::at_rest(1e-3 * scan as f64)
     }
 
     fn shift(&mut self, _: f64) {}
