@@ -32,9 +32,9 @@ pub(crate) struct Piece {
     state: Setpoint,
 }
 
-/// The piece a motion is in.
+/// Where a piece lies in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Current {
+struct Place {
     /// Start and end, of which the end belongs to it (s).
     begin: f64,
     end: f64,
@@ -43,6 +43,21 @@ struct Current {
     /// The times of the piece from there (s).
     from: f64,
     to: f64,
+}
+
+impl Place {
+    /// The time from its anchor (s), inside the piece but for [`BEYOND`]: what rounding puts further beyond its ends is
+    /// not part of it.
+    #[inline(always)]
+    fn since(&self, time: f64) -> f64 {
+        (time - self.anchor).max(self.from).min(self.to)
+    }
+}
+
+/// The piece a motion is in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Current {
+    place: Place,
     course: Course,
     /// When the last piece ends (s): what stands with the others is seldom at hand.
     duration: f64,
@@ -51,11 +66,13 @@ struct Current {
 impl Current {
     /// No piece: it ends before it begins.
     const NONE: Self = Self {
-        begin: 0.0,
-        end: 0.0,
-        anchor: 0.0,
-        from: 0.0,
-        to: 0.0,
+        place: Place {
+            begin: 0.0,
+            end: 0.0,
+            anchor: 0.0,
+            from: 0.0,
+            to: 0.0,
+        },
         course: Course {
             state: Setpoint::at_rest(0.0),
             sixth_of_jerk: 0.0,
@@ -64,15 +81,6 @@ impl Current {
         },
         duration: 0.0,
     };
-}
-
-impl Current {
-    /// The time from its anchor (s), inside the piece but for [`BEYOND`]: what rounding puts further beyond its ends is
-    /// not part of it.
-    #[inline(always)]
-    fn since(&self, time: f64) -> f64 {
-        (time - self.anchor).max(self.from).min(self.to)
-    }
 }
 
 /// A state with what its course at constant snap takes divisions for.
@@ -233,8 +241,8 @@ impl<const N: usize> Path<N> {
     /// rounding puts the boundary before `time`: of two motions that switch together none switches a scan early.
     #[inline]
     pub(crate) fn at(&self, time: f64) -> Option<Setpoint> {
-        self.piece_at(time)
-            .map(|current| current.course.after(current.since(time)))
+        self.place(time)
+            .map(|(piece, place)| moved(&piece.state, place.since(time)))
     }
 
     /// As [`Path::at`] with the part of the whole duration that is over, for one who asks again and again for times not far apart, above 0: the piece is looked for
@@ -250,37 +258,49 @@ impl<const N: usize> Path<N> {
     /// Whether `time` (s) is in the piece in which [`Path::next`] looked last.
     #[inline(always)]
     pub(crate) fn is_current(&self, time: f64) -> bool {
-        time > self.current.begin && time <= self.current.end
+        time > self.current.place.begin && time <= self.current.place.end
     }
 
     /// The state at a `time` (s) of that piece, and the part of the whole duration that is over.
     #[inline(always)]
     pub(crate) fn on_current(&self, time: f64) -> (Setpoint, f64) {
         let current = &self.current;
-        (current.course.after(current.since(time)), time / current.duration)
+        (
+            current.course.after(current.place.since(time)),
+            time / current.duration,
+        )
     }
 
     #[inline(never)]
     fn piece_at(&self, time: f64) -> Option<Current> {
+        self.place(time).map(|(piece, place)| Current {
+            place,
+            course: Course::of(piece.state),
+            duration: self.duration(),
+        })
+    }
+
+    /// The piece in which `time` (s) is, and where it lies; at most as many comparisons as there are pieces.
+    #[inline]
+    fn place(&self, time: f64) -> Option<(&Piece, Place)> {
         let mut begin = 0.0;
-        for (stretch, _) in self.stretches() {
-            let end = begin + stretch.duration;
+        for (index, piece) in self.pieces.iter().take(self.len).enumerate() {
+            let end = begin + piece.duration;
             if time <= latest(end) {
-                let slack = BEYOND * stretch.duration;
-                let (anchor, from, to) = if stretch.is_last {
-                    (end, -stretch.duration - slack, slack)
+                let slack = BEYOND * piece.duration;
+                let (anchor, from, to) = if index + 1 == self.len {
+                    (end, -piece.duration - slack, slack)
                 } else {
-                    (begin, -slack, stretch.duration + slack)
+                    (begin, -slack, piece.duration + slack)
                 };
-                return Some(Current {
+                let place = Place {
                     begin: latest(begin),
                     end: latest(end),
                     anchor,
                     from,
                     to,
-                    course: Course::of(stretch.state),
-                    duration: self.duration(),
-                });
+                };
+                return Some((piece, place));
             }
             begin = end;
         }
