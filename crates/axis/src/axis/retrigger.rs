@@ -90,7 +90,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The profile whose turn has come has no block any more that would give it its points: the next command has its turn,
-    /// and without one the axis comes to rest.
+    /// and without one the axis comes to rest, a motion that no block follows.
     #[cold]
     fn pass_over_due_profile(&mut self, id: CommandId, source: Source, log: &mut Log) {
         if self.setpoint.is_at_rest() {
@@ -115,6 +115,7 @@ impl<P: Planner> Axis<P> {
         match planned {
             Ok(motion) => {
                 self.begin(halt, motion, before, source.scan, log);
+                self.orphan(id, source, log);
             }
             Err(error) => self.trip(error, 0, Reaction::Ramp, source.scan, log),
         }

@@ -53,11 +53,11 @@ impl Fence {
     #[inline]
     pub fn check<P: Planner>(&mut self, axis: &Axis<P>) -> Result<(), Broken> {
         let limits @ (min, max) = limits_of(axis);
-        if limits == NONE {
-            return Ok(());
-        }
         if core::mem::replace(&mut self.limits, limits) != limits {
             self.forget();
+        }
+        if limits == NONE {
+            return Ok(());
         }
         let position = axis.setpoint().position;
         let apart = max - min;
