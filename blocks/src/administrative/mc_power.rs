@@ -49,7 +49,7 @@ impl Block for McPower {
     // Called in every scan: in line, the outputs of the usual case are one constant.
     #[inline(always)]
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let (axis, log, source) = match context.axis(inputs.axis) {
+        let (axis, scope) = match context.axis(inputs.axis) {
             Ok(found) => found,
             Err(id) if inputs.enable => return refused(id),
             Err(_) => return Outputs::default(),
@@ -58,7 +58,7 @@ impl Block for McPower {
             positive: inputs.enable_positive,
             negative: inputs.enable_negative,
         };
-        axis.set_power(inputs.enable, permitted, source, log);
+        axis.set_power(inputs.enable, permitted, scope);
         let error = axis.power_error().filter(|_| inputs.enable);
         Outputs {
             status: axis.is_powered(),
@@ -81,7 +81,7 @@ impl Block for McPower {
         };
         let is_on = outputs.status && outputs.valid && inputs.enable;
         let axis = context.axes.get(inputs.axis.index());
-        is_on && axis.is_some_and(|axis| axis.is_on_for(context.instance, permitted))
+        is_on && axis.is_some_and(|axis| axis.is_on_for(context.scope.instance, permitted))
     }
 }
 

@@ -20,12 +20,13 @@ mod homing;
 mod ideal_drive;
 mod log;
 mod scaling;
+mod scope;
 mod state;
 pub mod steps;
 
 pub use axis::{
     Axis, Beside, CamTrack, Factors, MotionState, Outlook, Pace, Parameter, ParameterValue, Permission,
-    Profile, ProfileRow, Source, TouchProbe, Way,
+    Profile, ProfileRow, TouchProbe, Way,
 };
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,
@@ -44,6 +45,7 @@ pub use homing::{BlockDetection, HomeDirection, Homing, Procedure, SwitchEdge};
 pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
 pub use log::{Event, Goal, LOG_KEPT, Log, Record};
 pub use scaling::{Scaling, Turn};
+pub use scope::Scope;
 pub use standstill_planner::turns::split;
 pub use standstill_planner::{
     Excess, Limits, MoveProfile, Order, PROFILE_POINTS, Passage, Plan, PlanError, Planner, ProfileFault,

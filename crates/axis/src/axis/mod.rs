@@ -43,7 +43,7 @@ use crate::fate::Fates;
 use crate::{
     AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, Comms, ConfigError, DIGITAL,
     DriveCommand, DriveOrder, DrivePosition, DriveReport, DriveSignals, ErrorId, Event, Fate, Fault,
-    InstanceId, Log, QUEUE_MAX, Record, StartState, state,
+    InstanceId, QUEUE_MAX, Record, Scope, StartState, state,
 };
 pub use factors::Factors;
 use modulo::Modulo;
@@ -55,15 +55,6 @@ pub use profile::{Profile, ProfileRow};
 use queue::{Entry, Queue, Work};
 pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
-
-/// Who gives a command and when; goes into the records.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Source {
-    /// The scan.
-    pub scan: u64,
-    /// The block instance.
-    pub instance: InstanceId,
-}
 
 /// Where the set-point comes from.
 #[derive(Clone, Copy, Debug)]
@@ -686,11 +677,11 @@ impl<P: Planner> Axis<P> {
         self.replan_due = false;
     }
 
-    fn record(&self, event: Event, source: Source, log: &mut Log) {
-        log.push(Record {
-            scan: source.scan,
+    fn record(&self, event: Event, scope: &mut Scope<'_>) {
+        scope.log.push(Record {
+            scan: scope.scan,
             axis: self.id,
-            instance: source.instance,
+            instance: scope.instance,
             event,
         });
     }

@@ -7,10 +7,10 @@
 //!
 //! Source: PLCopen Motion Control Part 1, sections of the four blocks and the list of parameters.
 
+use super::Axis;
 use super::queue::{Work, Write};
 use super::supervision::Lag;
-use super::{Axis, Source};
-use crate::{AxisConfig, CommandId, ErrorId, ExecutionMode, Fate, Log, Raw};
+use crate::{AxisConfig, CommandId, ErrorId, ExecutionMode, Fate, Raw, Scope};
 use standstill_planner::{Limits, Planner};
 
 /// A parameter of an axis, by its number: below 1000 in the standard, from there on ours.
@@ -313,20 +313,19 @@ impl<P: Planner> Axis<P> {
         number: i16,
         value: ParameterValue,
         mode: Raw<ExecutionMode>,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<CommandId, ErrorId> {
-        let queued = self.is_queued(mode, source, log)?;
+        let queued = self.is_queued(mode, scope)?;
         let parameter = Parameter::of(number)
-            .map_err(|error| self.refuse("ParameterNumber", number.into(), f64::NAN, error, source, log))?;
+            .map_err(|error| self.refuse("ParameterNumber", number.into(), f64::NAN, error, scope))?;
         let parameters = self
             .written(parameter, value)
-            .map_err(|why| self.refuse_write(parameter, value, why, source, log))?;
+            .map_err(|why| self.refuse_write(parameter, value, why, scope))?;
         if queued {
             let write = Write::Parameter { parameter, value };
-            return self.enqueue(Work::Write(write), source, log);
+            return self.enqueue(Work::Write(write), scope);
         }
-        self.set_parameters(parameters, source.scan, log);
+        self.set_parameters(parameters, scope);
         let id = self.new_id();
         self.decide(id, Fate::Done);
         Ok(id)
@@ -337,15 +336,14 @@ impl<P: Planner> Axis<P> {
         &mut self,
         parameter: Parameter,
         value: ParameterValue,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Fate {
         match self.written(parameter, value) {
             Ok(parameters) => {
-                self.set_parameters(parameters, source.scan, log);
+                self.set_parameters(parameters, scope);
                 Fate::Done
             }
-            Err(why) => Fate::Failed(self.refuse_write(parameter, value, why, source, log)),
+            Err(why) => Fate::Failed(self.refuse_write(parameter, value, why, scope)),
         }
     }
 
@@ -354,15 +352,14 @@ impl<P: Planner> Axis<P> {
         parameter: Parameter,
         value: ParameterValue,
         why: Unwritten,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> ErrorId {
         let shown = if why.pin == "Value" {
             value.shown()
         } else {
             f64::from(parameter as u16)
         };
-        self.refuse(why.pin, shown, why.limit, why.error, source, log)
+        self.refuse(why.pin, shown, why.limit, why.error, scope)
     }
 
     /// The parameters with this one written.
@@ -440,14 +437,14 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    fn set_parameters(&mut self, parameters: Parameters, scan: u64, log: &mut Log) {
+    fn set_parameters(&mut self, parameters: Parameters, scope: &mut Scope<'_>) {
         let limits_moved = self.parameters.software_limits != parameters.software_limits;
         self.parameters = parameters;
         self.stir();
         if limits_moved {
             // Whatever was checked was checked against the limits before: what moves, and what waits behind it.
             self.watched = self.owner.is_some() && self.parameters.software_limits.is_some();
-            self.arm_anew(scan, log);
+            self.arm_anew(scope);
         }
     }
 }
