@@ -142,14 +142,15 @@ impl<P: Planner> Axis<P> {
     pub(super) fn pass_on(&mut self, scan: u64, log: &mut Log) {
         self.hand_over(self.passed_end(), scan, log);
         if self.queue.is_empty() && self.base().velocity != 0.0 && self.goal_reached() && self.passes_on() {
-            // Those that waited were checked when the owner was told to pass on, and yet all failed: it may have been
-            // too late to come to rest when coordinates moved under the software limits.
-            self.end_owner(Fate::Done);
-            let error = match self.allowed(self.setpoint.position) {
-                Ok(_) => ErrorId::PlanRefused,
-                Err(_) => ErrorId::SoftwareLimitReached,
-            };
-            self.trip(error, 0, Reaction::Ramp, scan, log);
+            // What waited was refused: it was too late to come to rest when coordinates moved, a way was barred or its
+            // values changed.
+            match self.allowed(self.setpoint.position) {
+                Ok(_) => self.halt_behind_end(scan, log),
+                Err(_) => {
+                    self.end_owner(Fate::Done);
+                    self.trip(ErrorId::SoftwareLimitReached, 0, Reaction::Ramp, scan, log);
+                }
+            }
         }
     }
 

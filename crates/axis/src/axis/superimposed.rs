@@ -10,7 +10,8 @@
 mod plan;
 mod update;
 
-use super::queue::Work;
+use super::accept::REST;
+use super::queue::{Entry, Work};
 use super::{Axis, Motion, Source};
 use crate::{AxisEvent, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, Log, Superimpose};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -213,7 +214,24 @@ impl<P: Planner> Axis<P> {
         let layer = self.layer.get_or_insert(layer);
         layer.command = Some(command);
         self.add(proposed, source.scan, log);
+        self.rest_before_outside(source.scan, log);
         Ok(command.id)
+    }
+
+    /// What is superimposed moves the owner's end, and with it the place a blended distance behind it leads to: should that
+    /// be outside the software limits now, the owner comes to rest at its end, where the next one is refused.
+    fn rest_before_outside(&mut self, scan: u64, log: &mut Log) {
+        let blends = |owner: &Entry| owner.passage != REST;
+        let (Some(owner), Some(layer)) = (self.owner.filter(blends), &self.layer) else {
+            return;
+        };
+        let (Some(end), Some(next)) = (owner.end, self.queue.first()) else {
+            return;
+        };
+        let target = self.end_of_leg(next, layer.end_above(end), end > layer.base.position);
+        if target.is_some_and(|target| self.allowed(target).is_err()) {
+            self.pass_at_rest(scan, log);
+        }
     }
 
     /// Takes MC_HaltSuperimposed: the superimposed command is aborted and its motion comes to rest; the owner
