@@ -61,9 +61,11 @@ impl<P: Planner> Axis<P> {
             .planner
             .blend(start, end, &entry.passage, &entry.limits, before);
         // What can't be planned blended is planned as a move to rest, whose error would be the same. So is what comes
-        // out faster than it may because the limits were lowered too late: it passes its end, turns and comes back.
+        // out faster than it may because the limits were lowered too late: it passes its end, turns and comes back. And none
+        // is worth exceeding a limit of the axis.
         let planned = planned.ok().flatten();
         planned
+            .filter(|plan| entry.passage.wanted <= 0.0 || self.beyond_axis(plan).is_none())
             .filter(|plan| {
                 let end = plan.at(u64::from(plan.scans())).velocity.abs();
                 let most = self.config.limits.velocity * (1.0 + ROUNDING);
