@@ -104,7 +104,7 @@ impl Rig {
                 }
                 (Event::Planned { .. }, Some((plan, _))) => {
                     let end = plan.at(u64::from(plan.scans()));
-                    self.track.leads(plan.at(0).position, end.position);
+                    self.track.leads(plan.at(0).position, end.position, plan.scans());
                 }
                 _ => {}
             }

@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 use standstill_script::suite::Allowed;
+#[cfg(feature = "sweep")]
 use standstill_sweep::Shard;
 use standstill_trace::csv;
 use std::path::PathBuf;
@@ -326,6 +327,7 @@ pub struct SweepArguments {
     #[arg(long, short, value_name = "FILE.csv")]
     pub output: Option<PathBuf>,
     /// Compute every N-th case only, beginning with the I-th
+    #[cfg(feature = "sweep")]
     #[arg(long, value_name = "I/N", default_value_t = Shard::ALL, conflicts_with = "merge")]
     pub shard: Shard,
     /// Compute on so many threads instead of on all processors

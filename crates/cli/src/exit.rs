@@ -60,6 +60,14 @@ impl Failure {
         )
     }
 
+    /// A command that this build does not have.
+    #[cfg(not(all(feature = "live", feature = "st", feature = "sweep", feature = "watch")))]
+    pub fn left_out(feature: &str) -> Self {
+        Self::usage(&format!(
+            "this build of standstill has no `{feature}`: build it with the feature `{feature}`"
+        ))
+    }
+
     /// A file that could not be read or written; text that is no UTF-8 is a wrong file, not a bad disk.
     pub fn io(name: &str, error: &io::Error) -> Self {
         Self::Told(io_exit(error), format!("error: {name}: {error}"))

@@ -15,6 +15,7 @@ mod fmt;
 mod json;
 mod junit;
 mod limit;
+#[cfg(feature = "live")]
 mod live;
 mod out;
 pub mod plan;
@@ -22,11 +23,14 @@ mod progress;
 mod report;
 mod run;
 mod soak;
+#[cfg(feature = "st")]
 mod st;
 mod suggest;
+#[cfg(feature = "sweep")]
 mod sweep;
 mod table;
 mod test;
+#[cfg(feature = "watch")]
 mod watch;
 
 use args::{Arguments, Command, Schema, Soak, St};
@@ -102,8 +106,14 @@ fn explained(error: &clap::Error) -> Exit {
 fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
     match command {
         Command::Run(arguments) => run::run(arguments, out),
+        #[cfg(feature = "live")]
         Command::Live(arguments) => live::live(arguments, out),
+        #[cfg(feature = "watch")]
         Command::Watch(arguments) => watch::watch(arguments, out),
+        #[cfg(not(feature = "live"))]
+        Command::Live(_) => Err(Failure::left_out("live")),
+        #[cfg(not(feature = "watch"))]
+        Command::Watch(_) => Err(Failure::left_out("watch")),
         Command::Test {
             paths,
             accept,
@@ -154,7 +164,10 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::ComparePlanners { cases } => {
             with_lines(cases, |lines, name| plan::compare(lines, name, out))
         }
+        #[cfg(feature = "sweep")]
         Command::Sweep(arguments) => sweep::sweep(arguments, out),
+        #[cfg(not(feature = "sweep"))]
+        Command::Sweep(_) => Err(Failure::left_out("sweep")),
         Command::Soak {
             what: Soak::Planner { seed, count, resume },
         } => soak::planner(*seed, *count, resume.as_deref(), out),
@@ -175,9 +188,13 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             prefix,
             dialect,
         } => export::export(*target, folder, prefix, dialect.as_deref(), out),
+        #[cfg(not(feature = "st"))]
+        Command::St { .. } => Err(Failure::left_out("st")),
+        #[cfg(feature = "st")]
         Command::St {
             what: St::Check { sources, json },
         } => st::check(sources, *json, out),
+        #[cfg(feature = "st")]
         Command::St {
             what:
                 St::Build {

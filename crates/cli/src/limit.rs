@@ -24,6 +24,7 @@ pub fn doing(what: impl Into<String>) {
 }
 
 /// Has `first` called before the program ends: a terminal that is taken over has to be given back.
+#[cfg(feature = "watch")]
 pub fn before_end(first: fn()) {
     *locked(&FIRST) = Some(first);
 }

@@ -5,6 +5,9 @@ use std::fmt;
 /// Why a module cannot be used as a guest.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LoadError {
+    /// There is no interpreter in this build.
+    #[error("this build of standstill runs no guest programs: build it with the feature `guest`")]
+    NotBuilt,
     /// Too many bytes.
     #[error("it has {bytes} bytes, more than the {most} of a guest")]
     Large {

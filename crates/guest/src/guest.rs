@@ -1,35 +1,11 @@
 //! A guest, from its bytes to its scans.
 
 use crate::engine::{Globals, Machine, Module};
-use crate::host::{Host, Told};
+use crate::host::Host;
 use crate::symbol::SymbolError;
-use crate::{Fault, LoadError, MODULE, Symbol, tick};
+use crate::{Fault, LoadError, Settings, Symbol, Told, tick};
 use standstill_axis::Planner;
 use standstill_fb::{Context, Value};
-
-/// What a guest may use up.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Settings {
-    /// Instructions of one call, counted by the interpreter; a call that needs more is a fault.
-    pub fuel: u64,
-    /// Most bytes of memory.
-    pub memory: u64,
-    /// Name of the module that its imports come from.
-    pub module: String,
-    /// The number in records of its first block instance; the others follow. 1 or more.
-    pub first_instance: u16,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            fuel: 1_000_000,
-            memory: 16 << 20,
-            module: MODULE.to_owned(),
-            first_instance: 1,
-        }
-    }
-}
 
 /// A module that has been checked and compiled.
 #[derive(Clone, Debug)]

@@ -1,15 +1,12 @@
 //! The functions a guest imports, done on its memory and on instances that stand here.
 
-use crate::Fault;
+use crate::{Fault, INSTANCES_MOST, Told};
 use standstill_axis::{InstanceId, Log, Planner};
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::flat::{Flat, Layout, Pointer, read_record, read_table};
 use standstill_fb::ring::{FlatRecord, RECORD_SIZE};
 use standstill_fb::{AnyInstance, Block, BlockInfo, Context, Instance, PinType, TableRef, Value};
 use std::sync::LazyLock;
-
-/// Most block instances of a guest.
-pub const INSTANCES_MOST: usize = 1024;
 
 /// Most lines that a guest can tell in one scan; further ones are counted.
 const LINES_MOST: usize = 16;
@@ -37,24 +34,6 @@ pub enum Code {
     NoRoom = -12,
     /// An array has more records than its block takes, or records at address 0.
     Table = -17,
-}
-
-/// What a guest told.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Told {
-    /// A line of `log`.
-    Line(String),
-    /// So many lines more than a scan may have.
-    LinesLost(u64),
-    /// It has a new instance.
-    Made {
-        /// Its number in records.
-        id: InstanceId,
-        /// Its place among the guest's instances, from 1.
-        number: usize,
-        /// Its block.
-        block: &'static str,
-    },
 }
 
 /// What can be imported.

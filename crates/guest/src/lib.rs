@@ -9,21 +9,36 @@
 //! so that it ends and does so at the same instruction everywhere; its memory has a limit that is checked before it is
 //! had; and whatever it does wrong is a [`Fault`], after which the host stops the resource.
 //!
+//! Without the feature `engine`, which is on by default, there is no interpreter: every program is refused as
+//! [`LoadError::NotBuilt`]. What reads and runs scan scripts is the same with and without.
+//!
 //! What stands here: [`Program`], which is what was compiled, and [`Guest`], a running one. What does not: which file
 //! a guest comes from, what its variables are called, tasks (`standstill-script`).
 #![forbid(unsafe_code)]
 
+#[cfg(not(feature = "engine"))]
+mod absent;
+#[cfg(feature = "engine")]
 mod engine;
 mod error;
+#[cfg(feature = "engine")]
 mod guest;
+#[cfg(feature = "engine")]
 mod host;
 mod symbol;
+mod terms;
+#[cfg(feature = "engine")]
 mod tick;
 
+#[cfg(not(feature = "engine"))]
+pub use absent::{Guest, Program};
 pub use error::{Fault, LoadError};
-pub use guest::{Guest, Program, Settings, Snapshot};
-pub use host::{Code, INSTANCES_MOST, Told};
+#[cfg(feature = "engine")]
+pub use guest::{Guest, Program, Snapshot};
+#[cfg(feature = "engine")]
+pub use host::Code;
 pub use symbol::{Symbol, SymbolError, SymbolType};
+pub use terms::{INSTANCES_MOST, Settings, Told};
 
 /// Most bytes of a module.
 pub const MODULE_MOST: usize = 16 << 20;

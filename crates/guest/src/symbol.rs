@@ -1,5 +1,6 @@
 //! Variables of a guest by address.
 
+#[cfg(feature = "engine")]
 use standstill_fb::flat::Flat;
 use standstill_fb::{PinType, Value};
 
@@ -110,6 +111,7 @@ impl SymbolType {
     }
 
     /// Its bytes.
+    #[cfg(feature = "engine")]
     const fn size(self) -> usize {
         match self {
             Self::Bool | Self::Sint | Self::Usint | Self::Byte => 1,
@@ -153,6 +155,7 @@ pub enum SymbolError {
     Type(&'static str),
 }
 
+#[cfg(feature = "engine")]
 impl Symbol {
     fn place<'m>(&self, memory: &'m [u8]) -> Result<&'m [u8], SymbolError> {
         let bytes = self.ty.size();

@@ -107,12 +107,18 @@ fn is_curve((plan, elapsed): Part<'_>) -> bool {
     matches!(plan, StandardPlan::Profile(profile) if elapsed < u64::from(profile.scans()))
 }
 
+/// Whether a plan has come to rest.
+fn stands((plan, elapsed): Part<'_>) -> bool {
+    elapsed >= u64::from(plan.scans()) && plan.at(elapsed).velocity == 0.0
+}
+
 /// Whether the sum of two plans keeps `limits` from now until both have ended, and does not turn outside
 /// `range` (u), given in the sum of their positions.
 ///
-/// A sum that starts or ends outside `range` is not held against it: whoever asks has decided on both ends.
-/// Limits hold to 1e-9 of each, positions to 1e-9 of the range's numbers. Bounded by [`MAX_SWITCHES`] pieces
-/// with at most two roots each.
+/// A sum that starts or ends outside `range` is not held against it: whoever asks has decided on both ends. One that
+/// starts outside and comes in stays in. Limits hold to 1e-9 of each, positions to 1e-9 of the range's numbers. Bounded by
+/// [`MAX_SWITCHES`] pieces with at most two roots each; a curve through points, which fits only what stands, by 64 for each
+/// of its stretches.
 pub(crate) fn fits(
     first: Part<'_>,
     second: Part<'_>,
@@ -120,20 +126,25 @@ pub(crate) fn fits(
     range: Option<(f64, f64)>,
     cycle: f64,
 ) -> bool {
-    // What a curve through points leaves is not looked for: to its end there is none.
-    if is_curve(first) || is_curve(second) {
+    if let (StandardPlan::Profile(profile), true) = (first.0, is_curve(first)) {
+        // What a curve leaves to another motion is not looked for.
+        let at = second.0.at(second.1).position;
+        return stands(second)
+            && profile.keeps(first.1, limits, range.map(|(min, max)| (min - at, max - at)));
+    }
+    if is_curve(second) {
         return false;
     }
     let mut one = Walk::new(first.0.segments(), first, cycle);
     let mut two = Walk::new(second.0.segments(), second, cycle);
-    let range = range.map(|range| widened(range, first, second));
+    let mut room = range.map(|range| Room::of(range, first, second));
     for _ in 0..MAX_SWITCHES {
         let state = sum(&one.state, &two.state);
         let length = if one.left < two.left { one.left } else { two.left };
         if !length.is_finite() {
             return state.velocity.abs() <= limits.velocity * (1.0 + ROUNDING);
         }
-        if length > GRAIN * cycle && !piece_fits(&state, length, limits, range) {
+        if length > GRAIN * cycle && !piece_fits(&state, length, limits, room.as_mut()) {
             return false;
         }
         one.go(length);
@@ -142,25 +153,48 @@ pub(crate) fn fits(
     false
 }
 
-/// `range` with both ends of the motion inside, and rounding.
-fn widened((min, max): (f64, f64), first: Part<'_>, second: Part<'_>) -> (f64, f64) {
-    let end = |(plan, _): Part<'_>| plan.at(u64::from(plan.scans())).position;
-    let from = first.0.at(first.1).position + second.0.at(second.1).position;
-    let to = end(first) + end(second);
-    let small = |bound: f64| {
-        if bound.is_finite() {
-            ROUNDING * bound.abs()
-        } else {
-            0.0
-        }
-    };
-    (
-        min.min(from).min(to) - small(min),
-        max.max(from).max(to) + small(max),
-    )
+/// Where a sum may turn.
+struct Room {
+    /// The range, with the end of the motion inside, and rounding (u).
+    min: f64,
+    max: f64,
+    /// Where it starts (u), and whether it is or has come inside since.
+    from: f64,
+    is_in: bool,
 }
 
-fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, range: Option<(f64, f64)>) -> bool {
+impl Room {
+    fn of((min, max): (f64, f64), first: Part<'_>, second: Part<'_>) -> Self {
+        let end = |(plan, _): Part<'_>| plan.at(u64::from(plan.scans())).position;
+        let from = first.0.at(first.1).position + second.0.at(second.1).position;
+        let to = end(first) + end(second);
+        let small = |bound: f64| {
+            if bound.is_finite() {
+                ROUNDING * bound.abs()
+            } else {
+                0.0
+            }
+        };
+        Self {
+            min: min.min(to) - small(min),
+            max: max.max(to) + small(max),
+            from,
+            is_in: false,
+        }
+    }
+
+    /// The motion comes by `position`; whether it may turn there.
+    fn takes(&mut self, position: f64) -> bool {
+        let is_inside = |min: f64, max: f64| min <= position && position <= max;
+        if is_inside(self.min, self.max) {
+            self.is_in = true;
+            return true;
+        }
+        !self.is_in && is_inside(self.min.min(self.from), self.max.max(self.from))
+    }
+}
+
+fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, room: Option<&mut Room>) -> bool {
     if state.snap.abs() > limits.snap * (1.0 + ROUNDING) {
         return false;
     }
@@ -173,13 +207,14 @@ fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, range: Option<(f64
     if excess::excess(&path, 0.0, None, limits).is_some() {
         return false;
     }
-    let Some((min, max)) = range else { return true };
-    let mut inside = true;
+    let Some(room) = room else { return true };
+    let mut fits = true;
     path.extremes(0.0, |state, direction| {
         let turns = direction.is_none() || state.velocity == 0.0;
-        inside &= !turns || (min <= state.position && state.position <= max);
+        let takes = room.takes(state.position);
+        fits &= !turns || takes;
     });
-    inside
+    fits
 }
 
 /// What the rest of a plan leaves of `limits`: the limits less its largest magnitudes, 0 where it leaves

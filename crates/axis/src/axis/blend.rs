@@ -61,9 +61,11 @@ impl<P: Planner> Axis<P> {
             .planner
             .blend(start, end, &entry.passage, &entry.limits, before);
         // What can't be planned blended is planned as a move to rest, whose error would be the same. So is what comes
-        // out faster than it may because the limits were lowered too late: it passes its end, turns and comes back.
+        // out faster than it may because the limits were lowered too late: it passes its end, turns and comes back. And none
+        // is worth exceeding a limit of the axis.
         let planned = planned.ok().flatten();
         planned
+            .filter(|plan| entry.passage.wanted <= 0.0 || self.beyond_axis(plan).is_none())
             .filter(|plan| {
                 let end = plan.at(u64::from(plan.scans())).velocity.abs();
                 let most = self.config.limits.velocity * (1.0 + ROUNDING);
@@ -142,14 +144,15 @@ impl<P: Planner> Axis<P> {
     pub(super) fn pass_on(&mut self, scope: &mut Scope<'_>) {
         self.hand_over(self.passed_end(), scope);
         if self.queue.is_empty() && self.base().velocity != 0.0 && self.goal_reached() && self.passes_on() {
-            // Those that waited were checked when the owner was told to pass on, and yet all failed: it may have been
-            // too late to come to rest when coordinates moved under the software limits.
-            self.end_owner(Fate::Done);
-            let error = match self.allowed(self.setpoint.position) {
-                Ok(_) => ErrorId::PlanRefused,
-                Err(_) => ErrorId::SoftwareLimitReached,
-            };
-            self.trip(error, 0, Reaction::Ramp, scope);
+            // What waited was refused: it was too late to come to rest when coordinates moved, a way was barred or its
+            // values changed.
+            match self.allowed(self.setpoint.position) {
+                Ok(_) => self.halt_behind_end(scope),
+                Err(_) => {
+                    self.end_owner(Fate::Done);
+                    self.trip(ErrorId::SoftwareLimitReached, 0, Reaction::Ramp, scope);
+                }
+            }
         }
     }
 

@@ -95,6 +95,31 @@ impl<P: Planner> Axis<P> {
             return;
         };
         halt.work = Work::Halt;
+        self.halt_alone(halt, scope);
+    }
+
+    /// The owner has passed its end in motion, and whatever was to take over has failed: it is done, and the axis comes to
+    /// rest.
+    #[cold]
+    pub(super) fn halt_behind_end(&mut self, scope: &mut Scope<'_>) {
+        let scope = &mut self.owner_scope(scope);
+        let Some(owner) = self.owner else { return };
+        self.end_owner(Fate::Done);
+        let halt = Entry {
+            orphaned: owner.orphaned,
+            ..Entry::new(
+                self.new_id(),
+                owner.instance,
+                Work::Halt,
+                owner.limits,
+                owner.mode,
+            )
+        };
+        self.halt_alone(halt, scope);
+    }
+
+    /// The axis comes to rest by `halt`, which no block follows.
+    fn halt_alone(&mut self, mut halt: Entry, scope: &mut Scope<'_>) {
         let before = self.limits_before(&halt.limits);
         let planned = match self.plan_next(&mut halt) {
             Ok(Some(motion)) => Ok(motion),
@@ -108,7 +133,9 @@ impl<P: Planner> Axis<P> {
         match planned {
             Ok(motion) => {
                 self.begin(halt, motion, before, scope);
-                self.orphan(id, scope);
+                if !halt.orphaned {
+                    self.orphan(halt.id, scope);
+                }
             }
             Err(error) => self.trip(error, 0, Reaction::Ramp, scope),
         }

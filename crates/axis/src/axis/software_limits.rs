@@ -54,8 +54,10 @@ impl<P: Planner> Axis<P> {
             // It brakes as hard as it would there.
             _ if entry.paused => outside(self.end_of_plan()),
             Work::Velocity { .. } => true,
-            // A curve was checked to its end, which may have got another name since.
-            Work::Profile { .. } if !entry.is_endless() => outside(self.end_of_plan()),
+            // A curve was checked when it was planned, but its places may have other names since.
+            Work::Profile { .. } if !entry.is_endless() => {
+                outside(self.end_of_plan()) || self.turns_outside()
+            }
             Work::Profile { .. } => true,
             Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
             Work::Halt | Work::Stop => outside(self.end_of_plan()),
@@ -106,7 +108,7 @@ impl<P: Planner> Axis<P> {
                 Work::Profile { .. } => match self.owner.as_ref().is_some_and(Entry::is_endless) {
                     true => true,
                     false if !self.watched => return false,
-                    false => leaves(self.end_of_plan()),
+                    false => leaves(self.end_of_plan()) || self.turns_outside(),
                 },
                 Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
                 // A torque has a plan only while it is barred, and that leads to rest.
@@ -167,7 +169,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Whether the rest of the running plan turns outside the software limits. Cost: a look at each of its pieces.
+    /// Whether the rest of the running plan turns outside the software limits, or as a curve comes out of them. Cost: a look
+    /// at each of its pieces.
     #[inline(never)]
     fn turns_outside(&self) -> bool {
         let (Motion::Run { plan, elapsed, .. }, Some(range)) =

@@ -10,7 +10,8 @@
 mod plan;
 mod update;
 
-use super::queue::Work;
+use super::accept::REST;
+use super::queue::{Entry, Work};
 use super::{Axis, Motion};
 use crate::{AxisEvent, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, Scope, Superimpose};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -212,7 +213,24 @@ impl<P: Planner> Axis<P> {
         let layer = self.layer.get_or_insert(layer);
         layer.command = Some(command);
         self.add(proposed, scope);
+        self.rest_before_outside(scope);
         Ok(command.id)
+    }
+
+    /// What is superimposed moves the owner's end, and with it the place a blended distance behind it leads to: should that
+    /// be outside the software limits now, the owner comes to rest at its end, where the next one is refused.
+    fn rest_before_outside(&mut self, scope: &mut Scope<'_>) {
+        let blends = |owner: &Entry| owner.passage != REST;
+        let (Some(owner), Some(layer)) = (self.owner.filter(blends), &self.layer) else {
+            return;
+        };
+        let (Some(end), Some(next)) = (owner.end, self.queue.first()) else {
+            return;
+        };
+        let target = self.end_of_leg(next, layer.end_above(end), end > layer.base.position);
+        if target.is_some_and(|target| self.allowed(target).is_err()) {
+            self.pass_at_rest(scope);
+        }
     }
 
     /// Takes MC_HaltSuperimposed: the superimposed command is aborted and its motion comes to rest; the owner

@@ -296,25 +296,36 @@ impl ProfilePlan {
         Some(RampPlan::cruising(start, end.velocity, Order::Four, self.cycle))
     }
 
+    /// The stretches from `elapsed` scans after the start on.
+    fn rest(&self, elapsed: u64) -> impl Iterator<Item = Curve> + '_ {
+        let time = elapsed as f64 * self.cycle;
+        let nodes = self.nodes.get(..usize::from(self.count)).unwrap_or_default();
+        let pairs = nodes.iter().zip(nodes.iter().skip(1));
+        pairs
+            .filter(move |(_, to)| to.time > time)
+            .map(move |(from, to)| {
+                let curve = Curve::between(from, to);
+                if from.time < time {
+                    curve.after(time - from.time)
+                } else {
+                    curve
+                }
+            })
+    }
+
     /// How far (u) the rest moves up and how far down, up to its goal; bounded by 64 pieces for each stretch.
     pub(crate) fn ways(&self, elapsed: u64) -> (f64, f64) {
-        let time = elapsed as f64 * self.cycle;
-        let (mut up, mut down) = (0.0, 0.0);
-        let nodes = self.nodes.get(..usize::from(self.count)).unwrap_or_default();
-        for (from, to) in nodes.iter().zip(nodes.iter().skip(1)) {
-            if to.time <= time {
-                continue;
-            }
-            let curve = Curve::between(from, to);
-            let rest = if from.time < time {
-                curve.after(time - from.time)
-            } else {
-                curve
-            };
-            let (further_up, further_down) = check::ways(&rest);
-            up += further_up;
-            down += further_down;
-        }
-        (up, down)
+        self.rest(elapsed).fold((0.0, 0.0), |(up, down), curve| {
+            let (further_up, further_down) = check::ways(&curve);
+            (up + further_up, down + further_down)
+        })
+    }
+
+    /// Whether the rest keeps `limits` and stays inside `range` (u), as [`ProfilePlan::new`] asks it of the whole; bounded
+    /// by 64 pieces for each stretch.
+    pub(crate) fn keeps(&self, elapsed: u64, limits: &Limits, range: Option<(f64, f64)>) -> bool {
+        let range = range.map(|(min, max)| (min - self.origin, max - self.origin));
+        self.rest(elapsed)
+            .all(|curve| check::check(&curve, limits, range).is_ok())
     }
 }

@@ -124,9 +124,7 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
             in_scans(out, scans)
         }
         Event::RoomAwaited => out.write_str("waits for room below the axis limits"),
-        Event::Orphaned => {
-            out.write_str("orphaned: refused, and what it had set in motion goes on without it")
-        }
+        Event::Orphaned => out.write_str("orphaned: the motion goes on, and no block follows it"),
         Event::Paused { error } => {
             out.write_str("pauses: ")?;
             whole(out, error.number().into())?;

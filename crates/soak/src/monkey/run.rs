@@ -467,9 +467,11 @@ impl<H: Hands> Run<'_, H> {
                     track.forget();
                     self.fences[record.axis.index()].forget();
                 }
-                Event::Planned { .. } => {
+                Event::Planned { .. } | Event::Paused { .. } | Event::Fault { .. } => {
                     if let Some((plan, _)) = machine.axes()[record.axis.index()].plan() {
-                        track.leads(plan.at(0).position, plan.at(u64::from(plan.scans())).position);
+                        let scans = plan.scans();
+                        let [from, to] = [0, u64::from(scans)].map(|scan| plan.at(scan).position);
+                        track.leads(from, to, scans);
                     }
                 }
                 Event::Orphaned => {
@@ -481,9 +483,7 @@ impl<H: Hands> Run<'_, H> {
                 | Event::Clamped { .. }
                 | Event::Raised { .. }
                 | Event::Superimposed { .. }
-                | Event::RoomAwaited
-                | Event::Paused { .. }
-                | Event::Fault { .. } => {}
+                | Event::RoomAwaited => {}
             }
         }
         self.records = total;

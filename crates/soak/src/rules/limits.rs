@@ -41,6 +41,8 @@ pub struct Track {
     unwrapped: f64,
     /// Scans since the axis was at rest.
     moving: u32,
+    /// Scans of the longest motion planned since.
+    longest: u32,
     /// The last motion is what it was in the scan before, so nothing has to be looked at.
     resting: bool,
 }
@@ -78,6 +80,7 @@ impl Track {
             largest: position.abs().max(turn.unwrap_or(0.0)),
             unwrapped: position,
             moving: 0,
+            longest: 0,
             resting: false,
         }
     }
@@ -88,10 +91,11 @@ impl Track {
         self.resting = false;
     }
 
-    /// A motion is planned that leads from one position to another, perhaps some turns away: what it publishes is
-    /// rounded there.
-    pub fn leads(&mut self, from: f64, to: f64) {
+    /// A motion is planned that leads from one position to another in so many scans, perhaps some turns away: what it
+    /// publishes is rounded there, and its instants are counted back from its end.
+    pub fn leads(&mut self, from: f64, to: f64, scans: u32) {
         self.largest = self.largest.max(from.abs()).max(to.abs());
+        self.longest = self.longest.max(scans);
         self.resting = false;
     }
 
@@ -111,11 +115,11 @@ impl Track {
     #[inline(never)]
     fn check_motion(&mut self, setpoint: &Setpoint, still: bool) -> Result<(), Broken> {
         rule(setpoint.is_finite(), "finite", "a set-point is not finite")?;
-        self.moving = if setpoint.is_at_rest() {
-            0
+        if setpoint.is_at_rest() {
+            (self.moving, self.longest) = (0, 0);
         } else {
-            self.moving.saturating_add(1)
-        };
+            self.moving = self.moving.saturating_add(1);
+        }
         self.check_state(setpoint)?;
         self.push(setpoint.position);
         self.check_differences()?;
@@ -189,7 +193,7 @@ impl Track {
 
     /// `|d_k| <= limit_k (1 + 1e-9) + 2^k r / cycle^k`: the continuous plan keeps the limits, so its differences do,
     /// and each position is off by at most r, a unit in the last place of the largest position so far and what the
-    /// velocity makes of two in that of the time since rest.
+    /// velocity makes of two in that of the time since rest, or of the longest motion planned since.
     fn check_differences(&mut self) -> Result<(), Broken> {
         const WHAT: [&str; KEPT] = [
             "the first difference of positions exceeds the velocity limit",
@@ -213,7 +217,8 @@ impl Track {
         };
         let bounds = [limits.velocity, acceleration, limits.jerk, limits.snap];
         let unit = self.largest.next_up() - self.largest;
-        let unit = unit + TICK * f64::from(self.moving) * self.cycle * limits.velocity;
+        let scans = self.moving.max(self.longest);
+        let unit = unit + TICK * f64::from(scans) * self.cycle * limits.velocity;
         let mut differences = self.ways;
         let mut slack = unit;
         for order in 0..known {

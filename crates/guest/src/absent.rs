@@ -1,0 +1,60 @@
+//! A build without an interpreter: no program can be made, so none runs.
+
+use crate::{Fault, LoadError, Settings, Symbol, SymbolError, Told};
+use standstill_axis::Planner;
+use standstill_fb::{Context, Value};
+use std::convert::Infallible;
+
+/// A program, of which there is none.
+#[derive(Clone, Debug)]
+pub struct Program(Infallible);
+
+/// A guest, of which there is none.
+#[derive(Debug)]
+pub struct Guest(Infallible);
+
+impl Program {
+    /// Refuses every module.
+    ///
+    /// # Errors
+    /// [`LoadError::NotBuilt`].
+    pub fn compile(_: &[u8], _: Settings) -> Result<Self, LoadError> {
+        Err(LoadError::NotBuilt)
+    }
+
+    /// Never called.
+    ///
+    /// # Errors
+    /// None.
+    pub fn start(&self) -> Result<Guest, LoadError> {
+        match self.0 {}
+    }
+}
+
+#[allow(clippy::missing_errors_doc)]
+impl Guest {
+    /// Never called, like all that follow.
+    pub fn scan<P: Planner>(&mut self, _: &mut Context<'_, P>) -> Result<u64, Fault> {
+        match self.0 {}
+    }
+
+    /// No text.
+    pub fn take_told(&mut self) -> Vec<Told> {
+        match self.0 {}
+    }
+
+    /// No address.
+    pub fn address_of(&self, _: &str) -> Result<u32, SymbolError> {
+        match self.0 {}
+    }
+
+    /// No value.
+    pub fn read(&self, _: &Symbol) -> Result<Value, SymbolError> {
+        match self.0 {}
+    }
+
+    /// Nothing is written.
+    pub fn write(&mut self, _: &Symbol, _: Value) -> Result<(), SymbolError> {
+        match self.0 {}
+    }
+}
