@@ -3,64 +3,13 @@
 //! Source: PLCopen Motion Control Part 1, state diagram and sections on aborting and buffered commands; the
 //! table "state x command" with the choices V6, V6a, V7a, V11.
 
-use super::profile::start_event;
-use super::queue::{Entry, Place, Work};
+use super::commands::{Entry, Place, Start, Work, direction_of, refusal, start_event};
 use super::{Axis, Motion};
 use crate::{
     AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Fate, Raw, Request,
     Scope,
 };
-use standstill_planner::{Field, Limits, Passage, PlanError, Planner, Setpoint};
-
-/// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
-pub(super) const ROUNDING: f64 = 1e-9;
-
-/// At its end a command comes to rest.
-pub(super) const REST: Passage = Passage {
-    wanted: 0.0,
-    most: 0.0,
-};
-
-/// The Direction pin of a command to a position; the checks refuse undefined numbers. MC_MoveAdditive leads to a
-/// position of the frame.
-pub(super) fn direction_of(command: &Command) -> Option<Direction> {
-    match command {
-        Command::MoveAbsolute { direction, .. } | Command::MoveContinuousAbsolute { direction, .. } => {
-            direction.get()
-        }
-        Command::MoveAdditive { .. }
-        | Command::MoveRelative { .. }
-        | Command::MoveContinuousRelative { .. }
-        | Command::MoveVelocity { .. }
-        | Command::Torque { .. }
-        | Command::Jog { .. }
-        | Command::Halt { .. }
-        | Command::Stop { .. }
-        | Command::Home { .. } => None,
-    }
-}
-
-/// When an admitted command starts.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Way {
-    Now,
-    Wait,
-}
-
-/// What a block shows of a planner's refusal.
-pub(super) fn refusal(error: PlanError) -> ErrorId {
-    match error {
-        PlanError::TooLong { .. } => ErrorId::MoveTooLong,
-        // Distance over cycle^n does not fit into a number: longer than anything countable.
-        PlanError::InvalidInput {
-            field: Field::Cycle, ..
-        } => ErrorId::MoveTooLong,
-        PlanError::InvalidInput {
-            field: Field::Target, ..
-        } => ErrorId::PositionInvalid,
-        _ => ErrorId::PlanRefused,
-    }
-}
+use standstill_planner::{Limits, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
     /// Takes a command, or refuses it without any effect on the axis or the queue (R38).
@@ -71,21 +20,21 @@ impl<P: Planner> Axis<P> {
     /// # Errors
     /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit.
     pub fn command(&mut self, request: &Request, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
-        let (mode, way) = self.admit_recorded(request, scope)?;
-        let (work, limits) = self.check(&request.command, way, scope)?;
+        let (mode, start) = self.admit_recorded(request, scope)?;
+        let (work, limits) = self.check(&request.command, start, scope)?;
         let mut entry = Entry::new(self.new_id(), scope.instance, work, limits, mode);
         entry.direction = direction_of(&request.command);
         self.override_entry(&mut entry);
         if let (Command::MoveAdditive { .. }, Work::Position(_)) = (&request.command, work) {
             entry.from = self.commanded_target().unwrap_or(self.setpoint.position);
         }
-        match way {
-            Way::Wait => {
+        match start {
+            Start::Wait => {
                 self.queue.push(entry);
                 self.arm(mode, scope);
                 self.start_beside(scope);
             }
-            Way::Now => {
+            Start::Now => {
                 self.aim(&mut entry, self.setpoint.position);
                 let asked = entry.limits;
                 let motion = self
@@ -118,7 +67,7 @@ impl<P: Planner> Axis<P> {
         &self,
         request: &Request,
         scope: &mut Scope<'_>,
-    ) -> Result<(BufferMode, Way), ErrorId> {
+    ) -> Result<(BufferMode, Start), ErrorId> {
         self.admit(request).map_err(|(pin, error)| {
             let value = if pin == "BufferMode" {
                 f64::from(request.buffer_mode.number())
@@ -130,15 +79,15 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The rules of the axis state.
-    fn admit(&self, request: &Request) -> Result<(BufferMode, Way), (&'static str, ErrorId)> {
+    fn admit(&self, request: &Request) -> Result<(BufferMode, Start), (&'static str, ErrorId)> {
         let Some(mode) = request.buffer_mode.get() else {
             return Err(("BufferMode", ErrorId::BufferModeInvalid));
         };
-        self.way(request, mode != BufferMode::Aborting)
-            .map(|way| (mode, way))
+        self.start(request, mode != BufferMode::Aborting)
+            .map(|start| (mode, start))
     }
 
-    fn way(&self, request: &Request, buffered: bool) -> Result<Way, (&'static str, ErrorId)> {
+    fn start(&self, request: &Request, buffered: bool) -> Result<Start, (&'static str, ErrorId)> {
         if self.power.going_off {
             return Err(("", ErrorId::PoweringOff));
         }
@@ -159,15 +108,15 @@ impl<P: Planner> Axis<P> {
             // An idle axis starts at once whatever the mode (B9); something waits only in the scan in which
             // MC_Stop released the axis.
             AxisState::Standstill if buffered && !self.queue.is_empty() => wait(),
-            AxisState::Standstill => Ok(Way::Now),
-            AxisState::Homing if stop || (home && !buffered && !self.is_homed_by_drive()) => Ok(Way::Now),
+            AxisState::Standstill => Ok(Start::Now),
+            AxisState::Homing if stop || (home && !buffered && !self.is_homed_by_drive()) => Ok(Start::Now),
             AxisState::Homing if buffered && !stop => wait(),
             AxisState::Homing => refuse(ErrorId::InHoming),
             // The same instance may stop again with other values (V7a).
             AxisState::Stopping
                 if stop && request.replaces.is_some() && request.replaces == self.active_command() =>
             {
-                Ok(Way::Now)
+                Ok(Start::Now)
             }
             AxisState::Stopping if buffered && !stop && !home => self.wait(),
             AxisState::Stopping => refuse(ErrorId::InStopping),
@@ -177,15 +126,15 @@ impl<P: Planner> Axis<P> {
                 } else if home {
                     refuse(ErrorId::InMotion)
                 } else {
-                    Ok(Way::Now)
+                    Ok(Start::Now)
                 }
             }
         }
     }
 
-    pub(super) fn wait(&self) -> Result<Way, (&'static str, ErrorId)> {
+    pub(super) fn wait(&self) -> Result<Start, (&'static str, ErrorId)> {
         if self.queue.len() < self.config.queue {
-            Ok(Way::Wait)
+            Ok(Start::Wait)
         } else {
             Err(("BufferMode", ErrorId::BufferFull))
         }
@@ -201,7 +150,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn check(
         &self,
         command: &Command,
-        way: Way,
+        start: Start,
         scope: &mut Scope<'_>,
     ) -> Result<(Work, Limits), ErrorId> {
         match *command {
@@ -237,7 +186,7 @@ impl<P: Planner> Axis<P> {
                 let distance = self.finite("Distance", distance, scope)?;
                 let work = match self.commanded_target() {
                     // Waiting, it counts from the end of the one before it, which is the last commanded target.
-                    Some(target) if way == Way::Now => {
+                    Some(target) if start == Start::Now => {
                         let position = self.finite("Distance", target + distance, scope)?;
                         self.inside("Distance", position, scope)?;
                         Work::Position(position)

@@ -3,9 +3,8 @@
 //! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; rules B1 to B17. What the
 //! standard leaves open is told in `docs/buffering.md`. The maths is the planner's.
 
-use super::accept::{REST, ROUNDING};
+use super::commands::{Entry, REST, ROUNDING, Work};
 use super::power::Reaction;
-use super::queue::{Entry, Work};
 use super::{Axis, Motion};
 use crate::{BufferMode, ErrorId, Fate, QUEUE_MAX, Scope};
 use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};

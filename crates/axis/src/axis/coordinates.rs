@@ -6,7 +6,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_SetPosition; V15, T39 i.
 
-use super::queue::{Entry, Place, Work};
+use super::commands::{Entry, Place, Work};
 use super::{Axis, Motion};
 use crate::{CommandId, ErrorId, Event, ExecutionMode, Fate, QUEUE_MAX, Raw, Scope};
 use standstill_planner::turns::split;

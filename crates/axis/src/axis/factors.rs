@@ -7,7 +7,7 @@
 //! Source: PLCopen Motion Control Part 1, MC_SetOverride; S5, S6, B17, T39d, V16.
 
 use super::Axis;
-use super::queue::Entry;
+use super::commands::Entry;
 use crate::{ErrorId, Scope};
 use standstill_planner::{Limits, Planner};
 

@@ -12,9 +12,8 @@
 
 mod by_drive;
 
-use super::accept::refusal;
+use super::commands::{Entry, refusal};
 use super::power::Reaction;
-use super::queue::Entry;
 use super::{Axis, Motion};
 use crate::{AxisState, ErrorId, HomeDirection, Procedure, Scope};
 use standstill_planner::{Planner, Setpoint};

@@ -4,7 +4,7 @@
 //! own limits can bring back, its velocity would leave those of the axis. What can be avoided with the limits that
 //! held until now, or with those of the axis, is not unavoidable: the command then gets them, as far as necessary.
 
-use super::queue::Entry;
+use super::commands::Entry;
 use super::{Axis, Motion};
 use crate::{ErrorId, Event, Scope};
 use standstill_planner::{Excess, Limits, Plan, Planner, Setpoint};

@@ -4,7 +4,7 @@
 //! that of MC_MoveRelative, a release that of MC_Halt.
 
 use super::Axis;
-use super::queue::Work;
+use super::commands::Work;
 use crate::{Dynamics, ErrorId, Scope};
 use standstill_planner::{Limits, Planner};
 

@@ -12,6 +12,7 @@
 
 mod accept;
 mod blend;
+mod commands;
 mod coordinates;
 mod dynamics;
 mod factors;
@@ -45,14 +46,14 @@ use crate::{
     DriveCommand, DriveOrder, DrivePosition, DriveReport, DriveSignals, ErrorId, Event, Fate, Fault,
     InstanceId, QUEUE_MAX, Record, Scope, StartState, state,
 };
+use commands::{Entry, Work};
 pub use factors::Factors;
 use modulo::Modulo;
 pub use outputs::CamTrack;
-pub use parameters::{Parameter, ParameterValue};
 pub use permission::Permission;
 pub use probe::TouchProbe;
 pub use profile::{Profile, ProfileRow};
-use queue::{Entry, Queue, Work};
+use queue::Queue;
 pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
 

@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, MC_ReadDigitalInput, MC_ReadDigitalOutput, MC_WriteDigitalOutput; V26.
 
 use super::Axis;
-use super::queue::{Work, Write};
+use super::commands::{Work, Write};
 use crate::{CommandId, DIGITAL, ErrorId, ExecutionMode, Fate, Raw, Scope};
 use standstill_planner::Planner;
 

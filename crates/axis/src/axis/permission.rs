@@ -10,7 +10,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_Power; V9.
 
-use super::queue::{Entry, Place, Work};
+use super::commands::{Entry, Place};
 use super::{Axis, Motion};
 use crate::{AxisEvent, ErrorId, Event, Fate, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -228,20 +228,5 @@ impl<P: Planner> Axis<P> {
     /// A direction in which nothing may be added to a layer at rest.
     pub(super) fn way_barred(&self, way: f64) -> Option<ErrorId> {
         self.bars(way > 0.0, way < 0.0)
-    }
-}
-
-impl Entry {
-    /// Whether it leads anywhere, so that it could be barred.
-    fn leads_on(&self) -> bool {
-        match self.work {
-            Work::Position(_)
-            | Work::Distance(_)
-            | Work::Through { .. }
-            | Work::Velocity { .. }
-            | Work::Profile { .. }
-            | Work::Torque { .. } => true,
-            Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
-        }
     }
 }

@@ -11,9 +11,8 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_PositionProfile, MC_VelocityProfile, MC_AccelerationProfile; V24.
 
-use super::accept::Way;
+use super::commands::{Entry, Start, Work, start_event};
 use super::power::Reaction;
-use super::queue::{Entry, Work};
 use super::{Axis, Motion};
 use crate::{AxisEvent, BufferMode, Command, CommandId, Dynamics, ErrorId, Event, Fate, Raw, Request, Scope};
 use standstill_planner::{
@@ -180,25 +179,25 @@ impl<P: Planner> Axis<P> {
             buffer_mode,
             ..Request::aborting(any)
         };
-        let (mode, way) = self.admit_recorded(&request, scope)?;
+        let (mode, start) = self.admit_recorded(&request, scope)?;
         if profile.kind == ProfileKind::Position && self.config.needs_homed && !self.homed {
             let (pin, error) = (profile.table_pin(), ErrorId::NotHomed);
             return Err(self.refuse(pin, f64::NAN, f64::NAN, error, scope));
         }
         let work = Work::Profile {
             kind: profile.kind,
-            due: way == Way::Wait,
+            due: start == Start::Wait,
             since: 0.0,
             time_scale: profile.time_scale,
         };
         let mut entry = Entry::new(self.new_id(), scope.instance, work, self.parameters.limits, mode);
-        match way {
-            Way::Wait => {
+        match start {
+            Start::Wait => {
                 self.looked_at(profile, scope)?;
                 self.queue.push(entry);
                 self.start_beside(scope);
             }
-            Way::Now => {
+            Start::Now => {
                 let motion = self.plan_profile(&mut entry, profile, scope)?;
                 let before = self.limits_before(&entry.limits);
                 self.end_all(Fate::Aborted, Fate::Aborted);
@@ -425,23 +424,5 @@ impl<P: Planner> Axis<P> {
         };
         self.record(refused, scope);
         error
-    }
-}
-
-/// The state a command leads to.
-pub(super) fn start_event(work: &Work) -> AxisEvent {
-    match work {
-        Work::Position(_)
-        | Work::Distance(_)
-        | Work::Halt
-        | Work::Profile {
-            kind: ProfileKind::Position,
-            ..
-        } => AxisEvent::StartDiscrete,
-        Work::Velocity { .. } | Work::Through { .. } | Work::Profile { .. } | Work::Torque { .. } => {
-            AxisEvent::StartContinuous
-        }
-        Work::Stop => AxisEvent::Stop,
-        Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => AxisEvent::StartHoming,
     }
 }

@@ -4,7 +4,7 @@
 //! like buffered motions, never own the axis, and do not change its state.
 
 use super::Axis;
-use super::queue::{Entry, Work, Write};
+use super::commands::{Entry, Work, Write};
 use crate::{AxisState, BufferMode, CommandId, ErrorId, ExecutionMode, Fate, Raw, Scope};
 use standstill_planner::Planner;
 

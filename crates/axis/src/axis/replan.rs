@@ -7,7 +7,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, sections on ContinuousUpdate and MC_SetOverride; R9, R12, B15 to B17.
 
-use super::queue::{Entry, Place, Work};
+use super::commands::{Entry, Place, Work};
 use super::superimposed::Layer;
 use super::{Axis, Motion};
 use crate::{ErrorId, Event, Goal, Scope};

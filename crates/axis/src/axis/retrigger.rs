@@ -7,9 +7,8 @@
 //! Source: PLCopen Motion Control Part 1, section on Execute/Done; R32, R38, R97, B19.
 
 use super::Axis;
-use super::accept::REST;
+use super::commands::{Entry, REST, Work};
 use super::power::Reaction;
-use super::queue::{Entry, Work};
 use crate::{AxisEvent, CommandId, Event, Fate, Scope};
 use standstill_planner::Planner;
 

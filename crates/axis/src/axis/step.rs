@@ -2,7 +2,7 @@
 //!
 //! It comes after all block calls of a scan, so what it decides shows in the next one (R70).
 
-use super::queue::{Entry, Work};
+use super::commands::{Entry, Work};
 use super::{Axis, Calm, Motion, power::Reaction};
 use crate::{AxisEvent, AxisState, ErrorId, Fate, InstanceId, QUEUE_MAX, Scope};
 use standstill_planner::{Plan, Planner, Setpoint};

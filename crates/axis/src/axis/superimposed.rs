@@ -10,8 +10,7 @@
 mod plan;
 mod update;
 
-use super::accept::REST;
-use super::queue::{Entry, Work};
+use super::commands::{Entry, REST, Work};
 use super::{Axis, Motion};
 use crate::{AxisEvent, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, Scope, Superimpose};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};

@@ -6,7 +6,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_TorqueControl and MC_ReadActualTorque; V25.
 
-use super::queue::{Entry, Work};
+use super::commands::{Entry, Work};
 use super::{Axis, Motion};
 use crate::{Direction, Dynamics, ErrorId, Raw, Scope, TorqueOrder, TorqueReport};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};

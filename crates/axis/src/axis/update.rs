@@ -7,8 +7,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section on ContinuousUpdate; R9 to R13, B16, T39a to T39c.
 
-use super::accept::{REST, Way, direction_of};
-use super::queue::{Asked, Entry, Place, Work};
+use super::commands::{Asked, Entry, Place, REST, Start, Work, direction_of};
 use super::{Axis, Motion};
 use crate::{BufferMode, Command, CommandId, ErrorId, Scope};
 use standstill_planner::{Limits, Planner};
@@ -89,12 +88,12 @@ impl<P: Planner> Axis<P> {
         let (work, limits) = match (*command, entry.work) {
             (Command::MoveAdditive { distance, dynamics }, Work::Position(_)) => {
                 let added = Command::MoveRelative { distance, dynamics };
-                let (_, limits) = self.check(&added, Way::Wait, scope)?;
+                let (_, limits) = self.check(&added, Start::Wait, scope)?;
                 let position = self.finite("Distance", entry.from + distance, scope)?;
                 self.inside("Distance", position, scope)?;
                 (Work::Position(position), limits)
             }
-            _ => self.check(command, Way::Wait, scope)?,
+            _ => self.check(command, Start::Wait, scope)?,
         };
         let same_kind = work.kind() == entry.work.kind()
             && (work.obeys_override() || matches!(work, Work::Torque { .. }));

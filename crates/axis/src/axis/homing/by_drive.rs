@@ -2,8 +2,8 @@
 //!
 //! Source: CiA 402, homing mode; V11, CI-3.
 
+use super::super::commands::Work;
 use super::super::power::Reaction;
-use super::super::queue::Work;
 use super::super::reading::Past;
 use super::super::{Axis, Motion};
 use super::Phase;

@@ -1,8 +1,7 @@
 //! Finding a superimposed motion that leaves the sum inside the axis limits.
 
 use super::{Added, Adds, Layer};
-use crate::axis::accept::refusal;
-use crate::axis::queue::{Entry, Work};
+use crate::axis::commands::{Entry, Work, refusal};
 use crate::axis::{Axis, Motion};
 use crate::{AxisState, Dynamics, ErrorId, Event, Fate, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
