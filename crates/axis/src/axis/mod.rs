@@ -46,7 +46,8 @@ use crate::{
     DriveCommand, DriveOrder, DrivePosition, DriveReport, DriveSignals, ErrorId, Event, Fate, Fault,
     InstanceId, QUEUE_MAX, Record, Scope, StartState, state,
 };
-use commands::{Entry, Work};
+pub use commands::WorkKind;
+use commands::{Ending, Entry, Work};
 pub use factors::Factors;
 use modulo::Modulo;
 pub use outputs::CamTrack;
@@ -157,11 +158,11 @@ pub struct Outlook {
     /// `None` if the set-point follows the feedback, 0 if it holds, else one more than the scans to the goal.
     pub scans_left: Option<u32>,
     /// The owner: its number, what it does, and whether MC_Stop's Execute holds it.
-    pub owner: Option<(CommandId, &'static str, bool)>,
+    pub owner: Option<(CommandId, WorkKind, bool)>,
     /// MC_Stop has come to rest and is held.
     pub stop_held: bool,
     /// Commands that wait, in order, with how they follow the one before.
-    pub waiting: [Option<(CommandId, &'static str, BufferMode)>; QUEUE_MAX],
+    pub waiting: [Option<(CommandId, WorkKind, BufferMode)>; QUEUE_MAX],
     /// MC_Power.Enable.
     pub power_wanted: bool,
     /// The directions MC_Power permits.
@@ -206,7 +207,7 @@ pub struct Outlook {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Beside {
     /// The command: its number, what it does, and whether the motion is its own; else it waits for room.
-    pub command: Option<(CommandId, &'static str, bool)>,
+    pub command: Option<(CommandId, WorkKind, bool)>,
     /// 0 if what is added holds, else one more than the scans to its goal.
     pub scans_left: u32,
     /// Scans of the owner's plan until a command that waits or was lowered is tried again; the largest number if
@@ -487,20 +488,13 @@ impl<P: Planner> Axis<P> {
         if let Some(owner) = &self.owner
             && owner.id == id
         {
-            return match owner.work {
-                Work::Stop if self.stop_held => Fate::Done,
-                Work::Velocity { .. } | Work::Through { .. } | Work::Torque { .. } => Fate::Active {
-                    reached: self.goal_reached() && !self.is_held_up(),
-                },
-                Work::Profile { .. } if self.profile_is_over() => Fate::Done,
-                Work::Position(_)
-                | Work::Distance(_)
-                | Work::Profile { .. }
-                | Work::Halt
-                | Work::Stop
-                | Work::Home(_)
-                | Work::SetPosition { .. }
-                | Work::Write(_) => Fate::Active { reached: false },
+            // A stop that stands has completed, and a profile that runs on.
+            if self.stop_held || self.profile_is_over() {
+                return Fate::Done;
+            }
+            let holds = owner.work.manner().ending == Ending::Holds;
+            return Fate::Active {
+                reached: holds && self.goal_reached() && !self.is_held_up(),
             };
         }
         self.fate_of_other(id)
@@ -526,7 +520,7 @@ impl<P: Planner> Axis<P> {
     pub fn outlook(&self) -> Outlook {
         let mut waiting = [None; QUEUE_MAX];
         for (slot, entry) in waiting.iter_mut().zip(self.queue.iter()) {
-            *slot = Some((entry.id, entry.work.kind(), entry.mode));
+            *slot = Some((entry.id, entry.work.manner().kind, entry.mode));
         }
         Outlook {
             state: self.state,
@@ -534,7 +528,7 @@ impl<P: Planner> Axis<P> {
             owner: self
                 .owner
                 .as_ref()
-                .map(|owner| (owner.id, owner.work.kind(), owner.held)),
+                .map(|owner| (owner.id, owner.work.manner().kind, owner.held)),
             stop_held: self.stop_held,
             waiting,
             power_wanted: self.power.wanted,

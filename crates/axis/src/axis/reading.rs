@@ -274,10 +274,7 @@ impl<P: Planner> Axis<P> {
             (Motion::Run { plan, .. }, Some(Work::Through { .. })) if self.goal_reached() => {
                 return Way::of(plan.at(u64::from(plan.scans())).velocity);
             }
-            (
-                Motion::Run { plan, .. },
-                Some(Work::Position(_) | Work::Distance(_) | Work::Through { .. }),
-            ) => {
+            (Motion::Run { plan, .. }, Some(work)) if work.manner().place.is_some() => {
                 let place = self.layer.as_ref().map_or(&self.setpoint, |layer| &layer.base);
                 plan.at(u64::from(plan.scans())).position - place.position
             }

@@ -7,7 +7,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, sections on ContinuousUpdate and MC_SetOverride; R9, R12, B15 to B17.
 
-use super::commands::{Entry, Place, Work};
+use super::commands::{Ending, Entry, Place, Work};
 use super::superimposed::Layer;
 use super::{Axis, Motion};
 use crate::{ErrorId, Event, Goal, Scope};
@@ -187,10 +187,7 @@ impl<P: Planner> Axis<P> {
 
     fn record_plan(&self, entry: &Entry, plan: &P::Plan, scope: &mut Scope<'_>) {
         let scope = &mut scope.with(entry.instance);
-        let positioning = matches!(
-            entry.work,
-            Work::Position(_) | Work::Distance(_) | Work::Profile { .. }
-        );
+        let positioning = entry.work.manner().ending == Ending::InPosition;
         let end = plan.at(u64::from(plan.scans()));
         let goal = match entry.end {
             _ if entry.halted || entry.passed => Goal::Velocity(end.velocity),

@@ -10,7 +10,7 @@
 mod plan;
 mod update;
 
-use super::commands::{Entry, REST, Work};
+use super::commands::{Entry, REST, Work, WorkKind};
 use super::{Axis, Motion};
 use crate::{AxisEvent, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, Scope, Superimpose};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -330,7 +330,7 @@ impl<P: Planner> Axis<P> {
         match (&self.motion, self.owner.as_ref().map(|owner| owner.work)) {
             (Motion::Run { .. }, Some(Work::Velocity { .. } | Work::Through { .. })) => f64::NAN,
             // Halted, its plan ends elsewhere.
-            (Motion::Run { .. }, Some(Work::Position(_) | Work::Distance(_))) => self
+            (Motion::Run { .. }, Some(work)) if work.manner().blends => self
                 .owner
                 .as_ref()
                 .and_then(|owner| owner.end)
@@ -513,8 +513,8 @@ impl<P: Planner> Axis<P> {
         self.layer.as_ref().map(|layer| super::Beside {
             command: layer.command.as_ref().map(|command| {
                 let kind = match command.adds {
-                    Adds::Distance { .. } => "superimposed",
-                    Adds::Halt => "halt superimposed",
+                    Adds::Distance { .. } => WorkKind::Distance,
+                    Adds::Halt => WorkKind::Halt,
                 };
                 (command.id, kind, command.planned)
             }),
