@@ -129,7 +129,8 @@ pub(crate) fn fits(
     if let (StandardPlan::Profile(profile), true) = (first.0, is_curve(first)) {
         // What a curve leaves to another motion is not looked for.
         let at = second.0.at(second.1).position;
-        return stands(second) && profile.keeps(first.1, limits, range.map(|(min, max)| (min - at, max - at)));
+        return stands(second)
+            && profile.keeps(first.1, limits, range.map(|(min, max)| (min - at, max - at)));
     }
     if is_curve(second) {
         return false;

@@ -301,14 +301,16 @@ impl ProfilePlan {
         let time = elapsed as f64 * self.cycle;
         let nodes = self.nodes.get(..usize::from(self.count)).unwrap_or_default();
         let pairs = nodes.iter().zip(nodes.iter().skip(1));
-        pairs.filter(move |(_, to)| to.time > time).map(move |(from, to)| {
-            let curve = Curve::between(from, to);
-            if from.time < time {
-                curve.after(time - from.time)
-            } else {
-                curve
-            }
-        })
+        pairs
+            .filter(move |(_, to)| to.time > time)
+            .map(move |(from, to)| {
+                let curve = Curve::between(from, to);
+                if from.time < time {
+                    curve.after(time - from.time)
+                } else {
+                    curve
+                }
+            })
     }
 
     /// How far (u) the rest moves up and how far down, up to its goal; bounded by 64 pieces for each stretch.
