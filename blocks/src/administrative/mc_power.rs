@@ -46,8 +46,6 @@ impl Block for McPower {
     type Inputs = Inputs;
     type Outputs = Outputs;
 
-    // Called in every scan: in line, the outputs of the usual case are one constant.
-    #[inline(always)]
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let (axis, scope) = match context.axis(inputs.axis) {
             Ok(found) => found,
@@ -66,22 +64,6 @@ impl Block for McPower {
             error: error.is_some(),
             error_id: error.unwrap_or_default(),
         }
-    }
-
-    #[inline(always)]
-    fn rests<P: Planner>(
-        &mut self,
-        inputs: &Inputs,
-        outputs: &mut Outputs,
-        context: &Context<'_, P>,
-    ) -> bool {
-        let permitted = Permission {
-            positive: inputs.enable_positive,
-            negative: inputs.enable_negative,
-        };
-        let is_on = outputs.status && outputs.valid && inputs.enable;
-        let axis = context.axes.get(inputs.axis.index());
-        is_on && axis.is_some_and(|axis| axis.is_on_for(context.scope.instance, permitted))
     }
 }
 

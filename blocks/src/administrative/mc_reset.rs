@@ -54,14 +54,4 @@ impl Block for McReset {
             error_id: phase.error_id(),
         }
     }
-
-    #[inline(always)]
-    fn rests<P: Planner>(
-        &mut self,
-        inputs: &Inputs,
-        _outputs: &mut Outputs,
-        context: &Context<'_, P>,
-    ) -> bool {
-        self.core.rests(inputs.execute, context)
-    }
 }

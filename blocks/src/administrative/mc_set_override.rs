@@ -103,16 +103,4 @@ impl Block for McSetOverride {
             error_id: written.error_id(),
         }
     }
-
-    #[inline(always)]
-    fn rests<P: Planner>(
-        &mut self,
-        inputs: &Inputs,
-        outputs: &mut Outputs,
-        context: &Context<'_, P>,
-    ) -> bool {
-        let factors = factors_of(inputs);
-        let axis = context.axes.get(inputs.axis.index());
-        inputs.enable && outputs.enabled && axis.is_some_and(|axis| axis.factors() == factors)
-    }
 }

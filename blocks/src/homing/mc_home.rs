@@ -74,14 +74,4 @@ impl Block for McHome {
             error_id: phase.error_id(),
         }
     }
-
-    #[inline(always)]
-    fn rests<P: Planner>(
-        &mut self,
-        inputs: &Inputs,
-        _outputs: &mut Outputs,
-        context: &Context<'_, P>,
-    ) -> bool {
-        self.core.rests(inputs.execute, context)
-    }
 }

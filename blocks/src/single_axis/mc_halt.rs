@@ -82,14 +82,4 @@ impl Block for McHalt {
             error_id: phase.error_id(),
         }
     }
-
-    #[inline(always)]
-    fn rests<P: Planner>(
-        &mut self,
-        inputs: &Inputs,
-        _outputs: &mut Outputs,
-        context: &Context<'_, P>,
-    ) -> bool {
-        self.core.rests(inputs.execute, context)
-    }
 }

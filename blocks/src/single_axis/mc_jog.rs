@@ -65,8 +65,6 @@ pub struct McJog {
     given: Option<Given>,
     /// The last result; of no meaning while there is a command.
     phase: Phase,
-    /// [`Axis::changes`] when the command's fate was asked for.
-    asked_at: u64,
 }
 
 /// The button that counts, forward or backward; both are none.
@@ -129,7 +127,6 @@ impl McJog {
     }
 
     /// A button was pressed or released.
-    #[inline(never)]
     fn change<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Result<(), ErrorId> {
         let Some(forward) = self.held else {
             return self.release(context);
@@ -159,10 +156,7 @@ impl McJog {
         }
         let phase = match &self.given {
             Some(given) => match context.axes.get(given.axis.index()) {
-                Some(axis) => {
-                    self.asked_at = axis.changes();
-                    axis.fate(given.id).into()
-                }
+                Some(axis) => axis.fate(given.id).into(),
                 None => Phase::Failed(ErrorId::AxisUnknown),
             },
             // A result was already shown in an earlier call; without a button it goes.
@@ -204,23 +198,5 @@ impl Block for McJog {
             error: phase.is_error(),
             error_id: phase.error_id(),
         }
-    }
-
-    #[inline(always)]
-    fn rests<P: Planner>(
-        &mut self,
-        inputs: &Inputs,
-        _outputs: &mut Outputs,
-        context: &Context<'_, P>,
-    ) -> bool {
-        let held = button(inputs);
-        held == self.held
-            && match &self.given {
-                Some(given) => context
-                    .axes
-                    .get(given.axis.index())
-                    .is_some_and(|axis| axis.changes() == self.asked_at),
-                None => held.is_some() || self.phase == Phase::Idle,
-            }
     }
 }

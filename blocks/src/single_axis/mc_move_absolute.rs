@@ -65,8 +65,6 @@ impl Block for McMoveAbsolute {
     type Inputs = Inputs;
     type Outputs = Outputs;
 
-    // Called in every scan: in line, the outputs of the usual case are one constant.
-    #[inline(always)]
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let pins = Move {
             axis: inputs.axis,
@@ -102,15 +100,5 @@ impl Block for McMoveAbsolute {
             error: phase.is_error(),
             error_id: phase.error_id(),
         }
-    }
-
-    #[inline(always)]
-    fn rests<P: Planner>(
-        &mut self,
-        inputs: &Inputs,
-        _outputs: &mut Outputs,
-        context: &Context<'_, P>,
-    ) -> bool {
-        self.core.rests(inputs.execute, context)
     }
 }

@@ -101,14 +101,4 @@ impl Block for McMoveContinuousRelative {
             error_id: phase.error_id(),
         }
     }
-
-    #[inline(always)]
-    fn rests<P: Planner>(
-        &mut self,
-        inputs: &Inputs,
-        _outputs: &mut Outputs,
-        context: &Context<'_, P>,
-    ) -> bool {
-        self.core.rests(inputs.execute, context)
-    }
 }

@@ -111,24 +111,4 @@ impl Block for McMoveSuperimposed {
             active: phase.is_active(),
         }
     }
-
-    #[inline(always)]
-    fn rests<P: Planner>(
-        &mut self,
-        inputs: &Inputs,
-        outputs: &mut Outputs,
-        context: &Context<'_, P>,
-    ) -> bool {
-        if !self.core.rests(inputs.execute, context) {
-            return false;
-        }
-        let axis_of = |axis: AxisId| context.axes.get(axis.index());
-        if let Some((axis, id)) = self.command
-            && let Some(covered) = axis_of(axis).and_then(|axis| axis.covered_distance(id))
-        {
-            self.covered = covered;
-            outputs.covered_distance = covered;
-        }
-        true
-    }
 }

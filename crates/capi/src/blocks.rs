@@ -1,7 +1,7 @@
 //! A function for every block of the registry. Their declarations stand in `standstill_blocks.h`.
 
-use crate::enter::{Glance, in_tick, running};
-use crate::runtime::{Inner, Mode, Runtime};
+use crate::enter::{When, enter, running};
+use crate::runtime::{Inner, Runtime};
 use crate::{Code, raw};
 use core::marker::PhantomData;
 use core::slice;
@@ -19,83 +19,25 @@ impl<B: Block> Sizes<B> {
 
 /// One call of an instance of `B`, made first if its key is 0.
 ///
-/// What a host does in almost every scan, a call of a block with nothing to do, is all here and calls nothing. The rest is
-/// in functions of their own, which come last: so nothing has to be saved on the stack for them.
-///
 /// # Safety
 /// As every function of `standstill_blocks.h`: each pointer is null or leads to what its type says, as long as the size
 /// in front tells, and arrays to as many records as their count.
-#[inline(always)]
 unsafe fn call<B: Block + Described>(
-    runtime: *mut Runtime,
-    key: *mut u64,
-    inputs: *const u8,
-    outputs: *mut u8,
-    make: impl Fn(Instance<B>) -> BlockInstance + Copy,
-    find: impl Fn(&mut BlockInstance) -> Option<&mut Instance<B>> + Copy,
-) -> i32 {
-    let glance = |inner: &mut Inner| {
-        // A flight recorder wants the inputs of every call, and arrays are copied in every call.
-        if inner.mode != Mode::Running || const { B::INFO.has_tables() } || key.is_null() {
-            return Glance::Other;
-        }
-        // SAFETY: null, or long enough for a size, by the contract.
-        let fit = unsafe {
-            raw::check_size(inputs, Sizes::<B>::INPUTS).is_ok()
-                && raw::check_size(outputs, Sizes::<B>::OUTPUTS).is_ok()
-        };
-        if !fit {
-            return Glance::Other;
-        }
-        // SAFETY: not null, and as long as its size told. Nothing writes there while it is used: the outputs are
-        // written later.
-        let flat = unsafe { slice::from_raw_parts(inputs, Sizes::<B>::INPUTS) };
-        // SAFETY: not null; its place may be odd.
-        let number = unsafe { key.read_unaligned() };
-        let Ok((instance, mut context)) = inner.instance(number, find) else {
-            return Glance::Other;
-        };
-        if !instance.rests_with(flat, Pointer::NATIVE, &mut context) {
-            return Glance::Wakes;
-        }
-        // SAFETY: not null, and as long as its size told; the inputs are not used any more, should they overlap.
-        let shown = unsafe { raw::bytes_mut(outputs, Sizes::<B>::OUTPUTS) };
-        instance.outputs.put_flat(shown);
-        Glance::Done
-    };
-    let rest = move |inner: &mut Inner, key, inputs, outputs, checked| {
-        // SAFETY: passed on.
-        unsafe { wake(inner, key, inputs, outputs, checked, make, find) }
-    };
-    // SAFETY: passed on.
-    unsafe { in_tick(runtime, key, inputs, outputs, glance, rest) }
-}
-
-/// A call with whatever there may be about it: a block that does not rest, is called for the first time, or cannot be
-/// called at all.
-///
-/// # Safety
-/// As [`call`]; if `checked`, blocks are called, no pointer is null and all is as long as its size has to be.
-#[inline(always)]
-unsafe fn wake<B: Block + Described>(
     inner: &mut Inner,
     key: *mut u64,
     inputs: *const u8,
     outputs: *mut u8,
-    checked: bool,
     make: impl Fn(Instance<B>) -> BlockInstance,
     find: impl Fn(&mut BlockInstance) -> Option<&mut Instance<B>>,
 ) -> Result<(), Code> {
-    if !checked {
-        running(inner)?;
-        if key.is_null() {
-            return Err(Code::NullPointer);
-        }
-        // SAFETY: null, or long enough for a size, by the contract.
-        unsafe {
-            raw::check_size(inputs, Sizes::<B>::INPUTS)?;
-            raw::check_size(outputs, Sizes::<B>::OUTPUTS)?;
-        }
+    running(inner)?;
+    if key.is_null() {
+        return Err(Code::NullPointer);
+    }
+    // SAFETY: null, or long enough for a size, by the contract.
+    unsafe {
+        raw::check_size(inputs, Sizes::<B>::INPUTS)?;
+        raw::check_size(outputs, Sizes::<B>::OUTPUTS)?;
     }
     // SAFETY: not null, and as long as its size told. Nothing writes there while it is used: the outputs are written
     // later.
@@ -115,7 +57,7 @@ unsafe fn wake<B: Block + Described>(
     if const { B::INFO.has_tables() } {
         set_tables(instance, flat);
     }
-    instance.wake(flat, Pointer::NATIVE, &mut context);
+    instance.call_flat(flat, Pointer::NATIVE, &mut context);
     // SAFETY: not null, and as long as its size told; the inputs are not used any more, should they overlap.
     let shown = unsafe { raw::bytes_mut(outputs, Sizes::<B>::OUTPUTS) };
     instance.outputs.put_flat(shown);
@@ -201,7 +143,11 @@ macro_rules! functions {
                 }
             }
             // SAFETY: passed on.
-            unsafe { call(runtime, key, inputs, outputs, BlockInstance::$block, find) }
+            unsafe {
+                enter(runtime, When::InTick, |inner| {
+                    call(inner, key, inputs, outputs, BlockInstance::$block, find)
+                })
+            }
         }
     )*};
 }

@@ -15,39 +15,8 @@ pub(crate) enum When {
     Any,
 }
 
-/// A number for the calling thread, not 0.
-///
-/// The address of its thread control block: the ABI of this system keeps it at `fs:0`. A variable of the thread would do,
-/// too, but in a static library its address comes from a function, around which every call of a block saves registers: a
-/// fifth of a call that finds nothing to do.
-#[cfg(all(
-    feature = "std",
-    target_os = "linux",
-    target_arch = "x86_64",
-    target_pointer_width = "64",
-    not(miri)
-))]
-#[inline(always)]
-fn me() -> usize {
-    let me;
-    // SAFETY: reads a word that is there in every thread of this system, and changes nothing.
-    unsafe {
-        core::arch::asm!("mov {}, fs:[0]", out(reg) me, options(pure, readonly, nostack, preserves_flags))
-    };
-    me
-}
-
 /// A number for the calling thread, not 0: the address of a variable that each has.
-#[cfg(all(
-    feature = "std",
-    not(all(
-        target_os = "linux",
-        target_arch = "x86_64",
-        target_pointer_width = "64",
-        not(miri)
-    ))
-))]
-#[inline(always)]
+#[cfg(feature = "std")]
 fn me() -> usize {
     std::thread_local! {
         static ME: u8 = const { 0 };
@@ -57,7 +26,7 @@ fn me() -> usize {
 
 /// Without `std` threads cannot be told apart; that two are inside at a time can, see [`Busy`].
 #[cfg(not(feature = "std"))]
-#[inline(always)]
+#[inline]
 fn me() -> usize {
     1
 }
@@ -87,7 +56,7 @@ impl Drop for Busy<'_> {
 ///
 /// # Safety
 /// `runtime` is null, or four bytes can be read there; if a [`Runtime`] was made there it is still in place.
-#[inline(always)]
+#[inline]
 pub(crate) unsafe fn enter(
     runtime: *mut Runtime,
     when: When,
@@ -102,7 +71,7 @@ pub(crate) unsafe fn enter(
 ///
 /// # Safety
 /// As [`enter`].
-#[inline(always)]
+#[inline]
 unsafe fn there<'a>(runtime: *mut Runtime) -> Result<&'a Runtime, Code> {
     if runtime.is_null() {
         return Err(Code::NullPointer);
@@ -121,7 +90,7 @@ unsafe fn there<'a>(runtime: *mut Runtime) -> Result<&'a Runtime, Code> {
 
 /// # Safety
 /// As [`enter`].
-#[inline(always)]
+#[inline]
 unsafe fn try_enter(
     runtime: *mut Runtime,
     when: When,
@@ -154,119 +123,6 @@ unsafe fn try_enter(
     result
 }
 
-/// What a glance at a call says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Glance {
-    /// That was all there is to do.
-    Done,
-    /// There is more to do, and nothing wrong with it.
-    Wakes,
-    /// It has to be looked at.
-    Other,
-}
-
-/// Does `glance` on the runtime at `runtime` if it has a tick of this thread open, and `rest` unless that was all there is
-/// to do. `rest` is told whether the glance saw that nothing is wrong; if not it finds the reason, by name. Both are
-/// guarded against panics; `rest` stands in a function of its own, which comes last, and is handed the pointers, so that
-/// it need not capture anything.
-///
-/// # Safety
-/// As [`enter`].
-#[inline(always)]
-pub(crate) unsafe fn in_tick(
-    runtime: *mut Runtime,
-    key: *mut u64,
-    inputs: *const u8,
-    outputs: *mut u8,
-    glance: impl FnOnce(&mut Inner) -> Glance,
-    rest: impl FnOnce(&mut Inner, *mut u64, *const u8, *mut u8, bool) -> Result<(), Code>,
-) -> i32 {
-    // SAFETY: passed on.
-    match unsafe { glanced(runtime, glance) } {
-        Glance::Done => Code::Ok as i32,
-        // SAFETY: passed on.
-        Glance::Wakes => unsafe { finish(runtime, key, inputs, outputs, true, rest) },
-        // SAFETY: passed on.
-        Glance::Other => unsafe { finish(runtime, key, inputs, outputs, false, rest) },
-    }
-}
-
-/// The first half of [`in_tick`].
-///
-/// # Safety
-/// As [`enter`].
-#[inline(always)]
-unsafe fn glanced(runtime: *mut Runtime, glance: impl FnOnce(&mut Inner) -> Glance) -> Glance {
-    // SAFETY: passed on.
-    let Ok(runtime) = (unsafe { there(runtime) }) else {
-        return Glance::Other;
-    };
-    #[cfg(not(feature = "std"))]
-    let Ok(_busy) = Busy::new(runtime) else {
-        return Glance::Other;
-    };
-    if runtime.owner.load(Relaxed) != me() {
-        return Glance::Other;
-    }
-    // SAFETY: as in `try_enter`.
-    let inner = unsafe { &mut *runtime.inner.get() };
-    caught(inner, |inner| Ok(glance(inner))).unwrap_or(Glance::Other)
-}
-
-/// The second half of [`in_tick`].
-///
-/// # Safety
-/// As [`enter`]; if `checked`, this thread has a tick open.
-// As C calls, so that no panic comes out and it can be the last thing its caller does.
-#[inline(never)]
-unsafe extern "C" fn finish<W: FnOnce(&mut Inner, *mut u64, *const u8, *mut u8, bool) -> Result<(), Code>>(
-    runtime: *mut Runtime,
-    key: *mut u64,
-    inputs: *const u8,
-    outputs: *mut u8,
-    checked: bool,
-    rest: W,
-) -> i32 {
-    let runtime = if checked {
-        // SAFETY: it has a tick open, so it is there.
-        unsafe { &*runtime }
-    } else {
-        // SAFETY: passed on.
-        match unsafe { there(runtime) } {
-            Ok(runtime) => runtime,
-            Err(code) => return code as i32,
-        }
-    };
-    #[cfg(not(feature = "std"))]
-    let _busy = match Busy::new(runtime) {
-        Ok(busy) => busy,
-        Err(code) => return code as i32,
-    };
-    if !checked {
-        let owner = runtime.owner.load(Relaxed);
-        if owner != me() {
-            return not_in_tick(owner) as i32;
-        }
-    }
-    // SAFETY: as in `try_enter`.
-    let inner = unsafe { &mut *runtime.inner.get() };
-    match caught(inner, |inner| rest(inner, key, inputs, outputs, checked)) {
-        Ok(()) => Code::Ok as i32,
-        Err(code) => left(runtime, code),
-    }
-}
-
-/// Gives up the runtime if its tick was ended by a panic.
-#[cold]
-#[inline(never)]
-extern "C" fn left(runtime: &Runtime, code: Code) -> i32 {
-    // SAFETY: the thread still owns the runtime, and uses nothing else of its inner part.
-    if !unsafe { &*runtime.inner.get() }.ticking {
-        runtime.owner.store(0, Release);
-    }
-    code as i32
-}
-
 /// Why a function for the open tick is refused.
 fn not_in_tick(owner: usize) -> Code {
     if owner == 0 {
@@ -278,7 +134,7 @@ fn not_in_tick(owner: usize) -> Code {
 
 /// Does `work`; a panic ends the tick, and the resource is stopped.
 #[cfg(feature = "std")]
-#[inline(always)]
+#[inline]
 fn caught<T>(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<T, Code>) -> Result<T, Code> {
     use std::panic::{AssertUnwindSafe, catch_unwind};
     // What it leaves behind is asked for nothing but to ramp down.
@@ -295,7 +151,7 @@ fn broken<T>(inner: &mut Inner) -> Result<T, Code> {
 }
 
 #[cfg(not(feature = "std"))]
-#[inline(always)]
+#[inline]
 fn caught<T>(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<T, Code>) -> Result<T, Code> {
     work(inner)
 }
@@ -375,50 +231,5 @@ mod tests {
             Code::Internal as i32,
             "it stays so"
         );
-    }
-
-    /// A block's call has two halves, and neither lets a panic out or keeps the runtime for its thread.
-    #[test]
-    fn a_panic_in_either_half_of_a_call_ends_the_tick_and_stops_the_resource() {
-        for in_glance in [true, false] {
-            let config = RuntimeConfig {
-                size: size_of::<RuntimeConfig>() as u32,
-                axes: 1,
-                instances: 1,
-                reserved: 0,
-                cycle_ns: 1_000_000,
-            };
-            let bytes = storage::size(&config).unwrap();
-            let mut memory = vec![0_u128; bytes.div_ceil(16)];
-            // SAFETY: as long and as aligned as asked for, and alive until the end of the test.
-            let runtime = unsafe { storage::init(memory.as_mut_ptr().cast(), bytes, &config) }.unwrap();
-            let (key, inputs, outputs) = (core::ptr::null_mut(), core::ptr::null(), core::ptr::null_mut());
-            let call = |rests: bool| {
-                let glance = |_: &mut Inner| {
-                    assert!(!in_glance, "on purpose");
-                    if rests { Glance::Done } else { Glance::Other }
-                };
-                let rest = |inner: &mut Inner, _, _, _, _| {
-                    running(inner)?;
-                    assert!(in_glance, "on purpose");
-                    Ok(())
-                };
-                // SAFETY: the runtime made above; nothing uses the pointers.
-                unsafe { in_tick(runtime, key, inputs, outputs, glance, rest) }
-            };
-            // SAFETY: the runtime made above.
-            let begin = || unsafe { enter(runtime, When::Outside, |inner| inner.begin(0)) };
-            assert_eq!(call(true), Code::NotInTick as i32);
-            assert_eq!(begin(), 0);
-            if !in_glance {
-                assert_eq!(call(true), 0, "the other half is not come to");
-            }
-            assert_eq!(call(false), Code::Internal as i32);
-            assert_eq!(call(false), Code::NotInTick as i32, "the tick has ended");
-            assert_eq!(begin(), 0, "the runtime is free, but");
-            // SAFETY: the runtime made above.
-            let after = unsafe { enter(runtime, When::InTick, |inner| running(inner)) };
-            assert_eq!(after, Code::Internal as i32, "it stays stopped");
-        }
     }
 }

@@ -45,7 +45,7 @@ unsafe impl Sized32 for crate::DriveSetup {
 ///
 /// # Safety
 /// `at` is null, or a `u32` can be read there.
-#[inline(always)]
+#[inline]
 pub(crate) unsafe fn check_size(at: *const u8, needed: usize) -> Result<(), Code> {
     if at.is_null() {
         return Err(Code::NullPointer);
@@ -121,7 +121,7 @@ pub(crate) unsafe fn check<T: Sized32>(at: *mut T) -> Result<(), Code> {
 ///
 /// # Safety
 /// `at` is not null, `len` bytes can be written there, and nothing else uses them meanwhile.
-#[inline(always)]
+#[inline]
 pub(crate) unsafe fn bytes_mut<'a>(at: *mut u8, len: usize) -> &'a mut [u8] {
     // SAFETY: the caller's contract.
     unsafe { slice::from_raw_parts_mut(at, len) }

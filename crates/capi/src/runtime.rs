@@ -381,7 +381,7 @@ impl Inner {
     }
 
     /// The instance of a key.
-    #[inline(always)]
+    #[inline]
     pub fn slot(&mut self, key: u64) -> Result<(u32, &mut BlockInstance), Code> {
         let (number, generation) = (key as u32, (key >> 32) as u32);
         let place = (number as usize).wrapping_sub(1);
@@ -395,7 +395,7 @@ impl Inner {
     }
 
     /// The instance of a key as what `find` takes it for, and what it is called with.
-    #[inline(always)]
+    #[inline]
     pub fn instance<T>(
         &mut self,
         key: u64,
@@ -429,7 +429,6 @@ impl Inner {
     }
 
     /// A place for a new instance; its key. Cost: a look at every place, at most 65534.
-    #[inline(never)]
     pub fn create(&mut self, block: BlockInstance) -> Result<u64, Code> {
         let slots = self.slots.slice_mut().iter_mut();
         let free = (1_u64..).zip(slots).find(|(_, slot)| slot.block.is_none());

@@ -56,13 +56,13 @@ impl<T> List<T> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     pub fn slice(&self) -> &[T] {
         // SAFETY: `len` values were written by `push`, and only this list gives access to them.
         unsafe { slice::from_raw_parts(self.at, self.len) }
     }
 
-    #[inline(always)]
+    #[inline]
     pub fn slice_mut(&mut self) -> &mut [T] {
         // SAFETY: as `slice`, and `self` is borrowed alone.
         unsafe { slice::from_raw_parts_mut(self.at, self.len) }

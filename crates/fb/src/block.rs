@@ -46,17 +46,6 @@ pub struct Context<'a, P: Planner = Standard> {
 }
 
 impl<'a, P: Planner> Context<'a, P> {
-    /// The same for a call that is seldom made: the caller can then keep its own in registers.
-    #[inline]
-    pub(crate) fn reborrow(&mut self) -> Context<'_, P> {
-        Context {
-            now_ns: self.now_ns,
-            scope: self.scope.reborrow(),
-            axes: self.axes,
-            tables: self.tables,
-        }
-    }
-
     /// The axis at a pin, and what it is called in.
     ///
     /// # Errors
@@ -83,19 +72,6 @@ pub trait Block: Copy + Default {
 
     /// One call. Bounded work, no allocation; errors are outputs.
     fn call<P: Planner>(&mut self, inputs: &Self::Inputs, context: &mut Context<'_, P>) -> Self::Outputs;
-
-    /// Whether a call now would change nothing and show `outputs` again, as far as can be told at a glance; what
-    /// changes from scan to scan is renewed in them. A block in the middle of its command is called in every scan and
-    /// has something to tell in two or three of them.
-    #[inline(always)]
-    fn rests<P: Planner>(
-        &mut self,
-        _inputs: &Self::Inputs,
-        _outputs: &mut Self::Outputs,
-        _context: &Context<'_, P>,
-    ) -> bool {
-        false
-    }
 }
 
 /// A block with the memory IEC 61131-3 gives an instance: inputs and outputs keep their values between calls.
@@ -111,55 +87,14 @@ pub struct Instance<B: Block> {
 
 impl<B: Block> Instance<B> {
     /// Calls the block with the inputs as they stand.
-    #[inline(always)]
     pub fn call<P: Planner>(&mut self, context: &mut Context<'_, P>) {
-        if self.block.rests(&self.inputs, &mut self.outputs, context) {
-            debug_assert!(self.would_show_the_same(&self.inputs, context), "{}", B::NAME);
-        } else {
-            self.call_awake(context);
-        }
+        self.outputs = self.block.call(&self.inputs, context);
     }
 
-    /// Whether a call with the inputs in `flat` ([`Pins::set_flat`]) rests ([`Block::rests`]): the outputs then are as a
-    /// call would leave them. If not, [`Self::wake`] is to follow.
-    ///
-    /// A caller with bytes looks with this first, because of what a block that rests does not look at nothing is read.
-    #[inline(always)]
-    pub fn rests_with<P: Planner>(
-        &mut self,
-        flat: &[u8],
-        pointer: Pointer,
-        context: &mut Context<'_, P>,
-    ) -> bool {
-        // For the arrays, which do not come from the bytes.
-        let mut inputs = self.inputs;
-        inputs.set_flat(flat, pointer);
-        let rests = self.block.rests(&inputs, &mut self.outputs, context);
-        debug_assert!(
-            !rests || self.would_show_the_same(&inputs, context),
-            "{}",
-            B::NAME
-        );
-        rests
-    }
-
-    /// The call with the inputs in `flat` of a block that does not rest.
-    #[inline(always)]
-    pub fn wake<P: Planner>(&mut self, flat: &[u8], pointer: Pointer, context: &mut Context<'_, P>) {
+    /// Calls the block with the inputs in `flat` ([`Pins::set_flat`]).
+    pub fn call_flat<P: Planner>(&mut self, flat: &[u8], pointer: Pointer, context: &mut Context<'_, P>) {
         self.inputs.set_flat(flat, pointer);
-        self.outputs = self.block.call(&self.inputs, context);
-    }
-
-    // Apart, so that what it keeps in registers does not burden the many calls that rest.
-    #[inline(never)]
-    fn call_awake<P: Planner>(&mut self, context: &mut Context<'_, P>) {
-        self.outputs = self.block.call(&self.inputs, context);
-    }
-
-    /// Holds [`Block::rests`] against a call, in every test.
-    fn would_show_the_same<P: Planner>(&self, inputs: &B::Inputs, context: &mut Context<'_, P>) -> bool {
-        let outputs = { self.block }.call(inputs, context);
-        (0..B::Outputs::PINS.len()).all(|index| self.outputs.get(index) == outputs.get(index))
+        self.call(context);
     }
 }
 

@@ -93,15 +93,11 @@ pub struct ExecuteCore {
     /// What was shown last.
     phase: Phase,
     command: Option<(AxisId, CommandId)>,
-    /// [`standstill_axis::Axis::changes`] when the command's fate was asked for.
-    asked_at: u64,
 }
 
 impl ExecuteCore {
     /// One call. `issue` gives the command at a rising edge (R8) and is told which command the instance
     /// held before (a retrigger replaces it silently, R32); it returns where to ask for its fate.
-    // In line, so that the many scans of a command in progress need not put a phase together and take it apart.
-    #[inline(always)]
     pub fn scan<P: Planner>(
         &mut self,
         execute: bool,
@@ -110,18 +106,13 @@ impl ExecuteCore {
     ) -> Phase {
         let rising = execute && !self.executed;
         self.executed = execute;
-        if rising && let Err(id) = self.start(&mut context.reborrow(), issue) {
+        if rising && let Err(id) = self.start(context, issue) {
             self.phase = Phase::Failed(id);
             return self.phase;
         }
         let phase = match self.command {
             Some((axis, id)) => match context.axes.get(axis.index()) {
-                // It was busy and nothing has changed.
-                Some(axis) if axis.changes() == self.asked_at && !rising => self.phase,
-                Some(axis) => {
-                    self.asked_at = axis.changes();
-                    axis.fate(id).into()
-                }
+                Some(axis) => axis.fate(id).into(),
                 None => Phase::Failed(ErrorId::AxisUnknown),
             },
             // A result was already shown in an earlier call; with Execute FALSE it goes (R28, R30).
@@ -135,30 +126,12 @@ impl ExecuteCore {
         phase
     }
 
-    /// Whether a call with `execute` would show again what the last one showed: no edge, and either no fate has changed
-    /// since, or there is none to ask for.
-    #[inline(always)]
-    pub fn rests<P: Planner>(&self, execute: bool, context: &Context<'_, P>) -> bool {
-        if execute != self.executed {
-            return false;
-        }
-        match self.command {
-            Some((axis, _)) => context
-                .axes
-                .get(axis.index())
-                .is_some_and(|axis| axis.changes() == self.asked_at),
-            None => execute || self.phase == Phase::Idle,
-        }
-    }
-
     /// The command that goes on in a call with `execute`: none if it ended, or a rising edge is about to replace it.
     pub fn running(&self, execute: bool) -> Option<(AxisId, CommandId)> {
         let rising = execute && !self.executed;
         self.command.filter(|_| !rising)
     }
 
-    // Apart, so that what a call at an edge keeps in registers does not burden all the others.
-    #[inline(never)]
     fn start<P: Planner>(
         &mut self,
         context: &mut Context<'_, P>,

@@ -146,7 +146,7 @@ impl Layout {
     }
 
     /// Where pin `index` begins: the place among the pins given.
-    #[inline(always)]
+    #[inline]
     pub const fn offset(&self, index: usize) -> usize {
         if index < PINS_MOST { self.offsets[index] } else { 0 }
     }
@@ -196,13 +196,13 @@ pub trait Flat: Copy {
 macro_rules! flat {
     ($($ty:ty),*) => {$(
         impl Flat for $ty {
-            #[inline(always)]
+            #[inline]
             fn read(flat: &[u8], offset: usize) -> Self {
                 let bytes = flat.get(offset..).and_then(|rest| rest.first_chunk());
                 bytes.map_or(Self::default(), |bytes| Self::from_le_bytes(*bytes))
             }
 
-            #[inline(always)]
+            #[inline]
             fn write(self, flat: &mut [u8], offset: usize) {
                 if let Some(bytes) = flat.get_mut(offset..).and_then(|rest| rest.first_chunk_mut()) {
                     *bytes = self.to_le_bytes();
@@ -216,10 +216,10 @@ flat!(u8, i16, u16, u32, i32, i64, u64, f64);
 
 /// What an array is in the pins' own conversion: nothing, because who reads its records sets the pin.
 impl Flat for () {
-    #[inline(always)]
+    #[inline]
     fn read(_: &[u8], _: usize) -> Self {}
 
-    #[inline(always)]
+    #[inline]
     fn write(self, _: &mut [u8], _: usize) {}
 }
 

@@ -135,13 +135,13 @@ macro_rules! pin_value {
             const TYPE: PinType = PinType::$ty;
             type Flat = $flat;
 
-            #[inline(always)]
+            #[inline]
             fn into_flat(self) -> $flat {
                 let $value = self;
                 $into
             }
 
-            #[inline(always)]
+            #[inline]
             fn from_flat($back: $flat) -> Self {
                 $from
             }
@@ -172,12 +172,12 @@ macro_rules! axis_value {
             const TYPE: PinType = PinType::Axis($name);
             type Flat = i32;
 
-            #[inline(always)]
+            #[inline]
             fn into_flat(self) -> i32 {
                 axis_number(self.into())
             }
 
-            #[inline(always)]
+            #[inline]
             fn from_flat(flat: i32) -> Self {
                 let $id = numbered_axis(flat);
                 $made
@@ -241,12 +241,12 @@ impl PinValue for Time {
     const TYPE: PinType = PinType::Time;
     type Flat = i64;
 
-    #[inline(always)]
+    #[inline]
     fn into_flat(self) -> i64 {
         self.0
     }
 
-    #[inline(always)]
+    #[inline]
     fn from_flat(flat: i64) -> Self {
         Self(flat)
     }
@@ -268,7 +268,7 @@ impl PinValue for ErrorId {
     const TYPE: PinType = PinType::Word;
     type Flat = u16;
 
-    #[inline(always)]
+    #[inline]
     fn into_flat(self) -> u16 {
         self.number()
     }
@@ -297,12 +297,12 @@ impl<E: IecEnum> PinValue for Raw<E> {
     });
     type Flat = i32;
 
-    #[inline(always)]
+    #[inline]
     fn into_flat(self) -> i32 {
         self.number()
     }
 
-    #[inline(always)]
+    #[inline]
     fn from_flat(flat: i32) -> Self {
         Self::new(flat)
     }
@@ -476,7 +476,7 @@ macro_rules! pins {
                 Err($crate::PinError::NotWritable)
             }
 
-            #[inline(always)]
+            #[inline]
             fn set_flat(&mut self, flat: &[u8], pointer: $crate::flat::Pointer) {
                 use $crate::flat::{Flat as _, Layout, Pointer};
                 const { assert!(<$name as $crate::Pins>::PINS.len() <= $crate::flat::PINS_MOST) };
@@ -498,7 +498,7 @@ macro_rules! pins {
                 let _ = (place, flat, layout);
             }
 
-            #[inline(always)]
+            #[inline]
             fn put_flat(&self, flat: &mut [u8]) {
                 use $crate::flat::{Flat as _, Layout, Pointer};
                 const LAYOUT: Layout = Layout::of_pins(<$name as $crate::Pins>::PINS, Pointer::NATIVE);

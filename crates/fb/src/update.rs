@@ -66,8 +66,6 @@ impl<V> Default for UpdateCore<V> {
 
 impl<V: Values> UpdateCore<V> {
     /// One call. `values` reads the pins; `issue` gives the command at a rising edge, as for [`ExecuteCore::scan`].
-    // In line for the same reason as that.
-    #[inline(always)]
     pub fn scan<P: Planner>(
         &mut self,
         pins: Move,
@@ -76,7 +74,7 @@ impl<V: Values> UpdateCore<V> {
         issue: impl FnOnce(&mut Axis<P>, V, Option<CommandId>, &mut Scope<'_>) -> Result<CommandId, ErrorId>,
     ) -> Phase {
         if self.seen.is_some() {
-            self.update(pins, &mut context.reborrow(), &values);
+            self.update(pins, context, &values);
         }
         let seen = &mut self.seen;
         self.execute.scan(pins.execute, context, |context, replaces| {
@@ -88,15 +86,7 @@ impl<V: Values> UpdateCore<V> {
         })
     }
 
-    /// As [`ExecuteCore::rests`]; while changes of the values count they have to be looked at.
-    #[inline(always)]
-    pub fn rests<P: Planner>(&self, execute: bool, context: &Context<'_, P>) -> bool {
-        self.seen.is_none() && self.execute.rests(execute, context)
-    }
-
     /// Before the fate is asked for, so that what the new values change shows in the same call.
-    #[cold]
-    #[inline(never)]
     fn update<P: Planner>(&mut self, pins: Move, context: &mut Context<'_, P>, values: &impl Fn() -> V) {
         let values = values();
         let running = self.execute.running(pins.execute);

@@ -47,7 +47,7 @@ struct Own {
 }
 
 /// The guest's memory, and what its functions work on.
-#[inline(always)]
+#[inline]
 fn open<'c>(caller: &'c mut Caller<'_, Own>) -> (&'c mut [u8], &'c mut Host) {
     match caller.data().memory {
         Some(memory) => {

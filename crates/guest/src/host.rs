@@ -330,7 +330,7 @@ impl Host {
 
     /// The instance with this key and its number in records, as a block of one kind: nothing if there is no such, or
     /// the key is 0.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn find<B>(
         &mut self,
         number: u64,

@@ -60,7 +60,7 @@ pub(crate) fn log_read(host: &mut Host, memory: &mut [u8], given: [u32; 5]) -> A
 }
 
 /// The structure at an address: so many of its bytes, if they are there and the size in front is as large.
-#[inline(always)]
+#[inline]
 fn structure(memory: &[u8], address: u32, size: usize) -> Option<&[u8]> {
     let bytes = memory.get(address as usize..)?.get(..size)?;
     (address != 0 && u32::read(bytes, 0) as usize >= size).then_some(bytes)
@@ -77,16 +77,14 @@ impl<B: Block> Sizes<B> {
 /// Finds the instance of one kind of block.
 type Find<B> = fn(&mut BlockInstance) -> Option<&mut Instance<B>>;
 
-/// A call with good addresses of an instance that is there. If there is anything else about it, nothing happened; nor if
-/// the instance has something to do, and `wakes` does not ask for that.
-#[inline(always)]
+/// A call with good addresses of an instance that is there. If there is anything else about it, nothing happened.
+#[inline]
 fn call<B: Block + Described, P: Planner>(
     host: &mut Host,
     memory: &mut [u8],
     [key, inputs, outputs]: [u32; 3],
     context: &mut Context<'_, P>,
     own: Find<B>,
-    wakes: bool,
 ) -> Option<()> {
     if key == 0 || const { B::INFO.has_tables() } {
         return None;
@@ -94,11 +92,7 @@ fn call<B: Block + Described, P: Planner>(
     structure(memory, outputs, Sizes::<B>::OUTPUTS)?;
     let flat = structure(memory, inputs, Sizes::<B>::INPUTS)?;
     let (instance, mut context) = instance(host, memory, key, context, own)?;
-    if wakes {
-        instance.wake(flat, Pointer::Bits32, &mut context);
-    } else if !instance.rests_with(flat, Pointer::Bits32, &mut context) {
-        return None;
-    }
+    instance.call_flat(flat, Pointer::Bits32, &mut context);
     let shown = memory
         .get_mut(outputs as usize..)?
         .get_mut(..Sizes::<B>::OUTPUTS)?;
@@ -107,7 +101,7 @@ fn call<B: Block + Described, P: Planner>(
 }
 
 /// The instance with the key at an address, and what it may touch.
-#[inline(always)]
+#[inline]
 fn instance<'h, B: Block, P: Planner>(
     host: &'h mut Host,
     memory: &[u8],
@@ -124,22 +118,6 @@ fn instance<'h, B: Block, P: Planner>(
         tables: &[],
     };
     Some((instance, context))
-}
-
-/// A call that has something to do. Apart, so that a glance keeps nothing on the stack for it.
-#[inline(never)]
-fn rest<B: Block + Described, P: Planner>(
-    block: usize,
-    host: &mut Host,
-    memory: &mut [u8],
-    addresses: [u32; 3],
-    context: &mut Context<'_, P>,
-    own: Find<B>,
-) -> Answer {
-    match call(host, memory, addresses, context, own, true) {
-        Some(()) => Ok(0),
-        None => look(block, host, memory, addresses, context),
-    }
 }
 
 /// A call with whatever there may be about it.
@@ -197,10 +175,9 @@ macro_rules! functions {
                     return Ok(Code::NotInTick as i64);
                 };
                 let addresses = [key, inputs, outputs];
-                // In almost every scan a block has nothing to do.
-                let outcome = match call(host, memory, addresses, context, own, false) {
+                let outcome = match call(host, memory, addresses, context, own) {
                     Some(()) => Ok(0),
-                    None => rest(Place::$name as usize, host, memory, addresses, context, own),
+                    None => look(Place::$name as usize, host, memory, addresses, context),
                 };
                 self.0.set(Some(context));
                 outcome
