@@ -5,12 +5,13 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Command, Comms, Direction, DriveFeedback, DrivePosition, DriveSignals,
-    Dynamics, InstanceId, Limits, Log, Request, Source, Standard, StartState,
+    Dynamics, Limits, Log, Request, Scope, Standard, StartState, steps,
 };
 use standstill_blocks::administrative::mc_digital_cam_switch::{
     CamSwitch, Inputs, McDigitalCamSwitch, TrackOption,
 };
 use standstill_fb::{Context, Instance, OutputRef, Pins, TableOf, TableRef, Time};
+use std::slice;
 
 const CYCLE_NS: i64 = 1_000_000;
 const CYCLE: f64 = 1e-3;
@@ -163,10 +164,8 @@ fn a_table_that_is_not_there_or_too_long_is_an_error_until_it_is_mended() {
         block.inputs.switches = TableOf::new(TableRef { first, records });
         block.call(&mut Context {
             now_ns: 0,
-            scan: 0,
-            instance: InstanceId(0),
+            scope: Scope::new(0, &mut log),
             axes: &mut axes,
-            log: &mut log,
             tables: &tables,
         });
         assert_eq!(block.outputs.error_id.number(), error, "{records} from {first}");
@@ -261,11 +260,7 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
                 comms: Comms::Ok,
                 signals: DriveSignals::default(),
             };
-            axes[0].follow_feedback(&feedback, scan, &mut log);
-            let source = Source {
-                scan,
-                instance: InstanceId(0),
-            };
+            axes[0].follow_feedback(&feedback, &mut Scope::new(scan, &mut log));
             if scan == 0 {
                 let command = Command::MoveVelocity {
                     dynamics: Dynamics {
@@ -275,15 +270,15 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
                     direction: Direction::Unset.into(),
                 };
                 let request = Request::aborting(command);
-                axes[0].command(&request, source, &mut log).expect("a motion");
+                axes[0]
+                    .command(&request, &mut Scope::new(scan, &mut log))
+                    .expect("a motion");
             }
             let steady = axes[0].setpoint().velocity == velocity;
             block.call(&mut Context {
                 now_ns: scan as i64 * CYCLE_NS,
-                scan,
-                instance: InstanceId(0),
+                scope: Scope::new(scan, &mut log),
                 axes: &mut axes,
-                log: &mut log,
                 tables: &tables,
             });
             assert!(block.outputs.in_operation);
@@ -318,7 +313,7 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
                 }
             }
             let before = axes[0].setpoint();
-            axes[0].advance(scan, &mut log);
+            steps::advance(slice::from_mut(&mut axes[0]), &mut Scope::new(scan, &mut log));
             let after = axes[0].setpoint();
             let shown = after.position - before.position;
             // Of the ways that fit what is shown the one nearest to what the velocities say.

@@ -6,7 +6,7 @@
 //! end counting, as IronPLC 0.239 and truST 0.9.15 do. All inputs are `x`, PT is T#30ms, PV is 2; CTU.R is
 //! TRUE in scan 20 and CTD.LD in scan 1.
 
-use standstill_axis::{Log, Standard};
+use standstill_axis::{Log, Scope, Standard};
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, Value};
 
@@ -57,10 +57,8 @@ impl Bench {
     fn call(&mut self, now_ns: i64) {
         self.instance.call(&mut Context::<Standard> {
             now_ns,
-            scan: 0,
-            instance: Default::default(),
+            scope: Scope::new(0, &mut Log::default()),
             axes: &mut [],
-            log: &mut Log::default(),
             tables: &[],
         });
     }

@@ -46,8 +46,8 @@ impl Block for McAbortTrigger {
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let (axis, log, source) = context.axis(inputs.axis)?;
-            axis.abort_trigger(inputs.trigger_input, source, log)
+            let (axis, scope) = context.axis(inputs.axis)?;
+            axis.abort_trigger(inputs.trigger_input, scope)
                 .map(|id| (inputs.axis, id))
         });
         Outputs {

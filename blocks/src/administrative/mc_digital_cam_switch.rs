@@ -108,20 +108,18 @@ impl Block for McDigitalCamSwitch {
             check(switches.rows(), options.rows(), axis.config().modulo)?;
             Ok((switches, options, sample(axis, inputs, now_ns)?))
         };
-        let working = self
-            .core
-            .write(inputs.enable, axis, context, |axis, source, log| {
-                let read = read(axis);
-                let error = read.as_ref().err().map(|(.., error)| *error);
-                // Not recorded in every call.
-                if let Err((pin, value, limit, error)) = read
-                    && *refused != Some(error)
-                {
-                    axis.note_refusal(pin, value, limit, error, source, log);
-                }
-                *refused = error;
-                read.map_err(|(.., error)| error)
-            });
+        let working = self.core.write(inputs.enable, axis, context, |axis, scope| {
+            let read = read(axis);
+            let error = read.as_ref().err().map(|(.., error)| *error);
+            // Not recorded in every call.
+            if let Err((pin, value, limit, error)) = read
+                && *refused != Some(error)
+            {
+                axis.note_refusal(pin, value, limit, error, scope);
+            }
+            *refused = error;
+            read.map_err(|(.., error)| error)
+        });
         if !inputs.enable {
             self.refused = None;
         }

@@ -47,7 +47,7 @@ impl Block for McPower {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let (axis, log, source) = match context.axis(inputs.axis) {
+        let (axis, scope) = match context.axis(inputs.axis) {
             Ok(found) => found,
             Err(id) if inputs.enable => return refused(id),
             Err(_) => return Outputs::default(),
@@ -56,7 +56,7 @@ impl Block for McPower {
             positive: inputs.enable_positive,
             negative: inputs.enable_negative,
         };
-        axis.set_power(inputs.enable, permitted, source, log);
+        axis.set_power(inputs.enable, permitted, scope);
         let error = axis.power_error().filter(|_| inputs.enable);
         Outputs {
             status: axis.is_powered(),

@@ -44,8 +44,8 @@ impl Block for McReset {
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let (axis, log, source) = context.axis(inputs.axis)?;
-            axis.reset(source, log).map(|id| (inputs.axis, id))
+            let (axis, scope) = context.axis(inputs.axis)?;
+            axis.reset(scope).map(|id| (inputs.axis, id))
         });
         Outputs {
             done: phase.is_done(),

@@ -74,7 +74,7 @@ impl Block for McSetOverride {
         let refused = &mut self.refused;
         let written = self
             .core
-            .write(inputs.enable, inputs.axis, context, |axis, source, log| {
+            .write(inputs.enable, inputs.axis, context, |axis, scope| {
                 let factors = factors_of(inputs);
                 if factors == axis.factors() {
                     *refused = None;
@@ -88,7 +88,7 @@ impl Block for McSetOverride {
                 {
                     return Err(refusal.error);
                 }
-                let taken = axis.set_override(factors, source, log);
+                let taken = axis.set_override(factors, scope);
                 *refused = taken.err().map(|error| Refusal {
                     factors: bits,
                     active,

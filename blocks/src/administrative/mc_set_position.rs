@@ -50,15 +50,9 @@ impl Block for McSetPosition {
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let (axis, log, source) = context.axis(inputs.axis)?;
-            axis.set_position(
-                inputs.position,
-                inputs.relative,
-                inputs.execution_mode,
-                source,
-                log,
-            )
-            .map(|id| (inputs.axis, id))
+            let (axis, scope) = context.axis(inputs.axis)?;
+            axis.set_position(inputs.position, inputs.relative, inputs.execution_mode, scope)
+                .map(|id| (inputs.axis, id))
         });
         Outputs {
             done: phase.is_done(),

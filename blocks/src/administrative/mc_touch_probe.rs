@@ -62,7 +62,7 @@ impl Block for McTouchProbe {
         // What a refused edge left waiting is still ours, so the core's memory does not do here.
         let phase = self.core.scan(inputs.execute, context, |context, _| {
             let held = given.filter(|(axis, _)| *axis == inputs.axis).map(|(_, id)| id);
-            let (axis, log, source) = context.axis(inputs.axis)?;
+            let (axis, scope) = context.axis(inputs.axis)?;
             let request = TouchProbe {
                 trigger: inputs.trigger_input,
                 window: inputs
@@ -70,7 +70,7 @@ impl Block for McTouchProbe {
                     .then_some((inputs.first_position, inputs.last_position)),
                 replaces: held,
             };
-            let id = axis.touch_probe(&request, source, log)?;
+            let id = axis.touch_probe(&request, scope)?;
             // The Axis pin may have changed since.
             if let Some((elsewhere, id)) = given.replace((inputs.axis, id))
                 && elsewhere != inputs.axis

@@ -50,13 +50,12 @@ impl Block for McWriteBoolParameter {
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let (axis, log, source) = context.axis(inputs.axis)?;
+            let (axis, scope) = context.axis(inputs.axis)?;
             axis.write_parameter(
                 inputs.parameter_number,
                 ParameterValue::Bool(inputs.value),
                 inputs.execution_mode,
-                source,
-                log,
+                scope,
             )
             .map(|command| (inputs.axis, command))
         });

@@ -51,15 +51,9 @@ impl Block for McWriteDigitalOutput {
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self.core.scan(inputs.execute, context, |context, _| {
             let id = inputs.output.into();
-            let (axis, log, source) = context.axis(id)?;
-            axis.write_output(
-                inputs.output_number,
-                inputs.value,
-                inputs.execution_mode,
-                source,
-                log,
-            )
-            .map(|command| (id, command))
+            let (axis, scope) = context.axis(id)?;
+            axis.write_output(inputs.output_number, inputs.value, inputs.execution_mode, scope)
+                .map(|command| (id, command))
         });
         Outputs {
             done: phase.is_done(),

@@ -57,7 +57,7 @@ impl Block for McHalt {
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self.core.scan(inputs.execute, context, |context, replaces| {
-            let (axis, log, source) = context.axis(inputs.axis)?;
+            let (axis, scope) = context.axis(inputs.axis)?;
             let request = Request {
                 command: Command::Halt {
                     dynamics: Dynamics {
@@ -71,7 +71,7 @@ impl Block for McHalt {
                 buffer_mode: inputs.buffer_mode,
                 replaces,
             };
-            axis.command(&request, source, log).map(|id| (inputs.axis, id))
+            axis.command(&request, scope).map(|id| (inputs.axis, id))
         });
         Outputs {
             done: phase.is_done(),

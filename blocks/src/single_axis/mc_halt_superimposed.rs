@@ -56,7 +56,7 @@ impl Block for McHaltSuperimposed {
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let (axis, log, source) = context.axis(inputs.axis)?;
+            let (axis, scope) = context.axis(inputs.axis)?;
             let dynamics = Dynamics {
                 velocity: 0.0,
                 acceleration: 0.0,
@@ -64,7 +64,7 @@ impl Block for McHaltSuperimposed {
                 jerk: inputs.jerk,
                 snap: inputs.snap,
             };
-            let id = axis.halt_superimposed(&dynamics, source, log)?;
+            let id = axis.halt_superimposed(&dynamics, scope)?;
             Ok((inputs.axis, id))
         });
         Outputs {

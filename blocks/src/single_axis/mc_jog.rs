@@ -3,7 +3,7 @@
 //! Source: none, this block is not in the PLCopen standard; pins and outputs follow its rules R8, R19 to R38 as far as
 //! a level of two buttons has an edge. What the block does stands in docs/jogging.md.
 
-use standstill_axis::{Axis, AxisId, Command, CommandId, Dynamics, ErrorId, Log, Planner, Request, Source};
+use standstill_axis::{Axis, AxisId, Command, CommandId, Dynamics, ErrorId, Planner, Request, Scope};
 use standstill_fb::{Block, Context, Group, Phase, pins};
 
 pins! {
@@ -85,7 +85,7 @@ impl McJog {
         context: &mut Context<'_, P>,
     ) -> Result<Given, ErrorId> {
         let replaces = self.given.map(|given| given.id);
-        let (axis, log, source) = context.axis(inputs.axis)?;
+        let (axis, scope) = context.axis(inputs.axis)?;
         let dynamics = Dynamics {
             velocity: inputs.velocity,
             acceleration: inputs.acceleration,
@@ -103,8 +103,7 @@ impl McJog {
                 replaces,
                 ..Request::aborting(command)
             },
-            source,
-            log,
+            scope,
         )?;
         Ok(Given {
             axis: inputs.axis,
@@ -118,11 +117,11 @@ impl McJog {
         let Some(given) = &mut self.given else {
             return Ok(());
         };
-        let (axis, log, source) = context.axis(given.axis)?;
+        let (axis, scope) = context.axis(given.axis)?;
         if Phase::from(axis.fate(given.id)).is_busy() {
-            let gentle = halt(axis, given.dynamics, source, log);
+            let gentle = halt(axis, given.dynamics, scope);
             // A ramp that would take too long is no reason to go on.
-            given.id = gentle.or_else(|_| halt(axis, Dynamics::default(), source, log))?;
+            given.id = gentle.or_else(|_| halt(axis, Dynamics::default(), scope))?;
         }
         Ok(())
     }
@@ -176,10 +175,9 @@ impl McJog {
 fn halt<P: Planner>(
     axis: &mut Axis<P>,
     dynamics: Dynamics,
-    source: Source,
-    log: &mut Log,
+    scope: &mut Scope<'_>,
 ) -> Result<CommandId, ErrorId> {
-    axis.command(&Request::aborting(Command::Halt { dynamics }), source, log)
+    axis.command(&Request::aborting(Command::Halt { dynamics }), scope)
 }
 
 impl Block for McJog {

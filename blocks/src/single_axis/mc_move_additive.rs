@@ -82,13 +82,13 @@ impl Block for McMoveAdditive {
         };
         let phase = self
             .core
-            .scan(pins, context, values, |axis, command, replaces, source, log| {
+            .scan(pins, context, values, |axis, command, replaces, scope| {
                 let request = Request {
                     command,
                     buffer_mode: inputs.buffer_mode,
                     replaces,
                 };
-                axis.command(&request, source, log)
+                axis.command(&request, scope)
             });
         Outputs {
             done: phase.is_done(),

@@ -83,14 +83,12 @@ impl Block for McMoveSuperimposed {
             },
         };
         let (command, covered) = (&mut self.command, &mut self.covered);
-        let phase = self
-            .core
-            .scan(pins, context, values, |axis, request, _, source, log| {
-                (*command, *covered) = (None, 0.0);
-                let id = axis.superimpose(&request, source, log)?;
-                *command = Some((inputs.axis, id));
-                Ok(id)
-            });
+        let phase = self.core.scan(pins, context, values, |axis, request, _, scope| {
+            (*command, *covered) = (None, 0.0);
+            let id = axis.superimpose(&request, scope)?;
+            *command = Some((inputs.axis, id));
+            Ok(id)
+        });
         if let Some((axis, id)) = self.command {
             if let Some(now) = context
                 .axes

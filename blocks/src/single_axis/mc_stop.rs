@@ -56,7 +56,7 @@ impl Block for McStop {
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let lock = &mut self.lock;
         let phase = self.core.scan(inputs.execute, context, |context, replaces| {
-            let (axis, log, source) = context.axis(inputs.axis)?;
+            let (axis, scope) = context.axis(inputs.axis)?;
             let request = Request {
                 command: Command::Stop {
                     dynamics: Dynamics {
@@ -70,7 +70,7 @@ impl Block for McStop {
                 buffer_mode: BufferMode::Aborting.into(),
                 replaces,
             };
-            axis.command(&request, source, log)
+            axis.command(&request, scope)
                 .map(|id| *lock.insert((inputs.axis, id)))
         });
         if !inputs.execute

@@ -3,8 +3,8 @@
 //! Source: PLCopen Motion Control Part 1, sections on Execute/Done and ContinuousUpdate; R8 to R14, V24.
 
 use standstill_axis::{
-    Axis, AxisId, BufferMode, CommandId, ErrorId, Log, PROFILE_POINTS, Planner, Profile, ProfileKind,
-    ProfileRow, Raw, Source,
+    Axis, AxisId, BufferMode, CommandId, ErrorId, PROFILE_POINTS, Planner, Profile, ProfileKind, ProfileRow,
+    Raw, Scope,
 };
 use standstill_fb::{Context, ExecuteCore, Phase, Record, TableOf};
 
@@ -102,12 +102,10 @@ impl<R: Point> ProfileCore<R> {
         let (given, continuous) = (&mut self.given, &mut self.continuous);
         self.execute.scan(pins.execute, context, |context, _| {
             let tables = context.tables;
-            let (axis, log, source) = context.axis(pins.axis)?;
+            let (axis, scope) = context.axis(pins.axis)?;
             let id = shape
-                .read(tables, |profile| {
-                    axis.profile(profile, pins.buffer_mode, source, log)
-                })
-                .unwrap_or_else(|| Err(unknown(axis, R::PIN, source, log)))?;
+                .read(tables, |profile| axis.profile(profile, pins.buffer_mode, scope))
+                .unwrap_or_else(|| Err(unknown(axis, R::PIN, scope)))?;
             (*given, *continuous) = (Some(*shape), pins.continuous_update);
             Ok((pins.axis, id))
         })
@@ -124,7 +122,7 @@ impl<R: Point> ProfileCore<R> {
     ) {
         self.continuous &= pins.continuous_update;
         let tables = context.tables;
-        let (Some(given), Ok((axis, log, source))) = (&mut self.given, context.axis(axis)) else {
+        let (Some(given), Ok((axis, scope))) = (&mut self.given, context.axis(axis)) else {
             return;
         };
         let changed = self.continuous && !given.is_same(shape);
@@ -132,7 +130,7 @@ impl<R: Point> ProfileCore<R> {
             *given = *shape;
         }
         if axis.profile_is_due(id) {
-            let start = |profile: &Profile<'_>| axis.start_profile(id, profile, source, log);
+            let start = |profile: &Profile<'_>| axis.start_profile(id, profile, scope);
             if given.read(tables, start).is_none() {
                 // Without its points it cannot start.
                 let none = Profile {
@@ -142,18 +140,18 @@ impl<R: Point> ProfileCore<R> {
                     scale: given.scale,
                     offset: given.offset,
                 };
-                axis.start_profile(id, &none, source, log);
+                axis.start_profile(id, &none, scope);
             }
         } else if changed {
             // The block shows no Error: its command goes on as it was (R21).
-            let _recorded = given.read(tables, |profile| axis.update_profile(id, profile, source, log));
+            let _recorded = given.read(tables, |profile| axis.update_profile(id, profile, scope));
         }
     }
 }
 
 /// The table does not stand where the pin says.
-fn unknown<P: Planner>(axis: &Axis<P>, pin: &'static str, source: Source, log: &mut Log) -> ErrorId {
+fn unknown<P: Planner>(axis: &Axis<P>, pin: &'static str, scope: &mut Scope<'_>) -> ErrorId {
     let error = ErrorId::TableUnknown;
-    axis.note_refusal(pin, f64::NAN, f64::NAN, error, source, log);
+    axis.note_refusal(pin, f64::NAN, f64::NAN, error, scope);
     error
 }

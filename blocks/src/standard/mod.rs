@@ -32,17 +32,16 @@ fn elapsed(start_ns: i64, now_ns: i64, pt: Time) -> (Time, bool) {
 
 #[cfg(test)]
 mod testing {
-    use standstill_axis::{Log, Standard};
+    use standstill_axis::{Log, Scope, Standard};
     use standstill_fb::{Block, Context};
 
     /// One call of a block that needs no axis.
     pub fn call<B: Block>(block: &mut B, inputs: &B::Inputs, now_ns: i64) -> B::Outputs {
+        let mut log = Log::default();
         let mut context = Context::<Standard> {
             now_ns,
-            scan: 0,
-            instance: Default::default(),
+            scope: Scope::new(0, &mut log),
             axes: &mut [],
-            log: &mut Log::default(),
             tables: &[],
         };
         block.call(inputs, &mut context)

@@ -4,7 +4,7 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Comms, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals,
-    InstanceId, Limits, Log, Source, Standard, StartState, TorqueReport,
+    Limits, Log, Scope, Standard, StartState, TorqueReport, steps,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, PinType, TableRef, Value};
@@ -124,13 +124,6 @@ impl Bench {
         }
     }
 
-    pub fn source(&self) -> Source {
-        Source {
-            scan: self.scan,
-            instance: InstanceId(0),
-        }
-    }
-
     /// Feedback is latched.
     pub fn latch(&mut self) {
         for (axis, drive) in self.axes.iter_mut().zip(&self.drives) {
@@ -148,25 +141,23 @@ impl Bench {
                 comms: Comms::Ok,
                 signals: DriveSignals::default(),
             };
-            axis.follow_feedback(&feedback, self.scan, &mut self.log);
+            axis.follow_feedback(&feedback, &mut Scope::new(self.scan, &mut self.log));
         }
     }
 
     pub fn call(&mut self, block: &mut BlockInstance) {
         block.call(&mut Context {
             now_ns: self.scan as i64 * 1_000_000,
-            scan: self.scan,
-            instance: InstanceId(0),
+            scope: Scope::new(self.scan, &mut self.log),
             axes: &mut self.axes,
-            log: &mut self.log,
             tables: &POINTS,
         });
     }
 
     /// Both axes move on, and stay finite.
     pub fn advance(&mut self) {
+        steps::advance(&mut self.axes, &mut Scope::new(self.scan, &mut self.log));
         for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
-            axis.advance(self.scan, &mut self.log);
             assert!(axis.setpoint().is_finite(), "scan {}", self.scan);
             // It is there at once, in the coordinates of the command.
             *drive = axis.drive_command();

@@ -2,7 +2,7 @@
 
 use crate::bench::{AXIS, Bench};
 use crate::{Cell, refers_to_axis, rows, same_motion, trigger};
-use standstill_axis::{AxisState, BufferMode, ErrorId, StartState};
+use standstill_axis::{AxisState, BufferMode, ErrorId, Scope, StartState};
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::Value;
 
@@ -71,7 +71,6 @@ fn brought_to(column: usize) -> Bench {
         }
     }
     bench.latch();
-    let source = bench.source();
     match column {
         2 => {
             let mut home = executed(&bench, "MC_Home");
@@ -83,7 +82,7 @@ fn brought_to(column: usize) -> Bench {
         }
         6 => {
             let axis = &mut bench.axes[AXIS.index()];
-            axis.raise(ErrorId::AxisFault, 0, source, &mut bench.log);
+            axis.raise(ErrorId::AxisFault, 0, &mut Scope::new(bench.scan, &mut bench.log));
             axis.clear_cause();
         }
         7 => {

@@ -4,11 +4,12 @@ use crate::countdown::Countdown;
 use crate::rules;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Comms, DriveFeedback, DrivePosition, DriveRequest, DriveSignals,
-    ErrorId, Fault, InstanceId, Limits, Log, Outlook, Plan, Source, StartState,
+    ErrorId, Fault, InstanceId, Limits, Log, Outlook, Plan, Scope, StartState, steps,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, Value};
 use standstill_soak::rules::{Kind, Outputs, Shown};
+use std::slice;
 
 /// What happens to the axis in a scan besides block inputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -222,7 +223,7 @@ impl System {
         self.apply(inputs);
         let mut log = Log::default();
         let feedback = self.read();
-        self.axis[0].follow_feedback(&feedback, self.scans, &mut log);
+        self.axis[0].follow_feedback(&feedback, &mut Scope::new(self.scans, &mut log));
         let state_at_call = self.state();
         let was = self.shown();
         self.call(&mut log);
@@ -238,7 +239,10 @@ impl System {
             powered: self.axis[0].is_powered(),
         };
         rules::calls(&scene, self.kinds)?;
-        self.axis[0].advance(self.scans, &mut log);
+        steps::advance(
+            slice::from_mut(&mut self.axis[0]),
+            &mut Scope::new(self.scans, &mut log),
+        );
         self.write();
         self.scans += 1;
         self.polled = self.poll();
@@ -249,7 +253,7 @@ impl System {
         match inputs.event {
             AxisEvent::Nothing => {}
             AxisEvent::AxisFault => {
-                self.axis[0].raise(ErrorId::AxisFault, 1, Source::default(), &mut Log::default());
+                self.axis[0].raise(ErrorId::AxisFault, 1, &mut Scope::new(0, &mut Log::default()));
             }
             AxisEvent::DriveFault => {
                 self.drive.fault = Some(true);
@@ -261,7 +265,7 @@ impl System {
             }
             AxisEvent::Reset => {
                 // A refused reset shows at its block and nowhere else.
-                let _ = self.axis[0].reset(Source::default(), &mut Log::default());
+                let _ = self.axis[0].reset(&mut Scope::new(0, &mut Log::default()));
             }
             AxisEvent::CausesGone => {
                 self.axis[0].clear_cause();
@@ -303,10 +307,12 @@ impl System {
         for (place, block) in (0..).zip(&mut self.blocks) {
             block.call(&mut Context {
                 now_ns: 0,
-                scan: self.scans,
-                instance: InstanceId(place),
+                scope: Scope {
+                    scan: self.scans,
+                    instance: InstanceId(place),
+                    log,
+                },
                 axes: &mut self.axis,
-                log,
                 tables: &[],
             });
         }

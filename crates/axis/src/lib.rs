@@ -19,13 +19,15 @@ mod fate;
 mod homing;
 mod ideal_drive;
 mod log;
+mod parameter;
 mod scaling;
+mod scope;
 mod state;
 pub mod steps;
 
 pub use axis::{
-    Axis, Beside, CamTrack, Factors, MotionState, Outlook, Pace, Parameter, ParameterValue, Permission,
-    Profile, ProfileRow, Source, TouchProbe, Way,
+    Axis, Beside, CamTrack, Factors, MotionState, Outlook, Pace, Permission, Profile, ProfileRow, TouchProbe,
+    Way,
 };
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,
@@ -43,7 +45,9 @@ pub use fate::{FATES_KEPT, Fate};
 pub use homing::{BlockDetection, HomeDirection, Homing, Procedure, SwitchEdge};
 pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
 pub use log::{Event, Goal, LOG_KEPT, Log, Record};
+pub use parameter::{Parameter, ParameterValue};
 pub use scaling::{Scaling, Turn};
+pub use scope::Scope;
 pub use standstill_planner::turns::split;
 pub use standstill_planner::{
     Excess, Limits, MoveProfile, Order, PROFILE_POINTS, Passage, Plan, PlanError, Planner, ProfileFault,

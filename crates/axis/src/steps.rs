@@ -1,8 +1,9 @@
 //! What a scan does to axes and the drives under them, in slices: hosts keep both where they like.
 //!
-//! The order of the steps belongs to the host's scan; what happens in each of them stands here once.
+//! Which step follows which belongs to the host's scan. What happens in each of them, and in which order axes have their
+//! turn, stands here once: for the executor, the C library and a loop of one's own.
 
-use crate::{Axis, AxisId, AxisState, Drive, DriveFeedback, Log, Planner, Source};
+use crate::{Axis, AxisId, AxisState, Drive, DriveFeedback, Planner, Scope};
 
 /// After every drive was read: takes what drives tell beside their motion, then lets the states follow, in axis order.
 #[inline]
@@ -10,15 +11,26 @@ pub fn follow<P: Planner, D: Drive>(
     axes: &mut [Axis<P>],
     drives: &mut [D],
     feedback: &[DriveFeedback],
-    scan: u64,
-    log: &mut Log,
+    scope: &mut Scope<'_>,
 ) {
     for (axis, drive) in axes.iter_mut().zip(drives) {
         drive.report(axis.report_mut());
         axis.follow_report();
     }
     for (axis, feedback) in axes.iter_mut().zip(feedback) {
-        axis.follow_feedback(feedback, scan, log);
+        axis.follow_feedback(feedback, scope);
+    }
+}
+
+/// After all blocks were called: the set-point of every axis for the end of this scan, each advanced by one nominal tick in
+/// the order of their numbers. A late scan does not stretch a motion.
+///
+/// Cost: for each axis one evaluation of its plan; where a command completes, at most one plan for each that waits; with
+/// software limits a ramp plan in each scan of an endless motion or a stop.
+#[inline]
+pub fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
+    for axis in axes {
+        axis.advance(scope);
     }
 }
 
@@ -32,9 +44,9 @@ pub fn publish<P: Planner, D: Drive>(axes: &mut [Axis<P>], drives: &mut [D], now
 }
 
 /// Asks every axis to stop and switch off, each as its configuration says.
-pub fn switch_off<P: Planner>(axes: &mut [Axis<P>], source: Source, log: &mut Log) {
+pub fn switch_off<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     for axis in axes {
-        axis.switch_off(source, log);
+        axis.switch_off(scope);
     }
 }
 

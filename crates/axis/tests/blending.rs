@@ -7,8 +7,9 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Dynamics, Fate, Limits, Log,
-    Request, Source, Standard, StartState,
+    Request, Scope, Standard, StartState, steps,
 };
+use std::slice;
 
 /// The generator splitmix64.
 struct Random(u64);
@@ -197,12 +198,8 @@ fn judge(seed: u64) -> Result<Seen, String> {
                 replaces: None,
             };
             let before = axis.setpoint();
-            let source = Source {
-                scan,
-                ..Source::default()
-            };
             ids.push(
-                axis.command(&request, source, &mut log)
+                axis.command(&request, &mut Scope::new(scan, &mut log))
                     .map_err(|e| format!("{e:?}"))?,
             );
             if axis.setpoint() != before {
@@ -213,7 +210,7 @@ fn judge(seed: u64) -> Result<Seen, String> {
             .iter()
             .position(|id| matches!(axis.fate(*id), Fate::Active { .. }));
         let past = axis.setpoint().position;
-        axis.advance(scan, &mut log);
+        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
         let point = axis.setpoint();
         watch
             .see(point.position)

@@ -3,9 +3,9 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Factors, Fate,
-    InstanceId, Limits, Log, Permission, Plan, Planner, Raw, Request, Source, Standard, StartState,
-    Superimpose,
+    Limits, Log, Permission, Plan, Planner, Raw, Request, Scope, Standard, StartState, Superimpose, steps,
 };
+use std::slice;
 
 const CYCLE: f64 = 0.01;
 const CASES: u64 = 4_000;
@@ -115,13 +115,6 @@ impl Case {
         }
     }
 
-    fn source(&self) -> Source {
-        Source {
-            scan: self.scan,
-            instance: InstanceId(0),
-        }
-    }
-
     /// Whether `error` is one a barred command may show.
     fn is_fair(&self, error: ErrorId) -> bool {
         match error {
@@ -156,21 +149,23 @@ impl Case {
     }
 
     fn disturb(&mut self, superimposes: bool) {
-        let source = self.source();
         if self.random.below(30) == 0 {
             self.permitted = Permission {
                 positive: self.random.below(2) == 0,
                 negative: self.random.below(2) == 0,
             };
         }
-        self.axis.set_power(true, self.permitted, source, &mut self.log);
+        self.axis
+            .set_power(true, self.permitted, &mut Scope::new(self.scan, &mut self.log));
         if self.random.below(40) == 0 {
             let factors = Factors {
                 velocity: [0.0, 0.3, 1.0][self.random.below(3) as usize],
                 acceleration: self.random.between(0.2, 1.0),
                 ..Factors::ONE
             };
-            let changed = self.axis.set_override(factors, source, &mut self.log);
+            let changed = self
+                .axis
+                .set_override(factors, &mut Scope::new(self.scan, &mut self.log));
             assert!(changed.is_ok(), "{changed:?} in {}: {}", self.scan, self.story());
         }
         let limits = self.axis.config().limits;
@@ -184,7 +179,10 @@ impl Case {
                 buffer_mode: mode.into(),
                 ..Request::aborting(self.random.command(&limits))
             };
-            match self.axis.command(&request, source, &mut self.log) {
+            match self
+                .axis
+                .command(&request, &mut Scope::new(self.scan, &mut self.log))
+            {
                 Ok(id) => self.given.push(id),
                 Err(error) => assert!(
                     self.is_fair(error),
@@ -202,7 +200,10 @@ impl Case {
                     ..Dynamics::default()
                 },
             };
-            match self.axis.superimpose(&request, source, &mut self.log) {
+            match self
+                .axis
+                .superimpose(&request, &mut Scope::new(self.scan, &mut self.log))
+            {
                 Ok(id) => self.given.push(id),
                 Err(error) => assert!(
                     self.is_fair(error),
@@ -225,7 +226,10 @@ fn in_a_barred_direction_an_axis_only_brakes() {
         let mut over = [false; 2];
         for _ in 0..RESTLESS {
             case.disturb(false);
-            case.axis.advance(case.scan, &mut case.log);
+            steps::advance(
+                slice::from_mut(&mut case.axis),
+                &mut Scope::new(case.scan, &mut case.log),
+            );
             case.scan += 1;
             let outlook = case.axis.outlook();
             paused += u64::from(outlook.paused);
@@ -249,7 +253,10 @@ fn what_was_paused_comes_to_its_end() {
         let mut case = Case::new(seed);
         for _ in 0..RESTLESS {
             case.disturb(true);
-            case.axis.advance(case.scan, &mut case.log);
+            steps::advance(
+                slice::from_mut(&mut case.axis),
+                &mut Scope::new(case.scan, &mut case.log),
+            );
             case.scan += 1;
         }
         while !case.axis.outlook().waiting.iter().all(Option::is_none)
@@ -264,11 +271,16 @@ fn what_was_paused_comes_to_its_end() {
                 .superimposed
                 .is_some_and(|beside| beside.command.is_some())
         {
-            let source = case.source();
-            case.axis.set_power(true, Permission::BOTH, source, &mut case.log);
-            let changed = case.axis.set_override(Factors::ONE, source, &mut case.log);
+            case.axis
+                .set_power(true, Permission::BOTH, &mut Scope::new(case.scan, &mut case.log));
+            let changed = case
+                .axis
+                .set_override(Factors::ONE, &mut Scope::new(case.scan, &mut case.log));
             assert!(changed.is_ok(), "seed {seed}: {changed:?}");
-            case.axis.advance(case.scan, &mut case.log);
+            steps::advance(
+                slice::from_mut(&mut case.axis),
+                &mut Scope::new(case.scan, &mut case.log),
+            );
             case.scan += 1;
             assert!(case.scan < MOST_SCANS, "seed {seed}: {:?}", case.axis.outlook());
         }

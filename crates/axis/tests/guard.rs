@@ -7,8 +7,9 @@ mod double;
 use double::{Faulty, Wrong};
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Direction, Dynamics, ErrorId, Event, Limits, Log, Request,
-    Setpoint, Source, StartState,
+    Scope, Setpoint, StartState, steps,
 };
+use std::slice;
 
 const LIMITS: Limits = Limits {
     velocity: 50.0,
@@ -36,11 +37,11 @@ fn run(wrong: Wrong) -> (Vec<Setpoint>, Axis<Faulty>, Log) {
         },
         direction: Direction::Unset.into(),
     };
-    axis.command(&Request::aborting(go), Source::default(), &mut log)
+    axis.command(&Request::aborting(go), &mut Scope::new(0, &mut log))
         .expect("taken");
     let mut published = vec![axis.setpoint()];
     for scan in 0..2000 {
-        axis.advance(scan, &mut log);
+        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
         published.push(axis.setpoint());
     }
     (published, axis, log)

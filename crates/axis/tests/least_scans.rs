@@ -6,11 +6,12 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Direction, Dynamics, Excess, Fate, Limits, Log,
-    MoveProfile, Passage, Plan, PlanError, Planner, ProfileFault, ProfileKind, ProfilePoint, Request,
-    Setpoint, Source, Standard, StandardPlan, StartState,
+    MoveProfile, Passage, Plan, PlanError, Planner, ProfileFault, ProfileKind, ProfilePoint, Request, Scope,
+    Setpoint, Standard, StandardPlan, StartState, steps,
 };
 use std::cell::Cell;
 use std::collections::BTreeMap;
+use std::slice;
 
 /// Puts an axis into `state` with the first ramp, step by step as the axis lets a plan move it; from then on it is
 /// [`Standard`].
@@ -209,10 +210,10 @@ impl Case {
         };
         let mut axis = Axis::new(AxisId::new(0), config, planner).expect("a good configuration");
         let there = self.velocity(self.limits.velocity);
-        axis.command(&Request::aborting(there), Source::default(), log)
+        axis.command(&Request::aborting(there), &mut Scope::new(0, log))
             .expect("taken");
         for scan in 0..100_000 {
-            axis.advance(scan, log);
+            steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, log));
             if axis.setpoint() == self.start {
                 return axis;
             }
@@ -237,12 +238,12 @@ impl Case {
         let mut log = Log::default();
         let mut axis = self.axis(&mut log);
         let id = axis
-            .command(&Request::aborting(command), Source::default(), &mut log)
+            .command(&Request::aborting(command), &mut Scope::new(0, &mut log))
             .expect("taken");
         let stops = self.goal == 0.0;
         let heading = self.start.velocity.signum();
         for scan in 1.. {
-            axis.advance(scan, &mut log);
+            steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
             let Setpoint {
                 velocity,
                 acceleration,

@@ -6,8 +6,9 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Fate, Limits,
-    Log, Plan, Raw, Request, Setpoint, Source, Standard, StartState, Superimpose,
+    Log, Plan, Raw, Request, Scope, Setpoint, Standard, StartState, Superimpose, steps,
 };
+use std::slice;
 
 const CYCLE: f64 = 0.01;
 const CASES: u64 = 10_000;
@@ -159,18 +160,16 @@ impl Case {
         }
     }
 
-    fn source(&self) -> Source {
-        Source {
-            scan: self.scan,
-            ..Source::default()
-        }
-    }
-
     /// The same command to both axes.
     fn command(&mut self, request: &Request) -> (CommandId, CommandId) {
-        let source = self.source();
-        let with = self.with.command(request, source, &mut self.log).unwrap();
-        let without = self.without.command(request, source, &mut self.log).unwrap();
+        let with = self
+            .with
+            .command(request, &mut Scope::new(self.scan, &mut self.log))
+            .unwrap();
+        let without = self
+            .without
+            .command(request, &mut Scope::new(self.scan, &mut self.log))
+            .unwrap();
         (with, without)
     }
 
@@ -205,7 +204,7 @@ impl Case {
         };
         let id = self
             .with
-            .superimpose(&request, self.source(), &mut self.log)
+            .superimpose(&request, &mut Scope::new(self.scan, &mut self.log))
             .unwrap();
         (id, distance)
     }
@@ -231,8 +230,14 @@ fn one_on_one(seed: u64) {
             case.without.fate(without),
             "seed {seed}, scan {scan}"
         );
-        case.with.advance(scan, &mut case.log);
-        case.without.advance(scan, &mut case.log);
+        steps::advance(
+            slice::from_mut(&mut case.with),
+            &mut Scope::new(scan, &mut case.log),
+        );
+        steps::advance(
+            slice::from_mut(&mut case.without),
+            &mut Scope::new(scan, &mut case.log),
+        );
         let now = case.with.setpoint();
         seen.check(&now, &case.limits, &format!("seed {seed}, scan {scan}"));
         let twin = case.without.setpoint();
@@ -279,10 +284,9 @@ fn many_on_many(seed: u64) {
                 0 | 1 => last = Some(case.superimpose().0),
                 2 => {
                     let dynamics = case.random.dynamics(&case.limits);
-                    let source = case.source();
                     last = Some(
                         case.with
-                            .halt_superimposed(&dynamics, source, &mut case.log)
+                            .halt_superimposed(&dynamics, &mut Scope::new(case.scan, &mut case.log))
                             .unwrap(),
                     );
                 }
@@ -292,8 +296,9 @@ fn many_on_many(seed: u64) {
                         ..Request::aborting(case.base().0)
                     };
                     // A full buffer refuses.
-                    let source = case.source();
-                    let _ = case.with.command(&request, source, &mut case.log);
+                    let _ = case
+                        .with
+                        .command(&request, &mut Scope::new(case.scan, &mut case.log));
                 }
             }
         }
@@ -304,10 +309,15 @@ fn many_on_many(seed: u64) {
                     dynamics: Dynamics::default(),
                 })
             };
-            let source = case.source();
-            halted = case.with.command(&request, source, &mut case.log).is_ok();
+            halted = case
+                .with
+                .command(&request, &mut Scope::new(case.scan, &mut case.log))
+                .is_ok();
         }
-        case.with.advance(scan, &mut case.log);
+        steps::advance(
+            slice::from_mut(&mut case.with),
+            &mut Scope::new(scan, &mut case.log),
+        );
         let now = case.with.setpoint();
         seen.check(&now, &case.limits, &format!("seed {seed}, scan {scan}"));
         assert_ne!(

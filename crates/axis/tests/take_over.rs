@@ -6,10 +6,11 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Event, Fate,
-    Limits, Log, Plan, Request, Setpoint, Source, Standard, StartState,
+    Limits, Log, Plan, Request, Scope, Setpoint, Standard, StartState, steps,
 };
 use standstill_soak::Random;
 use standstill_soak::rules::limits::{Track, check_excess};
+use std::slice;
 
 const CYCLE: f64 = 0.001;
 
@@ -84,17 +85,16 @@ impl Rig {
             buffer_mode: BufferMode::Aborting.into(),
             replaces: None,
         };
-        let source = Source {
-            scan: self.scan,
-            ..Source::default()
-        };
         self.axis
-            .command(&request, source, &mut self.log)
+            .command(&request, &mut Scope::new(self.scan, &mut self.log))
             .unwrap_or_else(|error| panic!("refused: {error:?} {command:?} {:?}", self.axis.setpoint()))
     }
 
     fn scan(&mut self) -> Setpoint {
-        self.axis.advance(self.scan, &mut self.log);
+        steps::advance(
+            slice::from_mut(&mut self.axis),
+            &mut Scope::new(self.scan, &mut self.log),
+        );
         self.scan += 1;
         for record in self.log.since(self.records) {
             match (record.event, self.axis.plan()) {

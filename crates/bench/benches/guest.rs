@@ -44,7 +44,7 @@ struct Native(Instance<McMoveAbsolute>);
 
 impl Programs<Standard, IdealDrive> for Native {
     fn run(&mut self, _: ProgramId, context: &mut Context<'_>) -> Result<u64, ProgramFault> {
-        context.instance = InstanceId(1);
+        context.scope.instance = InstanceId(1);
         self.0.inputs.execute = true;
         self.0.call(context);
         Ok(0)

@@ -3,7 +3,7 @@
 use crate::{CYCLE, LIMITS};
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Comms, ConfigError, DriveFeedback, DrivePosition,
-    DriveSignals, InstanceId, Log, Scaling, Standard, StartState,
+    DriveSignals, InstanceId, Log, Scaling, Scope, Standard, StartState, steps,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, Value};
@@ -176,22 +176,20 @@ impl ManyAxes {
     pub fn scan(&mut self) {
         let Self { axes, log, .. } = self;
         for (axis, feedback) in axes.iter_mut().zip(&self.feedback) {
-            axis.follow_feedback(feedback, self.scan, log);
+            axis.follow_feedback(feedback, &mut Scope::new(self.scan, log));
         }
         let mut context = Context {
             now_ns: self.scan as i64 * 1_000_000,
-            scan: self.scan,
-            instance: InstanceId(0),
+            scope: Scope::new(self.scan, log),
             axes,
-            log,
             tables: &[],
         };
         for (number, block) in (0..).zip(&mut self.blocks) {
-            context.instance = InstanceId(number);
+            context.scope.instance = InstanceId(number);
             block.call(&mut context);
         }
+        steps::advance(&mut self.axes, &mut Scope::new(self.scan, &mut self.log));
         for (axis, feedback) in self.axes.iter_mut().zip(&mut self.feedback) {
-            axis.advance(self.scan, &mut self.log);
             feedback.position = axis.drive_command().position;
         }
         self.scan += 1;

@@ -2,7 +2,7 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Comms, ConfigError, DriveCommand, DriveFeedback, DrivePosition, DriveSignals,
-    IdealDrive, InstanceId, Limits, Log, Plan, Standard, StartState,
+    IdealDrive, InstanceId, Limits, Log, Plan, Scope, Standard, StartState, steps,
 };
 use standstill_blocks::administrative::mc_power::McPower;
 use standstill_blocks::single_axis::mc_move_absolute::McMoveAbsolute;
@@ -83,20 +83,18 @@ impl OneAxis {
     pub fn scan(&mut self) -> DriveCommand {
         let Self { axes, log, .. } = self;
         let [axis] = axes;
-        axis.follow_feedback(&self.feedback, self.scan, log);
+        axis.follow_feedback(&self.feedback, &mut Scope::new(self.scan, log));
         let mut context = Context {
             now_ns: self.scan as i64 * 1_000_000,
-            scan: self.scan,
-            instance: InstanceId(0),
+            scope: Scope::new(self.scan, log),
             axes,
-            log,
             tables: &[],
         };
         self.power.call(&mut context);
-        context.instance = InstanceId(1);
+        context.scope.instance = InstanceId(1);
         self.to_target.call(&mut context);
+        steps::advance(axes, &mut Scope::new(self.scan, log));
         let [axis] = axes;
-        axis.advance(self.scan, log);
         let command = axis.drive_command();
         self.feedback.position = command.position;
         self.scan += 1;
@@ -124,9 +122,9 @@ pub struct Program {
 
 impl Programs<Standard, IdealDrive> for Program {
     fn run(&mut self, _: ProgramId, context: &mut Context<'_>) -> Result<u64, ProgramFault> {
-        context.instance = InstanceId(0);
+        context.scope.instance = InstanceId(0);
         self.power.call(context);
-        context.instance = InstanceId(1);
+        context.scope.instance = InstanceId(1);
         self.to_target.call(context);
         Ok(0)
     }

@@ -16,7 +16,7 @@ struct Program(Vec<Instance<McMoveAbsolute>>);
 impl Programs<Standard, IdealDrive> for Program {
     fn run(&mut self, _: ProgramId, context: &mut Context<'_>) -> Result<u64, ProgramFault> {
         for (number, block) in self.0.iter_mut().enumerate() {
-            context.instance = InstanceId(number as u16);
+            context.scope.instance = InstanceId(number as u16);
             block.call(context);
         }
         Ok(0)

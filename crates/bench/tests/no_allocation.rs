@@ -99,7 +99,7 @@ impl Programs<Standard, IdealDrive> for Monkey {
                     }
                 }
             }
-            context.instance = InstanceId(number as u16);
+            context.scope.instance = InstanceId(number as u16);
             block.call(context);
         }
         Ok(0)

@@ -8,7 +8,7 @@ use crate::{AxisSetup, AxisStatus, Code, ConfigFault, DriveSetup, Mishap, Record
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicU32, AtomicUsize};
 use standstill_axis::{
-    Axis, AxisId, AxisState, Drive, DriveFeedback, ErrorId, InstanceId, Log, Source, Standard, steps,
+    Axis, AxisId, AxisState, Drive, DriveFeedback, ErrorId, InstanceId, Log, Scope, Standard, steps,
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_drives::simulated::{DriveChange, SimulatedDrive};
@@ -59,6 +59,15 @@ pub struct Runtime {
 
 /// "STST", which zeroed or foreign memory hardly begins with.
 pub(crate) const MAGIC: u32 = 0x5453_5453;
+
+/// What no block does in `scan`.
+fn nobody(scan: u64, log: &mut Log) -> Scope<'_> {
+    Scope {
+        scan,
+        instance: NOBODY,
+        log,
+    }
+}
 
 /// Whether blocks are called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -252,12 +261,9 @@ impl Inner {
                 return Ok(());
             }
             Mishap::Axis => {
-                let source = Source {
-                    scan: self.scan,
-                    instance: NOBODY,
-                };
+                let scope = &mut nobody(self.scan, &mut self.log);
                 if let Some(axis) = self.axes.slice_mut().get_mut(place) {
-                    axis.raise(ErrorId::AxisFault, code, source, &mut self.log);
+                    axis.raise(ErrorId::AxisFault, code, scope);
                 }
                 return Ok(());
             }
@@ -289,8 +295,7 @@ impl Inner {
             self.axes.slice_mut(),
             self.drives.slice_mut(),
             self.feedback.slice(),
-            self.scan,
-            &mut self.log,
+            &mut nobody(self.scan, &mut self.log),
         );
         if core::mem::replace(&mut self.off_pending, false) {
             self.switch_off();
@@ -303,9 +308,7 @@ impl Inner {
         if let Some(recorder) = self.recorder.slice_mut().first_mut() {
             recorder.observe(self.axes.slice());
         }
-        for axis in self.axes.slice_mut() {
-            axis.advance(self.scan, &mut self.log);
-        }
+        steps::advance(self.axes.slice_mut(), &mut nobody(self.scan, &mut self.log));
         steps::publish(self.axes.slice_mut(), self.drives.slice_mut(), self.now_ns);
         if let Some(recorder) = self.recorder.slice_mut().first_mut() {
             recorder.record(self.scan, self.axes.slice(), self.slots.slice(), &self.log);
@@ -323,11 +326,7 @@ impl Inner {
     }
 
     fn switch_off(&mut self) {
-        let source = Source {
-            scan: self.scan,
-            instance: NOBODY,
-        };
-        steps::switch_off(self.axes.slice_mut(), source, &mut self.log);
+        steps::switch_off(self.axes.slice_mut(), &mut nobody(self.scan, &mut self.log));
     }
 
     /// Whether every axis is off.
@@ -417,11 +416,13 @@ impl Inner {
         };
         let context = Context {
             now_ns: self.now_ns,
-            scan: self.scan,
-            // At most 65534, so no cut is made.
-            instance: InstanceId(key as u16),
+            scope: Scope {
+                scan: self.scan,
+                // At most 65534, so no cut is made.
+                instance: InstanceId(key as u16),
+                log: &mut self.log,
+            },
             axes: self.axes.slice_mut(),
-            log: &mut self.log,
             tables: &self.cells,
         };
         Ok((found, context))

@@ -2,9 +2,10 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Direction, Drive, DrivePosition, Dynamics, InstanceId,
-    Limits, Log, Permission, Request, Scaling, Source, Standard,
+    Limits, Log, Permission, Request, Scaling, Scope, Standard, steps,
 };
 use standstill_drives::cia402::{Cia402Drive, Reaction, Settings, State};
+use std::slice;
 
 const CYCLE: f64 = 0.001;
 
@@ -68,20 +69,17 @@ impl Rig {
         }
     }
 
-    fn source(&self) -> Source {
-        Source {
+    /// One scan, `during` between feedback and motion.
+    fn step(&mut self, during: impl FnOnce(&mut Axis, &mut Scope<'_>)) {
+        let feedback = self.drive.read(0);
+        let scope = &mut Scope {
             scan: self.scan,
             instance: InstanceId(1),
-        }
-    }
-
-    /// One scan, `during` between feedback and motion.
-    fn step(&mut self, during: impl FnOnce(&mut Axis, Source, &mut Log)) {
-        let source = self.source();
-        let feedback = self.drive.read(0);
-        self.axis.follow_feedback(&feedback, self.scan, &mut self.log);
-        during(&mut self.axis, source, &mut self.log);
-        self.axis.advance(self.scan, &mut self.log);
+            log: &mut self.log,
+        };
+        self.axis.follow_feedback(&feedback, scope);
+        during(&mut self.axis, scope);
+        steps::advance(slice::from_mut(&mut self.axis), scope);
         let command = self.axis.drive_command();
         let (DrivePosition::Increments(target), DrivePosition::Increments(actual)) =
             (command.position, feedback.position)
@@ -100,12 +98,12 @@ impl Rig {
     }
 
     fn power(&mut self, wanted: bool) {
-        self.step(|axis, source, log| axis.set_power(wanted, Permission::BOTH, source, log));
+        self.step(|axis, scope| axis.set_power(wanted, Permission::BOTH, scope));
     }
 
     fn run(&mut self, scans: u32) {
         for _ in 0..scans {
-            self.step(|_, _, _| {});
+            self.step(|_, _| {});
         }
     }
 
@@ -189,9 +187,8 @@ fn each_loss_is_told_in_the_scan_it_is_seen() {
         });
         rig.power(true);
         rig.run(10);
-        rig.step(|axis, source, log| {
-            axis.command(&Request::aborting(endless(50.0)), source, log)
-                .unwrap();
+        rig.step(|axis, scope| {
+            axis.command(&Request::aborting(endless(50.0)), scope).unwrap();
         });
         rig.run(100);
         lose(&mut rig);
@@ -201,8 +198,8 @@ fn each_loss_is_told_in_the_scan_it_is_seen() {
         rig.run(200);
         rig.drive.node_mut().clear_cause();
         rig.run(2);
-        rig.step(|axis, source, log| {
-            axis.reset(source, log).unwrap();
+        rig.step(|axis, scope| {
+            axis.reset(scope).unwrap();
         });
         rig.run(20);
         assert_eq!(
@@ -258,9 +255,9 @@ fn schedules(seeds: core::ops::Range<u64>) {
                     power = true;
                     rig.drive.node_mut().clear_cause();
                     rig.drive.node_mut().set_remote(true);
-                    rig.step(|axis, source, log| {
+                    rig.step(|axis, scope| {
                         // Only in ErrorStop there is something to reset.
-                        let _ = axis.reset(source, log);
+                        let _ = axis.reset(scope);
                     });
                 }
             }
@@ -277,11 +274,11 @@ fn schedules(seeds: core::ops::Range<u64>) {
                 }
             };
             for scan in 0..random.below(40) {
-                rig.step(|axis, source, log| {
-                    axis.set_power(power, Permission::BOTH, source, log);
+                rig.step(|axis, scope| {
+                    axis.set_power(power, Permission::BOTH, scope);
                     if scan == 5 {
                         // Refused where the state does not allow it.
-                        let _ = axis.command(&Request::aborting(command), source, log);
+                        let _ = axis.command(&Request::aborting(command), scope);
                     }
                 });
                 faults += u32::from(rig.axis.state() == AxisState::ErrorStop);

@@ -2,9 +2,10 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Drive, DrivePosition, Fate, HomeDirection, Homing,
-    IdealDrive, InstanceId, Limits, Log, Procedure, Request, Source, Standard, StartState, SwitchEdge,
+    IdealDrive, InstanceId, Limits, Log, Procedure, Request, Scope, Standard, StartState, SwitchEdge, steps,
 };
 use standstill_drives::switches::{Marker, Switches, Travel};
+use std::slice;
 
 const CYCLE: f64 = 0.001;
 
@@ -66,15 +67,18 @@ fn place_of_zero(homing: Homing, start: f64, delay: usize) -> f64 {
         travel.read(&mut feedback);
         travel.report(axis.report_mut());
         axis.follow_report();
-        axis.follow_feedback(&feedback, scan, &mut log);
-        let source = Source {
-            scan,
-            instance: InstanceId(1),
-        };
+        axis.follow_feedback(&feedback, &mut Scope::new(scan, &mut log));
         let home = Request::aborting(Command::Home { position: 0.0 });
         let id = *id.get_or_insert_with(|| {
-            axis.command(&home, source, &mut log)
-                .unwrap_or_else(|error| panic!("{homing:?} from {start}: {error:?}"))
+            axis.command(
+                &home,
+                &mut Scope {
+                    scan,
+                    instance: InstanceId(1),
+                    log: &mut log,
+                },
+            )
+            .unwrap_or_else(|error| panic!("{homing:?} from {start}: {error:?}"))
         });
         match axis.fate(id) {
             Fate::Done => {
@@ -85,7 +89,7 @@ fn place_of_zero(homing: Homing, start: f64, delay: usize) -> f64 {
             Fate::Active { .. } => assert_eq!(axis.state(), AxisState::Homing),
             fate => panic!("{homing:?} from {start}: {fate:?}"),
         }
-        axis.advance(scan, &mut log);
+        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
         let setpoint = axis.setpoint();
         let command = axis.drive_command();
         if command.rename.is_none() {

@@ -2,9 +2,10 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Drive, DrivePosition, Dynamics, Fate, InstanceId, Limits,
-    Log, Permission, Request, Scaling, Source, Standard,
+    Log, Permission, Request, Scaling, Scope, Standard, steps,
 };
 use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, PlantDrive, SUBSTEPS, Servo, SetPoint};
+use std::slice;
 
 const CYCLE: f64 = 0.001;
 
@@ -242,16 +243,17 @@ impl Rig {
         }
     }
 
-    fn step(&mut self, during: impl FnOnce(&mut Axis, Source, &mut Log)) -> (f64, bool) {
+    fn step(&mut self, during: impl FnOnce(&mut Axis, &mut Scope<'_>)) -> (f64, bool) {
         let feedback = self.drive.read(0);
-        self.axis.follow_feedback(&feedback, self.scan, &mut self.log);
-        let source = Source {
+        let scope = &mut Scope {
             scan: self.scan,
             instance: InstanceId(1),
+            log: &mut self.log,
         };
-        self.axis.set_power(true, Permission::BOTH, source, &mut self.log);
-        during(&mut self.axis, source, &mut self.log);
-        self.axis.advance(self.scan, &mut self.log);
+        self.axis.follow_feedback(&feedback, scope);
+        self.axis.set_power(true, Permission::BOTH, scope);
+        during(&mut self.axis, scope);
+        steps::advance(slice::from_mut(&mut self.axis), scope);
         self.drive.write(0, &self.axis.drive_command());
         self.scan += 1;
         (self.axis.setpoint().position, feedback.enabled)
@@ -273,10 +275,10 @@ fn an_axis_moves_a_load_and_the_load_swings_behind_it() {
         };
         let mut rig = Rig::new(plant, scaling);
         for _ in 0..5 {
-            rig.step(|_, _, _| {});
+            rig.step(|_, _| {});
         }
         let mut command = None;
-        rig.step(|axis, source, log| {
+        rig.step(|axis, scope| {
             let dynamics = Dynamics {
                 velocity: 2.0,
                 ..Dynamics::default()
@@ -285,13 +287,13 @@ fn an_axis_moves_a_load_and_the_load_swings_behind_it() {
                 distance: 0.5,
                 dynamics,
             });
-            command = axis.command(&request, source, log).ok();
+            command = axis.command(&request, scope).ok();
         });
         let id = command.expect("accepted");
         let (mut lag, mut swing) = (0.0_f64, 0.0_f64);
         let mut done = 0;
         for _ in 0..1000 {
-            let (set, _) = rig.step(|_, _, _| {});
+            let (set, _) = rig.step(|_, _| {});
             let mechanism = rig.drive.servo().mechanism();
             lag = lag.max((set - mechanism.position()).abs());
             if rig.axis.fate(id) == Fate::Done {
@@ -315,9 +317,9 @@ fn without_power_it_coasts_and_enabling_takes_it_where_it_is() {
     };
     let mut rig = Rig::new(plant, None);
     for _ in 0..5 {
-        rig.step(|_, _, _| {});
+        rig.step(|_, _| {});
     }
-    rig.step(|axis, source, log| {
+    rig.step(|axis, scope| {
         let dynamics = Dynamics {
             velocity: 2.0,
             ..Dynamics::default()
@@ -326,23 +328,23 @@ fn without_power_it_coasts_and_enabling_takes_it_where_it_is() {
             distance: 100.0,
             dynamics,
         };
-        axis.command(&Request::aborting(command), source, log).unwrap();
+        axis.command(&Request::aborting(command), scope).unwrap();
     });
     for _ in 0..300 {
-        rig.step(|_, _, _| {});
+        rig.step(|_, _| {});
     }
     let at_loss = rig.drive.servo().mechanism().position();
     rig.drive.cut_power();
     for _ in 0..200 {
-        rig.step(|_, _, _| {});
+        rig.step(|_, _| {});
     }
     assert_eq!(rig.axis.state(), AxisState::ErrorStop);
     let coasted = rig.drive.servo().mechanism().position() - at_loss;
     assert!(coasted > 0.2, "{coasted}");
     // Back on while it still moves: from the first set-point in operation on no step is more than a scan's way.
     rig.drive.clear_cause();
-    rig.step(|axis, source, log| {
-        axis.reset(source, log).unwrap();
+    rig.step(|axis, scope| {
+        axis.reset(scope).unwrap();
     });
     let mut last: Option<f64> = None;
     for _ in 0..200 {
@@ -350,7 +352,7 @@ fn without_power_it_coasts_and_enabling_takes_it_where_it_is() {
             DrivePosition::Units(units) => units,
             DrivePosition::Increments(_) => unreachable!("the drive speaks units"),
         };
-        let (set, enabled) = rig.step(|_, _, _| {});
+        let (set, enabled) = rig.step(|_, _| {});
         if enabled {
             let step = set - last.unwrap_or(actual);
             assert!(step.abs() <= LIMITS.velocity * CYCLE, "{step}");

@@ -1,10 +1,11 @@
 //! An edge of a probe between two scans, at any place of the scan and any speed.
 
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, Command, Direction, Drive, DrivePosition, Dynamics, Fate, IdealDrive,
-    InstanceId, Limits, Log, Request, Source, Standard, StartState, TouchProbe, Trigger,
+    Axis, AxisConfig, AxisId, Command, Direction, Drive, DrivePosition, Dynamics, Fate, IdealDrive, Limits,
+    Log, Request, Scope, Standard, StartState, TouchProbe, Trigger, steps,
 };
 use standstill_drives::peripherals::Peripherals;
+use std::slice;
 
 const CYCLE: f64 = 0.001;
 
@@ -58,21 +59,18 @@ impl Rig {
         }
     }
 
-    fn source(&self) -> Source {
-        Source {
-            scan: self.scan,
-            instance: InstanceId(0),
-        }
-    }
-
     /// A scan with these commands in its middle.
     fn scan(&mut self, commands: impl FnOnce(&mut Self)) {
         let feedback = self.drive.read(0);
         self.device.report(feedback.position, self.axis.report_mut());
         self.axis.follow_report();
-        self.axis.follow_feedback(&feedback, self.scan, &mut self.log);
+        self.axis
+            .follow_feedback(&feedback, &mut Scope::new(self.scan, &mut self.log));
         commands(self);
-        self.axis.advance(self.scan, &mut self.log);
+        steps::advance(
+            slice::from_mut(&mut self.axis),
+            &mut Scope::new(self.scan, &mut self.log),
+        );
         self.device.order(self.axis.order());
         self.drive.write(0, &self.axis.drive_command());
         self.scan += 1;
@@ -112,17 +110,18 @@ fn an_edge_between_scans_is_recorded_to_a_millionth_of_the_way() {
         };
         let mut probing = None;
         rig.scan(|rig| {
-            let source = rig.source();
             let request = Request::aborting(command);
             rig.axis
-                .command(&request, source, &mut rig.log)
+                .command(&request, &mut Scope::new(rig.scan, &mut rig.log))
                 .expect("a motion");
             let request = TouchProbe {
                 trigger: Trigger::Probe1Rising.into(),
                 window: None,
                 replaces: None,
             };
-            let id = rig.axis.touch_probe(&request, source, &mut rig.log);
+            let id = rig
+                .axis
+                .touch_probe(&request, &mut Scope::new(rig.scan, &mut rig.log));
             probing = Some(id.expect("a free probe"));
         });
         let probing = probing.expect("the scan was called");

@@ -2,7 +2,7 @@
 
 use crate::flat::Pointer;
 use crate::{Direction, Pin, PinError, Pins, Value};
-use standstill_axis::{Axis, AxisId, ErrorId, InstanceId, Log, Planner, Source, Standard};
+use standstill_axis::{Axis, AxisId, ErrorId, Planner, Scope, Standard};
 
 /// The groups of the standard's catalogue, and ours for the IEC 61131-3 blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -37,31 +37,23 @@ impl Group {
 pub struct Context<'a, P: Planner = Standard> {
     /// Time of this task execution (ns); constant during it.
     pub now_ns: i64,
-    /// Number of this scan.
-    pub scan: u64,
-    /// The instance being called; goes into records.
-    pub instance: InstanceId,
+    /// This scan, the instance being called, and the ring its records go to.
+    pub scope: Scope<'a>,
     /// The axes.
     pub axes: &'a mut [Axis<P>],
-    /// The ring of records.
-    pub log: &'a mut Log,
     /// The numbers of all tables.
     pub tables: &'a [f64],
 }
 
-impl<P: Planner> Context<'_, P> {
-    /// The axis at a pin, with the ring and who speaks.
+impl<'a, P: Planner> Context<'a, P> {
+    /// The axis at a pin, and what it is called in.
     ///
     /// # Errors
     /// [`ErrorId::AxisUnknown`] if there is no such axis.
     #[inline]
-    pub fn axis(&mut self, id: AxisId) -> Result<(&mut Axis<P>, &mut Log, Source), ErrorId> {
-        let source = Source {
-            scan: self.scan,
-            instance: self.instance,
-        };
+    pub fn axis(&mut self, id: AxisId) -> Result<(&mut Axis<P>, &mut Scope<'a>), ErrorId> {
         let axis = self.axes.get_mut(id.index()).ok_or(ErrorId::AxisUnknown)?;
-        Ok((axis, self.log, source))
+        Ok((axis, &mut self.scope))
     }
 }
 

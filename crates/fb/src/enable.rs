@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section on Enable/Valid; rules R15 and R52 to R59.
 
 use crate::Context;
-use standstill_axis::{Axis, AxisId, ErrorId, Log, Planner, Source};
+use standstill_axis::{Axis, AxisId, ErrorId, Planner, Scope};
 
 /// What an Enable-type block shows. Outputs are derived from it, so Valid and Error at once cannot be written
 /// (R53).
@@ -80,11 +80,11 @@ impl EnableCore {
         enable: bool,
         axis: AxisId,
         context: &mut Context<'_, P>,
-        write: impl FnOnce(&mut Axis<P>, Source, &mut Log) -> Result<T, ErrorId>,
+        write: impl FnOnce(&mut Axis<P>, &mut Scope<'_>) -> Result<T, ErrorId>,
     ) -> Reading<T> {
         self.answer(enable, || {
-            let (axis, log, source) = context.axis(axis).ok()?;
-            Some(write(axis, source, log))
+            let (axis, scope) = context.axis(axis).ok()?;
+            Some(write(axis, scope))
         })
     }
 
@@ -111,7 +111,7 @@ impl EnableCore {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use standstill_axis::{AxisConfig, InstanceId, Limits, Log, Standard};
+    use standstill_axis::{AxisConfig, Limits, Log, Standard};
 
     const HERE: AxisId = AxisId::new(0);
     const STALE: ErrorId = ErrorId::CommunicationLost;
@@ -143,10 +143,8 @@ mod tests {
         fn call(&mut self, enable: bool, axis: AxisId, read: Result<u8, ErrorId>) -> Reading<u8> {
             let context = Context {
                 now_ns: 0,
-                scan: 0,
-                instance: InstanceId(0),
+                scope: Scope::new(0, &mut self.log),
                 axes: &mut self.axes,
-                log: &mut self.log,
                 tables: &[],
             };
             self.core.scan(enable, axis, &context, |_| read)

@@ -142,13 +142,11 @@ impl ExecuteCore {
             return Ok(());
         };
         // What waits gives up its place first, whatever becomes of the new command (R97).
-        let waited = context
-            .axis(axis)
-            .is_ok_and(|(holder, _, _)| holder.withdraw(held));
+        let waited = context.axis(axis).is_ok_and(|(holder, _)| holder.withdraw(held));
         let issued = issue(context, Some(held));
         let new = issued.ok().filter(|(given_to, _)| *given_to == axis);
-        if let Ok((holder, log, source)) = context.axis(axis) {
-            holder.replaced(held, waited, new.map(|(_, id)| id), source, log);
+        if let Ok((holder, scope)) = context.axis(axis) {
+            holder.replaced(held, waited, new.map(|(_, id)| id), scope);
         }
         self.command = Some(issued?);
         Ok(())

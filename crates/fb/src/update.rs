@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, sections on Execute/Done and ContinuousUpdate; R8 to R14.
 
 use crate::{Context, ExecuteCore, Phase};
-use standstill_axis::{Axis, AxisId, Command, CommandId, ErrorId, Log, Planner, Source, Superimpose};
+use standstill_axis::{Axis, AxisId, Command, CommandId, ErrorId, Planner, Scope, Superimpose};
 
 /// What a block commands, as it stands at its pins.
 pub trait Values: Copy {
@@ -11,7 +11,7 @@ pub trait Values: Copy {
     fn is_same(&self, other: &Self) -> bool;
 
     /// Gives the running command `id` these values. Values that are no good change nothing; the axis records them.
-    fn apply<P: Planner>(&self, axis: &mut Axis<P>, id: CommandId, source: Source, log: &mut Log);
+    fn apply<P: Planner>(&self, axis: &mut Axis<P>, id: CommandId, scope: &mut Scope<'_>);
 }
 
 impl Values for Command {
@@ -19,9 +19,9 @@ impl Values for Command {
         self.is_same(other)
     }
 
-    fn apply<P: Planner>(&self, axis: &mut Axis<P>, id: CommandId, source: Source, log: &mut Log) {
+    fn apply<P: Planner>(&self, axis: &mut Axis<P>, id: CommandId, scope: &mut Scope<'_>) {
         // The block shows no Error: its command goes on as it was (R21).
-        let _recorded = axis.update(id, self, source, log);
+        let _recorded = axis.update(id, self, scope);
     }
 }
 
@@ -30,8 +30,8 @@ impl Values for Superimpose {
         self.is_same(other)
     }
 
-    fn apply<P: Planner>(&self, axis: &mut Axis<P>, id: CommandId, source: Source, log: &mut Log) {
-        let _recorded = axis.update_superimposed(id, self, source, log);
+    fn apply<P: Planner>(&self, axis: &mut Axis<P>, id: CommandId, scope: &mut Scope<'_>) {
+        let _recorded = axis.update_superimposed(id, self, scope);
     }
 }
 
@@ -71,16 +71,16 @@ impl<V: Values> UpdateCore<V> {
         pins: Move,
         context: &mut Context<'_, P>,
         values: impl Fn() -> V,
-        issue: impl FnOnce(&mut Axis<P>, V, Option<CommandId>, Source, &mut Log) -> Result<CommandId, ErrorId>,
+        issue: impl FnOnce(&mut Axis<P>, V, Option<CommandId>, &mut Scope<'_>) -> Result<CommandId, ErrorId>,
     ) -> Phase {
         if self.seen.is_some() {
             self.update(pins, context, &values);
         }
         let seen = &mut self.seen;
         self.execute.scan(pins.execute, context, |context, replaces| {
-            let (axis, log, source) = context.axis(pins.axis)?;
+            let (axis, scope) = context.axis(pins.axis)?;
             let given = values();
-            let id = issue(axis, given, replaces, source, log)?;
+            let id = issue(axis, given, replaces, scope)?;
             *seen = pins.continuous_update.then_some(given);
             Ok((pins.axis, id))
         })
@@ -98,8 +98,8 @@ impl<V: Values> UpdateCore<V> {
             return;
         }
         *seen = values;
-        if let Ok((axis, log, source)) = context.axis(axis) {
-            values.apply(axis, id, source, log);
+        if let Ok((axis, scope)) = context.axis(axis) {
+            values.apply(axis, id, scope);
         }
     }
 }

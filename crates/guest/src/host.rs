@@ -316,11 +316,11 @@ impl Host {
         set_tables(shape, instance, flat);
         let mut inner = Context {
             now_ns: context.now_ns,
-            scan: context.scan,
             // At most INSTANCES_MOST.
-            instance: InstanceId(self.first.saturating_add(index as u16)),
+            scope: context
+                .scope
+                .with(InstanceId(self.first.saturating_add(index as u16))),
             axes: &mut *context.axes,
-            log: &mut *context.log,
             tables: &self.cells,
         };
         instance.call(&mut inner);

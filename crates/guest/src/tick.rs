@@ -35,7 +35,7 @@ pub(crate) fn scan<P: Planner>(
     fuel: u64,
 ) -> Result<u64, Box<Fault>> {
     // A tick is the number of the scan, as far as 32 bits go.
-    let (tick, now_ns) = (context.scan as i32, context.now_ns);
+    let (tick, now_ns) = (context.scope.scan as i32, context.now_ns);
     during(&Lent(Cell::new(Some(context))), machine, tick, now_ns, fuel)
 }
 
@@ -113,10 +113,8 @@ fn instance<'h, B: Block, P: Planner>(
     let (id, instance) = host.find(u64::from_le_bytes(*number), own)?;
     let context = Context {
         now_ns: context.now_ns,
-        scan: context.scan,
-        instance: id,
+        scope: context.scope.with(id),
         axes: &mut *context.axes,
-        log: &mut *context.log,
         tables: &[],
     };
     Some((instance, context))
@@ -154,7 +152,7 @@ macro_rules! functions {
                 let Some(context) = self.0.take() else {
                     return Ok(Code::NotInTick);
                 };
-                let outcome = host.log_read(memory, given, context.log);
+                let outcome = host.log_read(memory, given, context.scope.log);
                 self.0.set(Some(context));
                 outcome
             }

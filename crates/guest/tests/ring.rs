@@ -37,7 +37,7 @@ impl Bench {
     fn record(&mut self, records: u64) {
         let context = self.machine.context(ScanTime { scan: 0, now_ns: 0 }, RUNTIME);
         for scan in 0..records {
-            context.log.push(Record {
+            context.scope.log.push(Record {
                 scan,
                 axis: AxisId::new(0),
                 instance: InstanceId(9),

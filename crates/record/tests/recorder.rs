@@ -2,7 +2,7 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Drive, DrivePosition, ErrorId, Event, IdealDrive, InstanceId, Limits, Log,
-    Record, Source, Standard, StartState,
+    Record, Scope, Standard, StartState, steps,
 };
 use standstill_record::{Recorder, Setup, Signals, State, Trigger};
 use standstill_trace::Cell;
@@ -46,11 +46,11 @@ impl Bench {
     fn scans(&mut self, count: u64, before: impl Fn(&mut Self)) {
         for _ in 0..count {
             let [axis] = &mut self.axes;
-            axis.follow_feedback(&self.drive.read(0), self.scan, &mut self.log);
+            axis.follow_feedback(&self.drive.read(0), &mut Scope::new(self.scan, &mut self.log));
             before(self);
             self.recorder.observe(&self.axes);
+            steps::advance(&mut self.axes, &mut Scope::new(self.scan, &mut self.log));
             let [axis] = &mut self.axes;
-            axis.advance(self.scan, &mut self.log);
             self.drive.write(0, &axis.drive_command());
             self.recorder.record(self.scan, &self.axes, &self.log, |_| {});
             self.scan += 1;
@@ -58,11 +58,7 @@ impl Bench {
     }
 
     fn fail(&mut self) {
-        let source = Source {
-            scan: self.scan,
-            instance: InstanceId::default(),
-        };
-        self.axes[0].raise(ErrorId::AxisFault, 7, source, &mut self.log);
+        self.axes[0].raise(ErrorId::AxisFault, 7, &mut Scope::new(self.scan, &mut self.log));
     }
 }
 

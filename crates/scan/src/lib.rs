@@ -19,6 +19,6 @@ mod task;
 pub use config::{ConfigError, ProgramConfig, TaskConfig, Watchdog, common_tick_ns};
 pub use executor::{Executor, Mode, ScanReport, TimeRanBackwards};
 pub use fault::{Fault, FaultText};
-pub use machine::{Machine, MachineError, OrderError, RUNTIME};
+pub use machine::{Machine, MachineError, RUNTIME};
 pub use programs::{NotOff, ProgramFault, ProgramId, Programs, ScanTime, Start, TaskId};
 pub use task::TaskCounts;

@@ -4,7 +4,7 @@ use crate::{NotOff, ScanTime};
 use alloc::vec::Vec;
 use core::fmt;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, ConfigError, Drive, DriveFeedback, InstanceId, Log, Planner, Source, Standard,
+    Axis, AxisConfig, AxisId, ConfigError, Drive, DriveFeedback, InstanceId, Log, Planner, Scope, Standard,
     steps,
 };
 use standstill_fb::{Context, Record, TableRef, Value};
@@ -19,8 +19,6 @@ pub struct Machine<P: Planner = Standard, D: Drive = standstill_axis::IdealDrive
     drives: Vec<D>,
     /// This scan's feedback in axis order; empty before the first scan.
     feedback: Vec<DriveFeedback>,
-    /// Places of all axes in the order of the motion step.
-    order: Vec<AxisId>,
     log: Log,
     /// The numbers of all tables.
     tables: Vec<f64>,
@@ -32,7 +30,6 @@ impl<P: Planner, D: Drive> Default for Machine<P, D> {
             axes: Vec::new(),
             drives: Vec::new(),
             feedback: Vec::new(),
-            order: Vec::new(),
             log: Log::default(),
             tables: Vec::new(),
         }
@@ -58,7 +55,6 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         let axis = Axis::new(id, config, planner).map_err(MachineError::Axis)?;
         self.axes.push(axis);
         self.drives.push(drive);
-        self.order.push(id);
         // Room for a whole scan, so that reading feedback never allocates.
         self.feedback.reserve(self.drives.len());
         Ok(id)
@@ -81,30 +77,6 @@ impl<P: Planner, D: Drive> Machine<P, D> {
     /// The numbers of all tables: places in here are those of [`TableRef`]. A change counts from the next call on.
     pub fn tables_mut(&mut self) -> &mut Vec<f64> {
         &mut self.tables
-    }
-
-    /// The order of the motion step, in which masters must stand before their slaves. Without this call it
-    /// is the order in which axes were added.
-    ///
-    /// # Errors
-    /// [`OrderError`] unless each axis stands in `order` exactly once; the order then stays as it was.
-    pub fn set_advance_order(&mut self, order: &[AxisId]) -> Result<(), OrderError> {
-        for (index, id) in order.iter().enumerate() {
-            if id.index() >= self.axes.len() {
-                return Err(OrderError::Unknown { axis: *id });
-            }
-            if order.iter().take(index).any(|other| other == id) {
-                return Err(OrderError::Twice { axis: *id });
-            }
-        }
-        if order.len() != self.axes.len() {
-            return Err(OrderError::Missing {
-                given: order.len(),
-                axes: self.axes.len(),
-            });
-        }
-        self.order = order.to_vec();
-        Ok(())
     }
 
     /// All axes; an [`AxisId`] is a place in here.
@@ -141,10 +113,12 @@ impl<P: Planner, D: Drive> Machine<P, D> {
     pub fn context(&mut self, time: ScanTime, instance: InstanceId) -> Context<'_, P> {
         Context {
             now_ns: time.now_ns,
-            scan: time.scan,
-            instance,
+            scope: Scope {
+                scan: time.scan,
+                instance,
+                log: &mut self.log,
+            },
             axes: &mut self.axes,
-            log: &mut self.log,
             tables: &self.tables,
         }
     }
@@ -158,18 +132,13 @@ impl<P: Planner, D: Drive> Machine<P, D> {
             &mut self.axes,
             &mut self.drives,
             &self.feedback,
-            time.scan,
-            &mut self.log,
+            &mut runtime_scope(time.scan, &mut self.log),
         );
     }
 
-    /// Advances every axis by one nominal tick, in advance order; a late scan does not stretch a motion.
+    /// The motion step: advances every axis by one nominal tick.
     pub(crate) fn advance(&mut self, time: ScanTime) {
-        for id in &self.order {
-            if let Some(axis) = self.axes.get_mut(id.index()) {
-                axis.advance(time.scan, &mut self.log);
-            }
-        }
+        steps::advance(&mut self.axes, &mut runtime_scope(time.scan, &mut self.log));
     }
 
     /// Writes every drive once, in axis order.
@@ -179,11 +148,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
 
     /// Asks every axis to stop and switch off, each as its configuration says.
     pub(crate) fn power_off(&mut self, scan: u64) {
-        let source = Source {
-            scan,
-            instance: RUNTIME,
-        };
-        steps::switch_off(&mut self.axes, source, &mut self.log);
+        steps::switch_off(&mut self.axes, &mut runtime_scope(scan, &mut self.log));
     }
 
     /// Whether every axis is Disabled, or in ErrorStop and at rest.
@@ -193,6 +158,15 @@ impl<P: Planner, D: Drive> Machine<P, D> {
     pub fn is_off(&self) -> Result<(), NotOff> {
         let on = steps::first_not_off(&self.axes);
         on.map_or(Ok(()), |(axis, state)| Err(NotOff { axis, state }))
+    }
+}
+
+/// What the machine itself does in `scan`.
+fn runtime_scope(scan: u64, log: &mut Log) -> Scope<'_> {
+    Scope {
+        scan,
+        instance: RUNTIME,
+        log,
     }
 }
 
@@ -215,42 +189,3 @@ impl fmt::Display for MachineError {
 }
 
 impl core::error::Error for MachineError {}
-
-/// Why an advance order was refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OrderError {
-    /// There is no such axis.
-    Unknown {
-        /// The handle.
-        axis: AxisId,
-    },
-    /// An axis stands twice.
-    Twice {
-        /// The axis.
-        axis: AxisId,
-    },
-    /// Some axes are missing.
-    Missing {
-        /// Axes in the order.
-        given: usize,
-        /// Axes of the machine.
-        axes: usize,
-    },
-}
-
-impl fmt::Display for OrderError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown { axis } => write!(f, "there is no axis {}: remove it", axis.index()),
-            Self::Twice { axis } => write!(f, "axis {} stands twice: name each axis once", axis.index()),
-            Self::Missing { given, axes } => {
-                write!(
-                    f,
-                    "the order has {given} of {axes} axes: name each axis exactly once"
-                )
-            }
-        }
-    }
-}
-
-impl core::error::Error for OrderError {}

@@ -78,7 +78,7 @@ pub trait Programs<P: Planner, D: Drive> {
     /// every run, such as counted instructions, or 0 if nobody counts. A measured time would make the
     /// schedule differ from run to run.
     ///
-    /// `context.instance` is [`crate::RUNTIME`] at first; a host that calls blocks sets it for each.
+    /// `context.scope.instance` is [`crate::RUNTIME`] at first; a host that calls blocks sets it for each.
     ///
     /// # Errors
     /// [`ProgramFault`] ends the scan's programs and stops the resource.

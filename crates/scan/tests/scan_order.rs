@@ -5,10 +5,8 @@
 mod common;
 
 use common::{MS, Rig, task};
-use standstill_axis::AxisId;
 use standstill_scan::{
-    Fault, Mode, OrderError, ProgramConfig, ProgramFault, ScanTime, Start, TaskConfig, TaskId,
-    TimeRanBackwards, Watchdog,
+    Fault, Mode, ProgramConfig, ProgramFault, ScanTime, Start, TaskConfig, TaskId, TimeRanBackwards, Watchdog,
 };
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -299,24 +297,4 @@ fn a_start_begins_anew() {
         assert_eq!((report.scan, report.tick, report.executions), (4, 0, 2));
         assert_eq!(report.mode, Mode::Running);
     }
-}
-
-/// Each axis exactly once, or the order stays as it was.
-#[test]
-fn the_advance_order_names_every_axis_once() {
-    let mut rig = two_axes();
-    let [x, y, z] = [AxisId::new(0), AxisId::new(1), AxisId::new(2)];
-    assert_eq!(rig.machine.set_advance_order(&[y, x]), Ok(()));
-    assert_eq!(
-        rig.machine.set_advance_order(&[y]),
-        Err(OrderError::Missing { given: 1, axes: 2 })
-    );
-    assert_eq!(
-        rig.machine.set_advance_order(&[x, x]),
-        Err(OrderError::Twice { axis: x })
-    );
-    assert_eq!(
-        rig.machine.set_advance_order(&[x, y, z]),
-        Err(OrderError::Unknown { axis: z })
-    );
 }

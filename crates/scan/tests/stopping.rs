@@ -21,9 +21,9 @@ const DYNAMICS: Dynamics = Dynamics {
 };
 
 fn command<P: Planner>(context: &mut Context<'_, P>, command: Command) {
-    context.instance = InstanceId(3);
-    let (axis, log, source) = context.axis(AxisId::new(0)).unwrap();
-    axis.command(&Request::aborting(command), source, log).unwrap();
+    context.scope.instance = InstanceId(3);
+    let (axis, scope) = context.axis(AxisId::new(0)).unwrap();
+    axis.command(&Request::aborting(command), scope).unwrap();
 }
 
 fn forward<P: Planner>(context: &mut Context<'_, P>) {
@@ -196,8 +196,8 @@ fn a_start_waits_for_axes_that_are_off() {
 fn a_start_waits_for_the_ramp_of_an_axis_fault() {
     let mut moving = Moving::new();
     moving.rig.host.act = |_, context| {
-        let (axis, log, source) = context.axis(AxisId::new(0)).unwrap();
-        axis.raise(ErrorId::AxisFault, 0, source, log);
+        let (axis, scope) = context.axis(AxisId::new(0)).unwrap();
+        axis.raise(ErrorId::AxisFault, 0, scope);
         Ok(())
     };
     moving.scan();

@@ -61,14 +61,14 @@ struct ToAndFro {
 impl Program<Servo> for ToAndFro {
     fn run(&mut self, _: ProgramId, _: &mut Blocks, context: &mut Context<'_>) -> Result<u64, ProgramFault> {
         let [power, there, back] = self.numbers;
-        context.instance = power;
+        context.scope.instance = power;
         self.power.call(context);
         // The first move stays done, and so keeps the second one going, until that is done, too.
         self.there.inputs.execute = self.power.outputs.status && !self.back.outputs.done;
-        context.instance = there;
+        context.scope.instance = there;
         self.there.call(context);
         self.back.inputs.execute = self.there.outputs.done;
-        context.instance = back;
+        context.scope.instance = back;
         self.back.call(context);
         self.turns.call(self.back.outputs.done);
         Ok(0)

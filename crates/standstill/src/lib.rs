@@ -65,8 +65,8 @@ pub mod prelude {
     pub use crate::runtime::{BlockId, Blocks, BuildError, Builder, Program, Ready, Running};
     pub use standstill_axis::{
         Axis, AxisConfig, AxisId, AxisState, BufferMode, Direction, Drive, DriveCommand, DriveFeedback,
-        DrivePosition, DriveRequest, ErrorId, IdealDrive, InstanceId, Limits, Log, Planner, Raw, Setpoint,
-        Standard, StartState,
+        DrivePosition, DriveRequest, ErrorId, IdealDrive, InstanceId, Limits, Log, Planner, Raw, Scope,
+        Setpoint, Standard, StartState, steps,
     };
     pub use standstill_blocks::administrative::{
         mc_power::McPower, mc_read_actual_position::McReadActualPosition,

@@ -3,64 +3,13 @@
 //! Source: PLCopen Motion Control Part 1, state diagram and sections on aborting and buffered commands; the
 //! table "state x command" with the choices V6, V6a, V7a, V11.
 
-use super::profile::start_event;
-use super::queue::{Entry, Place, Work};
-use super::{Axis, Motion, Source};
+use super::commands::{Entry, Place, Start, Work, direction_of, refusal, start_event};
+use super::{Axis, Motion};
 use crate::{
-    AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Fate, Log, Raw,
-    Request,
+    AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Fate, Raw, Request,
+    Scope,
 };
-use standstill_planner::{Field, Limits, Passage, PlanError, Planner, Setpoint};
-
-/// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
-pub(super) const ROUNDING: f64 = 1e-9;
-
-/// At its end a command comes to rest.
-pub(super) const REST: Passage = Passage {
-    wanted: 0.0,
-    most: 0.0,
-};
-
-/// The Direction pin of a command to a position; the checks refuse undefined numbers. MC_MoveAdditive leads to a
-/// position of the frame.
-pub(super) fn direction_of(command: &Command) -> Option<Direction> {
-    match command {
-        Command::MoveAbsolute { direction, .. } | Command::MoveContinuousAbsolute { direction, .. } => {
-            direction.get()
-        }
-        Command::MoveAdditive { .. }
-        | Command::MoveRelative { .. }
-        | Command::MoveContinuousRelative { .. }
-        | Command::MoveVelocity { .. }
-        | Command::Torque { .. }
-        | Command::Jog { .. }
-        | Command::Halt { .. }
-        | Command::Stop { .. }
-        | Command::Home { .. } => None,
-    }
-}
-
-/// When an admitted command starts.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Way {
-    Now,
-    Wait,
-}
-
-/// What a block shows of a planner's refusal.
-pub(super) fn refusal(error: PlanError) -> ErrorId {
-    match error {
-        PlanError::TooLong { .. } => ErrorId::MoveTooLong,
-        // Distance over cycle^n does not fit into a number: longer than anything countable.
-        PlanError::InvalidInput {
-            field: Field::Cycle, ..
-        } => ErrorId::MoveTooLong,
-        PlanError::InvalidInput {
-            field: Field::Target, ..
-        } => ErrorId::PositionInvalid,
-        _ => ErrorId::PlanRefused,
-    }
-}
+use standstill_planner::{Limits, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
     /// Takes a command, or refuses it without any effect on the axis or the queue (R38).
@@ -70,36 +19,31 @@ impl<P: Planner> Axis<P> {
     ///
     /// # Errors
     /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit.
-    pub fn command(
-        &mut self,
-        request: &Request,
-        source: Source,
-        log: &mut Log,
-    ) -> Result<CommandId, ErrorId> {
-        let (mode, way) = self.admit_recorded(request, source, log)?;
-        let (work, limits) = self.check(&request.command, way, source, log)?;
-        let mut entry = Entry::new(self.new_id(), source.instance, work, limits, mode);
+    pub fn command(&mut self, request: &Request, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
+        let (mode, start) = self.admit_recorded(request, scope)?;
+        let (work, limits) = self.check(&request.command, start, scope)?;
+        let mut entry = Entry::new(self.new_id(), scope.instance, work, limits, mode);
         entry.direction = direction_of(&request.command);
         self.override_entry(&mut entry);
         if let (Command::MoveAdditive { .. }, Work::Position(_)) = (&request.command, work) {
             entry.from = self.commanded_target().unwrap_or(self.setpoint.position);
         }
-        match way {
-            Way::Wait => {
+        match start {
+            Start::Wait => {
                 self.queue.push(entry);
-                self.arm(mode, source.scan, log);
-                self.start_beside(source.scan, log);
+                self.arm(mode, scope);
+                self.start_beside(scope);
             }
-            Way::Now => {
+            Start::Now => {
                 self.aim(&mut entry, self.setpoint.position);
                 let asked = entry.limits;
                 let motion = self
                     .plan_for(&mut entry)
-                    .map_err(|error| self.refuse_plan(&entry, error, source, log))?;
+                    .map_err(|error| self.refuse_plan(&entry, error, scope))?;
                 let before = self.limits_before(&entry.limits);
                 self.end_all(Fate::Aborted, Fate::Aborted);
-                self.begin(entry, motion, before, source.scan, log);
-                self.record_raised(&asked, &entry.limits, source, log);
+                self.begin(entry, motion, before, scope);
+                self.record_raised(&asked, &entry.limits, scope);
             }
         }
         Ok(entry.id)
@@ -122,29 +66,28 @@ impl<P: Planner> Axis<P> {
     pub(super) fn admit_recorded(
         &self,
         request: &Request,
-        source: Source,
-        log: &mut Log,
-    ) -> Result<(BufferMode, Way), ErrorId> {
+        scope: &mut Scope<'_>,
+    ) -> Result<(BufferMode, Start), ErrorId> {
         self.admit(request).map_err(|(pin, error)| {
             let value = if pin == "BufferMode" {
                 f64::from(request.buffer_mode.number())
             } else {
                 f64::NAN
             };
-            self.refuse(pin, value, f64::NAN, error, source, log)
+            self.refuse(pin, value, f64::NAN, error, scope)
         })
     }
 
     /// The rules of the axis state.
-    fn admit(&self, request: &Request) -> Result<(BufferMode, Way), (&'static str, ErrorId)> {
+    fn admit(&self, request: &Request) -> Result<(BufferMode, Start), (&'static str, ErrorId)> {
         let Some(mode) = request.buffer_mode.get() else {
             return Err(("BufferMode", ErrorId::BufferModeInvalid));
         };
-        self.way(request, mode != BufferMode::Aborting)
-            .map(|way| (mode, way))
+        self.start(request, mode != BufferMode::Aborting)
+            .map(|start| (mode, start))
     }
 
-    fn way(&self, request: &Request, buffered: bool) -> Result<Way, (&'static str, ErrorId)> {
+    fn start(&self, request: &Request, buffered: bool) -> Result<Start, (&'static str, ErrorId)> {
         if self.power.going_off {
             return Err(("", ErrorId::PoweringOff));
         }
@@ -165,15 +108,15 @@ impl<P: Planner> Axis<P> {
             // An idle axis starts at once whatever the mode (B9); something waits only in the scan in which
             // MC_Stop released the axis.
             AxisState::Standstill if buffered && !self.queue.is_empty() => wait(),
-            AxisState::Standstill => Ok(Way::Now),
-            AxisState::Homing if stop || (home && !buffered && !self.is_homed_by_drive()) => Ok(Way::Now),
+            AxisState::Standstill => Ok(Start::Now),
+            AxisState::Homing if stop || (home && !buffered && !self.is_homed_by_drive()) => Ok(Start::Now),
             AxisState::Homing if buffered && !stop => wait(),
             AxisState::Homing => refuse(ErrorId::InHoming),
             // The same instance may stop again with other values (V7a).
             AxisState::Stopping
                 if stop && request.replaces.is_some() && request.replaces == self.active_command() =>
             {
-                Ok(Way::Now)
+                Ok(Start::Now)
             }
             AxisState::Stopping if buffered && !stop && !home => self.wait(),
             AxisState::Stopping => refuse(ErrorId::InStopping),
@@ -183,15 +126,15 @@ impl<P: Planner> Axis<P> {
                 } else if home {
                     refuse(ErrorId::InMotion)
                 } else {
-                    Ok(Way::Now)
+                    Ok(Start::Now)
                 }
             }
         }
     }
 
-    pub(super) fn wait(&self) -> Result<Way, (&'static str, ErrorId)> {
+    pub(super) fn wait(&self) -> Result<Start, (&'static str, ErrorId)> {
         if self.queue.len() < self.config.queue {
-            Ok(Way::Wait)
+            Ok(Start::Wait)
         } else {
             Err(("BufferMode", ErrorId::BufferFull))
         }
@@ -207,9 +150,8 @@ impl<P: Planner> Axis<P> {
     pub(super) fn check(
         &self,
         command: &Command,
-        way: Way,
-        source: Source,
-        log: &mut Log,
+        start: Start,
+        scope: &mut Scope<'_>,
     ) -> Result<(Work, Limits), ErrorId> {
         match *command {
             Command::MoveAbsolute {
@@ -217,8 +159,8 @@ impl<P: Planner> Axis<P> {
                 ref dynamics,
                 direction,
             } => {
-                let position = self.absolute(position, direction, source, log)?;
-                Ok((Work::Position(position), self.positioning(dynamics, source, log)?))
+                let position = self.absolute(position, direction, scope)?;
+                Ok((Work::Position(position), self.positioning(dynamics, scope)?))
             }
             Command::MoveContinuousAbsolute {
                 position,
@@ -226,80 +168,72 @@ impl<P: Planner> Axis<P> {
                 ref dynamics,
                 direction,
             } => {
-                let to = Place::At(self.absolute(position, direction, source, log)?);
-                self.through(to, end_velocity, dynamics, source, log)
+                let to = Place::At(self.absolute(position, direction, scope)?);
+                self.through(to, end_velocity, dynamics, scope)
             }
             Command::MoveContinuousRelative {
                 distance,
                 end_velocity,
                 ref dynamics,
             } => {
-                let to = Place::By(self.finite("Distance", distance, source, log)?);
-                self.through(to, end_velocity, dynamics, source, log)
+                let to = Place::By(self.finite("Distance", distance, scope)?);
+                self.through(to, end_velocity, dynamics, scope)
             }
             Command::MoveAdditive {
                 distance,
                 ref dynamics,
             } => {
-                let distance = self.finite("Distance", distance, source, log)?;
+                let distance = self.finite("Distance", distance, scope)?;
                 let work = match self.commanded_target() {
                     // Waiting, it counts from the end of the one before it, which is the last commanded target.
-                    Some(target) if way == Way::Now => {
-                        let position = self.finite("Distance", target + distance, source, log)?;
-                        self.inside("Distance", position, source, log)?;
+                    Some(target) if start == Start::Now => {
+                        let position = self.finite("Distance", target + distance, scope)?;
+                        self.inside("Distance", position, scope)?;
                         Work::Position(position)
                     }
                     _ => Work::Distance(distance),
                 };
-                Ok((work, self.positioning(dynamics, source, log)?))
+                Ok((work, self.positioning(dynamics, scope)?))
             }
             Command::MoveRelative {
                 distance,
                 ref dynamics,
             } => {
-                let distance = self.finite("Distance", distance, source, log)?;
-                Ok((Work::Distance(distance), self.positioning(dynamics, source, log)?))
+                let distance = self.finite("Distance", distance, scope)?;
+                Ok((Work::Distance(distance), self.positioning(dynamics, scope)?))
             }
             Command::MoveVelocity {
                 ref dynamics,
                 direction,
             } => {
-                let velocity = self.endless_velocity(dynamics.velocity, source, log)?;
+                let velocity = self.endless_velocity(dynamics.velocity, scope)?;
                 let work = self.directed(velocity, direction).ok_or_else(|| {
                     let number = f64::from(direction.number());
-                    self.refuse(
-                        "Direction",
-                        number,
-                        f64::NAN,
-                        ErrorId::DirectionInvalid,
-                        source,
-                        log,
-                    )
+                    self.refuse("Direction", number, f64::NAN, ErrorId::DirectionInvalid, scope)
                 })?;
-                Ok((work, self.resolve(dynamics, source, log)?))
+                Ok((work, self.resolve(dynamics, scope)?))
             }
             Command::Torque {
                 torque,
                 ramp,
                 ref dynamics,
                 direction,
-            } => self.check_torque((torque, ramp), dynamics, direction, source, log),
+            } => self.check_torque((torque, ramp), dynamics, direction, scope),
             Command::Jog {
                 forward,
                 distance,
                 ref dynamics,
-            } => self.jog(forward, distance, dynamics, source, log),
-            Command::Halt { ref dynamics } => Ok((Work::Halt, self.resolve(dynamics, source, log)?)),
-            Command::Stop { ref dynamics } => Ok((Work::Stop, self.resolve(dynamics, source, log)?)),
+            } => self.jog(forward, distance, dynamics, scope),
+            Command::Halt { ref dynamics } => Ok((Work::Halt, self.resolve(dynamics, scope)?)),
+            Command::Stop { ref dynamics } => Ok((Work::Stop, self.resolve(dynamics, scope)?)),
             Command::Home { position } => {
-                let position = self.finite("Position", position, source, log)?;
-                self.in_first_turn(position).map_err(|(length, error)| {
-                    self.refuse("Position", position, length, error, source, log)
-                })?;
+                let position = self.finite("Position", position, scope)?;
+                self.in_first_turn(position)
+                    .map_err(|(length, error)| self.refuse("Position", position, length, error, scope))?;
                 self.has_signals_to_home()
-                    .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, source, log))?;
+                    .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, scope))?;
                 let limits = if self.config.homing.searches() {
-                    self.resolve(&Dynamics::default(), source, log)?
+                    self.resolve(&Dynamics::default(), scope)?
                 } else {
                     self.config.limits
                 };
@@ -313,19 +247,18 @@ impl<P: Planner> Axis<P> {
         &self,
         position: f64,
         direction: Raw<Direction>,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<f64, ErrorId> {
         if direction.get().is_none() {
             let number = f64::from(direction.number());
-            return Err(self.refuse("Direction", number, 4.0, ErrorId::DirectionInvalid, source, log));
+            return Err(self.refuse("Direction", number, 4.0, ErrorId::DirectionInvalid, scope));
         }
-        let position = self.finite("Position", position, source, log)?;
+        let position = self.finite("Position", position, scope)?;
         self.in_first_turn(position)
-            .map_err(|(length, error)| self.refuse("Position", position, length, error, source, log))?;
-        self.inside("Position", position, source, log)?;
+            .map_err(|(length, error)| self.refuse("Position", position, length, error, scope))?;
+        self.inside("Position", position, scope)?;
         if self.config.needs_homed && !self.homed {
-            return Err(self.refuse("Position", position, f64::NAN, ErrorId::NotHomed, source, log));
+            return Err(self.refuse("Position", position, f64::NAN, ErrorId::NotHomed, scope));
         }
         Ok(position)
     }
@@ -335,14 +268,13 @@ impl<P: Planner> Axis<P> {
         &self,
         pin: &'static str,
         target: f64,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<(), ErrorId> {
         match self.allowed(target) {
             Ok(_) => Ok(()),
             Err(error) => {
                 let limit = self.broken_software_limit(target);
-                Err(self.refuse(pin, target, limit, error, source, log))
+                Err(self.refuse(pin, target, limit, error, scope))
             }
         }
     }
@@ -353,11 +285,10 @@ impl<P: Planner> Axis<P> {
         to: Place,
         end_velocity: f64,
         dynamics: &Dynamics,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<(Work, Limits), ErrorId> {
-        let limits = self.positioning(dynamics, source, log)?;
-        let end_velocity = self.end_velocity(end_velocity, limits.velocity, source, log)?;
+        let limits = self.positioning(dynamics, scope)?;
+        let end_velocity = self.end_velocity(end_velocity, limits.velocity, scope)?;
         Ok((Work::Through { to, end_velocity }, limits))
     }
 
@@ -382,20 +313,19 @@ impl<P: Planner> Axis<P> {
         &self,
         pin: &'static str,
         value: f64,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<f64, ErrorId> {
         if value.is_finite() {
             return Ok(value);
         }
-        Err(self.refuse(pin, value, f64::NAN, ErrorId::PositionInvalid, source, log))
+        Err(self.refuse(pin, value, f64::NAN, ErrorId::PositionInvalid, scope))
     }
 
-    fn positioning(&self, dynamics: &Dynamics, source: Source, log: &mut Log) -> Result<Limits, ErrorId> {
-        let velocity = self.positive_velocity("Velocity", dynamics.velocity, source, log)?;
+    fn positioning(&self, dynamics: &Dynamics, scope: &mut Scope<'_>) -> Result<Limits, ErrorId> {
+        let velocity = self.positive_velocity("Velocity", dynamics.velocity, scope)?;
         Ok(Limits {
             velocity,
-            ..self.resolve(dynamics, source, log)?
+            ..self.resolve(dynamics, scope)?
         })
     }
 
@@ -493,13 +423,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Records why a plan was refused, with the pin that asked for it.
-    pub(super) fn refuse_plan(
-        &self,
-        entry: &Entry,
-        error: ErrorId,
-        source: Source,
-        log: &mut Log,
-    ) -> ErrorId {
+    pub(super) fn refuse_plan(&self, entry: &Entry, error: ErrorId, scope: &mut Scope<'_>) -> ErrorId {
         let (pin, value) = match entry.work {
             Work::Position(target)
             | Work::Through {
@@ -524,7 +448,7 @@ impl<P: Planner> Axis<P> {
             }
             _ => f64::NAN,
         };
-        self.refuse(pin, value, limit, error, source, log)
+        self.refuse(pin, value, limit, error, scope)
     }
 
     /// Makes `entry` the owner; it takes over from a motion within `before`.
@@ -533,12 +457,11 @@ impl<P: Planner> Axis<P> {
         entry: Entry,
         motion: Motion<P::Plan>,
         before: Limits,
-        scan: u64,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) {
         self.enter(start_event(&entry.work));
         self.before = before;
-        self.adopt(entry, motion, scan, log);
+        self.adopt(entry, motion, scope);
         if matches!(entry.work, Work::Home(_)) {
             self.begin_homing();
         }

@@ -3,11 +3,10 @@
 //! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; rules B1 to B17. What the
 //! standard leaves open is told in `docs/buffering.md`. The maths is the planner's.
 
-use super::accept::{REST, ROUNDING};
+use super::commands::{Entry, REST, ROUNDING, Work};
 use super::power::Reaction;
-use super::queue::{Entry, Work};
 use super::{Axis, Motion};
-use crate::{BufferMode, ErrorId, Fate, Log, QUEUE_MAX};
+use crate::{BufferMode, ErrorId, Fate, QUEUE_MAX, Scope};
 use standstill_planner::{Limits, Passage, Plan, Planner, Setpoint};
 
 /// Scans of a way that leave room for its ramps in a plan.
@@ -26,7 +25,7 @@ struct Leg<'a> {
 impl<P: Planner> Axis<P> {
     /// A command has been queued with `mode`: if it is to blend, the owner may have to pass its end at
     /// another speed, and is planned anew from the last set-point (B15). Failing that, its plan stays.
-    pub(super) fn arm(&mut self, mode: BufferMode, scan: u64, log: &mut Log) {
+    pub(super) fn arm(&mut self, mode: BufferMode, scope: &mut Scope<'_>) {
         if matches!(mode, BufferMode::Aborting | BufferMode::Buffered) {
             return;
         }
@@ -41,7 +40,7 @@ impl<P: Planner> Axis<P> {
         // Should it have to come to rest all the same, it does so as planned.
         let planned = planned.filter(|plan| plan.at(u64::from(plan.scans())).velocity != 0.0);
         if let Some(plan) = planned {
-            self.adopt(owner, Motion::along(plan), scan, log);
+            self.adopt(owner, Motion::along(plan), scope);
         }
     }
 
@@ -141,16 +140,16 @@ impl<P: Planner> Axis<P> {
 
     /// The owner has passed its end in motion: Done, and the next takes over from the set-point (B2). Should
     /// the next have to wait for a superimposed motion, so does the owner, with the velocity it has.
-    pub(super) fn pass_on(&mut self, scan: u64, log: &mut Log) {
-        self.hand_over(self.passed_end(), scan, log);
+    pub(super) fn pass_on(&mut self, scope: &mut Scope<'_>) {
+        self.hand_over(self.passed_end(), scope);
         if self.queue.is_empty() && self.base().velocity != 0.0 && self.goal_reached() && self.passes_on() {
             // What waited was refused: it was too late to come to rest when coordinates moved, a way was barred or its
             // values changed.
             match self.allowed(self.setpoint.position) {
-                Ok(_) => self.halt_behind_end(scan, log),
+                Ok(_) => self.halt_behind_end(scope),
                 Err(_) => {
                     self.end_owner(Fate::Done);
-                    self.trip(ErrorId::SoftwareLimitReached, 0, Reaction::Ramp, scan, log);
+                    self.trip(ErrorId::SoftwareLimitReached, 0, Reaction::Ramp, scope);
                 }
             }
         }

@@ -6,9 +6,9 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_SetPosition; V15, T39 i.
 
-use super::queue::{Entry, Place, Work};
-use super::{Axis, Motion, Source};
-use crate::{CommandId, ErrorId, Event, ExecutionMode, Fate, Log, QUEUE_MAX, Raw};
+use super::commands::{Entry, Place, Work};
+use super::{Axis, Motion};
+use crate::{CommandId, ErrorId, Event, ExecutionMode, Fate, QUEUE_MAX, Raw, Scope};
 use standstill_planner::turns::split;
 use standstill_planner::{Plan, Planner, Setpoint};
 
@@ -30,20 +30,19 @@ impl<P: Planner> Axis<P> {
         position: f64,
         relative: bool,
         mode: Raw<ExecutionMode>,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<CommandId, ErrorId> {
-        let queued = self.is_queued(mode, source, log)?;
-        self.finite("Position", position, source, log)?;
+        let queued = self.is_queued(mode, scope)?;
+        self.finite("Position", position, scope)?;
         if !relative {
             self.in_first_turn(position)
-                .map_err(|(length, error)| self.refuse("Position", position, length, error, source, log))?;
+                .map_err(|(length, error)| self.refuse("Position", position, length, error, scope))?;
         }
         if queued {
-            return self.enqueue(Work::SetPosition { position, relative }, source, log);
+            return self.enqueue(Work::SetPosition { position, relative }, scope);
         }
-        self.move_coordinates(position, relative, source, log)
-            .map_err(|error| self.refuse("Position", position, f64::NAN, error, source, log))?;
+        self.move_coordinates(position, relative, scope)
+            .map_err(|error| self.refuse("Position", position, f64::NAN, error, scope))?;
         let id = self.new_id();
         self.decide(id, Fate::Done);
         Ok(id)
@@ -62,7 +61,7 @@ impl<P: Planner> Axis<P> {
 
     /// The coordinates move as the commands at the head of the buffer say, then the next one has its turn.
     #[cold]
-    pub(super) fn take_queued_shifts(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn take_queued_shifts(&mut self, scope: &mut Scope<'_>) {
         for _ in 0..QUEUE_MAX {
             if !self.queue_waits_for_shift() {
                 break;
@@ -71,17 +70,14 @@ impl<P: Planner> Axis<P> {
             let Work::SetPosition { position, relative } = entry.work else {
                 break;
             };
-            let source = Source {
-                scan,
-                instance: entry.instance,
-            };
-            let fate = match self.move_coordinates(position, relative, source, log) {
+            let scope = &mut scope.with(entry.instance);
+            let fate = match self.move_coordinates(position, relative, scope) {
                 Ok(()) => Fate::Done,
-                Err(error) => Fate::Failed(self.refuse("Position", position, f64::NAN, error, source, log)),
+                Err(error) => Fate::Failed(self.refuse("Position", position, f64::NAN, error, scope)),
             };
             self.decide(entry.id, fate);
         }
-        self.hand_over(self.setpoint.position, scan, log);
+        self.hand_over(self.setpoint.position, scope);
     }
 
     /// Grows whenever coordinates move (MC_SetPosition, MC_Home), and comes round: positions taken at different numbers
@@ -94,8 +90,7 @@ impl<P: Planner> Axis<P> {
         &mut self,
         position: f64,
         relative: bool,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<(), ErrorId> {
         let by = if relative {
             position
@@ -116,7 +111,7 @@ impl<P: Planner> Axis<P> {
         if let Some(layer) = &mut self.layer {
             layer.base.position += by;
         }
-        if let Err(error) = self.move_motion(by, source.scan, log) {
+        if let Err(error) = self.move_motion(by, scope) {
             (self.setpoint, self.layer) = before;
             return Err(error);
         }
@@ -142,14 +137,14 @@ impl<P: Planner> Axis<P> {
             self.rename = Some(self.setpoint().position);
         }
         self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
-        self.tell_moved(by, source, log);
-        self.pass_at_rest(source.scan, log);
+        self.tell_moved(by, scope);
+        self.pass_at_rest(scope);
         Ok(())
     }
 
     /// The motion in progress in coordinates moved by `by` (u): an absolute move is planned anew to the same
     /// number, every other one goes on as it is.
-    fn move_motion(&mut self, by: f64, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+    fn move_motion(&mut self, by: f64, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         let is_halted = self.owner.as_ref().is_some_and(|owner| owner.halted);
         if self.is_paused() || is_halted {
             self.shift_paused(by);
@@ -172,21 +167,21 @@ impl<P: Planner> Axis<P> {
         // With something superimposed it may find no room just now.
         let motion = self.plan_next(&mut owner)?.ok_or(ErrorId::InMotion)?;
         self.before = self.limits_before(&owner.limits);
-        self.adopt(owner, motion, scan, log);
+        self.adopt(owner, motion, scope);
         Ok(())
     }
 
     /// Coordinates were moved by `by` (u).
-    pub(super) fn tell_moved(&mut self, by: f64, source: Source, log: &mut Log) {
-        self.moved = (source.scan, self.coordinates_moved(source.scan) + by);
-        self.record(Event::Shifted { by }, source, log);
+    pub(super) fn tell_moved(&mut self, by: f64, scope: &mut Scope<'_>) {
+        self.moved = (scope.scan, self.coordinates_moved(scope.scan) + by);
+        self.record(Event::Shifted { by }, scope);
     }
 
     /// The place where the axis stands is called `position` (u) from now on (MC_Home).
-    pub(super) fn call_set_position(&mut self, position: f64, scan: u64, log: &mut Log) {
+    pub(super) fn call_set_position(&mut self, position: f64, scope: &mut Scope<'_>) {
         let by = position - self.setpoint.position;
         if by != 0.0 {
-            self.tell_moved(by, self.owner_source(scan), log);
+            self.tell_moved(by, &mut self.owner_scope(scope));
         }
         self.coordinates = self.coordinates.wrapping_add(1);
         self.rename_places();

@@ -4,8 +4,8 @@
 //! unless configured; with neither, jerk and snap are not limited and acceleration is an error. Values above
 //! the limit are clamped and recorded, or refused (V2).
 
-use super::{Axis, Source};
-use crate::{AboveLimit, Dynamics, ErrorId, Event, Log};
+use super::Axis;
+use crate::{AboveLimit, Dynamics, ErrorId, Event, Scope};
 use standstill_planner::{Limits, Planner};
 
 /// Scans a rate may take to change what it changes from nothing to its limit. A lower rate is of no use, and a
@@ -28,12 +28,7 @@ struct Magnitude {
 
 impl<P: Planner> Axis<P> {
     /// Limits of a motion; the velocity is that of the axis, positioning moves lower it.
-    pub(super) fn resolve(
-        &self,
-        dynamics: &Dynamics,
-        source: Source,
-        log: &mut Log,
-    ) -> Result<Limits, ErrorId> {
+    pub(super) fn resolve(&self, dynamics: &Dynamics, scope: &mut Scope<'_>) -> Result<Limits, ErrorId> {
         let (limits, defaults) = (&self.parameters.limits, &self.config.defaults);
         let longest = self.longest();
         let rate = limits.acceleration.max(limits.deceleration);
@@ -84,10 +79,10 @@ impl<P: Planner> Axis<P> {
         };
         Ok(Limits {
             velocity: limits.velocity,
-            acceleration: self.magnitude(&acceleration, source, log)?,
-            deceleration: self.magnitude(&deceleration, source, log)?,
-            jerk: self.magnitude(&jerk, source, log)?,
-            snap: self.magnitude(&snap, source, log)?,
+            acceleration: self.magnitude(&acceleration, scope)?,
+            deceleration: self.magnitude(&deceleration, scope)?,
+            jerk: self.magnitude(&jerk, scope)?,
+            snap: self.magnitude(&snap, scope)?,
         })
     }
 
@@ -101,29 +96,27 @@ impl<P: Planner> Axis<P> {
         &self,
         pin: &'static str,
         value: f64,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<f64, ErrorId> {
         if !(value > 0.0 && value.is_finite()) {
-            return Err(self.refuse(pin, value, 0.0, ErrorId::VelocityInvalid, source, log));
+            return Err(self.refuse(pin, value, 0.0, ErrorId::VelocityInvalid, scope));
         }
         self.within(
             pin,
             value,
             self.parameters.limits.velocity,
             ErrorId::VelocityAboveLimit,
-            source,
-            log,
+            scope,
         )
     }
 
     /// The velocity of an endless motion: signed, at most the axis limit in magnitude.
-    pub(super) fn endless_velocity(&self, value: f64, source: Source, log: &mut Log) -> Result<f64, ErrorId> {
+    pub(super) fn endless_velocity(&self, value: f64, scope: &mut Scope<'_>) -> Result<f64, ErrorId> {
         if !value.is_finite() {
-            return Err(self.refuse("Velocity", value, f64::NAN, ErrorId::VelocityInvalid, source, log));
+            return Err(self.refuse("Velocity", value, f64::NAN, ErrorId::VelocityInvalid, scope));
         }
         let limit = self.parameters.limits.velocity;
-        self.within("Velocity", value, limit, ErrorId::VelocityAboveLimit, source, log)
+        self.within("Velocity", value, limit, ErrorId::VelocityAboveLimit, scope)
     }
 
     /// The end velocity of a continuous move: signed, at most `velocity` in magnitude.
@@ -131,20 +124,19 @@ impl<P: Planner> Axis<P> {
         &self,
         value: f64,
         velocity: f64,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<f64, ErrorId> {
         let invalid = ErrorId::EndVelocityInvalid;
         if !value.is_finite() {
-            return Err(self.refuse("EndVelocity", value, f64::NAN, invalid, source, log));
+            return Err(self.refuse("EndVelocity", value, f64::NAN, invalid, scope));
         }
         let limit = self.parameters.limits.velocity;
         // Above the axis limit Velocity has been clamped to it, or the command refused.
         if value.abs().min(limit) > velocity {
-            return Err(self.refuse("EndVelocity", value, velocity, invalid, source, log));
+            return Err(self.refuse("EndVelocity", value, velocity, invalid, scope));
         }
         let above = ErrorId::EndVelocityAboveLimit;
-        self.within("EndVelocity", value, limit, above, source, log)
+        self.within("EndVelocity", value, limit, above, scope)
     }
 
     /// Limits of a ramp nobody commanded: power-off, ErrorStop.
@@ -159,21 +151,21 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    fn magnitude(&self, pin: &Magnitude, source: Source, log: &mut Log) -> Result<f64, ErrorId> {
+    fn magnitude(&self, pin: &Magnitude, scope: &mut Scope<'_>) -> Result<f64, ErrorId> {
         if !(pin.value >= 0.0 && pin.value.is_finite()) {
-            return Err(self.refuse(pin.pin, pin.value, 0.0, pin.invalid, source, log));
+            return Err(self.refuse(pin.pin, pin.value, 0.0, pin.invalid, scope));
         }
         if pin.value > 0.0 {
             // An axis whose limits are that low may use them.
             if pin.value < pin.least && pin.value < pin.limit {
-                return Err(self.refuse(pin.pin, pin.value, pin.least, ErrorId::MoveTooLong, source, log));
+                return Err(self.refuse(pin.pin, pin.value, pin.least, ErrorId::MoveTooLong, scope));
             }
-            return self.within(pin.pin, pin.value, pin.limit, pin.above, source, log);
+            return self.within(pin.pin, pin.value, pin.limit, pin.above, scope);
         }
         match (pin.default, pin.missing) {
             (Some(default), _) => Ok(default.min(pin.limit)),
             (None, Some(error)) if !pin.limit.is_finite() => {
-                Err(self.refuse(pin.pin, pin.value, f64::NAN, error, source, log))
+                Err(self.refuse(pin.pin, pin.value, f64::NAN, error, scope))
             }
             (None, _) => Ok(pin.limit),
         }
@@ -186,8 +178,7 @@ impl<P: Planner> Axis<P> {
         value: f64,
         limit: f64,
         above: ErrorId,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<f64, ErrorId> {
         if value.abs() <= limit {
             return Ok(value);
@@ -195,10 +186,10 @@ impl<P: Planner> Axis<P> {
         let limit = if value < 0.0 { -limit } else { limit };
         match self.config.above_limit {
             AboveLimit::Clamp => {
-                self.record(Event::Clamped { pin, value, limit }, source, log);
+                self.record(Event::Clamped { pin, value, limit }, scope);
                 Ok(limit)
             }
-            AboveLimit::Error => Err(self.refuse(pin, value, limit, above, source, log)),
+            AboveLimit::Error => Err(self.refuse(pin, value, limit, above, scope)),
         }
     }
 
@@ -210,10 +201,9 @@ impl<P: Planner> Axis<P> {
         value: f64,
         limit: f64,
         error: ErrorId,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) {
-        self.refuse(pin, value, limit, error, source, log);
+        self.refuse(pin, value, limit, error, scope);
     }
 
     pub(super) fn refuse(
@@ -222,8 +212,7 @@ impl<P: Planner> Axis<P> {
         value: f64,
         limit: f64,
         error: ErrorId,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> ErrorId {
         self.record(
             Event::Refused {
@@ -232,8 +221,7 @@ impl<P: Planner> Axis<P> {
                 limit,
                 error,
             },
-            source,
-            log,
+            scope,
         );
         error
     }

@@ -6,9 +6,9 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_SetOverride; S5, S6, B17, T39d, V16.
 
-use super::queue::Entry;
-use super::{Axis, Source};
-use crate::{ErrorId, Log};
+use super::Axis;
+use super::commands::Entry;
+use crate::{ErrorId, Scope};
 use standstill_planner::{Limits, Planner};
 
 /// Factors of an override. The axis starts with 1 for each.
@@ -84,15 +84,15 @@ impl<P: Planner> Axis<P> {
     /// The [`ErrorId`] the block shows: a factor out of range, or a motion that could not be planned anew.
     /// Nothing changes then.
     #[inline]
-    pub fn set_override(&mut self, factors: Factors, source: Source, log: &mut Log) -> Result<(), ErrorId> {
+    pub fn set_override(&mut self, factors: Factors, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         if factors == self.factors {
             return Ok(());
         }
-        self.change_override(factors, source, log)
+        self.change_override(factors, scope)
     }
 
     #[inline(never)]
-    fn change_override(&mut self, factors: Factors, source: Source, log: &mut Log) -> Result<(), ErrorId> {
+    fn change_override(&mut self, factors: Factors, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         let most = self.config.override_max;
         let pins = [
             ("VelFactor", factors.velocity, true),
@@ -103,18 +103,18 @@ impl<P: Planner> Axis<P> {
             // NaN is none of these.
             if !((value > 0.0 || (may_be_0 && value == 0.0)) && value <= most) {
                 let limit = if value > most { most } else { 0.0 };
-                return Err(self.refuse(pin, value, limit, ErrorId::FactorInvalid, source, log));
+                return Err(self.refuse(pin, value, limit, ErrorId::FactorInvalid, scope));
             }
         }
         let before = self.factors;
         self.factors = factors;
         self.override_queue();
-        if let Err(error) = self.override_owner(source.scan, log) {
+        if let Err(error) = self.override_owner(scope) {
             self.factors = before;
             self.override_queue();
-            return Err(self.refuse("VelFactor", factors.velocity, f64::NAN, error, source, log));
+            return Err(self.refuse("VelFactor", factors.velocity, f64::NAN, error, scope));
         }
-        self.override_superimposed(source.scan, log);
+        self.override_superimposed(scope);
         Ok(())
     }
 
@@ -140,13 +140,13 @@ impl<P: Planner> Axis<P> {
         self.queue = queue;
     }
 
-    fn override_owner(&mut self, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+    fn override_owner(&mut self, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         let Some(mut owner) = self.owner.filter(|owner| owner.work.obeys_override()) else {
             return Ok(());
         };
         self.note_passing(&mut owner);
         self.override_entry(&mut owner);
-        self.replan(owner, scan, log)?;
+        self.replan(owner, scope)?;
         self.end_orphan();
         Ok(())
     }

@@ -12,11 +12,10 @@
 
 mod by_drive;
 
-use super::accept::refusal;
+use super::commands::{Entry, refusal};
 use super::power::Reaction;
-use super::queue::Entry;
 use super::{Axis, Motion};
-use crate::{AxisState, ErrorId, HomeDirection, Log, Procedure};
+use crate::{AxisState, ErrorId, HomeDirection, Procedure, Scope};
 use standstill_planner::{Planner, Setpoint};
 
 /// What a homing is doing.
@@ -221,9 +220,9 @@ impl<P: Planner> Axis<P> {
     /// After the latch: looks at what has changed, and goes on accordingly.
     #[cold]
     #[inline(never)]
-    pub(super) fn follow_homing(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn follow_homing(&mut self, scope: &mut Scope<'_>) {
         if self.moves_itself() || self.is_to_return() || self.is_homed_by_drive() {
-            return self.follow_drive_homing(scan, log);
+            return self.follow_drive_homing(scope);
         }
         let homing = self.config.homing;
         let mut search = self.homing;
@@ -240,10 +239,10 @@ impl<P: Planner> Axis<P> {
         search.was_on = on;
         self.homing = search;
         if homing.time_limit.is_some_and(|limit| search.scans > limit) {
-            return self.trip(ErrorId::HomingTimedOut, 0, Reaction::Ramp, scan, log);
+            return self.trip(ErrorId::HomingTimedOut, 0, Reaction::Ramp, scope);
         }
         if homing.distance_limit.is_some_and(|limit| !(search.way <= limit)) {
-            return self.trip(ErrorId::HomingTooFar, 0, Reaction::Ramp, scan, log);
+            return self.trip(ErrorId::HomingTooFar, 0, Reaction::Ramp, scope);
         }
         let wanted = match homing.procedure {
             // Its inner end.
@@ -252,12 +251,12 @@ impl<P: Planner> Axis<P> {
         };
         let edge = passed == Some(wanted) && is_up == search.up;
         match search.phase {
-            Phase::Search if edge => self.edge_found(search, scan, log),
-            Phase::Back if edge => self.go_on(Phase::Creep, !search.up, scan, log),
-            Phase::Creep if edge => self.switch_found(scan, log),
-            Phase::Search if self.is_on_limit_switch(search.up) => self.turn_round(search, scan, log),
-            Phase::Pulse => self.look_for_pulse(search, scan, log),
-            Phase::Block => self.look_for_stop(search, step, scan, log),
+            Phase::Search if edge => self.edge_found(search, scope),
+            Phase::Back if edge => self.go_on(Phase::Creep, !search.up, scope),
+            Phase::Creep if edge => self.switch_found(scope),
+            Phase::Search if self.is_on_limit_switch(search.up) => self.turn_round(search, scope),
+            Phase::Pulse => self.look_for_pulse(search, scope),
+            Phase::Block => self.look_for_stop(search, step, scope),
             Phase::Idle
             | Phase::Search
             | Phase::Back
@@ -267,11 +266,11 @@ impl<P: Planner> Axis<P> {
             | Phase::Named
             | Phase::Return => {}
         }
-        self.mind_permission(scan, log);
+        self.mind_permission(scope);
     }
 
     /// Where it now goes must be permitted.
-    fn mind_permission(&mut self, scan: u64, log: &mut Log) {
+    fn mind_permission(&mut self, scope: &mut Scope<'_>) {
         let search = self.homing;
         let searches = self.state == AxisState::Homing && self.velocity_of(&search).is_some();
         if let Some(error) = self
@@ -280,46 +279,46 @@ impl<P: Planner> Axis<P> {
             .bars(search.up, !search.up)
             .filter(|_| searches)
         {
-            self.trip(error, 0, Reaction::Ramp, scan, log);
+            self.trip(error, 0, Reaction::Ramp, scope);
         }
     }
 
     /// The edge has been passed with the velocity of the search.
-    fn edge_found(&mut self, search: Search, scan: u64, log: &mut Log) {
+    fn edge_found(&mut self, search: Search, scope: &mut Scope<'_>) {
         let homing = &self.config.homing;
         let approach = homing.direction.is_up();
         if homing.procedure == Procedure::LimitSwitch {
             // The reference is where it goes off again.
-            return self.go_on(Phase::Creep, !approach, scan, log);
+            return self.go_on(Phase::Creep, !approach, scope);
         }
         match homing.creep {
-            None => self.switch_found(scan, log),
-            Some(_) if search.up == approach => self.go_on(Phase::Back, !approach, scan, log),
-            Some(_) => self.go_on(Phase::Creep, approach, scan, log),
+            None => self.switch_found(scope),
+            Some(_) if search.up == approach => self.go_on(Phase::Back, !approach, scope),
+            Some(_) => self.go_on(Phase::Creep, approach, scope),
         }
     }
 
     /// The edge that counts has been passed.
-    fn switch_found(&mut self, scan: u64, log: &mut Log) {
+    fn switch_found(&mut self, scope: &mut Scope<'_>) {
         if self.config.homing.pulse {
-            self.go_on(Phase::Pulse, self.homing.up, scan, log);
+            self.go_on(Phase::Pulse, self.homing.up, scope);
             self.beside.order.marker = !self.beside.report.marker.armed;
         } else {
-            self.found(self.actual, None, scan, log);
+            self.found(self.actual, None, scope);
         }
     }
 
     /// A limit switch stands in the way of the search.
-    fn turn_round(&mut self, search: Search, scan: u64, log: &mut Log) {
+    fn turn_round(&mut self, search: Search, scope: &mut Scope<'_>) {
         if search.turned {
-            return self.trip(ErrorId::HomingSwitchNotFound, 0, Reaction::Ramp, scan, log);
+            return self.trip(ErrorId::HomingSwitchNotFound, 0, Reaction::Ramp, scope);
         }
         self.homing.turned = true;
-        self.go_on(Phase::Search, !search.up, scan, log);
+        self.go_on(Phase::Search, !search.up, scope);
     }
 
     /// The pulse has been latched, or the latch has yet to be armed.
-    fn look_for_pulse(&mut self, search: Search, scan: u64, log: &mut Log) {
+    fn look_for_pulse(&mut self, search: Search, scope: &mut Scope<'_>) {
         let told = self.beside.report.marker;
         if !self.beside.order.marker {
             // What it latched for someone else has to go first.
@@ -327,12 +326,12 @@ impl<P: Planner> Axis<P> {
         } else if let Some(latched) = told.latched.filter(|_| told.armed) {
             self.beside.order.marker = false;
             self.homing = search;
-            self.found(self.place_of(latched), None, scan, log);
+            self.found(self.place_of(latched), None, scope);
         }
     }
 
     /// Whether the axis stands at a mechanical stop; then the set-point comes back to it.
-    fn look_for_stop(&mut self, mut search: Search, step: f64, scan: u64, log: &mut Log) {
+    fn look_for_stop(&mut self, mut search: Search, step: f64, scope: &mut Scope<'_>) {
         let Some(block) = self.config.homing.block else {
             return;
         };
@@ -342,12 +341,12 @@ impl<P: Planner> Axis<P> {
         self.homing = search;
         if search.still >= block.scans {
             let back = self.setpoint.position - self.following_error();
-            self.found(self.actual, Some(back), scan, log);
+            self.found(self.actual, Some(back), scope);
         }
     }
 
     /// The reference is at `reference` (u): the axis comes to rest, or goes `to` a place (u) first.
-    fn found(&mut self, reference: f64, to: Option<f64>, scan: u64, log: &mut Log) {
+    fn found(&mut self, reference: f64, to: Option<f64>, scope: &mut Scope<'_>) {
         self.homing.reference = reference;
         self.homing.phase = Phase::Found;
         let Some(owner) = self.owner else { return };
@@ -360,13 +359,13 @@ impl<P: Planner> Axis<P> {
             None => self.planner.ramp_to(&start, 0.0, limits, &self.in_force),
         };
         match planned {
-            Ok(plan) => self.adopt(owner, Motion::along(plan), scan, log),
-            Err(error) => self.trip(refusal(error), 0, Reaction::Ramp, scan, log),
+            Ok(plan) => self.adopt(owner, Motion::along(plan), scope),
+            Err(error) => self.trip(refusal(error), 0, Reaction::Ramp, scope),
         }
     }
 
     /// The next phase, in a direction.
-    fn go_on(&mut self, phase: Phase, up: bool, scan: u64, log: &mut Log) {
+    fn go_on(&mut self, phase: Phase, up: bool, scope: &mut Scope<'_>) {
         self.homing.phase = phase;
         self.homing.up = up;
         let Some(owner) = self.owner else { return };
@@ -375,14 +374,14 @@ impl<P: Planner> Axis<P> {
             .planner
             .ramp_to(&self.setpoint, velocity, &owner.limits, &self.in_force);
         match planned {
-            Ok(plan) => self.adopt(owner, Motion::along(plan), scan, log),
-            Err(error) => self.trip(refusal(error), 0, Reaction::Ramp, scan, log),
+            Ok(plan) => self.adopt(owner, Motion::along(plan), scope),
+            Err(error) => self.trip(refusal(error), 0, Reaction::Ramp, scope),
         }
     }
 
     /// A homing at its goal: the reference gets its name.
     #[cold]
-    pub(super) fn settle_homing(&mut self, position: f64, scan: u64, log: &mut Log) {
+    pub(super) fn settle_homing(&mut self, position: f64, scope: &mut Scope<'_>) {
         if self.homing.phase == Phase::Found && matches!(self.motion, Motion::Run { .. }) {
             // A drive is told the new name of the set-point it has, so the last one of the ramp goes to it first.
             self.motion = Motion::Hold;
@@ -403,9 +402,9 @@ impl<P: Planner> Axis<P> {
             | Phase::Named
             | Phase::Return => return,
         };
-        self.call_set_position(name, scan, log);
+        self.call_set_position(name, scope);
         self.homed = true;
-        self.complete(scan, log);
+        self.complete(scope);
     }
 
     /// A place (u) as programs see it.

@@ -4,9 +4,9 @@
 //! own limits can bring back, its velocity would leave those of the axis. What can be avoided with the limits that
 //! held until now, or with those of the axis, is not unavoidable: the command then gets them, as far as necessary.
 
-use super::queue::Entry;
-use super::{Axis, Motion, Source};
-use crate::{ErrorId, Event, Log};
+use super::commands::Entry;
+use super::{Axis, Motion};
+use crate::{ErrorId, Event, Scope};
 use standstill_planner::{Excess, Limits, Plan, Planner, Setpoint};
 
 /// A higher limit must take at least this much off what is exceeded.
@@ -120,7 +120,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Tells which limits of a command were raised.
-    pub(super) fn record_raised(&self, asked: &Limits, used: &Limits, source: Source, log: &mut Log) {
+    pub(super) fn record_raised(&self, asked: &Limits, used: &Limits, scope: &mut Scope<'_>) {
         let pins = [
             ("Acceleration", asked.acceleration, used.acceleration),
             ("Deceleration", asked.deceleration, used.deceleration),
@@ -129,7 +129,7 @@ impl<P: Planner> Axis<P> {
         ];
         for (pin, value, limit) in pins {
             if limit > value {
-                self.record(Event::Raised { pin, value, limit }, source, log);
+                self.record(Event::Raised { pin, value, limit }, scope);
             }
         }
     }

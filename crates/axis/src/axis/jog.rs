@@ -3,9 +3,9 @@
 //! MC_Jog is not in the standard. It has no motion of its own: an endless jog is that of MC_MoveVelocity, a step
 //! that of MC_MoveRelative, a release that of MC_Halt.
 
-use super::queue::Work;
-use super::{Axis, Source};
-use crate::{Dynamics, ErrorId, Log};
+use super::Axis;
+use super::commands::Work;
+use crate::{Dynamics, ErrorId, Scope};
 use standstill_planner::{Limits, Planner};
 
 impl<P: Planner> Axis<P> {
@@ -15,21 +15,13 @@ impl<P: Planner> Axis<P> {
         forward: bool,
         distance: f64,
         dynamics: &Dynamics,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<(Work, Limits), ErrorId> {
         if !(distance >= 0.0 && distance.is_finite()) {
-            return Err(self.refuse(
-                "Distance",
-                distance,
-                0.0,
-                ErrorId::JogDistanceInvalid,
-                source,
-                log,
-            ));
+            return Err(self.refuse("Distance", distance, 0.0, ErrorId::JogDistanceInvalid, scope));
         }
-        let velocity = self.positive_velocity("Velocity", dynamics.velocity, source, log)?;
-        let limits = self.resolve(dynamics, source, log)?;
+        let velocity = self.positive_velocity("Velocity", dynamics.velocity, scope)?;
+        let limits = self.resolve(dynamics, scope)?;
         let way = |magnitude: f64| if forward { magnitude } else { -magnitude };
         Ok(if distance > 0.0 {
             (Work::Distance(way(distance)), Limits { velocity, ..limits })

@@ -7,7 +7,7 @@
 
 use super::power::Reaction;
 use super::{Axis, Permission};
-use crate::{DriveSignals, ErrorId, Log};
+use crate::{DriveSignals, ErrorId, Scope};
 use standstill_planner::Planner;
 
 impl<P: Planner> Axis<P> {
@@ -31,12 +31,12 @@ impl<P: Planner> Axis<P> {
     }
 
     /// After the latch: ErrorStop if the axis moves onto a switch.
-    pub(super) fn mind_limit_switches(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn mind_limit_switches(&mut self, scope: &mut Scope<'_>) {
         let velocity = self.setpoint.velocity;
         let up = velocity > 0.0;
         let minded = self.config.hardware_limits || !self.homing.is_idle();
         if minded && velocity != 0.0 && self.is_on_limit_switch(up) && !self.turns_at_limit_switch(up) {
-            self.trip(ErrorId::LimitSwitchReached, 0, Reaction::Ramp, scan, log);
+            self.trip(ErrorId::LimitSwitchReached, 0, Reaction::Ramp, scope);
         }
     }
 

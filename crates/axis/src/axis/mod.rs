@@ -12,6 +12,7 @@
 
 mod accept;
 mod blend;
+mod commands;
 mod coordinates;
 mod dynamics;
 mod factors;
@@ -43,27 +44,18 @@ use crate::fate::Fates;
 use crate::{
     AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, Comms, ConfigError, DIGITAL,
     DriveCommand, DriveOrder, DrivePosition, DriveReport, DriveSignals, ErrorId, Event, Fate, Fault,
-    InstanceId, Log, QUEUE_MAX, Record, StartState, state,
+    InstanceId, QUEUE_MAX, Record, Scope, StartState, state,
 };
+use commands::{Entry, Work};
 pub use factors::Factors;
 use modulo::Modulo;
 pub use outputs::CamTrack;
-pub use parameters::{Parameter, ParameterValue};
 pub use permission::Permission;
 pub use probe::TouchProbe;
 pub use profile::{Profile, ProfileRow};
-use queue::{Entry, Queue, Work};
+use queue::Queue;
 pub use reading::{MotionState, Pace, Way};
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
-
-/// Who gives a command and when; goes into the records.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Source {
-    /// The scan.
-    pub scan: u64,
-    /// The block instance.
-    pub instance: InstanceId,
-}
 
 /// Where the set-point comes from.
 #[derive(Clone, Copy, Debug)]
@@ -686,11 +678,11 @@ impl<P: Planner> Axis<P> {
         self.replan_due = false;
     }
 
-    fn record(&self, event: Event, source: Source, log: &mut Log) {
-        log.push(Record {
-            scan: source.scan,
+    fn record(&self, event: Event, scope: &mut Scope<'_>) {
+        scope.log.push(Record {
+            scan: scope.scan,
             axis: self.id,
-            instance: source.instance,
+            instance: scope.instance,
             event,
         });
     }

@@ -7,7 +7,7 @@
 //! Source: PLCopen Motion Control Part 1, MC_MoveAbsolute and MC_DIRECTION; B8; the rule for Direction is that of
 //! docs/modulo.md.
 
-use super::queue::{Entry, Place, Work};
+use super::commands::{Entry, Place, Work};
 use super::{Axis, Motion};
 use crate::{AxisConfig, Direction, DrivePosition, ErrorId, Scaling, Turn};
 use standstill_planner::turns::{split, two_product};

@@ -2,9 +2,9 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_ReadDigitalInput, MC_ReadDigitalOutput, MC_WriteDigitalOutput; V26.
 
-use super::queue::{Work, Write};
-use super::{Axis, Source};
-use crate::{CommandId, DIGITAL, ErrorId, ExecutionMode, Fate, Log, Raw};
+use super::Axis;
+use super::commands::{Work, Write};
+use crate::{CommandId, DIGITAL, ErrorId, ExecutionMode, Fate, Raw, Scope};
 use standstill_planner::Planner;
 
 /// What an output that follows positions remembers (MC_DigitalCamSwitch). It is kept with the output, which has but one
@@ -65,18 +65,17 @@ impl<P: Planner> Axis<P> {
         number: i16,
         value: bool,
         mode: Raw<ExecutionMode>,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<CommandId, ErrorId> {
-        let queued = self.is_queued(mode, source, log)?;
+        let queued = self.is_queued(mode, scope)?;
         let bit = bit_of(number).map_err(|error| {
             let most = f64::from(DIGITAL - 1);
-            self.refuse("OutputNumber", number.into(), most, error, source, log)
+            self.refuse("OutputNumber", number.into(), most, error, scope)
         })?;
         self.told()
-            .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, source, log))?;
+            .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, scope))?;
         if queued {
-            return self.enqueue(Work::Write(Write::Output { bit, value }), source, log);
+            return self.enqueue(Work::Write(Write::Output { bit, value }), scope);
         }
         self.set_output(bit, value);
         let id = self.new_id();

@@ -7,120 +7,11 @@
 //!
 //! Source: PLCopen Motion Control Part 1, sections of the four blocks and the list of parameters.
 
-use super::queue::{Work, Write};
+use super::Axis;
+use super::commands::{Work, Write};
 use super::supervision::Lag;
-use super::{Axis, Source};
-use crate::{AxisConfig, CommandId, ErrorId, ExecutionMode, Fate, Log, Raw};
+use crate::{AxisConfig, CommandId, ErrorId, ExecutionMode, Fate, Parameter, ParameterValue, Raw, Scope};
 use standstill_planner::{Limits, Planner};
-
-/// A parameter of an axis, by its number: below 1000 in the standard, from there on ours.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameter {
-    /// 1: the set position last published (u).
-    CommandedPosition = 1,
-    /// 2: upper software limit (u).
-    SwLimitPos,
-    /// 3: lower software limit (u).
-    SwLimitNeg,
-    /// 4: the upper software limit is on.
-    EnableLimitPos,
-    /// 5: the lower software limit is on.
-    EnableLimitNeg,
-    /// 6: the following error is supervised.
-    EnablePosLagMonitoring,
-    /// 7: largest following error (u).
-    MaxPositionLag,
-    /// 8: velocity limit of the axis (u/s).
-    MaxVelocitySystem,
-    /// 9: velocity limit of the application (u/s).
-    MaxVelocityAppl,
-    /// 10: actual velocity (u/s).
-    ActualVelocity,
-    /// 11: set velocity last published (u/s).
-    CommandedVelocity,
-    /// 12: acceleration limit of the axis (u/s^2).
-    MaxAccelerationSystem,
-    /// 13: acceleration limit of the application (u/s^2).
-    MaxAccelerationAppl,
-    /// 14: deceleration limit of the axis (u/s^2).
-    MaxDecelerationSystem,
-    /// 15: deceleration limit of the application (u/s^2).
-    MaxDecelerationAppl,
-    /// 16: jerk limit of the axis (u/s^3).
-    MaxJerkSystem,
-    /// 17: jerk limit of the application (u/s^3).
-    MaxJerkAppl,
-    /// 1000: the drive's own code of the axis error; 0 without one.
-    DriveErrorCode = 1000,
-    /// 1001: the set position published in the scan before less the actual position (u).
-    PositionLag,
-}
-
-impl Parameter {
-    /// Those of the standard, in the order of the numbers from 1 on.
-    pub const ALL: [Self; 17] = [
-        Self::CommandedPosition,
-        Self::SwLimitPos,
-        Self::SwLimitNeg,
-        Self::EnableLimitPos,
-        Self::EnableLimitNeg,
-        Self::EnablePosLagMonitoring,
-        Self::MaxPositionLag,
-        Self::MaxVelocitySystem,
-        Self::MaxVelocityAppl,
-        Self::ActualVelocity,
-        Self::CommandedVelocity,
-        Self::MaxAccelerationSystem,
-        Self::MaxAccelerationAppl,
-        Self::MaxDecelerationSystem,
-        Self::MaxDecelerationAppl,
-        Self::MaxJerkSystem,
-        Self::MaxJerkAppl,
-    ];
-
-    /// Ours, in the order of the numbers from 1000 on.
-    pub const OURS: [Self; 2] = [Self::DriveErrorCode, Self::PositionLag];
-
-    fn of(number: i16) -> Result<Self, ErrorId> {
-        let place = |first: i16| usize::try_from(number.checked_sub(first)?).ok();
-        let of_the_standard = place(1).and_then(|place| Self::ALL.get(place));
-        let parameter = of_the_standard.or_else(|| place(1000).and_then(|place| Self::OURS.get(place)));
-        parameter.copied().ok_or(ErrorId::ParameterNumberInvalid)
-    }
-}
-
-/// What is read from or written to a parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ParameterValue {
-    /// REAL.
-    Real(f64),
-    /// BOOL.
-    Bool(bool),
-}
-
-impl ParameterValue {
-    /// The number to show in a record.
-    pub(super) fn shown(self) -> f64 {
-        match self {
-            Self::Real(value) => value,
-            Self::Bool(on) => f64::from(u8::from(on)),
-        }
-    }
-
-    fn real(self) -> Result<f64, Unwritten> {
-        match self {
-            Self::Real(value) => Ok(value),
-            Self::Bool(_) => Err(Unwritten::number(ErrorId::ParameterKindInvalid)),
-        }
-    }
-
-    fn flag(self) -> Result<bool, Unwritten> {
-        match self {
-            Self::Bool(on) => Ok(on),
-            Self::Real(_) => Err(Unwritten::number(ErrorId::ParameterKindInvalid)),
-        }
-    }
-}
 
 /// Why a parameter was not written: the pin, and the limit the value breaks.
 #[derive(Clone, Copy, Debug)]
@@ -128,6 +19,13 @@ struct Unwritten {
     pin: &'static str,
     limit: f64,
     error: ErrorId,
+}
+
+impl From<ErrorId> for Unwritten {
+    /// The number is no good for the value.
+    fn from(error: ErrorId) -> Self {
+        Self::number(error)
+    }
 }
 
 impl Unwritten {
@@ -313,20 +211,19 @@ impl<P: Planner> Axis<P> {
         number: i16,
         value: ParameterValue,
         mode: Raw<ExecutionMode>,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<CommandId, ErrorId> {
-        let queued = self.is_queued(mode, source, log)?;
+        let queued = self.is_queued(mode, scope)?;
         let parameter = Parameter::of(number)
-            .map_err(|error| self.refuse("ParameterNumber", number.into(), f64::NAN, error, source, log))?;
+            .map_err(|error| self.refuse("ParameterNumber", number.into(), f64::NAN, error, scope))?;
         let parameters = self
             .written(parameter, value)
-            .map_err(|why| self.refuse_write(parameter, value, why, source, log))?;
+            .map_err(|why| self.refuse_write(parameter, value, why, scope))?;
         if queued {
             let write = Write::Parameter { parameter, value };
-            return self.enqueue(Work::Write(write), source, log);
+            return self.enqueue(Work::Write(write), scope);
         }
-        self.set_parameters(parameters, source.scan, log);
+        self.set_parameters(parameters, scope);
         let id = self.new_id();
         self.decide(id, Fate::Done);
         Ok(id)
@@ -337,15 +234,14 @@ impl<P: Planner> Axis<P> {
         &mut self,
         parameter: Parameter,
         value: ParameterValue,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Fate {
         match self.written(parameter, value) {
             Ok(parameters) => {
-                self.set_parameters(parameters, source.scan, log);
+                self.set_parameters(parameters, scope);
                 Fate::Done
             }
-            Err(why) => Fate::Failed(self.refuse_write(parameter, value, why, source, log)),
+            Err(why) => Fate::Failed(self.refuse_write(parameter, value, why, scope)),
         }
     }
 
@@ -354,15 +250,14 @@ impl<P: Planner> Axis<P> {
         parameter: Parameter,
         value: ParameterValue,
         why: Unwritten,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> ErrorId {
         let shown = if why.pin == "Value" {
             value.shown()
         } else {
             f64::from(parameter as u16)
         };
-        self.refuse(why.pin, shown, why.limit, why.error, source, log)
+        self.refuse(why.pin, shown, why.limit, why.error, scope)
     }
 
     /// The parameters with this one written.
@@ -440,14 +335,14 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    fn set_parameters(&mut self, parameters: Parameters, scan: u64, log: &mut Log) {
+    fn set_parameters(&mut self, parameters: Parameters, scope: &mut Scope<'_>) {
         let limits_moved = self.parameters.software_limits != parameters.software_limits;
         self.parameters = parameters;
         self.stir();
         if limits_moved {
             // Whatever was checked was checked against the limits before: what moves, and what waits behind it.
             self.watched = self.owner.is_some() && self.parameters.software_limits.is_some();
-            self.arm_anew(scan, log);
+            self.arm_anew(scope);
         }
     }
 }

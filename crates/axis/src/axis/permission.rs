@@ -10,9 +10,9 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_Power; V9.
 
-use super::queue::{Entry, Place, Work};
+use super::commands::{Entry, Place};
 use super::{Axis, Motion};
-use crate::{AxisEvent, ErrorId, Event, Fate, Log};
+use crate::{AxisEvent, ErrorId, Event, Fate, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 /// How much further than a stop is none: rounding, relative to the way.
@@ -53,15 +53,15 @@ impl<P: Planner> Axis<P> {
     /// MC_Power permits other directions than before.
     #[cold]
     #[inline(never)]
-    pub(super) fn permit(&mut self, permitted: Permission, scan: u64, log: &mut Log) {
+    pub(super) fn permit(&mut self, permitted: Permission, scope: &mut Scope<'_>) {
         self.power.permitted = permitted;
         if let Some(error) = self.barred_now() {
-            self.pause(error, scan, log);
+            self.pause(error, scope);
         }
         if let Some(layer) = &mut self.layer {
             layer.try_soon();
         }
-        self.resume(scan, log);
+        self.resume(scope);
     }
 
     /// Whether the owner has been stopped by MC_Power and waits to go on.
@@ -136,9 +136,9 @@ impl<P: Planner> Axis<P> {
 
     /// Everything brakes: from now on there is one motion, with the velocity of the sum. What is superimposed on an
     /// axis that stands brakes by itself, so that its way counts.
-    pub(super) fn pause(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
-        let source = self.owner_source(scan);
-        self.record(Event::Paused { error }, source, log);
+    pub(super) fn pause(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
+        let scope = &mut self.owner_scope(scope);
+        self.record(Event::Paused { error }, scope);
         if !matches!(self.motion, Motion::Run { .. } | Motion::Torque { .. }) {
             return self.brake_superimposed();
         }
@@ -161,7 +161,7 @@ impl<P: Planner> Axis<P> {
         self.motion = match self.planner.ramp_to(&start, 0.0, &limits, &self.in_force) {
             Ok(plan) if !start.is_at_rest() => {
                 if let Some(excess) = self.beyond_axis(&plan) {
-                    self.record(Event::Unavoidable(excess), source, log);
+                    self.record(Event::Unavoidable(excess), scope);
                 }
                 Motion::along(plan)
             }
@@ -174,22 +174,21 @@ impl<P: Planner> Axis<P> {
 
     /// The owner goes on from where it is, if all it needs is permitted. One that can't any more fails at rest.
     #[inline(never)]
-    pub(super) fn resume(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn resume(&mut self, scope: &mut Scope<'_>) {
         let Some(mut owner) = self.owner.filter(|owner| owner.paused) else {
             return;
         };
         if owner.turns == 0 {
             self.stay_in_direction(&mut owner, &self.base());
         }
-        match self.plan_anew(owner, scan, log) {
+        match self.plan_anew(owner, scope) {
             Ok(()) | Err(ErrorId::PositiveBarred | ErrorId::NegativeBarred) => {}
             Err(error) if self.setpoint.is_at_rest() && self.layer.is_none() => {
-                let source = self.owner_source(scan);
-                self.refuse_plan(&owner, error, source, log);
+                self.refuse_plan(&owner, error, &mut self.owner_scope(scope));
                 self.end_owner(Fate::Failed(error));
                 self.motion = Motion::Hold;
                 self.enter(AxisEvent::MotionDone);
-                self.hand_over(self.setpoint.position, scan, log);
+                self.hand_over(self.setpoint.position, scope);
             }
             // It brakes on, and is asked again at rest.
             Err(_) => {}
@@ -198,10 +197,10 @@ impl<P: Planner> Axis<P> {
 
     /// The paused owner stands. What it needs now may be permitted: the stop may have passed its end.
     #[cold]
-    pub(super) fn settle_paused(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn settle_paused(&mut self, scope: &mut Scope<'_>) {
         if self.is_paused() && matches!(self.motion, Motion::Run { .. }) {
             self.motion = Motion::Hold;
-            self.resume(scan, log);
+            self.resume(scope);
         }
     }
 
@@ -229,20 +228,5 @@ impl<P: Planner> Axis<P> {
     /// A direction in which nothing may be added to a layer at rest.
     pub(super) fn way_barred(&self, way: f64) -> Option<ErrorId> {
         self.bars(way > 0.0, way < 0.0)
-    }
-}
-
-impl Entry {
-    /// Whether it leads anywhere, so that it could be barred.
-    fn leads_on(&self) -> bool {
-        match self.work {
-            Work::Position(_)
-            | Work::Distance(_)
-            | Work::Through { .. }
-            | Work::Velocity { .. }
-            | Work::Profile { .. }
-            | Work::Torque { .. } => true,
-            Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
-        }
     }
 }

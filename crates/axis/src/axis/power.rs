@@ -3,10 +3,10 @@
 //! Source: PLCopen Motion Control Part 1, notes 1 to 5 of the state diagram, MC_Power, MC_Reset; V9a, V10a,
 //! S10 to S14; iec61131-executor CI-5, CI-8.
 
-use super::{Axis, Calm, Motion, Permission, Power, Source};
+use super::{Axis, Calm, Motion, Permission, Power};
 use crate::{
     AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
-    InstanceId, Log, PowerOff,
+    InstanceId, PowerOff, Scope,
 };
 use standstill_planner::Planner;
 
@@ -37,7 +37,7 @@ impl<P: Planner> Axis<P> {
     /// Latches the drive's feedback of this scan and lets the state follow it. Called before any block.
     // In line with its caller, as `advance`: what a call alone costs is a tenth of a calm scan.
     #[inline(always)]
-    pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
+    pub fn follow_feedback(&mut self, feedback: &DriveFeedback, scope: &mut Scope<'_>) {
         // In most scans nothing but the position changes.
         let on_switch = feedback.signals.limit_switch_positive | feedback.signals.limit_switch_negative;
         if self.calm.is_any()
@@ -51,7 +51,7 @@ impl<P: Planner> Axis<P> {
             self.signals = feedback.signals;
             self.power.voltage = feedback.voltage;
         } else {
-            self.follow_change(feedback, scan, log);
+            self.follow_change(feedback, scope);
         }
     }
 
@@ -153,7 +153,7 @@ impl<P: Planner> Axis<P> {
     }
 
     #[inline(never)]
-    fn follow_change(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
+    fn follow_change(&mut self, feedback: &DriveFeedback, scope: &mut Scope<'_>) {
         self.latch_signals(feedback.signals);
         self.power.voltage = feedback.voltage;
         self.power.fault = feedback.fault;
@@ -168,34 +168,34 @@ impl<P: Planner> Axis<P> {
             // the drive has to tell where it stands.
             self.power.on &= self.drive_request() == DriveRequest::Enable;
             self.latch_nothing();
-            self.trip(error, 0, Reaction::Ramp, scan, log);
+            self.trip(error, 0, Reaction::Ramp, scope);
         } else {
-            self.follow_power(feedback, scan, log);
-            self.await_power(scan, log);
+            self.follow_power(feedback, scope);
+            self.await_power(scope);
             self.follow_actual();
-            self.supervise(scan, log);
+            self.supervise(scope);
             if self.is_homing() {
-                self.follow_homing(scan, log);
+                self.follow_homing(scope);
             }
-            self.mind_limit_switches(scan, log);
+            self.mind_limit_switches(scope);
             if self.shift_due {
-                self.take_queued_shifts(scan, log);
+                self.take_queued_shifts(scope);
             }
         }
         self.finish_reset();
         self.calm = self.calmness();
     }
 
-    fn follow_power(&mut self, feedback: &DriveFeedback, scan: u64, log: &mut Log) {
+    fn follow_power(&mut self, feedback: &DriveFeedback, scope: &mut Scope<'_>) {
         let was_on = self.power.on;
         self.power.on = feedback.enabled;
         if let Some(fault) = feedback.fault {
             self.power.tripped = true;
-            self.trip(ErrorId::DriveFault, fault.code, Reaction::Follow, scan, log);
+            self.trip(ErrorId::DriveFault, fault.code, Reaction::Follow, scope);
         } else if was_on && !feedback.enabled && self.power.wanted && !self.power.going_off {
             self.power.tripped = true;
             if self.state != AxisState::Disabled {
-                self.trip(ErrorId::PowerLost, 0, Reaction::Follow, scan, log);
+                self.trip(ErrorId::PowerLost, 0, Reaction::Follow, scope);
             }
         }
         match self.state {
@@ -218,7 +218,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Power that is not confirmed in time is asked for no longer.
-    fn await_power(&mut self, scan: u64, log: &mut Log) {
+    fn await_power(&mut self, scope: &mut Scope<'_>) {
         let Some(timeout) = self.config.power_timeout else {
             return;
         };
@@ -227,12 +227,9 @@ impl<P: Planner> Axis<P> {
         power.waited = if waits { power.waited.saturating_add(1) } else { 0 };
         if power.waited >= timeout {
             (power.tripped, power.unconfirmed, power.waited) = (true, true, 0);
-            let source = Source {
-                scan,
-                instance: power.decider.unwrap_or_default(),
-            };
+            let scope = &mut scope.with(power.decider.unwrap_or_default());
             let error = ErrorId::PowerNotConfirmed;
-            self.refuse("", f64::NAN, f64::NAN, error, source, log);
+            self.refuse("", f64::NAN, f64::NAN, error, scope);
         }
     }
 
@@ -250,18 +247,18 @@ impl<P: Planner> Axis<P> {
     /// Should several instances speak in one scan, the last call decides (V9b): whoever decided in the scan
     /// before is obeyed at once, others at the end of the scan if nobody spoke after them.
     #[inline]
-    pub fn set_power(&mut self, wanted: bool, permitted: Permission, source: Source, log: &mut Log) {
+    pub fn set_power(&mut self, wanted: bool, permitted: Permission, scope: &mut Scope<'_>) {
         match self.power.decider {
-            Some(decider) if decider != source.instance => {
-                self.power.overruled = Some((wanted, permitted, source.instance));
+            Some(decider) if decider != scope.instance => {
+                self.power.overruled = Some((wanted, permitted, scope.instance));
                 self.stir();
                 return;
             }
             Some(_) => {}
-            None => self.power.decider = Some(source.instance),
+            None => self.power.decider = Some(scope.instance),
         }
         self.power.overruled = None;
-        self.switch(wanted, permitted, source, log);
+        self.switch(wanted, permitted, scope);
     }
 
     /// Whether the axis is in operation and [`Axis::set_power`] by `instance`, wanting that and permitting so much,
@@ -272,40 +269,40 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Switches the axis off whatever MC_Power says: the runtime stops.
-    pub fn switch_off(&mut self, source: Source, log: &mut Log) {
+    pub fn switch_off(&mut self, scope: &mut Scope<'_>) {
         self.power.overruled = None;
-        self.switch(false, self.power.permitted, source, log);
+        self.switch(false, self.power.permitted, scope);
     }
 
     /// The end of a scan's calls: the last MC_Power decides.
     #[inline]
-    pub(super) fn apply_power(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn apply_power(&mut self, scope: &mut Scope<'_>) {
         if self.power.overruled.is_some() {
-            self.change_decider(scan, log);
+            self.change_decider(scope);
         }
     }
 
     #[cold]
     #[inline(never)]
-    fn change_decider(&mut self, scan: u64, log: &mut Log) {
+    fn change_decider(&mut self, scope: &mut Scope<'_>) {
         if let Some((wanted, permitted, instance)) = self.power.overruled.take() {
             self.power.decider = Some(instance);
-            self.switch(wanted, permitted, Source { scan, instance }, log);
+            self.switch(wanted, permitted, &mut scope.with(instance));
         }
     }
 
     #[inline]
-    fn switch(&mut self, wanted: bool, permitted: Permission, source: Source, log: &mut Log) {
+    fn switch(&mut self, wanted: bool, permitted: Permission, scope: &mut Scope<'_>) {
         self.power.wanted = wanted;
         if !wanted {
-            self.switch_to_off(source, log);
+            self.switch_to_off(scope);
         } else if permitted != self.power.permitted {
-            self.permit(permitted, source.scan, log);
+            self.permit(permitted, scope);
         }
     }
 
     #[inline(never)]
-    fn switch_to_off(&mut self, source: Source, log: &mut Log) {
+    fn switch_to_off(&mut self, scope: &mut Scope<'_>) {
         self.stir();
         self.let_power_return();
         let idle = matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
@@ -315,7 +312,7 @@ impl<P: Planner> Axis<P> {
         self.end_all(Fate::Aborted, Fate::Aborted);
         self.power.going_off = true;
         match self.config.on_power_off {
-            PowerOff::Ramp => self.ramp_down(source, log),
+            PowerOff::Ramp => self.ramp_down(scope),
             PowerOff::Coast | PowerOff::Drive => self.motion = Motion::Follow,
         }
         if self.state != AxisState::Standstill {
@@ -324,7 +321,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Plans a ramp to rest with the stop dynamics.
-    pub(super) fn ramp_down(&mut self, source: Source, log: &mut Log) {
+    pub(super) fn ramp_down(&mut self, scope: &mut Scope<'_>) {
         // Nothing stops sooner than this.
         self.watched = false;
         // Only a plan leaves a set-point that is not at rest.
@@ -337,7 +334,7 @@ impl<P: Planner> Axis<P> {
             Ok(plan) => {
                 let plan = self.stopped_inside(plan, &mut limits);
                 if let Some(excess) = self.beyond_axis(&plan) {
-                    self.record(Event::Unavoidable(excess), source, log);
+                    self.record(Event::Unavoidable(excess), scope);
                 }
                 Motion::along(plan)
             }
@@ -347,9 +344,9 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The axis fails for a reason of its own, which persists until [`Axis::clear_cause`].
-    pub fn raise(&mut self, error: ErrorId, code: u16, source: Source, log: &mut Log) {
+    pub fn raise(&mut self, error: ErrorId, code: u16, scope: &mut Scope<'_>) {
         self.cause_present = true;
-        self.trip(error, code, Reaction::Ramp, source.scan, log);
+        self.trip(error, code, Reaction::Ramp, scope);
     }
 
     /// The cause given to [`Axis::raise`] is gone; MC_Reset is still needed.
@@ -360,18 +357,18 @@ impl<P: Planner> Axis<P> {
     /// Enters ErrorStop: the owner fails with `error`, what waits fails because of the state (R77). The first
     /// error stays the one shown.
     #[cold]
-    pub(super) fn trip(&mut self, error: ErrorId, code: u16, reaction: Reaction, scan: u64, log: &mut Log) {
+    pub(super) fn trip(&mut self, error: ErrorId, code: u16, reaction: Reaction, scope: &mut Scope<'_>) {
         if self.state == AxisState::ErrorStop {
             return;
         }
-        let source = self.owner_source(scan);
-        self.record(Event::Fault { error, code }, source, log);
+        let scope = &mut self.owner_scope(scope);
+        self.record(Event::Fault { error, code }, scope);
         self.end_all(Fate::Failed(error), Fate::Failed(ErrorId::InErrorStop));
         self.error = error;
         self.error_code = code;
         self.power.going_off = false;
         match reaction {
-            Reaction::Ramp if self.power.on && !self.moves_itself() => self.ramp_down(source, log),
+            Reaction::Ramp if self.power.on && !self.moves_itself() => self.ramp_down(scope),
             Reaction::Ramp | Reaction::Follow => self.motion = Motion::Follow,
         }
         self.enter(AxisEvent::Fault);
@@ -382,9 +379,9 @@ impl<P: Planner> Axis<P> {
     ///
     /// # Errors
     /// [`ErrorId::CauseStillPresent`] if it is known to be.
-    pub fn reset(&mut self, source: Source, log: &mut Log) -> Result<CommandId, ErrorId> {
+    pub fn reset(&mut self, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
         if self.state == AxisState::ErrorStop && self.cause_known() {
-            return Err(self.refuse("", f64::NAN, f64::NAN, ErrorId::CauseStillPresent, source, log));
+            return Err(self.refuse("", f64::NAN, f64::NAN, ErrorId::CauseStillPresent, scope));
         }
         if let Some(reset) = &self.reset {
             return Ok(reset.id);

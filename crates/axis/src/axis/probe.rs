@@ -6,8 +6,8 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_TouchProbe and MC_AbortTrigger; V23, T39 g.
 
-use super::{Axis, Source};
-use crate::{CommandId, DrivePosition, Edge, ErrorId, Fate, Log, PROBES, Raw, Trigger};
+use super::Axis;
+use crate::{CommandId, DrivePosition, Edge, ErrorId, Fate, PROBES, Raw, Scope, Trigger};
 use standstill_planner::Planner;
 
 /// MC_TouchProbe: values as they stand at the pins, unchecked.
@@ -60,21 +60,16 @@ impl<P: Planner> Axis<P> {
     /// # Errors
     /// The [`ErrorId`] the block shows: an undefined trigger, a window that is none, or a probe that another
     /// command waits for. Nothing changes then.
-    pub fn touch_probe(
-        &mut self,
-        request: &TouchProbe,
-        source: Source,
-        log: &mut Log,
-    ) -> Result<CommandId, ErrorId> {
-        let (probe, edge) = self.trigger(request.trigger, source, log)?;
+    pub fn touch_probe(&mut self, request: &TouchProbe, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
+        let (probe, edge) = self.trigger(request.trigger, scope)?;
         if let Some(window) = request.window {
-            self.check_window(window, source, log)?;
+            self.check_window(window, scope)?;
         }
         let before = self.probes.waiting.get(probe).copied().flatten();
         if before.is_some_and(|before| Some(before.id) != request.replaces) {
             let number = f64::from(request.trigger.number());
             let error = ErrorId::TriggerTaken;
-            return Err(self.refuse("TriggerInput", number, f64::NAN, error, source, log));
+            return Err(self.refuse("TriggerInput", number, f64::NAN, error, scope));
         }
         if let Some(id) = request.replaces {
             self.forget_probe(id);
@@ -105,10 +100,9 @@ impl<P: Planner> Axis<P> {
     pub fn abort_trigger(
         &mut self,
         trigger: Raw<Trigger>,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<CommandId, ErrorId> {
-        let (probe, _) = self.trigger(trigger, source, log)?;
+        let (probe, _) = self.trigger(trigger, scope)?;
         if let Some(waiting) = self.end_probing(probe) {
             self.decide(waiting.id, Fate::Aborted);
         }
@@ -199,28 +193,23 @@ impl<P: Planner> Axis<P> {
         self.probes.waiting.get_mut(probe)?.take()
     }
 
-    fn trigger(
-        &self,
-        trigger: Raw<Trigger>,
-        source: Source,
-        log: &mut Log,
-    ) -> Result<(usize, Edge), ErrorId> {
+    fn trigger(&self, trigger: Raw<Trigger>, scope: &mut Scope<'_>) -> Result<(usize, Edge), ErrorId> {
         trigger.get().map(Trigger::source).ok_or_else(|| {
             let (number, error) = (f64::from(trigger.number()), ErrorId::TriggerInvalid);
-            self.refuse("TriggerInput", number, 3.0, error, source, log)
+            self.refuse("TriggerInput", number, 3.0, error, scope)
         })
     }
 
-    fn check_window(&self, (first, last): (f64, f64), source: Source, log: &mut Log) -> Result<(), ErrorId> {
+    fn check_window(&self, (first, last): (f64, f64), scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         for (pin, position) in [("FirstPosition", first), ("LastPosition", last)] {
-            self.finite(pin, position, source, log)?;
+            self.finite(pin, position, scope)?;
             self.in_first_turn(position)
-                .map_err(|(length, error)| self.refuse(pin, position, length, error, source, log))?;
+                .map_err(|(length, error)| self.refuse(pin, position, length, error, scope))?;
         }
         // Only on a modulo axis does a window go on behind the end of the turn.
         if first > last && self.modulo.is_none() {
             let error = ErrorId::WindowInvalid;
-            return Err(self.refuse("LastPosition", last, first, error, source, log));
+            return Err(self.refuse("LastPosition", last, first, error, scope));
         }
         Ok(())
     }

@@ -11,11 +11,10 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_PositionProfile, MC_VelocityProfile, MC_AccelerationProfile; V24.
 
-use super::accept::Way;
+use super::commands::{Entry, Start, Work, start_event};
 use super::power::Reaction;
-use super::queue::{Entry, Work};
-use super::{Axis, Motion, Source};
-use crate::{AxisEvent, BufferMode, Command, CommandId, Dynamics, ErrorId, Event, Fate, Log, Raw, Request};
+use super::{Axis, Motion};
+use crate::{AxisEvent, BufferMode, Command, CommandId, Dynamics, ErrorId, Event, Fate, Raw, Request, Scope};
 use standstill_planner::{
     PROFILE_POINTS, Plan, Planner, ProfileCause, ProfileFault, ProfileKind, ProfilePoint,
 };
@@ -170,8 +169,7 @@ impl<P: Planner> Axis<P> {
         &mut self,
         profile: &Profile<'_>,
         buffer_mode: Raw<BufferMode>,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<CommandId, ErrorId> {
         // Among other commands it has the place of any move.
         let any = Command::Halt {
@@ -181,29 +179,29 @@ impl<P: Planner> Axis<P> {
             buffer_mode,
             ..Request::aborting(any)
         };
-        let (mode, way) = self.admit_recorded(&request, source, log)?;
+        let (mode, start) = self.admit_recorded(&request, scope)?;
         if profile.kind == ProfileKind::Position && self.config.needs_homed && !self.homed {
             let (pin, error) = (profile.table_pin(), ErrorId::NotHomed);
-            return Err(self.refuse(pin, f64::NAN, f64::NAN, error, source, log));
+            return Err(self.refuse(pin, f64::NAN, f64::NAN, error, scope));
         }
         let work = Work::Profile {
             kind: profile.kind,
-            due: way == Way::Wait,
+            due: start == Start::Wait,
             since: 0.0,
             time_scale: profile.time_scale,
         };
-        let mut entry = Entry::new(self.new_id(), source.instance, work, self.parameters.limits, mode);
-        match way {
-            Way::Wait => {
-                self.looked_at(profile, source, log)?;
+        let mut entry = Entry::new(self.new_id(), scope.instance, work, self.parameters.limits, mode);
+        match start {
+            Start::Wait => {
+                self.looked_at(profile, scope)?;
                 self.queue.push(entry);
-                self.start_beside(source.scan, log);
+                self.start_beside(scope);
             }
-            Way::Now => {
-                let motion = self.plan_profile(&mut entry, profile, source, log)?;
+            Start::Now => {
+                let motion = self.plan_profile(&mut entry, profile, scope)?;
                 let before = self.limits_before(&entry.limits);
                 self.end_all(Fate::Aborted, Fate::Aborted);
-                self.begin(entry, motion, before, source.scan, log);
+                self.begin(entry, motion, before, scope);
             }
         }
         Ok(entry.id)
@@ -221,7 +219,7 @@ impl<P: Planner> Axis<P> {
     /// has its turn; without one an axis in motion enters ErrorStop.
     ///
     /// Cost: that of [`Planner::profile`].
-    pub fn start_profile(&mut self, id: CommandId, profile: &Profile<'_>, source: Source, log: &mut Log) {
+    pub fn start_profile(&mut self, id: CommandId, profile: &Profile<'_>, scope: &mut Scope<'_>) {
         let Some(mut owner) = self.owner.filter(|_| self.profile_is_due(id)) else {
             return;
         };
@@ -231,15 +229,15 @@ impl<P: Planner> Axis<P> {
             since: 0.0,
             time_scale: profile.time_scale,
         };
-        match self.plan_profile(&mut owner, profile, source, log) {
+        match self.plan_profile(&mut owner, profile, scope) {
             Ok(motion) => {
                 // The curve starts where the sum is.
                 self.end_superimposed(Fate::Aborted);
                 self.enter(start_event(&owner.work));
                 self.before = self.limits_before(&owner.limits);
-                self.adopt(owner, motion, source.scan, log);
+                self.adopt(owner, motion, scope);
             }
-            Err(error) => self.drop_profile(error, source.scan, log),
+            Err(error) => self.drop_profile(error, scope),
         }
     }
 
@@ -252,8 +250,7 @@ impl<P: Planner> Axis<P> {
         &mut self,
         id: CommandId,
         profile: &Profile<'_>,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<(), ErrorId> {
         let Some(mut owner) = self.owner.filter(|owner| owner.id == id && !owner.paused) else {
             return Ok(());
@@ -280,9 +277,9 @@ impl<P: Planner> Axis<P> {
             time_scale: profile.time_scale,
         };
         owner.limits = self.parameters.limits;
-        let motion = self.plan_profile(&mut owner, profile, source, log)?;
+        let motion = self.plan_profile(&mut owner, profile, scope)?;
         self.before = self.limits_before(&owner.limits);
-        self.adopt(owner, motion, source.scan, log);
+        self.adopt(owner, motion, scope);
         Ok(())
     }
 
@@ -323,20 +320,20 @@ impl<P: Planner> Axis<P> {
 
     /// A due profile cannot start.
     #[cold]
-    fn drop_profile(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
+    fn drop_profile(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         self.end_owner(Fate::Failed(error));
         if self.setpoint.is_at_rest() {
             self.come_to_rest();
         }
-        self.hand_over(self.setpoint.position, scan, log);
+        self.hand_over(self.setpoint.position, scope);
         if self.owner.is_none() && !self.setpoint.is_at_rest() {
-            self.trip(error, 0, Reaction::Ramp, scan, log);
+            self.trip(error, 0, Reaction::Ramp, scope);
         }
     }
 
     /// Refuses what no start could make good.
-    fn looked_at(&self, profile: &Profile<'_>, source: Source, log: &mut Log) -> Result<(), ErrorId> {
-        let refuse = |(pin, value, limit, error)| self.refuse(pin, value, limit, error, source, log);
+    fn looked_at(&self, profile: &Profile<'_>, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
+        let refuse = |(pin, value, limit, error)| self.refuse(pin, value, limit, error, scope);
         let points = profile.points(0.0).map_err(refuse)?;
         let mut before = 0.0;
         for (index, point) in points.get().iter().enumerate() {
@@ -358,7 +355,7 @@ impl<P: Planner> Axis<P> {
                         f64::NAN
                     },
                 };
-                return Err(self.refuse_profile(profile, &fault, 0, source, log));
+                return Err(self.refuse_profile(profile, &fault, 0, scope));
             }
             before = point.time;
         }
@@ -371,7 +368,7 @@ impl<P: Planner> Axis<P> {
             value: points.count as f64,
             limit: PROFILE_POINTS as f64,
         };
-        Err(self.refuse_profile(profile, &fault, 0, source, log))
+        Err(self.refuse_profile(profile, &fault, 0, scope))
     }
 
     /// The curve from the present state. Nothing changes but `entry`.
@@ -379,8 +376,7 @@ impl<P: Planner> Axis<P> {
         &self,
         entry: &mut Entry,
         profile: &Profile<'_>,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<Motion<P::Plan>, ErrorId> {
         let since = match entry.work {
             Work::Profile { since, .. } => since,
@@ -388,7 +384,7 @@ impl<P: Planner> Axis<P> {
         };
         let points = profile
             .points(since)
-            .map_err(|(pin, value, limit, error)| self.refuse(pin, value, limit, error, source, log))?;
+            .map_err(|(pin, value, limit, error)| self.refuse(pin, value, limit, error, scope))?;
         if since > 0.0 {
             // It goes on in the frame it is in.
             entry.turns = 0;
@@ -400,9 +396,9 @@ impl<P: Planner> Axis<P> {
         let plan = self
             .planner
             .profile(profile.kind, &start, points.get(), &entry.limits, range)
-            .map_err(|fault| self.refuse_profile(profile, &fault, points.passed, source, log))?;
+            .map_err(|fault| self.refuse_profile(profile, &fault, points.passed, scope))?;
         self.permitted(entry, &plan, &entry.limits)
-            .map_err(|error| self.refuse(profile.table_pin(), f64::NAN, f64::NAN, error, source, log))?;
+            .map_err(|error| self.refuse(profile.table_pin(), f64::NAN, f64::NAN, error, scope))?;
         entry.end =
             (profile.kind == ProfileKind::Position).then(|| plan.at(u64::from(plan.scans())).position);
         Ok(Motion::along(plan))
@@ -413,12 +409,11 @@ impl<P: Planner> Axis<P> {
         profile: &Profile<'_>,
         fault: &ProfileFault,
         passed: usize,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> ErrorId {
         let (what, error) = profile.refusal(fault);
         if fault.point == 0 {
-            return self.refuse(what, fault.value, fault.limit, error, source, log);
+            return self.refuse(what, fault.value, fault.limit, error, scope);
         }
         let refused = Event::PointRefused {
             point: u16::try_from(fault.point + passed).unwrap_or(u16::MAX),
@@ -427,25 +422,7 @@ impl<P: Planner> Axis<P> {
             limit: fault.limit,
             error,
         };
-        self.record(refused, source, log);
+        self.record(refused, scope);
         error
-    }
-}
-
-/// The state a command leads to.
-pub(super) fn start_event(work: &Work) -> AxisEvent {
-    match work {
-        Work::Position(_)
-        | Work::Distance(_)
-        | Work::Halt
-        | Work::Profile {
-            kind: ProfileKind::Position,
-            ..
-        } => AxisEvent::StartDiscrete,
-        Work::Velocity { .. } | Work::Through { .. } | Work::Profile { .. } | Work::Torque { .. } => {
-            AxisEvent::StartContinuous
-        }
-        Work::Stop => AxisEvent::Stop,
-        Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => AxisEvent::StartHoming,
     }
 }

@@ -3,9 +3,9 @@
 //! Source: PLCopen Motion Control Part 1, MC_EXECUTION_MODE and the sections of the blocks that have it. They wait
 //! like buffered motions, never own the axis, and do not change its state.
 
-use super::queue::{Entry, Work, Write};
-use super::{Axis, Source};
-use crate::{AxisState, BufferMode, CommandId, ErrorId, ExecutionMode, Fate, Log, Raw};
+use super::Axis;
+use super::commands::{Entry, Work, Write};
+use crate::{AxisState, BufferMode, CommandId, ErrorId, ExecutionMode, Fate, Raw, Scope};
 use standstill_planner::Planner;
 
 impl<P: Planner> Axis<P> {
@@ -13,18 +13,13 @@ impl<P: Planner> Axis<P> {
     ///
     /// # Errors
     /// [`ErrorId::ExecutionModeInvalid`] if the number is undefined.
-    pub(super) fn is_queued(
-        &self,
-        mode: Raw<ExecutionMode>,
-        source: Source,
-        log: &mut Log,
-    ) -> Result<bool, ErrorId> {
+    pub(super) fn is_queued(&self, mode: Raw<ExecutionMode>, scope: &mut Scope<'_>) -> Result<bool, ErrorId> {
         match mode.get() {
             Some(mode) => Ok(mode == ExecutionMode::Queued && self.is_owned()),
             None => {
                 let number = f64::from(mode.number());
                 let error = ErrorId::ExecutionModeInvalid;
-                Err(self.refuse("ExecutionMode", number, 1.0, error, source, log))
+                Err(self.refuse("ExecutionMode", number, 1.0, error, scope))
             }
         }
     }
@@ -33,28 +28,17 @@ impl<P: Planner> Axis<P> {
     ///
     /// # Errors
     /// [`ErrorId::BufferFull`].
-    pub(super) fn enqueue(
-        &mut self,
-        work: Work,
-        source: Source,
-        log: &mut Log,
-    ) -> Result<CommandId, ErrorId> {
+    pub(super) fn enqueue(&mut self, work: Work, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
         self.wait()
-            .map_err(|(_, error)| self.refuse("ExecutionMode", 1.0, f64::NAN, error, source, log))?;
+            .map_err(|(_, error)| self.refuse("ExecutionMode", 1.0, f64::NAN, error, scope))?;
         let id = self.new_id();
-        let entry = Entry::new(
-            id,
-            source.instance,
-            work,
-            self.config.limits,
-            BufferMode::Buffered,
-        );
+        let entry = Entry::new(id, scope.instance, work, self.config.limits, BufferMode::Buffered);
         self.queue.push(entry);
         Ok(id)
     }
 
     /// Writes what waits at the head of the buffer; `false` if that writes nothing.
-    pub(super) fn write_queued(&mut self, scan: u64, log: &mut Log) -> bool {
+    pub(super) fn write_queued(&mut self, scope: &mut Scope<'_>) -> bool {
         let Some(entry) = self.queue.first() else {
             return false;
         };
@@ -68,7 +52,7 @@ impl<P: Planner> Axis<P> {
                 Fate::Done
             }
             Write::Parameter { parameter, value } => {
-                self.write_queued_parameter(parameter, value, Source { scan, instance }, log)
+                self.write_queued_parameter(parameter, value, &mut scope.with(instance))
             }
         };
         self.decide(id, fate);

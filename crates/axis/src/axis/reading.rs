@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, sections on MC_ReadMotionState, MC_ReadAxisInfo and
 //! MC_ReadActualVelocity; V12b. Nothing here changes the axis.
 
-use super::queue::Work;
+use super::commands::Work;
 use super::{Axis, Motion};
 use crate::{Comms, DriveSignals, ErrorId, Raw, ValueSource};
 use standstill_planner::turns::split;

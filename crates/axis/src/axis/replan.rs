@@ -7,10 +7,10 @@
 //!
 //! Source: PLCopen Motion Control Part 1, sections on ContinuousUpdate and MC_SetOverride; R9, R12, B15 to B17.
 
-use super::queue::{Entry, Place, Work};
+use super::commands::{Entry, Place, Work};
 use super::superimposed::Layer;
-use super::{Axis, Motion, Source};
-use crate::{ErrorId, Event, Goal, Log};
+use super::{Axis, Motion};
+use crate::{ErrorId, Event, Goal, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
@@ -22,24 +22,24 @@ impl<P: Planner> Axis<P> {
     ///
     /// # Errors
     /// What the planner or the software limits refuse; nothing changes then.
-    pub(super) fn replan(&mut self, mut owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+    pub(super) fn replan(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         let here = self.base();
         owner.turns = 0;
         self.stay_in_direction(&mut owner, &here);
-        self.replan_aimed(owner, scan, log)
+        self.replan_aimed(owner, scope)
     }
 
     /// The same for an owner whose end has been found in the frame it is to move in.
-    pub(super) fn replan_aimed(&mut self, owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+    pub(super) fn replan_aimed(&mut self, owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         if owner.paused {
             // It goes on with these values when it may.
             self.own(owner);
             return Ok(());
         }
-        match self.plan_anew(owner, scan, log) {
+        match self.plan_anew(owner, scope) {
             Err(error @ (ErrorId::PositiveBarred | ErrorId::NegativeBarred)) => {
                 self.own(owner);
-                self.pause(error, scan, log);
+                self.pause(error, scope);
                 Ok(())
             }
             planned => planned,
@@ -47,7 +47,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The same for one that may be paused, and goes on with this.
-    pub(super) fn plan_anew(&mut self, mut owner: Entry, scan: u64, log: &mut Log) -> Result<(), ErrorId> {
+    pub(super) fn plan_anew(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         let here = self.base();
         let start = self
             .in_frame_of(&owner, &here)
@@ -64,7 +64,7 @@ impl<P: Planner> Axis<P> {
         match motion {
             Some(motion) => {
                 self.before = before;
-                self.adopt(owner, motion, scan, log);
+                self.adopt(owner, motion, scope);
             }
             None => {
                 owner.paused = false;
@@ -107,12 +107,12 @@ impl<P: Planner> Axis<P> {
 
     /// A plan that had to wait for something superimposed is tried again.
     #[cold]
-    pub(super) fn replan_late(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn replan_late(&mut self, scope: &mut Scope<'_>) {
         self.replan_due = false;
         self.touch();
         let Some(owner) = self.owner else { return };
-        if let Err(error) = self.replan(owner, scan, log) {
-            self.refuse_plan(&owner, error, self.owner_source(scan), log);
+        if let Err(error) = self.replan(owner, scope) {
+            self.refuse_plan(&owner, error, &mut self.owner_scope(scope));
         }
     }
 
@@ -162,9 +162,9 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Sets `entry`, which is the owner or becomes it, in motion.
-    pub(super) fn adopt(&mut self, entry: Entry, motion: Motion<P::Plan>, scan: u64, log: &mut Log) {
+    pub(super) fn adopt(&mut self, entry: Entry, motion: Motion<P::Plan>, scope: &mut Scope<'_>) {
         if let Motion::Run { plan, .. } | Motion::Torque { plan, .. } = &motion {
-            self.record_plan(&entry, plan, scan, log);
+            self.record_plan(&entry, plan, scope);
         }
         self.in_force = Self::limits_of(&entry.limits, &motion);
         if matches!(motion, Motion::Torque { .. }) {
@@ -185,11 +185,8 @@ impl<P: Planner> Axis<P> {
         self.replan_due = false;
     }
 
-    fn record_plan(&self, entry: &Entry, plan: &P::Plan, scan: u64, log: &mut Log) {
-        let source = Source {
-            scan,
-            instance: entry.instance,
-        };
+    fn record_plan(&self, entry: &Entry, plan: &P::Plan, scope: &mut Scope<'_>) {
+        let scope = &mut scope.with(entry.instance);
         let positioning = matches!(
             entry.work,
             Work::Position(_) | Work::Distance(_) | Work::Profile { .. }
@@ -208,9 +205,9 @@ impl<P: Planner> Axis<P> {
             goal,
             scans: plan.scans(),
         };
-        self.record(planned, source, log);
+        self.record(planned, scope);
         if let Some(excess) = self.beyond_axis(plan) {
-            self.record(Event::Unavoidable(excess), source, log);
+            self.record(Event::Unavoidable(excess), scope);
         }
     }
 }

@@ -6,11 +6,10 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section on Execute/Done; R32, R38, R97, B19.
 
-use super::accept::REST;
+use super::Axis;
+use super::commands::{Entry, REST, Work};
 use super::power::Reaction;
-use super::queue::{Entry, Work};
-use super::{Axis, Source};
-use crate::{AxisEvent, CommandId, Event, Fate, Log};
+use crate::{AxisEvent, CommandId, Event, Fate, Scope};
 use standstill_planner::Planner;
 
 impl<P: Planner> Axis<P> {
@@ -29,47 +28,40 @@ impl<P: Planner> Axis<P> {
     /// none if that was refused, or went to another axis.
     ///
     /// Cost: at most two plans, and what it takes to look through the buffer.
-    pub fn replaced(
-        &mut self,
-        id: CommandId,
-        waited: bool,
-        new: Option<CommandId>,
-        source: Source,
-        log: &mut Log,
-    ) {
+    pub fn replaced(&mut self, id: CommandId, waited: bool, new: Option<CommandId>, scope: &mut Scope<'_>) {
         if waited {
-            self.arm_anew(source.scan, log);
+            self.arm_anew(scope);
         } else if self.profile_is_due(id) {
-            return self.pass_over_due_profile(id, source, log);
+            return self.pass_over_due_profile(id, scope);
         }
         let of_instance = |owner: &&mut Entry| owner.id == id || owner.heir == Some(id);
         match (self.owner.as_mut().filter(of_instance), new) {
             (Some(owner), Some(new)) => owner.heir = Some(new),
             (Some(owner), None) => {
                 let owner = owner.id;
-                self.orphan(owner, source, log);
+                self.orphan(owner, scope);
             }
-            (None, None) if !waited => self.orphan(id, source, log),
+            (None, None) if !waited => self.orphan(id, scope),
             (None, _) => {}
         }
     }
 
     /// Command `id`, which waited, has failed: what its instance has in motion goes on (B19, R79).
-    pub(super) fn lose_heir(&mut self, id: CommandId, source: Source, log: &mut Log) {
+    pub(super) fn lose_heir(&mut self, id: CommandId, scope: &mut Scope<'_>) {
         if let Some(owner) = self.owner.filter(|owner| owner.heir == Some(id)) {
-            self.orphan(owner.id, source, log);
+            self.orphan(owner.id, scope);
         }
     }
 
     /// No block follows command `id` any more.
-    fn orphan(&mut self, id: CommandId, source: Source, log: &mut Log) {
+    fn orphan(&mut self, id: CommandId, scope: &mut Scope<'_>) {
         let owner = self.owner.as_mut().filter(|owner| owner.id == id);
         if let Some(owner) = owner {
             owner.orphaned = true;
         } else if !self.orphan_superimposed(id) {
             return;
         }
-        self.record(Event::Orphaned, source, log);
+        self.record(Event::Orphaned, scope);
         self.end_orphan();
     }
 
@@ -92,24 +84,24 @@ impl<P: Planner> Axis<P> {
     /// The profile whose turn has come has no block any more that would give it its points: the next command has its turn,
     /// and without one the axis comes to rest, a motion that no block follows.
     #[cold]
-    fn pass_over_due_profile(&mut self, id: CommandId, source: Source, log: &mut Log) {
+    fn pass_over_due_profile(&mut self, id: CommandId, scope: &mut Scope<'_>) {
         if self.setpoint.is_at_rest() {
             self.end_owner(Fate::Aborted);
             self.come_to_rest();
         }
-        self.hand_over(self.setpoint.position, source.scan, log);
+        self.hand_over(self.setpoint.position, scope);
         let Some(mut halt) = self.owner.filter(|owner| owner.id == id) else {
             return;
         };
         halt.work = Work::Halt;
-        self.halt_alone(halt, source, log);
+        self.halt_alone(halt, scope);
     }
 
     /// The owner has passed its end in motion, and whatever was to take over has failed: it is done, and the axis comes to
     /// rest.
     #[cold]
-    pub(super) fn halt_behind_end(&mut self, scan: u64, log: &mut Log) {
-        let source = self.owner_source(scan);
+    pub(super) fn halt_behind_end(&mut self, scope: &mut Scope<'_>) {
+        let scope = &mut self.owner_scope(scope);
         let Some(owner) = self.owner else { return };
         self.end_owner(Fate::Done);
         let halt = Entry {
@@ -122,11 +114,11 @@ impl<P: Planner> Axis<P> {
                 owner.mode,
             )
         };
-        self.halt_alone(halt, source, log);
+        self.halt_alone(halt, scope);
     }
 
     /// The axis comes to rest by `halt`, which no block follows.
-    fn halt_alone(&mut self, mut halt: Entry, source: Source, log: &mut Log) {
+    fn halt_alone(&mut self, mut halt: Entry, scope: &mut Scope<'_>) {
         let before = self.limits_before(&halt.limits);
         let planned = match self.plan_next(&mut halt) {
             Ok(Some(motion)) => Ok(motion),
@@ -139,12 +131,12 @@ impl<P: Planner> Axis<P> {
         };
         match planned {
             Ok(motion) => {
-                self.begin(halt, motion, before, source.scan, log);
+                self.begin(halt, motion, before, scope);
                 if !halt.orphaned {
-                    self.orphan(halt.id, source, log);
+                    self.orphan(halt.id, scope);
                 }
             }
-            Err(error) => self.trip(error, 0, Reaction::Ramp, source.scan, log),
+            Err(error) => self.trip(error, 0, Reaction::Ramp, scope),
         }
     }
 }

@@ -6,7 +6,7 @@
 //! dynamics can keep it inside it ends in ErrorStop. An axis that is outside, because it was pushed there or its
 //! coordinates moved, may move to any place inside.
 
-use super::queue::{Entry, Work};
+use super::commands::{Entry, Work};
 use super::{Axis, Motion};
 use crate::ErrorId;
 use standstill_planner::{Limits, Plan, Planner, Setpoint};

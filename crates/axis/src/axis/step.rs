@@ -2,39 +2,39 @@
 //!
 //! It comes after all block calls of a scan, so what it decides shows in the next one (R70).
 
-use super::queue::{Entry, Work};
-use super::{Axis, Calm, Motion, Source, power::Reaction};
-use crate::{AxisEvent, AxisState, ErrorId, Fate, InstanceId, Log, QUEUE_MAX};
+use super::commands::{Entry, Work};
+use super::{Axis, Calm, Motion, power::Reaction};
+use crate::{AxisEvent, AxisState, ErrorId, Fate, InstanceId, QUEUE_MAX, Scope};
 use standstill_planner::{Plan, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
-    /// Computes the set-point for the end of scan `scan`, then decides completion and hand-over.
+    /// Computes the set-point for the end of this scan, then decides completion and hand-over.
     ///
     /// Cost: one evaluation of the plan; at a hand-over at most one plan per waiting command; with software
     /// limits one ramp plan per scan of an endless motion or a stop.
     // See `follow_feedback`.
     #[inline(always)]
-    pub fn advance(&mut self, scan: u64, log: &mut Log) {
+    pub(crate) fn advance(&mut self, scope: &mut Scope<'_>) {
         // Short of the goal a plan needs a step and nothing else, and so does an endless motion nobody waits for.
         if self.calm == Calm::Alone && (self.is_short_of_goal() || self.is_cruising()) {
-            self.step_along_plan(scan, log);
+            self.step_along_plan(scope);
             if self.is_far_round() {
                 self.bring_back();
             }
         } else {
-            self.advance_with_care(scan, log);
+            self.advance_with_care(scope);
         }
     }
 
-    /// As [`Axis::advance`] when something is pending, superimposed, or about to be reached.
+    /// As `advance` when something is pending, superimposed, or about to be reached.
     #[inline(never)]
-    fn advance_with_care(&mut self, scan: u64, log: &mut Log) {
-        self.apply_power(scan, log);
+    fn advance_with_care(&mut self, scope: &mut Scope<'_>) {
+        self.apply_power(scope);
         self.follow_torque_order();
         if self.layer.is_none() && self.is_short_of_goal() {
-            self.step_along_plan(scan, log);
+            self.step_along_plan(scope);
         } else {
-            self.step_at_goal(scan, log);
+            self.step_at_goal(scope);
         }
         self.finish_reset();
     }
@@ -55,7 +55,7 @@ impl<P: Planner> Axis<P> {
     /// The next set-point of the plan, if it may be published.
     // Inlined for the same reason as `publish`.
     #[inline(always)]
-    fn step_along_plan(&mut self, scan: u64, log: &mut Log) {
+    fn step_along_plan(&mut self, scope: &mut Scope<'_>) {
         let Motion::Run { plan, elapsed, .. } = &self.motion else {
             return;
         };
@@ -63,26 +63,26 @@ impl<P: Planner> Axis<P> {
         // Two questions and a copy of the rest of the step for each: where both kinds of plan met again, the compiler
         // took the set-point apart and put it together, which cost a scan a fifth.
         if let Some(next) = plan.brief(scan_of_plan) {
-            self.step_to(next, scan, log);
+            self.step_to(next, scope);
         } else if let Some(next) = plan.usual(scan_of_plan) {
-            self.step_to(next, scan, log);
+            self.step_to(next, scope);
         } else {
-            self.step_by_call(scan, log);
+            self.step_by_call(scope);
         }
     }
 
     /// The same where it takes a call to tell, as where a piece of a plan begins.
     #[inline(never)]
-    fn step_by_call(&mut self, scan: u64, log: &mut Log) {
+    fn step_by_call(&mut self, scope: &mut Scope<'_>) {
         if let Motion::Run { plan, elapsed, .. } = &mut self.motion {
             let next = plan.next(elapsed.wrapping_add(1));
-            self.step_to(next, scan, log);
+            self.step_to(next, scope);
         }
     }
 
     /// The plan goes on by a scan, to `next`.
     #[inline(always)]
-    fn step_to(&mut self, next: Setpoint, scan: u64, log: &mut Log) {
+    fn step_to(&mut self, next: Setpoint, scope: &mut Scope<'_>) {
         if let Motion::Run { elapsed, scans, .. } = &mut self.motion {
             // Scans of 1 ms wrap after 10^8 years.
             *elapsed = elapsed.wrapping_add(1);
@@ -91,11 +91,11 @@ impl<P: Planner> Axis<P> {
             }
         }
         if !next.is_finite() {
-            self.fail(ErrorId::SetpointBroken, scan, log);
+            self.fail(ErrorId::SetpointBroken, scope);
         } else if !self.is_step(&next) {
-            self.fail(ErrorId::SetpointStep, scan, log);
+            self.fail(ErrorId::SetpointStep, scope);
         } else if self.watched && self.plan_would_leave() {
-            self.fail(ErrorId::SoftwareLimitReached, scan, log);
+            self.fail(ErrorId::SoftwareLimitReached, scope);
         } else {
             self.publish(next);
         }
@@ -104,14 +104,14 @@ impl<P: Planner> Axis<P> {
     /// The step of an axis that is at its goal, or will be after it, or is not in operation, or has something
     /// superimposed.
     #[inline(never)]
-    fn step_at_goal(&mut self, scan: u64, log: &mut Log) {
+    fn step_at_goal(&mut self, scope: &mut Scope<'_>) {
         if self.owner.is_none() && self.goal_reached() {
             // A ramp nobody commanded ended in the scan before; until then power stays on, so that the drive
             // gets the last set-point.
             self.motion = Motion::Hold;
         }
         if self.layer.is_some() {
-            self.advance_both(scan, log);
+            self.advance_both(scope);
             return;
         }
         match &mut self.motion {
@@ -120,14 +120,14 @@ impl<P: Planner> Axis<P> {
                 self.count_actual_turns();
             }
             Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
-            Motion::Run { .. } => self.step_along_plan(scan, log),
+            Motion::Run { .. } => self.step_along_plan(scope),
             Motion::Torque { .. } => self.step_torque(),
         }
         if self.modulo.is_some() {
             self.bring_back();
         }
         if self.goal_reached() {
-            self.settle(scan, log);
+            self.settle(scope);
         }
     }
 
@@ -143,12 +143,12 @@ impl<P: Planner> Axis<P> {
 
     /// Enters ErrorStop and publishes the first set-point of the ramp, which starts at the last one published.
     #[cold]
-    pub(super) fn fail(&mut self, error: ErrorId, scan: u64, log: &mut Log) {
+    pub(super) fn fail(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         if self.state == AxisState::ErrorStop {
             // The ramp itself is at fault, so nothing is left that could be trusted to move the axis.
             self.motion = Motion::Hold;
         }
-        self.trip(error, 0, Reaction::Ramp, scan, log);
+        self.trip(error, 0, Reaction::Ramp, scope);
         let ramp = match &mut self.motion {
             Motion::Run { plan, elapsed, .. } => {
                 *elapsed = 1;
@@ -164,23 +164,23 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Completion and hand-over, at the goal.
-    pub(super) fn settle(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn settle(&mut self, scope: &mut Scope<'_>) {
         let Some(owner) = &self.owner else {
             if matches!(self.state, AxisState::Standstill | AxisState::DiscreteMotion)
                 && !self.queue.is_empty()
             {
                 // MC_Stop released the axis in this scan (note 6), or a command waits for a superimposed motion.
-                self.hand_over(self.setpoint.position, scan, log);
+                self.hand_over(self.setpoint.position, scope);
             }
             return;
         };
         if self.is_held_up() {
-            return self.settle_paused(scan, log);
+            return self.settle_paused(scope);
         }
         match owner.work {
-            Work::Position(_) | Work::Distance(_) => self.complete_move(scan, log),
-            Work::Halt => self.complete(scan, log),
-            Work::Home(position) => self.settle_homing(position, scan, log),
+            Work::Position(_) | Work::Distance(_) => self.complete_move(scope),
+            Work::Halt => self.complete(scope),
+            Work::Home(position) => self.settle_homing(position, scope),
             Work::Stop if owner.held => {
                 self.motion = Motion::Hold;
                 self.stop_held = true;
@@ -190,37 +190,37 @@ impl<P: Planner> Axis<P> {
                 self.motion = Motion::Hold;
                 self.end_owner(Fate::Done);
                 self.enter(AxisEvent::StopReleased);
-                self.hand_over(self.setpoint.position, scan, log);
+                self.hand_over(self.setpoint.position, scope);
             }
             // An endless motion gives way when it has reached its velocity.
             Work::Velocity { .. } | Work::Through { .. } | Work::Torque { .. } => {
-                self.hand_over(self.passed_end(), scan, log);
+                self.hand_over(self.passed_end(), scope);
             }
             // Its block has yet to give the points.
             Work::Profile { due: true, .. } => {}
-            Work::Profile { .. } if owner.is_endless() => self.hand_over(self.setpoint.position, scan, log),
-            Work::Profile { .. } => self.complete_move(scan, log),
+            Work::Profile { .. } if owner.is_endless() => self.hand_over(self.setpoint.position, scope),
+            Work::Profile { .. } => self.complete_move(scope),
             // They never own the axis.
             Work::SetPosition { .. } | Work::Write(_) => {}
         }
     }
 
     /// A move has completed once the axis is in position; one that passes its end does not wait for that.
-    fn complete_move(&mut self, scan: u64, log: &mut Log) {
+    fn complete_move(&mut self, scope: &mut Scope<'_>) {
         if self.base().velocity != 0.0 || self.has_arrived() {
-            self.complete(scan, log);
+            self.complete(scope);
         }
     }
 
     /// The owner has completed, at rest or passing its end on to a blended successor.
     #[cold]
-    pub(super) fn complete(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn complete(&mut self, scope: &mut Scope<'_>) {
         if self.base().velocity != 0.0 {
-            return self.pass_on(scan, log);
+            return self.pass_on(scope);
         }
         self.end_owner(Fate::Done);
         self.come_to_rest();
-        self.hand_over(self.setpoint.position, scan, log);
+        self.hand_over(self.setpoint.position, scope);
     }
 
     /// The owner has ended at rest. The motion is not over while something is superimposed (V14).
@@ -234,7 +234,7 @@ impl<P: Planner> Axis<P> {
     /// The next waiting command that can be planned becomes the owner; those that cannot fail (R79). An
     /// endless owner stays if there is none. Distances count from `from` (B10).
     #[inline(never)]
-    pub(super) fn hand_over(&mut self, from: f64, scan: u64, log: &mut Log) {
+    pub(super) fn hand_over(&mut self, from: f64, scope: &mut Scope<'_>) {
         for _ in 0..QUEUE_MAX {
             let Some(mut next) = self.queue.first().copied() else {
                 return;
@@ -242,7 +242,7 @@ impl<P: Planner> Axis<P> {
             if self.queue_waits_for_shift() {
                 return;
             }
-            if self.write_queued(scan, log) {
+            if self.write_queued(scope) {
                 continue;
             }
             if let Work::Profile { .. } = next.work {
@@ -263,31 +263,23 @@ impl<P: Planner> Axis<P> {
                     let blended = self.passes_its_end();
                     self.end_owner(self.fate_at_hand_over());
                     let before = if blended { next.limits } else { before };
-                    self.begin(next, motion, before, scan, log);
-                    self.record_raised(&asked, &next.limits, self.owner_source(scan), log);
+                    self.begin(next, motion, before, scope);
+                    self.record_raised(&asked, &next.limits, &mut self.owner_scope(scope));
                     return;
                 }
                 Err(error) => {
-                    let source = Source {
-                        scan,
-                        instance: next.instance,
-                    };
-                    self.refuse_plan(&next, error, source, log);
+                    let scope = &mut scope.with(next.instance);
+                    self.refuse_plan(&next, error, scope);
                     self.decide(next.id, Fate::Failed(error));
-                    self.lose_heir(next.id, source, log);
+                    self.lose_heir(next.id, scope);
                 }
             }
         }
     }
 
-    /// Who the present motion belongs to, for records; instance 0 if nobody.
-    pub(super) fn owner_source(&self, scan: u64) -> Source {
-        Source {
-            scan,
-            instance: self
-                .owner
-                .as_ref()
-                .map_or(InstanceId::default(), |owner| owner.instance),
-        }
+    /// `scope` with who the present motion belongs to; instance 0 if nobody.
+    pub(super) fn owner_scope<'s>(&self, scope: &'s mut Scope<'_>) -> Scope<'s> {
+        let owner = self.owner.as_ref();
+        scope.with(owner.map_or(InstanceId::default(), |owner| owner.instance))
     }
 }

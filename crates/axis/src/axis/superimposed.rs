@@ -10,10 +10,9 @@
 mod plan;
 mod update;
 
-use super::accept::REST;
-use super::queue::{Entry, Work};
-use super::{Axis, Motion, Source};
-use crate::{AxisEvent, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, Log, Superimpose};
+use super::commands::{Entry, REST, Work};
+use super::{Axis, Motion};
+use crate::{AxisEvent, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, Scope, Superimpose};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 /// What a superimposed command does.
@@ -193,19 +192,18 @@ impl<P: Planner> Axis<P> {
     pub fn superimpose(
         &mut self,
         request: &Superimpose,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<CommandId, ErrorId> {
         self.admit_superimposed()
-            .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, source, log))?;
+            .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, scope))?;
         let layer = self
             .layer
             .unwrap_or_else(|| Layer::on(self.setpoint, &self.config.limits));
         let id = self.new_id();
-        let command = self.added(id, layer.added.position, &layer, request, source, log)?;
+        let command = self.added(id, layer.added.position, &layer, request, scope)?;
         let proposed = self
             .propose(&layer, &command)
-            .map_err(|error| self.refuse("Distance", request.distance, f64::NAN, error, source, log))?;
+            .map_err(|error| self.refuse("Distance", request.distance, f64::NAN, error, scope))?;
         if self.state == AxisState::Standstill {
             self.enter(AxisEvent::StartDiscrete);
         }
@@ -213,14 +211,14 @@ impl<P: Planner> Axis<P> {
         self.stir();
         let layer = self.layer.get_or_insert(layer);
         layer.command = Some(command);
-        self.add(proposed, source.scan, log);
-        self.rest_before_outside(source.scan, log);
+        self.add(proposed, scope);
+        self.rest_before_outside(scope);
         Ok(command.id)
     }
 
     /// What is superimposed moves the owner's end, and with it the place a blended distance behind it leads to: should that
     /// be outside the software limits now, the owner comes to rest at its end, where the next one is refused.
-    fn rest_before_outside(&mut self, scan: u64, log: &mut Log) {
+    fn rest_before_outside(&mut self, scope: &mut Scope<'_>) {
         let blends = |owner: &Entry| owner.passage != REST;
         let (Some(owner), Some(layer)) = (self.owner.filter(blends), &self.layer) else {
             return;
@@ -230,7 +228,7 @@ impl<P: Planner> Axis<P> {
         };
         let target = self.end_of_leg(next, layer.end_above(end), end > layer.base.position);
         if target.is_some_and(|target| self.allowed(target).is_err()) {
-            self.pass_at_rest(scan, log);
+            self.pass_at_rest(scope);
         }
     }
 
@@ -243,14 +241,13 @@ impl<P: Planner> Axis<P> {
     pub fn halt_superimposed(
         &mut self,
         dynamics: &crate::Dynamics,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<CommandId, ErrorId> {
-        let limits = self.resolve(dynamics, source, log)?;
+        let limits = self.resolve(dynamics, scope)?;
         let layer = self.layer.unwrap_or_else(|| Layer::on(self.setpoint, &limits));
         let command = Added {
             id: self.new_id(),
-            instance: source.instance,
+            instance: scope.instance,
             adds: Adds::Halt,
             limits,
             asked: limits,
@@ -260,9 +257,8 @@ impl<P: Planner> Axis<P> {
             orphaned: false,
         };
         let proposed = if layer.moves() {
-            self.propose(&layer, &command).map_err(|error| {
-                self.refuse("Deceleration", limits.deceleration, f64::NAN, error, source, log)
-            })?
+            self.propose(&layer, &command)
+                .map_err(|error| self.refuse("Deceleration", limits.deceleration, f64::NAN, error, scope))?
         } else {
             None
         };
@@ -270,7 +266,7 @@ impl<P: Planner> Axis<P> {
         self.stir();
         self.layer.get_or_insert(layer).command = Some(command);
         if !command.planned {
-            self.add(proposed, source.scan, log);
+            self.add(proposed, scope);
         }
         Ok(command.id)
     }
@@ -410,9 +406,9 @@ impl<P: Planner> Axis<P> {
         self.stir();
     }
 
-    /// [`Axis::advance`] with something superimposed: both motions advance, their sum is published.
+    /// The motion step with something superimposed: both motions advance, their sum is published.
     #[inline(never)]
-    pub(super) fn advance_both(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn advance_both(&mut self, scope: &mut Scope<'_>) {
         let Some(layer) = &mut self.layer else { return };
         layer.base = match &mut self.motion {
             Motion::Follow => Setpoint::at_rest(self.actual),
@@ -431,12 +427,12 @@ impl<P: Planner> Axis<P> {
         }
         let next = layer.sum();
         if !next.is_finite() {
-            self.fail(ErrorId::SetpointBroken, scan, log);
+            self.fail(ErrorId::SetpointBroken, scope);
         } else if !self.is_following() && !self.is_step(&next) {
             // What follows the feedback is no plan's.
-            self.fail(ErrorId::SetpointStep, scan, log);
+            self.fail(ErrorId::SetpointStep, scope);
         } else if self.parameters.software_limits.is_some() && self.would_leave(&next) {
-            self.fail(ErrorId::SoftwareLimitReached, scan, log);
+            self.fail(ErrorId::SoftwareLimitReached, scope);
         } else {
             self.publish(next);
         }
@@ -444,16 +440,16 @@ impl<P: Planner> Axis<P> {
             self.bring_back();
         }
         if self.goal_reached() {
-            self.settle(scan, log);
+            self.settle(scope);
         }
-        self.settle_superimposed(scan, log);
+        self.settle_superimposed(scope);
         if self.replan_due {
-            self.replan_late(scan, log);
+            self.replan_late(scope);
         }
     }
 
     /// Completion of what is superimposed, and a new attempt of a command that waits or was lowered.
-    fn settle_superimposed(&mut self, scan: u64, log: &mut Log) {
+    fn settle_superimposed(&mut self, scope: &mut Scope<'_>) {
         let Some(layer) = &mut self.layer else { return };
         let reached = match &layer.motion {
             Motion::Run { elapsed, scans, .. } => elapsed >= scans,
@@ -477,23 +473,23 @@ impl<P: Planner> Axis<P> {
                 Some(_) | None => {}
             }
         }
-        self.try_again(scan, log);
+        self.try_again(scope);
         let still = !matches!(self.motion, Motion::Run { .. });
         if still && self.layer.as_ref().is_some_and(|layer| layer.command.is_none()) {
             self.layer = None;
             self.stir();
             if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
                 self.enter(AxisEvent::MotionDone);
-                self.hand_over(self.setpoint.position, scan, log);
+                self.hand_over(self.setpoint.position, scope);
             }
-            self.resume(scan, log);
+            self.resume(scope);
         }
     }
 
     /// A command given with nothing under it but a superimposed motion starts beside that at once.
-    pub(super) fn start_beside(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn start_beside(&mut self, scope: &mut Scope<'_>) {
         if self.owner.is_none() && self.state == AxisState::DiscreteMotion {
-            self.hand_over(self.setpoint.position, scan, log);
+            self.hand_over(self.setpoint.position, scope);
         }
     }
 
@@ -534,8 +530,7 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    fn record_as(&self, command: &Added, event: Event, scan: u64, log: &mut Log) {
-        let instance = command.instance;
-        self.record(event, Source { scan, instance }, log);
+    fn record_as(&self, command: &Added, event: Event, scope: &mut Scope<'_>) {
+        self.record(event, &mut scope.with(command.instance));
     }
 }

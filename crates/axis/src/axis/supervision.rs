@@ -8,7 +8,7 @@
 use super::power::Reaction;
 use super::reading::nearest;
 use super::{Axis, Motion};
-use crate::{ErrorId, Log};
+use crate::{ErrorId, Scope};
 use standstill_planner::Planner;
 
 /// Supervision of the following error.
@@ -47,11 +47,11 @@ impl<P: Planner> Axis<P> {
     }
 
     /// After the latch: ErrorStop if the axis lags, or is about to leave the software limits under a torque.
-    pub(super) fn supervise(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn supervise(&mut self, scope: &mut Scope<'_>) {
         if self.lags() {
-            self.trip(ErrorId::FollowingErrorTooLarge, 0, Reaction::Ramp, scan, log);
+            self.trip(ErrorId::FollowingErrorTooLarge, 0, Reaction::Ramp, scope);
         } else if matches!(self.motion, Motion::Torque { .. }) && self.torque_would_leave() {
-            self.trip(ErrorId::SoftwareLimitReached, 0, Reaction::Ramp, scan, log);
+            self.trip(ErrorId::SoftwareLimitReached, 0, Reaction::Ramp, scope);
         }
     }
 

@@ -6,9 +6,9 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_TorqueControl and MC_ReadActualTorque; V25.
 
-use super::queue::{Entry, Work};
-use super::{Axis, Motion, Source};
-use crate::{Direction, Dynamics, ErrorId, Log, Raw, TorqueOrder, TorqueReport};
+use super::commands::{Entry, Work};
+use super::{Axis, Motion};
+use crate::{Direction, Dynamics, ErrorId, Raw, Scope, TorqueOrder, TorqueReport};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
@@ -28,10 +28,9 @@ impl<P: Planner> Axis<P> {
         (torque, ramp): (f64, f64),
         dynamics: &Dynamics,
         direction: Raw<Direction>,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<(Work, Limits), ErrorId> {
-        let mut refuse = |pin, value, limit, error| Err(self.refuse(pin, value, limit, error, source, log));
+        let mut refuse = |pin, value, limit, error| Err(self.refuse(pin, value, limit, error, scope));
         let most = match self.beside.report.torque {
             Some(TorqueReport { most, .. }) if most > 0.0 => most,
             _ => return refuse("Axis", f64::NAN, f64::NAN, ErrorId::TorqueNotHeld),
@@ -58,11 +57,11 @@ impl<P: Planner> Axis<P> {
         let velocity = if dynamics.velocity == 0.0 {
             self.parameters.limits.velocity
         } else {
-            self.positive_velocity("Velocity", dynamics.velocity, source, log)?
+            self.positive_velocity("Velocity", dynamics.velocity, scope)?
         };
         let limits = Limits {
             velocity,
-            ..self.resolve(dynamics, source, log)?
+            ..self.resolve(dynamics, scope)?
         };
         Ok((Work::Torque { torque, ramp, along }, limits))
     }

@@ -7,10 +7,9 @@
 //!
 //! Source: PLCopen Motion Control Part 1, section on ContinuousUpdate; R9 to R13, B16, T39a to T39c.
 
-use super::accept::{REST, Way, direction_of};
-use super::queue::{Asked, Entry, Place, Work};
-use super::{Axis, Motion, Source};
-use crate::{BufferMode, Command, CommandId, ErrorId, Log};
+use super::commands::{Asked, Entry, Place, REST, Start, Work, direction_of};
+use super::{Axis, Motion};
+use crate::{BufferMode, Command, CommandId, ErrorId, Scope};
 use standstill_planner::{Limits, Planner};
 
 impl<P: Planner> Axis<P> {
@@ -21,16 +20,10 @@ impl<P: Planner> Axis<P> {
     ///
     /// # Errors
     /// What a new command with these values would show. It is recorded, and the command goes on as it was.
-    pub fn update(
-        &mut self,
-        id: CommandId,
-        command: &Command,
-        source: Source,
-        log: &mut Log,
-    ) -> Result<(), ErrorId> {
+    pub fn update(&mut self, id: CommandId, command: &Command, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         match self.owner {
-            Some(owner) if owner.id == id => self.update_owner(owner, command, source, log),
-            _ => self.update_waiting(id, command, source, log),
+            Some(owner) if owner.id == id => self.update_owner(owner, command, scope),
+            _ => self.update_waiting(id, command, scope),
         }
     }
 
@@ -38,10 +31,9 @@ impl<P: Planner> Axis<P> {
         &mut self,
         mut owner: Entry,
         command: &Command,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<(), ErrorId> {
-        let Some((work, limits)) = self.check_update(&owner, command, source, log)? else {
+        let Some((work, limits)) = self.check_update(&owner, command, scope)? else {
             return Ok(());
         };
         let direction = direction_of(command);
@@ -57,24 +49,23 @@ impl<P: Planner> Axis<P> {
         let planned = if moved {
             owner.passed = false;
             self.aim_anew(&mut owner);
-            self.replan_aimed(owner, source.scan, log)
+            self.replan_aimed(owner, scope)
         } else {
-            self.replan(owner, source.scan, log)
+            self.replan(owner, scope)
         };
-        planned.map_err(|error| self.refuse_plan(&owner, error, source, log))
+        planned.map_err(|error| self.refuse_plan(&owner, error, scope))
     }
 
     fn update_waiting(
         &mut self,
         id: CommandId,
         command: &Command,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<(), ErrorId> {
         let Some(mut entry) = self.queue.iter().find(|entry| entry.id == id).copied() else {
             return Ok(());
         };
-        let Some((work, limits)) = self.check_update(&entry, command, source, log)? else {
+        let Some((work, limits)) = self.check_update(&entry, command, scope)? else {
             return Ok(());
         };
         self.take_values(&mut entry, work, limits);
@@ -82,7 +73,7 @@ impl<P: Planner> Axis<P> {
         for slot in self.queue.iter_mut().filter(|slot| slot.id == id) {
             *slot = entry;
         }
-        self.arm_anew(source.scan, log);
+        self.arm_anew(scope);
         Ok(())
     }
 
@@ -91,19 +82,18 @@ impl<P: Planner> Axis<P> {
         &self,
         entry: &Entry,
         command: &Command,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<Option<(Work, Limits)>, ErrorId> {
         // It does not count from the last target again, but from where it did.
         let (work, limits) = match (*command, entry.work) {
             (Command::MoveAdditive { distance, dynamics }, Work::Position(_)) => {
                 let added = Command::MoveRelative { distance, dynamics };
-                let (_, limits) = self.check(&added, Way::Wait, source, log)?;
-                let position = self.finite("Distance", entry.from + distance, source, log)?;
-                self.inside("Distance", position, source, log)?;
+                let (_, limits) = self.check(&added, Start::Wait, scope)?;
+                let position = self.finite("Distance", entry.from + distance, scope)?;
+                self.inside("Distance", position, scope)?;
                 (Work::Position(position), limits)
             }
-            _ => self.check(command, Way::Wait, source, log)?,
+            _ => self.check(command, Start::Wait, scope)?,
         };
         let same_kind = work.kind() == entry.work.kind()
             && (work.obeys_override() || matches!(work, Work::Torque { .. }));
@@ -132,15 +122,15 @@ impl<P: Planner> Axis<P> {
     }
 
     /// What waits has changed: the owner may have to pass its end at another speed (B16).
-    pub(super) fn arm_anew(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn arm_anew(&mut self, scope: &mut Scope<'_>) {
         let leads = |owner: &Entry| owner.end.is_some();
-        if !self.pass_at_rest(scan, log) && self.owner.as_ref().is_some_and(leads) {
-            self.arm(BufferMode::BlendingPrevious, scan, log);
+        if !self.pass_at_rest(scope) && self.owner.as_ref().is_some_and(leads) {
+            self.arm(BufferMode::BlendingPrevious, scope);
         }
     }
 
     /// If what was to take over in motion no longer can, the owner comes to rest at its end. Returns whether that is so.
-    pub(super) fn pass_at_rest(&mut self, scan: u64, log: &mut Log) -> bool {
+    pub(super) fn pass_at_rest(&mut self, scope: &mut Scope<'_>) -> bool {
         let blends = |owner: &Entry| owner.end.is_some() && owner.passage != REST;
         let Some(owner) = self.owner.filter(blends) else {
             return false;
@@ -148,7 +138,7 @@ impl<P: Planner> Axis<P> {
         if self.passage(&owner, self.base().position, 0) != REST {
             return false;
         }
-        if matches!(self.motion, Motion::Run { .. }) && self.replan(owner, scan, log).is_err() {
+        if matches!(self.motion, Motion::Run { .. }) && self.replan(owner, scope).is_err() {
             // To rest from here it would take too long: it goes on as it was planned.
         }
         true

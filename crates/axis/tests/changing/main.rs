@@ -13,9 +13,10 @@ mod random;
 use random::Random;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Event, Factors, Fate,
-    Log, MoveProfile, Plan, Raw, Request, Source, Standard, StartState, Superimpose,
+    Log, MoveProfile, Plan, Raw, Request, Scope, Standard, StartState, Superimpose, steps,
 };
 use standstill_soak::rules::limits::Track;
+use std::slice;
 
 const CYCLE: f64 = 0.01;
 /// A case that takes longer is a motion that never ends.
@@ -75,16 +76,12 @@ impl Case {
         }
     }
 
-    fn source(&self) -> Source {
-        Source {
-            scan: self.scan,
-            ..Source::default()
-        }
-    }
-
     fn advance(&mut self, scans: u64) {
         for _ in 0..scans {
-            self.axis.advance(self.scan, &mut self.log);
+            steps::advance(
+                slice::from_mut(&mut self.axis),
+                &mut Scope::new(self.scan, &mut self.log),
+            );
             for record in self.log.since(self.told) {
                 match (record.event, self.axis.plan()) {
                     (Event::Unavoidable(_), _) => self.unavoidable = true,
@@ -186,7 +183,10 @@ impl Case {
             buffer_mode: modes[self.random.below(6) as usize].into(),
             ..Request::aborting(command)
         };
-        if let Ok(id) = self.axis.command(&request, self.source(), &mut self.log) {
+        if let Ok(id) = self
+            .axis
+            .command(&request, &mut Scope::new(self.scan, &mut self.log))
+        {
             self.commands.push((id, command));
         }
     }
@@ -231,7 +231,11 @@ impl Case {
         let index = last.saturating_sub(self.random.below(3) as usize);
         let (id, command) = self.commands[index];
         let new = self.changed(command);
-        if self.axis.update(id, &new, self.source(), &mut self.log).is_ok() {
+        if self
+            .axis
+            .update(id, &new, &mut Scope::new(self.scan, &mut self.log))
+            .is_ok()
+        {
             self.commands[index].1 = new;
             self.changes += 1;
         }
@@ -253,7 +257,9 @@ impl Case {
             acceleration: one(&mut self.random),
             jerk: one(&mut self.random),
         };
-        let taken = self.axis.set_override(factors, self.source(), &mut self.log);
+        let taken = self
+            .axis
+            .set_override(factors, &mut Scope::new(self.scan, &mut self.log));
         assert!(taken.is_ok(), "case {}, scan {}: {taken:?}", self.seed, self.scan);
         self.changes += 1;
     }
@@ -263,12 +269,18 @@ impl Case {
             distance: self.random.between(-20.0, 20.0),
             dynamics: self.random.dynamics(&self.axis.config().limits),
         };
-        let source = self.source();
         match self.added {
             Some(id) if self.random.below(2) == 0 => {
-                let _ended = self.axis.update_superimposed(id, &request, source, &mut self.log);
+                let _ended =
+                    self.axis
+                        .update_superimposed(id, &request, &mut Scope::new(self.scan, &mut self.log));
             }
-            _ => self.added = self.axis.superimpose(&request, source, &mut self.log).ok(),
+            _ => {
+                self.added = self
+                    .axis
+                    .superimpose(&request, &mut Scope::new(self.scan, &mut self.log))
+                    .ok()
+            }
         }
     }
 
@@ -296,20 +308,27 @@ impl Case {
         let mut command = self.values(kind);
         let from = self.axis.setpoint().position;
         let request = Request::aborting(command);
-        let id = self.axis.command(&request, self.source(), &mut self.log).unwrap();
+        let id = self
+            .axis
+            .command(&request, &mut Scope::new(self.scan, &mut self.log))
+            .unwrap();
         for _ in 0..self.random.below(4) {
             let scans = self.random.below(60);
             self.advance(scans);
             let new = self.changed(command);
             let running = self.axis.active_command() == Some(id);
-            if self.axis.update(id, &new, self.source(), &mut self.log).is_ok() && running {
+            if self
+                .axis
+                .update(id, &new, &mut Scope::new(self.scan, &mut self.log))
+                .is_ok()
+                && running
+            {
                 command = new;
             }
             self.factors();
         }
-        let source = self.source();
         self.axis
-            .set_override(Factors::ONE, source, &mut self.log)
+            .set_override(Factors::ONE, &mut Scope::new(self.scan, &mut self.log))
             .unwrap();
         let limit = self.scan + MOST_SCANS;
         while self.axis.fate(id) != Fate::Done {

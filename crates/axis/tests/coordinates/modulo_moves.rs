@@ -4,8 +4,8 @@
 
 use crate::rig::{CYCLE, Random, Rig};
 use standstill_axis::{
-    AxisConfig, BufferMode, Command, Direction, DrivePosition, Dynamics, Fate, IdealDrive, Limits,
-    Permission, Request, Scaling, StartState,
+    AxisConfig, BufferMode, Command, Direction, DrivePosition, Dynamics, Fate, IdealDrive, InstanceId,
+    Limits, Permission, Request, Scaling, Scope, StartState,
 };
 
 fn dynamics(random: &mut Random, limits: &Limits) -> Dynamics {
@@ -319,8 +319,15 @@ fn an_axis_a_thousand_million_turns_out_moves_as_one_at_home() {
         };
         let mut rows = Vec::new();
         for scan in 0..4000 {
-            let source = rig.source();
-            rig.axis.set_power(true, Permission::BOTH, source, &mut rig.log);
+            rig.axis.set_power(
+                true,
+                Permission::BOTH,
+                &mut Scope {
+                    scan: rig.scan,
+                    instance: InstanceId(1),
+                    log: &mut rig.log,
+                },
+            );
             if scan == 10 {
                 let direction = Direction::Positive.into();
                 rig.command(Command::MoveVelocity { dynamics, direction });
@@ -388,8 +395,17 @@ fn buffered_moves_find_their_way_from_where_they_start() {
             direction: Direction::ShortestWay.into(),
         })
     };
-    let source = rig.source();
-    let id = rig.axis.command(&request, source, &mut rig.log).unwrap();
+    let id = rig
+        .axis
+        .command(
+            &request,
+            &mut Scope {
+                scan: rig.scan,
+                instance: InstanceId(1),
+                log: &mut rig.log,
+            },
+        )
+        .unwrap();
     // From 0, where it is given, the way would be 100; from 300 on it is 160.
     assert_eq!(rig.run(id), Fate::Done);
     assert!((rig.way - 460.0).abs() < 1e-9, "{}", rig.way);

@@ -2,8 +2,9 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Command, CommandId, Drive, DrivePosition, Fate, IdealDrive, InstanceId, Log,
-    Request, Source, Standard,
+    Request, Scope, Standard, steps,
 };
+use std::slice;
 
 pub const CYCLE: f64 = 0.001;
 
@@ -65,26 +66,29 @@ impl Rig {
         }
     }
 
-    pub fn source(&self) -> Source {
-        Source {
-            scan: self.scan,
-            instance: InstanceId(1),
-        }
-    }
-
     pub fn command(&mut self, command: Command) -> CommandId {
-        let source = self.source();
         self.axis
-            .command(&Request::aborting(command), source, &mut self.log)
+            .command(
+                &Request::aborting(command),
+                &mut Scope {
+                    scan: self.scan,
+                    instance: InstanceId(1),
+                    log: &mut self.log,
+                },
+            )
             .unwrap()
     }
 
     /// One scan; returns the increments the drive told, 0 if it speaks units.
     pub fn step(&mut self) -> i64 {
         let feedback = self.drive.read(0);
-        self.axis.follow_feedback(&feedback, self.scan, &mut self.log);
+        self.axis
+            .follow_feedback(&feedback, &mut Scope::new(self.scan, &mut self.log));
         let before = self.axis.setpoint().position;
-        self.axis.advance(self.scan, &mut self.log);
+        steps::advance(
+            slice::from_mut(&mut self.axis),
+            &mut Scope::new(self.scan, &mut self.log),
+        );
         let now = self.axis.setpoint();
         self.drive.write(0, &self.axis.drive_command());
         let mut difference = now.position - before;

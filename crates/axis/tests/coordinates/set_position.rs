@@ -2,7 +2,8 @@
 
 use crate::rig::{CYCLE, Random, Rig};
 use standstill_axis::{
-    AxisConfig, Command, Direction, Dynamics, ExecutionMode, Fate, Limits, Scaling, StartState,
+    AxisConfig, Command, Direction, Dynamics, ExecutionMode, Fate, InstanceId, Limits, Scaling, Scope,
+    StartState,
 };
 
 const LIMITS: Limits = Limits {
@@ -58,10 +59,19 @@ fn increments_and_velocity_have_no_step() {
                 let relative = random.below(2) == 0;
                 let position = random.between(0.0, 360.0);
                 let (set, actual) = (rig.axis.setpoint().position, rig.axis.actual_position());
-                let (source, mode) = (rig.source(), ExecutionMode::Immediately.into());
+                let mode = ExecutionMode::Immediately.into();
                 let id = rig
                     .axis
-                    .set_position(position, relative, mode, source, &mut rig.log)
+                    .set_position(
+                        position,
+                        relative,
+                        mode,
+                        &mut Scope {
+                            scan: rig.scan,
+                            instance: InstanceId(1),
+                            log: &mut rig.log,
+                        },
+                    )
                     .unwrap();
                 assert_eq!(rig.axis.fate(id), Fate::Done);
                 if !relative {

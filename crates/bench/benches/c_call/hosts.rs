@@ -2,7 +2,7 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Comms, ConfigError, DriveFeedback, DrivePosition, DriveSignals, InstanceId,
-    Log, Standard, StartState,
+    Log, Scope, Standard, StartState,
 };
 use standstill_bench::{CYCLE, LIMITS, TARGET};
 use standstill_blocks::BlockInstance;
@@ -39,7 +39,7 @@ impl RustHost {
             comms: Comms::Ok,
             signals: DriveSignals::default(),
         };
-        axis.follow_feedback(&feedback, 0, &mut log);
+        axis.follow_feedback(&feedback, &mut Scope::new(0, &mut log));
         Ok(Self {
             axes: [axis],
             log,
@@ -52,10 +52,12 @@ impl RustHost {
     pub fn parts(&mut self, place: usize) -> (Option<&mut BlockInstance>, Context<'_>) {
         let context = Context {
             now_ns: 0,
-            scan: 0,
-            instance: InstanceId(1),
+            scope: Scope {
+                scan: 0,
+                instance: InstanceId(1),
+                log: &mut self.log,
+            },
             axes: &mut self.axes,
-            log: &mut self.log,
             tables: &[],
         };
         (self.blocks.get_mut(place), context)

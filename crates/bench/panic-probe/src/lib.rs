@@ -8,8 +8,8 @@
 use core::hint::black_box;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, BufferMode, Command, Comms, Drive, DriveFeedback, DrivePosition, ErrorId,
-    Fault, IdealDrive, InstanceId, Limits, Log, Permission, Planner, PowerOff, Raw, Request, Scaling,
-    Setpoint, Source, Standard, StartState,
+    Fault, IdealDrive, InstanceId, Limits, Log, Permission, Planner, PowerOff, Raw, Request, Scaling, Scope,
+    Setpoint, Standard, StartState, steps,
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::{AnyInstance, Context, PinType, TableRef, Time, Value};
@@ -79,24 +79,28 @@ impl Image {
             signals: any(real.signals),
         };
         for axis in axes.iter_mut() {
-            axis.follow_feedback(&any(feedback), *scan, log);
+            axis.follow_feedback(&any(feedback), &mut Scope::new(*scan, log));
         }
         if let Some((index, pin)) = block.info().pins().enumerate().nth(any(0)) {
             let _refused = any(block.set(index, input(pin.ty)));
         }
         let mut context = Context {
             now_ns: any(0),
-            scan: *scan,
-            instance: InstanceId(any(0)),
+            scope: Scope {
+                scan: *scan,
+                instance: InstanceId(any(0)),
+                log,
+            },
             axes,
-            log,
             tables: &any([0.0; 64]),
         };
         any(&mut *block).call(&mut context);
         any(block.get(any(0)));
         for axis in axes.iter_mut() {
             command(any(&mut *axis), log);
-            any(&mut *axis).advance(*scan, log);
+        }
+        steps::advance(any(&mut *axes), &mut Scope::new(*scan, log));
+        for axis in axes.iter_mut() {
             drive.write(any(0), &axis.drive_command());
         }
         for record in log.since(any(0)) {
@@ -127,21 +131,25 @@ fn input(ty: PinType) -> Value {
 
 /// What a host, or a block of its own, may ask of an axis.
 fn command(axis: &mut Axis, log: &mut Log) {
-    let source = any(Source::default());
+    let scope = &mut Scope {
+        scan: any(0),
+        instance: InstanceId(any(0)),
+        log,
+    };
     let request = Request {
         command: any(Command::Home { position: any(0.0) }),
         buffer_mode: any(Raw::<BufferMode>::new(any(0))),
         replaces: any(axis.active_command()),
     };
-    let id = any(axis.command(&request, source, log));
+    let id = any(axis.command(&request, scope));
     if let Ok(id) = id {
         any(axis.fate(id));
         axis.release_stop(any(id));
     }
-    axis.set_power(any(true), any(Permission::BOTH), source, log);
-    axis.raise(any(ErrorId::AxisFault), any(1), source, log);
+    axis.set_power(any(true), any(Permission::BOTH), scope);
+    axis.raise(any(ErrorId::AxisFault), any(1), scope);
     axis.clear_cause();
-    let _reset = any(axis.reset(source, log));
+    let _reset = any(axis.reset(scope));
     any(axis.outlook());
     any(axis.plan().map(|(plan, elapsed)| plan.at(elapsed)));
 }

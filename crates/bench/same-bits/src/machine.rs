@@ -4,7 +4,7 @@ use crate::random::Random;
 use core::array::from_fn;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Drive, DrivePosition, Event, IdealDrive, InstanceId, Limits, Log,
-    MoveProfile, PowerOff, Scaling, Standard, StartState,
+    MoveProfile, PowerOff, Scaling, Scope, Standard, StartState, steps,
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::{AnyInstance, Context, Direction, Group, Pin, PinType, TableInfo, TableRef, Value};
@@ -75,22 +75,24 @@ impl Machine {
         self.told = self.log.total();
         self.disturb(random);
         for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
-            axis.follow_feedback(&drive.read(now_ns), scan, &mut self.log);
+            axis.follow_feedback(&drive.read(now_ns), &mut Scope::new(scan, &mut self.log));
         }
         let mut instance = 0;
         for block in self.blocks.as_flattened_mut() {
             instance += 1;
             block.call(&mut Context {
                 now_ns,
-                scan,
-                instance: InstanceId(instance),
+                scope: Scope {
+                    scan,
+                    instance: InstanceId(instance),
+                    log: &mut self.log,
+                },
                 axes: &mut self.axes,
-                log: &mut self.log,
                 tables: &self.tables,
             });
         }
+        steps::advance(&mut self.axes, &mut Scope::new(scan, &mut self.log));
         for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
-            axis.advance(scan, &mut self.log);
             let command = axis.drive_command();
             drive.write(now_ns, &command);
             fold(match command.position {

@@ -60,15 +60,15 @@ fn lying(seed: u64, is_plant: bool, numbers: &[f64]) -> Rig {
             _ => {}
         }
         let power = random.below(40) != 0;
-        rig.step(power, Permission::BOTH, |axis, source, log| {
+        rig.step(power, Permission::BOTH, |axis, scope| {
             match axis.state() {
-                AxisState::ErrorStop if random.below(10) == 0 => drop(axis.reset(source, log)),
+                AxisState::ErrorStop if random.below(10) == 0 => drop(axis.reset(scope)),
                 AxisState::Stopping => axis.release_stop(axis.newest_command()),
                 _ => {}
             }
             if random.below(12) == 0 {
                 let name = MOTIONS[random.below(MOTIONS.len() as u64) as usize];
-                begin(name, random, axis, source, log);
+                begin(name, random, axis, scope);
             }
             assert_ne!(axis.error_id().class(), ErrorClass::Internal, "seed {seed}");
         });
@@ -147,11 +147,9 @@ fn every_number_of_a_report_is_looked_at() {
         .chain(numbers.map(|told| (told, AxisState::Standstill)))
     {
         let mut rig = Rig::new(&mut Random(3), true);
-        rig.step(true, Permission::BOTH, |_, _, _| {});
+        rig.step(true, Permission::BOTH, |_, _| {});
         rig.told = Told::beside(told);
-        rig.step(true, Permission::BOTH, |axis, _, _| {
-            assert_eq!(axis.state(), state)
-        });
+        rig.step(true, Permission::BOTH, |axis, _| assert_eq!(axis.state(), state));
         // A drive that tells nothing of these leaves them alone.
         rig.told = Told::beside(|report| {
             (report.probes, report.marker) = (Default::default(), Default::default());
@@ -176,12 +174,12 @@ fn a_drive_that_can_hold_less_is_ordered_less() {
         dynamics: Dynamics::default(),
         direction: Direction::Unset.into(),
     };
-    rig.step(true, Permission::BOTH, |axis, source, log| {
-        assert!(axis.command(&Request::aborting(command), source, log).is_ok());
+    rig.step(true, Permission::BOTH, |axis, scope| {
+        assert!(axis.command(&Request::aborting(command), scope).is_ok());
     });
     let mut ordered = |told: Told| {
         rig.told = told;
-        rig.step(true, Permission::BOTH, |_, _, _| {});
+        rig.step(true, Permission::BOTH, |_, _| {});
         rig.axis.order().torque.map(|order| order.torque)
     };
     for _ in 0..10 {
@@ -210,14 +208,14 @@ fn an_axis_that_is_lied_to_tells_why() {
         (Told::torque(f64::NEG_INFINITY), ErrorId::FeedbackInvalid),
     ] {
         rig.told = told;
-        rig.step(true, Permission::BOTH, |axis, _, _| {
+        rig.step(true, Permission::BOTH, |axis, _| {
             assert_eq!((axis.state(), axis.error_id()), (AxisState::ErrorStop, error));
             assert_eq!(axis.fresh_position(), Err(error));
             assert_eq!(axis.actual_torque(), Err(error));
         });
         rig.told = Told::default();
         rig.upset(Upset::Communication);
-        rig.step(true, Permission::BOTH, |axis, _, _| {
+        rig.step(true, Permission::BOTH, |axis, _| {
             assert_eq!(axis.error_id(), error);
             assert_eq!(axis.fresh_position(), Err(ErrorId::CommunicationLost));
         });

@@ -5,8 +5,8 @@ mod rig;
 
 use rig::{Random, Rig, STEP, Upset};
 use standstill_axis::{
-    Axis, AxisState, BufferMode, Command, Direction, Dynamics, ErrorId, ExecutionMode, Factors, Fate, Log,
-    ParameterValue, Permission, Profile, ProfileKind, ProfileRow, Request, Source, Superimpose,
+    Axis, AxisState, BufferMode, Command, Direction, Dynamics, ErrorId, ExecutionMode, Factors, Fate,
+    ParameterValue, Permission, Profile, ProfileKind, ProfileRow, Request, Scope, Superimpose,
 };
 
 /// What an axis is asked to do; each is refused where the state does not allow it.
@@ -37,7 +37,7 @@ fn dynamics(random: &mut Random) -> Dynamics {
 }
 
 /// Whether it was taken.
-fn begin(name: &str, random: &mut Random, axis: &mut Axis, source: Source, log: &mut Log) -> bool {
+fn begin(name: &str, random: &mut Random, axis: &mut Axis, scope: &mut Scope<'_>) -> bool {
     let dynamics = dynamics(random);
     let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
     let distance = sign * 15.0 * random.part() * random.part();
@@ -80,7 +80,7 @@ fn begin(name: &str, random: &mut Random, axis: &mut Axis, source: Source, log: 
         "home" => Command::Home { position: distance },
         "superimposed" => {
             let request = Superimpose { distance, dynamics };
-            return axis.superimpose(&request, source, log).is_ok();
+            return axis.superimpose(&request, scope).is_ok();
         }
         "profile" => {
             let row = |delta_ns, value| ProfileRow {
@@ -100,9 +100,7 @@ fn begin(name: &str, random: &mut Random, axis: &mut Axis, source: Source, log: 
                 scale: sign,
                 offset: axis.setpoint().position,
             };
-            return axis
-                .profile(&profile, BufferMode::Aborting.into(), source, log)
-                .is_ok();
+            return axis.profile(&profile, BufferMode::Aborting.into(), scope).is_ok();
         }
         "override" => {
             let factors = Factors {
@@ -110,7 +108,7 @@ fn begin(name: &str, random: &mut Random, axis: &mut Axis, source: Source, log: 
                 acceleration: 0.5 + 0.5 * random.part(),
                 jerk: 1.0,
             };
-            return axis.set_override(factors, source, log).is_ok();
+            return axis.set_override(factors, scope).is_ok();
         }
         "update" => {
             let Some(active) = axis.active_command() else {
@@ -121,7 +119,7 @@ fn begin(name: &str, random: &mut Random, axis: &mut Axis, source: Source, log: 
             } else {
                 relative
             };
-            return axis.update(active, &command, source, log).is_ok();
+            return axis.update(active, &command, scope).is_ok();
         }
         _ => relative,
     };
@@ -141,7 +139,7 @@ fn begin(name: &str, random: &mut Random, axis: &mut Axis, source: Source, log: 
         buffer_mode: buffer_mode.into(),
         ..Request::aborting(command)
     };
-    axis.command(&request, source, log).is_ok()
+    axis.command(&request, scope).is_ok()
 }
 
 /// What may go wrong: 0 a fault, 1 the supply, 2 the communication, 3 MC_Power off, 4 an axis fault, 5 a following error above
@@ -181,46 +179,45 @@ fn schedule(seed: u64, is_plant: bool, met: &mut [[u32; 8]; MOTIONS.len()]) -> f
                 6 if scan == when + 40 => rig.upset(Upset::Remote(true)),
                 _ => {}
             }
-            rig.step(power, permitted, |axis, source, log| {
+            rig.step(power, permitted, |axis, scope| {
                 if scan == 2 {
                     let needs_owner = matches!(
                         MOTIONS[first],
                         "halt" | "stop" | "superimposed" | "blended" | "update" | "override"
                     );
                     if needs_owner {
-                        begin("endless", random, axis, source, log);
+                        begin("endless", random, axis, scope);
                     }
-                    runs = begin(MOTIONS[first], random, axis, source, log);
+                    runs = begin(MOTIONS[first], random, axis, scope);
                 } else if scan == second {
                     let other = MOTIONS[random.below(MOTIONS.len() as u64) as usize];
-                    begin(other, random, axis, source, log);
+                    begin(other, random, axis, scope);
                 }
                 if scan == when {
                     match upset {
-                        4 => axis.raise(ErrorId::AxisFault, 3, source, log),
+                        4 => axis.raise(ErrorId::AxisFault, 3, scope),
                         // The supervision of a following error, or a limit, that is broken at once.
                         5 => drop(axis.write_parameter(
                             7,
                             ParameterValue::Real(1e-9),
                             ExecutionMode::Immediately.into(),
-                            source,
-                            log,
+                            scope,
                         )),
                         _ => {}
                     }
                 }
             });
         }
-        rig.step(true, Permission::BOTH, |axis, source, log| {
+        rig.step(true, Permission::BOTH, |axis, scope| {
             let all = ParameterValue::Real(1e9);
             let mode = ExecutionMode::Immediately;
-            let _ = axis.write_parameter(7, all, mode.into(), source, log);
-            let _ = axis.set_override(Factors::ONE, source, log);
+            let _ = axis.write_parameter(7, all, mode.into(), scope);
+            let _ = axis.set_override(Factors::ONE, scope);
         });
         let recovered = rig.recovers();
         assert_eq!(recovered, Ok(()), "seed {seed}, {}", MOTIONS[first]);
         let mut taken = Err(ErrorId::None);
-        rig.step(true, Permission::BOTH, |axis, source, log| {
+        rig.step(true, Permission::BOTH, |axis, scope| {
             // Back from whatever limit it may stand at.
             let distance = -0.5_f64.copysign(axis.actual_position());
             let command = Command::MoveRelative {
@@ -230,10 +227,10 @@ fn schedule(seed: u64, is_plant: bool, met: &mut [[u32; 8]; MOTIONS.len()]) -> f
                     ..Dynamics::default()
                 },
             };
-            taken = axis.command(&Request::aborting(command), source, log);
+            taken = axis.command(&Request::aborting(command), scope);
         });
         for _ in 0..100 {
-            rig.step(true, Permission::BOTH, |_, _, _| {});
+            rig.step(true, Permission::BOTH, |_, _| {});
         }
         let came_of_it = taken.map(|id| rig.axis.fate(id));
         // Where MC_Home named a place far outside the software limits, only a move that ends inside is taken.

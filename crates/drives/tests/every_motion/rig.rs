@@ -3,11 +3,12 @@
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BlockDetection, Comms, Drive, DriveCommand, DriveFeedback,
     DriveOrder, DrivePosition, DriveReport, ErrorId, Homing, InstanceId, Limits, Log, Permission, Procedure,
-    Scaling, Source, Standard, StartState,
+    Scaling, Scope, Standard, StartState, steps,
 };
 use standstill_drives::cia402::{Cia402Drive, MotorLoad, NodeHoming, Reaction, Settings, TorqueScale};
 use standstill_drives::mechanism::{Gains, Mechanism, Plant, PlantDrive, Servo, Stops};
 use standstill_drives::switches::{Marker, Switches, Travel};
+use std::slice;
 
 const CYCLE: f64 = 0.001;
 
@@ -277,22 +278,24 @@ impl Rig {
         &mut self,
         power: bool,
         permitted: Permission,
-        during: impl FnOnce(&mut Axis, Source, &mut Log),
+        during: impl FnOnce(&mut Axis, &mut Scope<'_>),
     ) {
-        let source = Source {
-            scan: self.scan,
-            instance: InstanceId(1),
-        };
         let feedback = self.device.read();
         self.device.report(self.axis.report_mut());
         let mut told = feedback;
         self.told.over(&mut told, self.axis.report_mut());
         self.axis.follow_report();
-        self.axis.follow_feedback(&told, self.scan, &mut self.log);
+        self.axis
+            .follow_feedback(&told, &mut Scope::new(self.scan, &mut self.log));
         self.look_at_feedback(&told);
-        self.axis.set_power(power, permitted, source, &mut self.log);
-        during(&mut self.axis, source, &mut self.log);
-        self.axis.advance(self.scan, &mut self.log);
+        let scope = &mut Scope {
+            scan: self.scan,
+            instance: InstanceId(1),
+            log: &mut self.log,
+        };
+        self.axis.set_power(power, permitted, scope);
+        during(&mut self.axis, scope);
+        steps::advance(slice::from_mut(&mut self.axis), scope);
         let command = self.axis.drive_command();
         let order = *self.axis.order();
         self.look_at_numbers(&command, &order);
@@ -372,10 +375,10 @@ impl Rig {
         self.upset(Upset::Clear);
         // A rising Enable ends what a loss of power left.
         for scan in 0..1500 {
-            self.step(scan > 3, Permission::BOTH, |axis, source, log| {
+            self.step(scan > 3, Permission::BOTH, |axis, scope| {
                 axis.clear_cause();
                 match axis.state() {
-                    AxisState::ErrorStop if scan % 50 == 10 => drop(axis.reset(source, log)),
+                    AxisState::ErrorStop if scan % 50 == 10 => drop(axis.reset(scope)),
                     AxisState::Stopping => axis.release_stop(axis.newest_command()),
                     _ => {}
                 }

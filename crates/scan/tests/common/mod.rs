@@ -93,9 +93,9 @@ impl Programs<Standard, TapeDrive> for Host {
     fn run(&mut self, program: ProgramId, context: &mut Context<'_, Standard>) -> Result<u64, ProgramFault> {
         let name = &self.names[program.0];
         self.note(format!("run {name}"));
-        (self.act)(context.scan, context)?;
+        (self.act)(context.scope.scan, context)?;
         let time = ScanTime {
-            scan: context.scan,
+            scan: context.scope.scan,
             now_ns: context.now_ns,
         };
         (self.script)(time, name)

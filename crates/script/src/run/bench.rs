@@ -56,8 +56,8 @@ fn fail(axis: usize, kind: FaultKind, code: u16, time: ScanTime, machine: &mut S
         (FaultKind::Axis, _) => {
             let mut context = machine.context(time, InstanceId::default());
             let id = u16::try_from(axis).map_or(AxisId::NONE, AxisId::new);
-            if let Ok((axis, log, source)) = context.axis(id) {
-                axis.raise(ErrorId::AxisFault, code, source, log);
+            if let Ok((axis, scope)) = context.axis(id) {
+                axis.raise(ErrorId::AxisFault, code, scope);
             }
         }
         (FaultKind::Drive | FaultKind::Power | FaultKind::Communication, None) => {}
@@ -313,8 +313,8 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
             else {
                 break;
             };
-            self.feed(index, &declared.wires, context.scan);
-            context.instance = instance_id(index);
+            self.feed(index, &declared.wires, context.scope.scan);
+            context.scope.instance = instance_id(index);
             if let Some(instance) = self.values.instances.get_mut(index) {
                 instance.call(context);
             }

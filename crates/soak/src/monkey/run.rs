@@ -542,8 +542,8 @@ fn fail(axis: usize, kind: FaultKind, time: ScanTime, machine: &mut Bench) {
         (FaultKind::Communication, Some(drive)) => drive.cut_communication(),
         (FaultKind::Axis, _) => {
             let mut context = machine.context(time, InstanceId::default());
-            if let Ok((axis, log, source)) = context.axis(axis_id(axis)) {
-                axis.raise(ErrorId::AxisFault, FAULT_CODE, source, log);
+            if let Ok((axis, scope)) = context.axis(axis_id(axis)) {
+                axis.raise(ErrorId::AxisFault, FAULT_CODE, scope);
             }
         }
         (FaultKind::Drive | FaultKind::Power | FaultKind::Communication, None) => {}
@@ -558,11 +558,11 @@ impl<H: Hands> Programs<Standard, IdealDrive> for Run<'_, H> {
     }
 
     fn run(&mut self, _: ProgramId, context: &mut Context<'_, Standard>) -> Result<u64, ProgramFault> {
-        self.follow_states(Part::Feedback, context.scan, context.axes);
+        self.follow_states(Part::Feedback, context.scope.scan, context.axes);
         for index in 0..self.instances.len() {
-            context.instance = u16::try_from(index + 1).map_or(InstanceId::default(), InstanceId);
+            context.scope.instance = u16::try_from(index + 1).map_or(InstanceId::default(), InstanceId);
             if let Err(broken) = self.call(index, context) {
-                self.fail(context.scan, Who::Instance(index), broken);
+                self.fail(context.scope.scan, Who::Instance(index), broken);
             }
         }
         Ok(0)

@@ -46,7 +46,7 @@ impl Blocks {
     /// Calls an instance with its inputs as they stand. Cost: that of the block; an id of another runtime does nothing.
     pub fn call(&mut self, id: BlockId, context: &mut Context<'_>) {
         if let Some((_, number, instance)) = self.all.get_mut(usize::from(id.0)) {
-            context.instance = *number;
+            context.scope.instance = *number;
             instance.call(context);
         }
     }

@@ -139,7 +139,7 @@ impl<D: Drive> Builder<D> {
     }
 
     /// Declares an instance that stands in the host's own struct, so that records and the recorder know it. The host
-    /// puts the number into `context.instance` before it calls it.
+    /// puts the number into `context.scope.instance` before it calls it.
     ///
     /// # Errors
     /// [`BuildError::Name`], [`BuildError::TooManyBlocks`].

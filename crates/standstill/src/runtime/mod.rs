@@ -33,7 +33,7 @@ pub trait Program<D: Drive = IdealDrive> {
     }
 
     /// Runs a program instance to its end and says how long it took by a deterministic budget (ns), or 0. `blocks` are
-    /// the runtime's own. Before a block of the host's own is called, `context.instance` takes the number that
+    /// the runtime's own. Before a block of the host's own is called, `context.scope.instance` takes the number that
     /// [`Builder::own_block`] gave it.
     ///
     /// # Errors

@@ -2,12 +2,12 @@
 //!
 //! Source: CiA 402, homing mode; V11, CI-3.
 
+use super::super::commands::Work;
 use super::super::power::Reaction;
-use super::super::queue::Work;
 use super::super::reading::Past;
 use super::super::{Axis, Motion};
 use super::Phase;
-use crate::{AxisState, DriveHoming, DrivePosition, ErrorId, Log};
+use crate::{AxisState, DriveHoming, DrivePosition, ErrorId, Scope};
 use standstill_planner::{Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
@@ -30,12 +30,12 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The drive homes by itself, or has yet to return to the command.
-    pub(super) fn follow_drive_homing(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn follow_drive_homing(&mut self, scope: &mut Scope<'_>) {
         let told = self.beside.report.homing;
         if let (DriveHoming::Attained(reference) | DriveHoming::Done(reference), Phase::Drive) =
             (told, self.homing.phase)
         {
-            self.take_names_of_drive(reference, scan, log);
+            self.take_names_of_drive(reference, scope);
         }
         let homes = matches!(self.homing.phase, Phase::Drive | Phase::Named);
         match told {
@@ -47,7 +47,7 @@ impl<P: Planner> Axis<P> {
             }
             DriveHoming::Off => {}
             DriveHoming::Failed(code) if homes => {
-                self.trip(ErrorId::DriveHomingFailed, code, Reaction::Follow, scan, log);
+                self.trip(ErrorId::DriveHomingFailed, code, Reaction::Follow, scope);
             }
             DriveHoming::Done(_) if homes => {
                 self.motion = Motion::Follow;
@@ -61,13 +61,13 @@ impl<P: Planner> Axis<P> {
         let limit = self.config.homing.time_limit;
         self.homing.scans = self.homing.scans.saturating_add(1);
         if self.is_homed_by_drive() && limit.is_some_and(|limit| self.homing.scans > limit) {
-            self.trip(ErrorId::HomingTimedOut, 0, Reaction::Ramp, scan, log);
+            self.trip(ErrorId::HomingTimedOut, 0, Reaction::Ramp, scope);
         }
     }
 
     /// From this scan on the drive calls its positions anew: the place of `reference` is where the homing has its
     /// Position. What positions were before that cannot be compared with them, so this scan counts as at rest.
-    fn take_names_of_drive(&mut self, reference: DrivePosition, scan: u64, log: &mut Log) {
+    fn take_names_of_drive(&mut self, reference: DrivePosition, scope: &mut Scope<'_>) {
         let Some(Work::Home(position)) = self.owner.map(|owner| owner.work) else {
             return;
         };
@@ -77,7 +77,7 @@ impl<P: Planner> Axis<P> {
         self.shift += by;
         self.actual = self.shown_place(self.actual + by);
         let step = self.actual - self.setpoint.position;
-        self.tell_moved(step, self.owner_source(scan), log);
+        self.tell_moved(step, &mut self.owner_scope(scope));
         self.coordinates = self.coordinates.wrapping_add(1);
         self.past = Past::new(self.actual);
         self.setpoint = Setpoint::at_rest(self.actual);

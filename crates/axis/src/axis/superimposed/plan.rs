@@ -1,10 +1,9 @@
 //! Finding a superimposed motion that leaves the sum inside the axis limits.
 
 use super::{Added, Adds, Layer};
-use crate::axis::accept::refusal;
-use crate::axis::queue::{Entry, Work};
-use crate::axis::{Axis, Motion, Source};
-use crate::{AxisState, Dynamics, ErrorId, Event, Fate, Log};
+use crate::axis::commands::{Entry, Work, refusal};
+use crate::axis::{Axis, Motion};
+use crate::{AxisState, Dynamics, ErrorId, Event, Fate, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 /// Motions tried, one after the other, until one fits.
@@ -81,13 +80,12 @@ impl<P: Planner> Axis<P> {
     pub(super) fn superimposed_limits(
         &self,
         dynamics: &Dynamics,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<Limits, ErrorId> {
-        let velocity = self.positive_velocity("VelocityDiff", dynamics.velocity, source, log)?;
+        let velocity = self.positive_velocity("VelocityDiff", dynamics.velocity, scope)?;
         Ok(Limits {
             velocity,
-            ..self.resolve(dynamics, source, log)?
+            ..self.resolve(dynamics, scope)?
         })
     }
 
@@ -186,7 +184,7 @@ impl<P: Planner> Axis<P> {
 
     /// Sets the layer's command in motion as proposed, or lets it wait; what moves already is left as it is if
     /// the proposal is not faster.
-    pub(super) fn add(&mut self, proposed: Option<Proposal<P::Plan>>, scan: u64, log: &mut Log) {
+    pub(super) fn add(&mut self, proposed: Option<Proposal<P::Plan>>, scope: &mut Scope<'_>) {
         let next_switch = self
             .rest_of_base()
             .map(|rest| (self.planner.next_switch(rest), rest.1));
@@ -218,25 +216,25 @@ impl<P: Planner> Axis<P> {
                 layer.before = before;
                 layer.in_force = limits;
                 layer.motion = Motion::along(plan);
-                self.record_lowered(&command, &limits, scan, log);
+                self.record_lowered(&command, &limits, scope);
                 let scans = plan.scans();
                 let distance = match command.adds {
                     Adds::Distance { distance, .. } if !command.halting => Some(distance),
                     Adds::Distance { .. } | Adds::Halt => None,
                 };
-                self.record_as(&command, Event::Superimposed { distance, scans }, scan, log);
+                self.record_as(&command, Event::Superimposed { distance, scans }, scope);
                 self.touch();
             }
             None if first && !command.planned && (!command.halting || moves) => {
                 let command = *command;
-                self.record_as(&command, Event::RoomAwaited, scan, log);
+                self.record_as(&command, Event::RoomAwaited, scope);
             }
             None => {}
         }
     }
 
     /// Tells which pins ask for more than there is room for.
-    fn record_lowered(&self, command: &Added, used: &Limits, scan: u64, log: &mut Log) {
+    fn record_lowered(&self, command: &Added, used: &Limits, scope: &mut Scope<'_>) {
         let asked = &command.limits;
         let pins = [
             ("VelocityDiff", asked.velocity, used.velocity),
@@ -248,13 +246,13 @@ impl<P: Planner> Axis<P> {
         for (pin, value, limit) in pins {
             let rests = command.halting || command.adds == Adds::Halt;
             if limit < value && (pin != "VelocityDiff" || !rests) {
-                self.record_as(command, Event::Clamped { pin, value, limit }, scan, log);
+                self.record_as(command, Event::Clamped { pin, value, limit }, scope);
             }
         }
     }
 
     /// The override has changed: a superimposed move takes its new limits, comes to rest, or goes on.
-    pub(in crate::axis) fn override_superimposed(&mut self, scan: u64, log: &mut Log) {
+    pub(in crate::axis) fn override_superimposed(&mut self, scope: &mut Scope<'_>) {
         let Some(mut layer) = self.layer else { return };
         let Some(command) = layer
             .command
@@ -272,11 +270,11 @@ impl<P: Planner> Axis<P> {
         layer.try_soon();
         self.stir();
         self.layer = Some(layer);
-        self.try_again(scan, log);
+        self.try_again(scope);
     }
 
     /// A command that waits or was lowered is tried again when the owner's motion has changed.
-    pub(super) fn try_again(&mut self, scan: u64, log: &mut Log) {
+    pub(super) fn try_again(&mut self, scope: &mut Scope<'_>) {
         let Some(layer) = &self.layer else { return };
         let Some(command) = &layer.command else { return };
         let due = match &self.motion {
@@ -288,7 +286,7 @@ impl<P: Planner> Axis<P> {
         }
         // What the planner took once it takes again; if not, or while it is barred, everything stays as it is.
         if let Ok(proposed) = self.propose(layer, command) {
-            self.add(proposed, scan, log);
+            self.add(proposed, scope);
         }
     }
 

@@ -1,8 +1,8 @@
 //! The values at the pins of MC_MoveSuperimposed: as a new command, and changed while it runs.
 
 use super::{Added, Adds, Layer};
-use crate::axis::{Axis, Source};
-use crate::{CommandId, ErrorId, Log, Superimpose};
+use crate::axis::Axis;
+use crate::{CommandId, ErrorId, Scope, Superimpose};
 use standstill_planner::Planner;
 
 impl<P: Planner> Axis<P> {
@@ -17,8 +17,7 @@ impl<P: Planner> Axis<P> {
         &mut self,
         id: CommandId,
         request: &Superimpose,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<(), ErrorId> {
         let Some(mut layer) = self.layer else {
             return Ok(());
@@ -30,15 +29,15 @@ impl<P: Planner> Axis<P> {
         else {
             return Ok(());
         };
-        let command = self.added(id, origin, &layer, request, source, log)?;
+        let command = self.added(id, origin, &layer, request, scope)?;
         let proposed = self
             .propose(&layer, &command)
-            .map_err(|error| self.refuse("Distance", request.distance, f64::NAN, error, source, log))?;
+            .map_err(|error| self.refuse("Distance", request.distance, f64::NAN, error, scope))?;
         layer.command = Some(command);
         layer.try_soon();
         self.stir();
         self.layer = Some(layer);
-        self.add(proposed, source.scan, log);
+        self.add(proposed, scope);
         Ok(())
     }
 
@@ -49,25 +48,24 @@ impl<P: Planner> Axis<P> {
         origin: f64,
         layer: &Layer<P::Plan>,
         request: &Superimpose,
-        source: Source,
-        log: &mut Log,
+        scope: &mut Scope<'_>,
     ) -> Result<Added, ErrorId> {
-        let asked = self.superimposed_limits(&request.dynamics, source, log)?;
+        let asked = self.superimposed_limits(&request.dynamics, scope)?;
         let distance = request.distance;
         let target = origin + distance;
         let end = self.base_end(layer) + (target - layer.taken);
         // NaN where the owner has no end.
         if !target.is_finite() || end.is_infinite() {
             let error = ErrorId::PositionInvalid;
-            return Err(self.refuse("Distance", distance, f64::NAN, error, source, log));
+            return Err(self.refuse("Distance", distance, f64::NAN, error, scope));
         }
         self.allowed(end).map_err(|error| {
             let limit = self.broken_software_limit(end);
-            self.refuse("Distance", distance, limit, error, source, log)
+            self.refuse("Distance", distance, limit, error, scope)
         })?;
         Ok(Added {
             id,
-            instance: source.instance,
+            instance: scope.instance,
             adds: Adds::Distance {
                 distance,
                 origin,
