@@ -88,7 +88,7 @@ impl<P: Planner> Axis<P> {
     }
 
     fn start(&self, request: &Request, buffered: bool) -> Result<Start, (&'static str, ErrorId)> {
-        if self.power.going_off {
+        if self.power.is_going_off() {
             return Err(("", ErrorId::PoweringOff));
         }
         let stop = matches!(request.command, Command::Stop { .. });

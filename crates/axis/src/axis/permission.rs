@@ -54,7 +54,7 @@ impl<P: Planner> Axis<P> {
     #[cold]
     #[inline(never)]
     pub(super) fn permit(&mut self, permitted: Permission, scope: &mut Scope<'_>) {
-        self.power.permitted = permitted;
+        self.power.permit(permitted);
         if let Some(error) = self.barred_now() {
             self.pause(error, scope);
         }

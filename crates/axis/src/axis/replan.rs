@@ -9,6 +9,7 @@
 
 use super::commands::{Ending, Entry, Place, Work};
 use super::superimposed::Layer;
+use super::supervision::Arrival;
 use super::{Axis, Motion};
 use crate::{ErrorId, Event, Goal, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -172,7 +173,7 @@ impl<P: Planner> Axis<P> {
             self.stir();
         }
         self.motion = motion;
-        self.inside_for = 0;
+        self.arrival = Arrival::default();
         if self.modulo.is_some() {
             self.start_of_plan();
         }

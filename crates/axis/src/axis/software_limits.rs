@@ -137,7 +137,7 @@ impl<P: Planner> Axis<P> {
         } else {
             velocity
         };
-        let position = self.actual + velocity * self.planner.cycle();
+        let position = self.feedback.position() + velocity * self.planner.cycle();
         let next = Setpoint {
             velocity,
             ..Setpoint::at_rest(position)

@@ -116,7 +116,7 @@ impl<P: Planner> Axis<P> {
         }
         match &mut self.motion {
             Motion::Follow => {
-                self.publish(Setpoint::at_rest(self.actual));
+                self.publish(Setpoint::at_rest(self.feedback.position()));
                 self.count_actual_turns();
             }
             Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
