@@ -1,7 +1,8 @@
 //! Values of configurations and commands: what is refused, and what counts as the same.
 
 use standstill_axis::{
-    AxisConfig, Command, ConfigError, Direction, Dynamics, Limits, MODULO_MAX, Raw, Scaling, Superimpose,
+    AxisConfig, Command, ConfigError, Defaults, Direction, Dynamics, InPosition, Limits, MODULO_MAX, Raw,
+    Scaling, Superimpose,
 };
 
 fn turning(length: f64, position: f64, scaling: Option<Scaling>) -> Result<(), ConfigError> {
@@ -70,6 +71,86 @@ fn a_turn_is_a_fraction_of_increments() {
         })
     );
     assert_eq!(turning(f64::MIN_POSITIVE, 0.0, None), Ok(()));
+}
+
+/// A configuration with everything that has a magnitude.
+fn full() -> AxisConfig {
+    AxisConfig {
+        defaults: Defaults {
+            acceleration: Some(50.0),
+            deceleration: Some(50.0),
+            jerk: Some(500.0),
+            snap: Some(5000.0),
+        },
+        stop_deceleration: Some(50.0),
+        stop_jerk: Some(500.0),
+        max_following_error: Some(1.0),
+        in_position: Some(InPosition {
+            window: 0.1,
+            scans: 0,
+        }),
+        ..AxisConfig::new(Limits {
+            velocity: 10.0,
+            acceleration: 100.0,
+            deceleration: 100.0,
+            jerk: 1000.0,
+            snap: 10_000.0,
+        })
+    }
+}
+
+#[test]
+fn magnitudes_are_above_0_and_finite_but_for_limits_left_out() {
+    assert_eq!(full().check(), Ok(()));
+    let set: [(fn(&mut AxisConfig, f64), bool); 13] = [
+        (|it, value| it.limits.velocity = value, true),
+        (|it, value| it.limits.acceleration = value, true),
+        (|it, value| it.limits.deceleration = value, true),
+        (|it, value| it.limits.jerk = value, false),
+        (|it, value| it.limits.snap = value, false),
+        (|it, value| it.defaults.acceleration = Some(value), true),
+        (|it, value| it.defaults.deceleration = Some(value), true),
+        (|it, value| it.defaults.jerk = Some(value), true),
+        (|it, value| it.defaults.snap = Some(value), true),
+        (|it, value| it.stop_deceleration = Some(value), true),
+        (|it, value| it.stop_jerk = Some(value), true),
+        (|it, value| it.max_following_error = Some(value), true),
+        (
+            |it, value| {
+                it.in_position = Some(InPosition {
+                    window: value,
+                    scans: 0,
+                })
+            },
+            true,
+        ),
+    ];
+    for (at, (set, is_finite)) in set.into_iter().enumerate() {
+        for value in [0.0, -0.0, -1.0, f64::NAN, f64::NEG_INFINITY, f64::INFINITY] {
+            let mut config = full();
+            set(&mut config, value);
+            let refused = matches!(config.check(), Err(ConfigError::NotPositive { .. }));
+            assert_eq!(refused, is_finite || value != f64::INFINITY, "{at} {value:?}");
+        }
+    }
+}
+
+#[test]
+fn the_largest_factor_is_a_number_from_1_on() {
+    for (most, is_good) in [
+        (1.0, true),
+        (1.5, true),
+        (1.0_f64.next_down(), false),
+        (0.0, false),
+        (f64::NAN, false),
+        (f64::INFINITY, false),
+    ] {
+        let config = AxisConfig {
+            override_max: most,
+            ..full()
+        };
+        assert_eq!(config.check().is_ok(), is_good, "{most:?}");
+    }
 }
 
 /// A command of each kind, with values of its own from `base` on.
