@@ -4,8 +4,8 @@
 mod bench;
 
 use bench::Bench;
-use standstill_axis::{AxisId, AxisState, ErrorId};
-use standstill_fb::Value;
+use standstill_axis::{AxisId, AxisState, ErrorId, Event};
+use standstill_fb::{TableRef, Value};
 
 /// Covers: R7
 #[test]
@@ -60,5 +60,32 @@ fn a_result_is_kept_for_64_later_commands() {
             bench.flag(&forgotten, "CommandAborted"),
             expected == ErrorId::None
         );
+    }
+}
+
+/// Covers: R38
+#[test]
+fn a_table_that_does_not_stand_where_the_pin_says_is_recorded() {
+    for (name, table) in [
+        ("MC_PositionProfile", "TimePosition"),
+        ("MC_VelocityProfile", "TimeVelocity"),
+        ("MC_AccelerationProfile", "TimeAcceleration"),
+    ] {
+        let mut bench = Bench::new();
+        let mut profile = bench.block(name);
+        let nowhere = TableRef {
+            first: 1_000_000,
+            records: 1,
+        };
+        bench.set(&mut profile, table, Value::Table(nowhere));
+        bench.set(&mut profile, "Execute", Value::Bool(true));
+        bench.scan(&mut [&mut profile]);
+        let error = ErrorId::TableUnknown;
+        assert_eq!(bench.error(&profile), error.number(), "{name}");
+        let told = bench.log.since(0).any(|record| {
+            matches!(record.event, Event::Refused { pin, error: told, .. } if pin == table && told == error)
+        });
+        assert!(told, "{name}");
+        assert_eq!(bench.axes[0].state(), AxisState::Standstill);
     }
 }

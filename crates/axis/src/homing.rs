@@ -343,4 +343,46 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn velocities_and_ways_are_finite_and_above_0() {
+        let good = Homing {
+            procedure: Procedure::AbsoluteSwitch,
+            velocity: 5.0,
+            creep: Some(2.0),
+            distance_limit: Some(1.0),
+            ..Homing::DIRECT
+        };
+        assert_eq!(good.check(&Limits::NONE), Ok(()));
+        let bad = [0.0, -1.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+        for value in bad {
+            let refused = |key, homing: Homing| match homing.check(&Limits::NONE) {
+                Err(ConfigError::NotPositive { key: named, .. }) => assert_eq!(named, key, "{value}"),
+                // 0 stands for a velocity that was not given.
+                Err(ConfigError::HomingMissing { key: named, .. }) if value == 0.0 => assert_eq!(named, key),
+                other => panic!("{key} {value}: {other:?}"),
+            };
+            refused(
+                "homing.velocity",
+                Homing {
+                    velocity: value,
+                    ..good
+                },
+            );
+            refused(
+                "homing.creep",
+                Homing {
+                    creep: Some(value),
+                    ..good
+                },
+            );
+            refused(
+                "homing.distance_limit",
+                Homing {
+                    distance_limit: Some(value),
+                    ..good
+                },
+            );
+        }
+    }
 }

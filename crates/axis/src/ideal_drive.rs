@@ -251,4 +251,45 @@ mod tests {
         assert_eq!(drive.displace(10.0), Ok(()));
         assert_eq!(drive.read(0).position, Units(11.0));
     }
+
+    #[test]
+    fn power_is_not_confirmed_with_a_fault_or_without_supply() {
+        let mut drive = IdealDrive::new(Units(0.0), 0, Some(0), false);
+        drive.fail(7);
+        drive.clear_cause();
+        drive.write(0, &command(DriveRequest::Enable, 0.0));
+        assert!(!drive.is_enabled(), "a fault is reset before power comes");
+        drive.write(0, &command(DriveRequest::FaultReset, 0.0));
+        drive.cut_power();
+        drive.write(0, &command(DriveRequest::Enable, 0.0));
+        assert!(!drive.is_enabled());
+        drive.clear_cause();
+        drive.write(0, &command(DriveRequest::Enable, 0.0));
+        assert!(drive.is_enabled());
+    }
+
+    #[test]
+    fn a_new_name_is_taken_by_what_is_on_its_way_too() {
+        let mut drive = IdealDrive::new(Units(0.0), 2, Some(0), true);
+        for place in [1.0, 3.0, 7.0] {
+            drive.write(0, &command(DriveRequest::Enable, place));
+        }
+        // 7 was commanded last and is called 100: what is on its way keeps its distance.
+        drive.write(
+            0,
+            &DriveCommand {
+                rename: Some(100.0),
+                ..command(DriveRequest::Enable, 102.0)
+            },
+        );
+        let mut told = [0.0; 3];
+        for place in &mut told {
+            let Units(position) = drive.read(0).position else {
+                unreachable!()
+            };
+            *place = position;
+            drive.write(0, &command(DriveRequest::Enable, 102.0));
+        }
+        assert_eq!(told, [96.0, 100.0, 102.0]);
+    }
 }

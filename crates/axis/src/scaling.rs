@@ -287,4 +287,59 @@ mod tests {
         assert!(Scaling::new(1, 0, false, 0.0).is_err());
         assert!(Scaling::new(1, 1, false, f64::NAN).is_err());
     }
+
+    #[test]
+    fn a_turn_is_the_fraction_of_increments_it_is() {
+        // 8388608 increments are 360 u: half a unit is 8388608 / 720 = 524288 / 45 increments.
+        let scaling = Scaling::new(8_388_608, 360, false, 0.0).unwrap();
+        let parts = |length| scaling.turn(length).map(|turn| (turn.increments(), turn.turns()));
+        assert_eq!(parts(360.0), Some((8_388_608, 1)));
+        assert_eq!(parts(1.0), Some((1_048_576, 45)));
+        assert_eq!(parts(0.5), Some((524_288, 45)));
+        assert_eq!(parts(0.375), Some((131_072, 15)));
+        assert_eq!(parts(1080.0), Some((25_165_824, 1)));
+        // 0.1 is 3602879701896397 / 2^55, and 8388608 / 360 is 2^20 / 45.
+        assert_eq!(parts(0.1), Some((3_602_879_701_896_397, 45 << 35)));
+    }
+
+    #[test]
+    fn what_is_no_length_or_no_fraction_is_no_turn() {
+        let scaling = Scaling::new(8_388_608, 360, false, 0.0).unwrap();
+        for length in [
+            0.0,
+            -0.0,
+            -360.0,
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            // Neither part fits 63 bits.
+            f64::MAX,
+            f64::MIN_POSITIVE,
+            f64::from_bits(1),
+        ] {
+            assert_eq!(scaling.turn(length), None, "{length:?}");
+        }
+    }
+
+    #[test]
+    fn turns_that_are_no_whole_increments_add_up() {
+        // A turn of 1 u is 10 / 3 increments.
+        let scaling = Scaling::new(10, 3, false, 0.0).unwrap();
+        let turn = scaling.turn(1.0).unwrap();
+        for (turns, position, increments) in [
+            (1, 0.0, 3),
+            (2, 0.0, 7),
+            (3, 0.0, 10),
+            (1, 0.5, 5),
+            (2, 0.5, 8),
+            (-1, 0.0, -3),
+            (-2, 0.0, -7),
+        ] {
+            assert_eq!(
+                scaling.to_increments_turned(&turn, turns, position),
+                increments,
+                "{turns} {position}"
+            );
+        }
+    }
 }

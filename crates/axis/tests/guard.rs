@@ -23,6 +23,11 @@ const CYCLE: f64 = 0.001;
 
 /// Runs a plan that is wrong at scan 150 until the axis stands: the set-points, the axis and what was recorded.
 fn run(wrong: Wrong) -> (Vec<Setpoint>, Axis<Faulty>, Log) {
+    run_at(30.0, wrong)
+}
+
+/// The same at another velocity (u/s).
+fn run_at(velocity: f64, wrong: Wrong) -> (Vec<Setpoint>, Axis<Faulty>, Log) {
     let config = AxisConfig {
         start: StartState::Standstill,
         ..AxisConfig::new(LIMITS)
@@ -32,7 +37,7 @@ fn run(wrong: Wrong) -> (Vec<Setpoint>, Axis<Faulty>, Log) {
     let mut log = Log::default();
     let go = Command::MoveVelocity {
         dynamics: Dynamics {
-            velocity: 30.0,
+            velocity,
             ..Dynamics::default()
         },
         direction: Direction::Unset.into(),
@@ -115,4 +120,18 @@ fn where_the_stop_ramp_is_wrong_too_the_axis_holds() {
             .windows(2)
             .all(|pair| (pair[0].position - pair[1].position).abs() <= LIMITS.velocity * CYCLE)
     );
+}
+
+#[test]
+fn a_stop_ramp_that_begins_wrong_is_not_gone_on_with() {
+    // So slow that every later set-point of the ramp is one step from rest.
+    let (published, axis, _) = run_at(0.05, Wrong::Begin(1.0));
+    assert_eq!(axis.state(), AxisState::ErrorStop);
+    let from = published
+        .iter()
+        .rposition(|state| !state.is_at_rest())
+        .expect("a motion");
+    assert!(from < 200, "{from}");
+    let held = published[from].position;
+    assert!(published[from + 1..].iter().all(|state| state.position == held));
 }

@@ -182,7 +182,7 @@ impl FlatRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use standstill_axis::{AxisId, ErrorId, InstanceId};
+    use standstill_axis::{AxisId, ErrorId, Excess, InstanceId};
 
     #[test]
     fn a_record_stands_where_its_fields_say() {
@@ -236,5 +236,83 @@ mod tests {
         }
         assert_eq!(end, RECORD_SIZE);
         FlatRecord::default().put_flat(&mut [0; 3]);
+    }
+
+    /// The number of each event stands in [`FIELDS`] and in the C header.
+    #[test]
+    fn every_event_has_its_number_and_its_values() {
+        use standstill_axis::Event as E;
+        let error = ErrorId::AxisUnknown;
+        let error_id = error.number().into();
+        let (pin, value, limit) = ("Velocity", 80.0, 50.0);
+        let (position, velocity) = (12.5, -3.5);
+        let planned = |goal| E::Planned { goal, scans: 70 };
+        let none = FlatRecord::default();
+        #[rustfmt::skip]
+        let events = [
+            (E::Refused { pin, value, limit, error }, FlatRecord { event: 1, error_id, value, limit, name: pin, ..none }),
+            (
+                E::PointRefused { point: 3, what: pin, value, limit, error },
+                FlatRecord { event: 2, error_id, count: 3, value, limit, name: pin, ..none },
+            ),
+            (E::Clamped { pin, value, limit }, FlatRecord { event: 3, value, limit, name: pin, ..none }),
+            (E::Raised { pin, value, limit }, FlatRecord { event: 4, value, limit, name: pin, ..none }),
+            (
+                E::Unavoidable(Excess { velocity: 1.0, acceleration: 2.0, jerk: 4.0 }),
+                FlatRecord { event: 5, value: 1.0, limit: 2.0, third: 4.0, ..none },
+            ),
+            (E::Shifted { by: 2.5 }, FlatRecord { event: 6, value: 2.5, ..none }),
+            (planned(Goal::Position(position)), FlatRecord { event: 7, count: 70, value: position, ..none }),
+            (planned(Goal::Velocity(velocity)), FlatRecord { event: 8, count: 70, value: velocity, ..none }),
+            (
+                planned(Goal::Passing { position, velocity }),
+                FlatRecord { event: 9, count: 70, value: position, limit: velocity, ..none },
+            ),
+            (
+                E::Superimposed { distance: Some(6.0), scans: 70 },
+                FlatRecord { event: 10, count: 70, value: 6.0, ..none },
+            ),
+            (E::Superimposed { distance: None, scans: 70 }, FlatRecord { event: 10, count: 70, ..none }),
+            (E::RoomAwaited, FlatRecord { event: 11, ..none }),
+            (E::Paused { error }, FlatRecord { event: 12, error_id, ..none }),
+            (E::Fault { error, code: 9 }, FlatRecord { event: 13, error_id, count: 9, ..none }),
+            (E::Orphaned, FlatRecord { event: 14, ..none }),
+        ];
+        for (event, expected) in events {
+            let from = Record {
+                scan: 7,
+                axis: AxisId::new(1),
+                instance: InstanceId(40),
+                event,
+            };
+            let expected = FlatRecord {
+                number: 9,
+                scan: 7,
+                axis: 2,
+                instance: 5,
+                ..expected
+            };
+            let record = FlatRecord::new(9, 5, &from);
+            assert_eq!(record, expected);
+            let mut flat = [0xA5; RECORD_SIZE];
+            record.put_flat(&mut flat);
+            assert_eq!(f64::read(&flat, 56), expected.third, "{event:?}");
+        }
+    }
+
+    #[test]
+    fn a_name_ends_in_0_however_long_it_is() {
+        const LONG: &str = "A_name_of_a_pin_that_is_longer_than_its_field";
+        let mut flat = [0xA5; RECORD_SIZE + NAME_SIZE];
+        let record = FlatRecord {
+            name: LONG,
+            ..FlatRecord::default()
+        };
+        record.put_flat(&mut flat);
+        assert_eq!(flat[64..][..NAME_SIZE - 1], LONG.as_bytes()[..NAME_SIZE - 1]);
+        assert_eq!(
+            flat[RECORD_SIZE - 1..],
+            [[0].as_slice(), &[0xA5; NAME_SIZE]].concat()
+        );
     }
 }

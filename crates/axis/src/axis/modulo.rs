@@ -7,7 +7,7 @@
 //! Source: PLCopen Motion Control Part 1, MC_MoveAbsolute and MC_DIRECTION; B8; the rule for Direction is that of
 //! docs/modulo.md.
 
-use super::commands::{Entry, Place, Work};
+use super::commands::{Entry, Place, REST, Work};
 use super::{Axis, Motion};
 use crate::{AxisConfig, Direction, DrivePosition, ErrorId, Scaling, Turn};
 use standstill_planner::turns::{split, two_product};
@@ -212,7 +212,21 @@ impl<P: Planner> Axis<P> {
         self.aim_from(entry, &here, from)
     }
 
-    /// The same from the state `here`.
+    /// The same for the command at the head of the buffer, and how it is to pass its end: what passes it in motion need not be
+    /// able to stop before it.
+    ///
+    /// Cost: on a modulo axis at most two ramps, and that of [`Axis::passage`].
+    pub(super) fn aim_passing(&self, entry: &mut Entry, from: f64) {
+        let mut stopping = Entry {
+            passage: REST,
+            ..*entry
+        };
+        let start = self.aim(&mut stopping, from);
+        entry.passage = self.passage(&stopping, start, 1);
+        self.aim(entry, from);
+    }
+
+    /// As [`Axis::aim`] from the state `here`.
     #[inline(never)]
     pub(super) fn aim_from(&self, entry: &mut Entry, here: &Setpoint, from: f64) -> f64 {
         match &self.modulo {
@@ -305,6 +319,10 @@ impl<P: Planner> Axis<P> {
         // What passes its target in the same direction need not stop before it.
         let velocity = match entry.work {
             Work::Through { end_velocity, .. } if (end_velocity > 0.0) == forward => end_velocity,
+            Work::Position(_) | Work::Distance(_) if entry.passage.wanted > 0.0 => {
+                let speed = entry.passage.most.min(start.velocity.abs());
+                if forward { speed } else { -speed }
+            }
             _ => 0.0,
         };
         let before = self.limits_before(&entry.limits);

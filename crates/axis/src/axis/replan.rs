@@ -26,6 +26,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn replan(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         let here = self.base();
         owner.turns = 0;
+        owner.passage = self.passage(&owner, here.position, 0);
         self.stay_in_direction(&mut owner, &here);
         self.replan_aimed(owner, scope)
     }
@@ -123,7 +124,8 @@ impl<P: Planner> Axis<P> {
         owner.passed |= through && !owner.halted && !owner.paused && !self.replan_due && self.goal_reached();
     }
 
-    /// An owner that must not turn back goes on to the next time round if it can't stop before its target (B8).
+    /// An owner that must not turn back goes on to the next time round if it can't stop before its target, or come down to the
+    /// speed it is to pass it with (B8).
     pub(super) fn stay_in_direction(&self, owner: &mut Entry, here: &Setpoint) {
         let (Some(modulo), Some(Place::At(_)), Some(end), Some(_)) =
             (&self.modulo, owner.place(), owner.end, owner.direction)

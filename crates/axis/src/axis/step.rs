@@ -242,8 +242,7 @@ impl<P: Planner> Axis<P> {
             if let Work::Profile { .. } = next.work {
                 return self.begin_due(next);
             }
-            let passage_from = self.aim(&mut next, from);
-            next.passage = self.passage(&next, passage_from, 1);
+            self.aim_passing(&mut next, from);
             let before = self.limits_before(&next.limits);
             let asked = next.limits;
             let planned = self.plan_next(&mut next);

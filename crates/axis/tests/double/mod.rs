@@ -19,6 +19,8 @@ pub enum Wrong {
     Acceleration(f64),
     /// To its position, and to every one of the plans made after the first (u).
     Always(f64),
+    /// To its position, and to the first one of a stop (u).
+    Begin(f64),
 }
 
 #[derive(Clone, Debug)]
@@ -57,8 +59,9 @@ impl Plan for FaultyPlan {
         let mut state = self.plan.at(scan);
         match self.wrong {
             Wrong::Always(by) if self.is_stop && scan > 0 => state.position += by,
+            Wrong::Begin(by) if self.is_stop && scan == 1 => state.position += by,
             _ if self.is_stop || scan != SCAN => {}
-            Wrong::Position(by) | Wrong::Always(by) => state.position += by,
+            Wrong::Position(by) | Wrong::Always(by) | Wrong::Begin(by) => state.position += by,
             Wrong::Velocity(by) => state.velocity += by,
             Wrong::Acceleration(by) => state.acceleration += by,
         }

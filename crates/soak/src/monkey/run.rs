@@ -358,6 +358,12 @@ impl<H: Hands> Run<'_, H> {
         }
         self.following[index] = following;
         if !following {
+            // It begins in this scan, or began in the call before this step; not every one is recorded.
+            if let Some((plan, 0 | 1)) = axis.plan() {
+                let scans = plan.scans();
+                let [from, to] = [0, u64::from(scans)].map(|scan| plan.at(scan).position);
+                self.tracks[index].leads(from, to, scans);
+            }
             self.tracks[index].check(&setpoint)?;
         }
         self.fences[index].check(axis)?;
@@ -467,13 +473,6 @@ impl<H: Hands> Run<'_, H> {
                     track.forget();
                     self.fences[record.axis.index()].forget();
                 }
-                Event::Planned { .. } | Event::Paused { .. } | Event::Fault { .. } => {
-                    if let Some((plan, _)) = machine.axes()[record.axis.index()].plan() {
-                        let scans = plan.scans();
-                        let [from, to] = [0, u64::from(scans)].map(|scan| plan.at(scan).position);
-                        track.leads(from, to, scans);
-                    }
-                }
                 Event::Orphaned => {
                     let index = record.axis.index();
                     self.orphans[index] = machine.axes()[index].active_command();
@@ -483,7 +482,10 @@ impl<H: Hands> Run<'_, H> {
                 | Event::Clamped { .. }
                 | Event::Raised { .. }
                 | Event::Superimposed { .. }
-                | Event::RoomAwaited => {}
+                | Event::RoomAwaited
+                | Event::Planned { .. }
+                | Event::Paused { .. }
+                | Event::Fault { .. } => {}
             }
         }
         self.records = total;
