@@ -59,7 +59,10 @@ fn what_was_lowered_is_tried_again_when_the_owner_has_its_velocity() {
     let (mut axis, mut log) = moving(100.0, 60.0);
     for left in (1..=40).rev() {
         assert_eq!(tried_in(&axis), left);
-        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(50 - u64::from(left), &mut log));
+        steps::advance(
+            slice::from_mut(&mut axis),
+            &mut Scope::new(50 - u64::from(left), &mut log),
+        );
     }
 }
 
@@ -82,7 +85,10 @@ fn what_waits_for_room_is_tried_again_then_too() {
         .expect("taken");
     for left in (1..=8).rev() {
         assert_eq!(tried_in(&axis), left);
-        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(9 - u64::from(left), &mut log));
+        steps::advance(
+            slice::from_mut(&mut axis),
+            &mut Scope::new(9 - u64::from(left), &mut log),
+        );
     }
 }
 
