@@ -1,6 +1,7 @@
 //! Columns and cells.
 
 use crate::header::Direction;
+use crate::number;
 
 /// What the cells of a column are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -70,6 +71,10 @@ pub struct Column {
     pub role: Role,
     /// It is a TIME (ns), which may tick in every scan.
     pub is_time: bool,
+    /// The text of the value it has by itself, if it may go without saying: that of an output, or of an input pin that the
+    /// script does not name. While it has that, events do not tell it, and a column that has it in all rows is no part of a
+    /// golden. None where every row counts.
+    pub default: Option<String>,
 }
 
 impl Column {
@@ -77,6 +82,11 @@ impl Column {
     #[must_use]
     pub fn subject(&self) -> &str {
         self.name.split_once('.').map_or("", |(subject, _)| subject)
+    }
+
+    /// The value of [`Column::default`]; none either if its text is no value of the column's kind.
+    pub(crate) fn default_cell(&self) -> Option<Cell<'_>> {
+        Cell::read(self.kind, self.default.as_deref()?)
     }
 
     /// The pin, the axis signal or the input variable.
@@ -102,7 +112,21 @@ pub enum Cell<'a> {
     Name(&'a str),
 }
 
-impl Cell<'_> {
+impl<'a> Cell<'a> {
+    /// The cell of a kind that has this text; none if there is none.
+    pub(crate) fn read(kind: Kind, text: &'a str) -> Option<Self> {
+        match kind {
+            Kind::Bool => match text {
+                "TRUE" => Some(Self::Bool(true)),
+                "FALSE" => Some(Self::Bool(false)),
+                _ => None,
+            },
+            Kind::Real => number::parse(text).map(Self::Real),
+            Kind::Integer => text.parse().ok().map(Self::Integer),
+            Kind::Name => Some(Self::Name(text)),
+        }
+    }
+
     /// What it is.
     #[must_use]
     pub const fn kind(&self) -> Kind {

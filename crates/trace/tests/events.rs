@@ -28,6 +28,7 @@ fn header() -> Header {
         name: name.into(),
         iec_type: iec_type.into(),
         direction,
+        default: None,
     });
     Header {
         cycle_ns: 1_000_000,
