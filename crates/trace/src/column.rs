@@ -71,10 +71,12 @@ pub struct Column {
     pub role: Role,
     /// It is a TIME (ns), which may tick in every scan.
     pub is_time: bool,
-    /// The text of the value it has by itself, if it may go without saying: that of an output, or of an input pin that the
-    /// script does not name. While it has that, events do not tell it, and a column that has it in all rows is no part of a
-    /// golden. None where every row counts.
+    /// The text of the value it has by itself, where that is known: of an input or output pin. Unless it is
+    /// [named](Self::named) events tell it only once it has another one, and a column that has it in all rows is no part of a
+    /// golden.
     pub default: Option<String>,
+    /// It is an input pin that the script names: with a constant, a wire or a step. Then every row counts.
+    pub named: bool,
 }
 
 impl Column {
@@ -87,6 +89,11 @@ impl Column {
     /// The value of [`Column::default`]; none either if its text is no value of the column's kind.
     pub(crate) fn default_cell(&self) -> Option<Cell<'_>> {
         Cell::read(self.kind, self.default.as_deref()?)
+    }
+
+    /// As [`Column::default_cell`], where the default goes without saying.
+    pub(crate) fn unsaid(&self) -> Option<Cell<'_>> {
+        self.default_cell().filter(|_| !self.named)
     }
 
     /// The pin, the axis signal or the input variable.

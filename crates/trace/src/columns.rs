@@ -13,6 +13,7 @@ impl Trace {
         let kept = places.iter().filter_map(|&at| self.columns().get(at).cloned());
         let kept = kept.map(|column| Column {
             default: None,
+            named: false,
             ..column
         });
         let mut only = Self::with_columns(self.header().clone(), kept.collect());
@@ -37,13 +38,13 @@ impl Trace {
     /// and with what `run` says of defaults. Columns of subjects that it does not have stay away, unless they count in
     /// neither.
     pub(crate) fn completed_as(self, run: &Self) -> Self {
-        let default = |column: &Column| {
-            let other = run.columns().get(run.column(&column.name)?)?;
-            other.default.clone()
-        };
-        let own = self.columns().iter().map(|column| Column {
-            default: default(column),
-            ..column.clone()
+        let own = self.columns().iter().map(|column| {
+            let other = run.column(&column.name).and_then(|at| run.columns().get(at));
+            Column {
+                default: other.and_then(|other| other.default.clone()),
+                named: other.is_some_and(|other| other.named),
+                ..column.clone()
+            }
         });
         let subjects: BTreeSet<&str> = self.columns().iter().map(Column::subject).collect();
         let counts: BTreeSet<usize> = counted(run).into_iter().collect();
@@ -57,7 +58,12 @@ impl Trace {
             })
             .map(|(_, column)| column)
             .collect();
-        let columns = own.chain(added.iter().copied().cloned()).collect();
+        // A pin that is named now and had its default then was not named.
+        let unnamed = added.iter().map(|column| Column {
+            named: false,
+            ..(*column).clone()
+        });
+        let columns = own.chain(unnamed).collect();
         let mut whole = Self::with_columns(self.header().clone(), columns);
         whole.reserve(self.scans());
         for scan in 0..self.scans() {

@@ -188,7 +188,7 @@ fn changes(trace: &Trace, group: &Group, scan: usize, told: &mut [Option<usize>]
         let before = scan
             .checked_sub(1)
             .and_then(|scan| trace.cell(scan, at))
-            .or_else(|| column.default_cell())
+            .or_else(|| column.unsaid())
             .unwrap_or(Cell::Bool(false));
         match trace.cell(scan, at) {
             Some(Cell::Bool(now)) if before != Cell::Bool(now) => {
@@ -227,12 +227,12 @@ fn transition(before: Option<Cell<'_>>, now: Cell<'_>) -> Option<String> {
 }
 
 /// Whether an input that a block takes is to be told: not if it was told before, nor if it has its own default and never
-/// had anything else. One that the script names has no such default; then zero, which takes that of the axis, is not told
+/// had anything else. Of one that the script names zero, which takes the default of the axis, is not told
 /// either, but for the pins that say where to go.
 fn is_news(column: &Column, now: Cell<'_>, told: Option<Cell<'_>>) -> bool {
     match told {
         Some(told) => !same(told, now),
-        None if column.default.is_some() => !is_default(column, now),
+        None if column.unsaid().is_some() => !is_default(column, now),
         None => !is_zero(now) || matches!(column.signal(), "Position" | "Distance"),
     }
 }
@@ -264,9 +264,9 @@ fn assignment(column: &Column, cell: Cell<'_>) -> String {
     format!("{}={text}", column.signal())
 }
 
-/// Whether a value is what its column has by itself; zero where that is not known.
+/// Whether a value goes without saying; zero where there is no such value.
 fn is_default(column: &Column, cell: Cell<'_>) -> bool {
-    match column.default_cell() {
+    match column.unsaid() {
         Some(default) => same(cell, default),
         None => is_zero(cell),
     }

@@ -142,9 +142,12 @@ pub struct Pin {
     pub iec_type: String,
     /// Which way it points.
     pub direction: Direction,
-    /// Text of the value it has by itself, where that goes without saying; see [`Column::default`].
+    /// Text of the value it has by itself, if that is known; see [`Column::default`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<String>,
+    /// The script names it; see [`Column::named`].
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub named: bool,
 }
 
 /// Which way a pin points.
@@ -259,6 +262,7 @@ impl Header {
             role: Role::Variable,
             is_time: is_time(&input.iec_type),
             default: None,
+            named: false,
         });
         let pins = self.instances.iter().flat_map(|instance| {
             instance.pins.iter().map(|pin| Column {
@@ -267,6 +271,7 @@ impl Header {
                 role: Role::of_direction(pin.direction),
                 is_time: is_time(&pin.iec_type),
                 default: pin.default.clone(),
+                named: pin.named,
             })
         });
         axes.chain(inputs).chain(pins).collect()
@@ -351,6 +356,7 @@ pub(crate) fn axis_column(axis: &str, signal: &str) -> Column {
         },
         is_time: false,
         default: None,
+        named: false,
     }
 }
 

@@ -223,6 +223,7 @@ fn unknown_column(name: &str, kind: Kind, axes: &BTreeSet<String>) -> Column {
         role,
         is_time: false,
         default: None,
+        named: false,
     }
 }
 

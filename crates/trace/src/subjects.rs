@@ -3,7 +3,7 @@
 //!
 //! A column is hashed by itself, over one word of 64 bits a scan: a number's bits, 0 or 1 for a BOOL, the hash of a name's
 //! text. A subject's digest is over the digests of its columns in the order of their names, so the order of columns and the
-//! numbers of pins do not count. A column that keeps its [default](crate::Column::default) in all rows is left out: a pin that
+//! numbers of pins do not count. A column that keeps its [default](crate::Column::default) in all rows, and that the script does not name, is left out: a pin that
 //! comes with a later version and that nobody uses is no part of any digest.
 //!
 //! Every step is a one-to-one map of the word and of what came before, so one changed word always changes the digest of its
@@ -73,7 +73,8 @@ fn start(column: &Column) -> Words {
     Words::START.with(of_text(column.signal())).with(kind)
 }
 
-/// The digest of every column, and whether it ever left its default; one without a default always counts.
+/// The digest of every column, and whether it counts: one that the script names or that has no default always does, another
+/// one if it ever left its default.
 fn of_columns(trace: &Trace) -> Vec<(u64, bool)> {
     struct State {
         hash: Words,
@@ -85,7 +86,7 @@ fn of_columns(trace: &Trace) -> Vec<(u64, bool)> {
         .columns()
         .iter()
         .map(|column| {
-            let default = column.default_cell().map(word);
+            let default = column.unsaid().map(word);
             State {
                 hash: start(column),
                 is_name: column.kind == Kind::Name,
@@ -147,7 +148,7 @@ pub(crate) fn of_all_columns(trace: &Trace) -> Vec<Subject> {
     by_subject(trace, &digests)
 }
 
-/// The columns that count, by their places: all but those that keep their defaults in all rows.
+/// The columns that count, by their places: all but those that keep their defaults in all rows and that no script names.
 pub(crate) fn counted(trace: &Trace) -> Vec<usize> {
     let digests = of_columns(trace).into_iter().enumerate();
     digests

@@ -29,6 +29,7 @@ fn header() -> Header {
         iec_type: iec_type.into(),
         direction,
         default: None,
+        named: false,
     });
     Header {
         cycle_ns: 1_000_000,

@@ -85,6 +85,7 @@ fn pin(name: &str, iec_type: &str, direction: Direction, default: Option<&str>) 
         iec_type: iec_type.into(),
         direction,
         default: default.map(str::to_owned),
+        named: false,
     }
 }
 
@@ -298,6 +299,37 @@ fn a_column_that_leaves_its_default_once_is_seen_and_named() {
         );
         rows[12][at] = own;
     }
+}
+
+/// A pin that the script names counts even where it has its default; a golden from before knows what it had.
+#[test]
+fn a_pin_that_is_named_counts_and_is_held_against_its_default() {
+    let snap = folder("subjects_named").join("x.snap");
+    let header = header();
+    let empty = Trace::new(header.clone());
+    let at = empty.column("a.BufferMode").expect("it is there");
+    let value = |at| default(&empty, at).unwrap_or_else(|| Random(7).value(empty.columns()[at].kind));
+    let mut rows = vec![(0..empty.columns().len()).map(value).collect::<Vec<_>>(); 9];
+    let unnamed = made(header.clone(), &rows);
+    accept(&snap, &unnamed).expect("writable");
+    let mut naming = header;
+    naming.instances[0].pins[5].named = true;
+    let named = made(naming.clone(), &rows);
+    assert_eq!(moved(&subjects(&unnamed), &subjects(&named)), ["a"]);
+    let verdict = judge(&snap, &named).expect("readable");
+    assert!(
+        matches!(&verdict, Verdict::Different(it) if it.difference.is_none()),
+        "{verdict:?}"
+    );
+    for row in &mut rows {
+        row[at] = Own::Name("mcBuffered".into());
+    }
+    let Verdict::Different(mismatch) = judge(&snap, &made(naming, &rows)).expect("readable") else {
+        panic!("another value")
+    };
+    let told = mismatch.to_string();
+    let begin = "first difference in scan 0 (T#0s), 1 signal\n  a.BufferMode  expected mcAborting  found mcBuffered\n";
+    assert!(told.starts_with(begin), "{told}");
 }
 
 /// What stands in which order is no behaviour of a subject.

@@ -41,6 +41,7 @@ fn other_columns(trace: &Trace, value: Option<f64>, without: &str) -> Trace {
             iec_type: "LREAL".into(),
             direction: Direction::Input,
             default: Some("0.0".into()),
+            named: false,
         };
         pins.insert(3, pin);
     }

@@ -50,6 +50,7 @@ pub fn instance(name: String, block: &BlockInfo) -> trace::Instance {
                     Direction::Output => trace::Direction::Output,
                 },
                 default: None,
+                named: false,
             })
             .collect(),
     }

@@ -126,7 +126,7 @@ pub(crate) fn header(script: &Script) -> trace::Header {
     }
 }
 
-/// The block instances, with the defaults of their outputs and of the input pins that the script does not name.
+/// The block instances, with the defaults of their pins and which inputs the script names.
 fn blocks(script: &Script) -> Vec<trace::Instance> {
     let actions = script.steps.iter().flat_map(|step| &step.actions);
     let set: BTreeSet<(usize, usize)> = actions
@@ -145,12 +145,11 @@ fn blocks(script: &Script) -> Vec<trace::Instance> {
         let fresh = BlockInstance::new(instance.block.name);
         let mut header = told::instance(instance.name.clone(), instance.block);
         for ((at, pin), header) in instance.block.pins().enumerate().zip(&mut header.pins) {
-            let goes_without_saying = match pin.direction {
-                Direction::InOut => false,
-                Direction::Input => !named.contains(&at) && !set.contains(&(index, at)),
-                Direction::Output => true,
-            };
-            if goes_without_saying && let Some(value) = fresh.as_ref().and_then(|fresh| fresh.get(at)) {
+            if pin.direction == Direction::InOut {
+                continue;
+            }
+            header.named = named.contains(&at) || set.contains(&(index, at));
+            if let Some(value) = fresh.as_ref().and_then(|fresh| fresh.get(at)) {
                 texts.prepare(pin.ty, value);
                 header.default = Some(trace::cell_text(texts.cell(pin.ty, value)));
             }
@@ -168,6 +167,7 @@ fn program(program: &Program) -> trace::Instance {
         iec_type: symbol.ty.iec_name().to_owned(),
         direction: trace::Direction::Output,
         default: zero(Kind::of_iec_type(symbol.ty.iec_name())),
+        named: false,
     };
     trace::Instance {
         name: program.name.clone(),

@@ -250,6 +250,7 @@ impl Reader<'_> {
             role,
             is_time: self.byte()? != 0,
             default: None,
+            named: false,
         })
     }
 

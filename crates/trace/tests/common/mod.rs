@@ -20,6 +20,7 @@ fn pin(name: &str, iec_type: &str, direction: Direction) -> Pin {
         iec_type: iec_type.into(),
         direction,
         default: None,
+        named: false,
     }
 }
 
