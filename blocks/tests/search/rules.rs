@@ -2,7 +2,7 @@
 //! that only this system of blocks can be asked.
 
 use crate::system::{Inputs, NAMES};
-use standstill_axis::{AxisState, Outlook};
+use standstill_axis::{AxisState, Outlook, WorkKind};
 use standstill_soak::rules::{Call, Held, Kind, Shown, Truth, check_call, check_truth};
 
 /// A scan after all blocks were called.
@@ -83,7 +83,7 @@ pub fn truth(polled: &[Shown], axis: &Outlook, kinds: [Kind; 4]) -> Result<(), S
         // MC_Stop has no Active output: it is Busy while it owns the axis.
         stopping: owned && axis.state == AxisState::Stopping,
         waiting: axis.waiting.iter().flatten().count(),
-        shift_due: first.is_some_and(|(_, kind, _)| kind == "set position"),
+        shift_due: first.is_some_and(|(_, kind, _)| kind == WorkKind::SetPosition),
         // What is superimposed, and whether it waits for room.
         added: axis
             .superimposed

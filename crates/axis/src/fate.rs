@@ -24,11 +24,13 @@ pub enum Fate {
     Failed(ErrorId),
 }
 
-/// The last [`FATES_KEPT`] ended commands.
+/// The numbers of commands, and the last [`FATES_KEPT`] that ended.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fates {
     ended: [Option<(CommandId, Fate)>; FATES_KEPT],
     next: usize,
+    newest: CommandId,
+    changes: u64,
 }
 
 impl Default for Fates {
@@ -36,12 +38,39 @@ impl Default for Fates {
         Self {
             ended: [None; FATES_KEPT],
             next: 0,
+            newest: CommandId(0),
+            changes: 0,
         }
     }
 }
 
 impl Fates {
+    /// The number of the next command.
+    pub(crate) fn new_id(&mut self) -> CommandId {
+        self.newest = CommandId(self.newest.0.wrapping_add(1));
+        self.newest
+    }
+
+    /// The number given last.
+    pub(crate) fn newest(&self) -> CommandId {
+        self.newest
+    }
+
+    /// The fate of a command has changed, or may have.
+    #[inline]
+    pub(crate) fn touch(&mut self) {
+        self.changes = self.changes.wrapping_add(1);
+    }
+
+    /// While this number stays, so does every fate.
+    #[inline]
+    pub(crate) fn changes(&self) -> u64 {
+        self.changes
+    }
+
+    /// Command `id` has ended with `fate`.
     pub(crate) fn record(&mut self, id: CommandId, fate: Fate) {
+        self.touch();
         if let Some(slot) = self.ended.get_mut(self.next) {
             *slot = Some((id, fate));
         }

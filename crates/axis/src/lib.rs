@@ -27,7 +27,7 @@ pub mod steps;
 
 pub use axis::{
     Axis, Beside, CamTrack, Factors, MotionState, Outlook, Pace, Permission, Profile, ProfileRow, TouchProbe,
-    Way,
+    Way, WorkKind,
 };
 pub use command::{
     AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,

@@ -23,12 +23,6 @@ impl<'a> Scope<'a> {
         }
     }
 
-    /// The same for as long as it is lent.
-    #[inline]
-    pub fn reborrow(&mut self) -> Scope<'_> {
-        self.with(self.instance)
-    }
-
     /// The same for `instance`.
     #[inline]
     pub fn with(&mut self, instance: InstanceId) -> Scope<'_> {

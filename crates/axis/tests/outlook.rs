@@ -2,8 +2,9 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, Direction, Dynamics, ErrorId, Limits, Log,
-    Request, Source, Standard, StartState, Superimpose,
+    Request, Scope, Standard, StartState, Superimpose, steps,
 };
+use std::slice;
 
 /// An axis at rest that keeps 100 u/s and 1000 u/s^2.
 fn axis() -> Axis {
@@ -38,16 +39,16 @@ fn moving(acceleration: f64, faster: f64) -> (Axis, Log) {
         dynamics: at(50.0, acceleration),
         direction: Direction::Unset.into(),
     };
-    axis.command(&Request::aborting(command), Source::default(), &mut log)
+    axis.command(&Request::aborting(command), &mut Scope::new(0, &mut log))
         .expect("taken");
     for scan in 0..10 {
-        axis.advance(scan, &mut log);
+        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
     }
     let added = Superimpose {
         distance: 200.0,
         dynamics: at(faster, 500.0),
     };
-    axis.superimpose(&added, Source::default(), &mut log)
+    axis.superimpose(&added, &mut Scope::new(0, &mut log))
         .expect("taken");
     (axis, log)
 }
@@ -58,7 +59,10 @@ fn what_was_lowered_is_tried_again_when_the_owner_has_its_velocity() {
     let (mut axis, mut log) = moving(100.0, 60.0);
     for left in (1..=40).rev() {
         assert_eq!(tried_in(&axis), left);
-        axis.advance(50 - u64::from(left), &mut log);
+        steps::advance(
+            slice::from_mut(&mut axis),
+            &mut Scope::new(50 - u64::from(left), &mut log),
+        );
     }
 }
 
@@ -70,18 +74,21 @@ fn what_waits_for_room_is_tried_again_then_too() {
         dynamics: at(90.0, 0.0),
         direction: Direction::Unset.into(),
     };
-    axis.command(&Request::aborting(command), Source::default(), &mut log)
+    axis.command(&Request::aborting(command), &mut Scope::new(0, &mut log))
         .expect("taken");
-    axis.advance(0, &mut log);
+    steps::advance(slice::from_mut(&mut axis), &mut Scope::new(0, &mut log));
     let added = Superimpose {
         distance: 20.0,
         dynamics: at(10.0, 0.0),
     };
-    axis.superimpose(&added, Source::default(), &mut log)
+    axis.superimpose(&added, &mut Scope::new(0, &mut log))
         .expect("taken");
     for left in (1..=8).rev() {
         assert_eq!(tried_in(&axis), left);
-        axis.advance(9 - u64::from(left), &mut log);
+        steps::advance(
+            slice::from_mut(&mut axis),
+            &mut Scope::new(9 - u64::from(left), &mut log),
+        );
     }
 }
 
@@ -90,7 +97,7 @@ fn what_is_added_as_asked_for_is_not_tried_again() {
     let (mut axis, mut log) = moving(100.0, 20.0);
     for scan in 10..60 {
         assert_eq!(tried_in(&axis), 0);
-        axis.advance(scan, &mut log);
+        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(scan, &mut log));
     }
 }
 
@@ -105,9 +112,9 @@ fn a_stop_does_not_wait_behind_a_stop() {
         dynamics: Dynamics::default(),
     };
     for command in [go, stop] {
-        axis.command(&Request::aborting(command), Source::default(), &mut log)
+        axis.command(&Request::aborting(command), &mut Scope::new(0, &mut log))
             .expect("taken");
-        axis.advance(0, &mut log);
+        steps::advance(slice::from_mut(&mut axis), &mut Scope::new(0, &mut log));
     }
     assert_eq!(axis.state(), AxisState::Stopping);
     for mode in [
@@ -119,7 +126,7 @@ fn a_stop_does_not_wait_behind_a_stop() {
             buffer_mode: mode.into(),
             ..Request::aborting(stop)
         };
-        let refused = axis.command(&request, Source::default(), &mut log);
+        let refused = axis.command(&request, &mut Scope::new(0, &mut log));
         assert_eq!(refused, Err(ErrorId::InStopping), "{mode:?}");
     }
     let halt = Request {
@@ -128,5 +135,5 @@ fn a_stop_does_not_wait_behind_a_stop() {
             dynamics: Dynamics::default(),
         })
     };
-    assert!(axis.command(&halt, Source::default(), &mut log).is_ok());
+    assert!(axis.command(&halt, &mut Scope::new(0, &mut log)).is_ok());
 }

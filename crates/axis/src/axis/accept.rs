@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, state diagram and sections on aborting and buffered commands; the
 //! table "state x command" with the choices V6, V6a, V7a, V11.
 
-use super::commands::{Entry, Place, Start, Work, direction_of, refusal, start_event};
+use super::commands::{Ending, Entry, Place, Start, Work, direction_of, refusal};
 use super::{Axis, Motion};
 use crate::{
     AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Fate, Raw, Request,
@@ -88,7 +88,7 @@ impl<P: Planner> Axis<P> {
     }
 
     fn start(&self, request: &Request, buffered: bool) -> Result<Start, (&'static str, ErrorId)> {
-        if self.power.going_off {
+        if self.power.is_going_off() {
             return Err(("", ErrorId::PoweringOff));
         }
         let stop = matches!(request.command, Command::Stop { .. });
@@ -296,16 +296,10 @@ impl<P: Planner> Axis<P> {
     /// rest (V13, V13b).
     fn commanded_target(&self) -> Option<f64> {
         let owner = self.owner.as_ref()?;
-        match owner.work {
-            Work::Position(_) | Work::Distance(_) | Work::Profile { .. } => owner.end,
-            Work::Halt => Some(self.end_of_plan()),
-            Work::Through { .. }
-            | Work::Velocity { .. }
-            | Work::Torque { .. }
-            | Work::Stop
-            | Work::Home(_)
-            | Work::SetPosition { .. }
-            | Work::Write(_) => None,
+        match owner.work.manner().ending {
+            Ending::InPosition => owner.end,
+            Ending::AtRest => Some(self.end_of_plan()),
+            _ => None,
         }
     }
 
@@ -459,7 +453,7 @@ impl<P: Planner> Axis<P> {
         before: Limits,
         scope: &mut Scope<'_>,
     ) {
-        self.enter(start_event(&entry.work));
+        self.enter(entry.work.manner().start);
         self.before = before;
         self.adopt(entry, motion, scope);
         if matches!(entry.work, Work::Home(_)) {

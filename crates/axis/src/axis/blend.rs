@@ -26,9 +26,13 @@ impl<P: Planner> Axis<P> {
     /// A command has been queued with `mode`: if it is to blend, the owner may have to pass its end at
     /// another speed, and is planned anew from the last set-point (B15). Failing that, its plan stays.
     pub(super) fn arm(&mut self, mode: BufferMode, scope: &mut Scope<'_>) {
-        if matches!(mode, BufferMode::Aborting | BufferMode::Buffered) {
-            return;
+        if !matches!(mode, BufferMode::Aborting | BufferMode::Buffered) {
+            self.arm_owner(scope);
         }
+    }
+
+    /// The same for whatever has changed behind the owner.
+    pub(super) fn arm_owner(&mut self, scope: &mut Scope<'_>) {
         let Some(mut owner) = self.owner else { return };
         let passage = self.passage(&owner, self.setpoint.position, 0);
         let Some(end) = owner.end else { return };
@@ -172,7 +176,7 @@ impl<P: Planner> Axis<P> {
     fn passes_on(&self) -> bool {
         self.owner
             .as_ref()
-            .is_some_and(|owner| matches!(owner.work, Work::Position(_) | Work::Distance(_)))
+            .is_some_and(|owner| owner.work.manner().blends)
     }
 
     /// The set-point of the owner alone.
@@ -245,8 +249,8 @@ impl<P: Planner> Axis<P> {
     /// How `leg` is to pass its end, if `next` passes its own as `after` says.
     fn between(&self, leg: &Leg<'_>, next: &Leg<'_>, after: &Passage) -> Passage {
         let (entry, mode) = (leg.entry, next.entry.mode);
-        let direction = match (&entry.work, leg.way) {
-            (Work::Position(_) | Work::Distance(_), Some(way)) if way != 0.0 => way.signum(),
+        let direction = match leg.way {
+            Some(way) if entry.work.manner().blends && way != 0.0 => way.signum(),
             // Anything else comes to rest, or hands over with the velocity it has (B12).
             _ => return REST,
         };
@@ -269,14 +273,8 @@ impl<P: Planner> Axis<P> {
                 (towards, velocity.abs(), None)
             }
             Work::Halt => (direction, 0.0, None),
-            Work::Profile { .. }
-            | Work::Torque { .. }
-            | Work::Stop
-            | Work::Home(_)
-            | Work::SetPosition { .. }
-            | Work::Write(_) => {
-                return REST;
-            }
+            // Nothing else takes over in motion.
+            _ => return REST,
         };
         // What MC_Power bars would be refused at the end, too late to stop there. A continuous move may need a run-up.
         let runs_up = matches!(next.entry.work, Work::Through { end_velocity, .. } if end_velocity != 0.0);

@@ -78,63 +78,262 @@ pub(super) enum Work {
     Write(Write),
 }
 
+/// What a kind of work is: said here once for all who ask. What only one of them asks stands there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Manner {
+    /// Its name.
+    pub kind: WorkKind,
+    /// The arrow of the state diagram along which it starts.
+    pub start: AxisEvent,
+    /// What happens when its motion has come to its goal.
+    pub ending: Ending,
+    /// How the software limits look at its motion.
+    pub watch: Watch,
+    /// Where it leads, if anywhere.
+    pub place: Option<Place>,
+    /// The velocity (u/s) it goes on with, 0 if it ends at rest.
+    pub velocity: f64,
+    /// It goes on until another command takes over.
+    pub endless: bool,
+    /// The override holds for it: it does for moves, not for what stops or names places, nor for a profile, which keeps its
+    /// times, nor for a torque, which is no motion (V16).
+    pub overridden: bool,
+    /// It takes new values from its pins while it runs (ContinuousUpdate).
+    pub updated: bool,
+    /// It leads on, so a direction it needs can be barred by MC_Power.
+    pub barred: bool,
+    /// It can pass its end in motion, for a blended command that waits (B12).
+    pub blends: bool,
+    /// It moves the axis when its turn comes, rather than writing something.
+    pub moves: bool,
+}
+
+/// What happens when a motion has come to its goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Ending {
+    /// It is done once the axis is in position, or at once if it passes its end in motion.
+    InPosition,
+    /// It is done.
+    AtRest,
+    /// It holds what it has reached, and gives way to what waits.
+    Holds,
+    /// It is done, and the motion goes on.
+    RunsOn,
+    /// Nothing: its block has yet to give its points.
+    Due,
+    /// It locks the axis while its Execute is TRUE.
+    Locks,
+    /// The search goes on, or the place gets this name (u).
+    Names(f64),
+    /// It never owns the axis.
+    Never,
+}
+
+/// How the software limits look at a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Watch {
+    /// It may leave them in any scan.
+    Always,
+    /// A curve, which was checked to its end.
+    Curve,
+    /// A straight way to a place.
+    Way,
+    /// A ramp to rest.
+    Ramp,
+    /// A torque, which is watched after every latch; only barred it has a plan, which leads to rest.
+    Torque,
+    /// Not at all.
+    Never,
+}
+
+/// The kinds of what an axis does, for searches over all reachable states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum WorkKind {
+    /// To a position.
+    Position,
+    /// By a distance.
+    Distance,
+    /// Through a place, with an end velocity.
+    Through,
+    /// To a velocity.
+    Velocity,
+    /// A profile whose points have yet to come.
+    ProfileDue,
+    /// A profile.
+    Profile,
+    /// A torque.
+    Torque,
+    /// To velocity zero.
+    Halt,
+    /// To velocity zero, locked.
+    Stop,
+    /// Homing.
+    Home,
+    /// Moved coordinates.
+    SetPosition,
+    /// A digital output.
+    Output,
+    /// A parameter.
+    Parameter,
+}
+
+impl Manner {
+    /// A move that ends.
+    const MOVE: Self = Self {
+        kind: WorkKind::Position,
+        start: AxisEvent::StartDiscrete,
+        ending: Ending::InPosition,
+        watch: Watch::Way,
+        place: None,
+        velocity: 0.0,
+        endless: false,
+        overridden: true,
+        updated: true,
+        barred: true,
+        blends: true,
+        moves: true,
+    };
+
+    /// One that goes on until another takes over.
+    const ENDLESS: Self = Self {
+        start: AxisEvent::StartContinuous,
+        ending: Ending::Holds,
+        watch: Watch::Always,
+        endless: true,
+        blends: false,
+        ..Self::MOVE
+    };
+
+    /// A profile to a position.
+    const PROFILE: Self = Self {
+        kind: WorkKind::Profile,
+        watch: Watch::Curve,
+        overridden: false,
+        updated: false,
+        blends: false,
+        ..Self::MOVE
+    };
+
+    /// A profile that ends with a velocity.
+    const ENDLESS_PROFILE: Self = Self {
+        start: AxisEvent::StartContinuous,
+        ending: Ending::RunsOn,
+        watch: Watch::Always,
+        endless: true,
+        ..Self::PROFILE
+    };
+
+    /// To rest.
+    const RAMP: Self = Self {
+        kind: WorkKind::Halt,
+        ending: Ending::AtRest,
+        watch: Watch::Ramp,
+        overridden: false,
+        updated: false,
+        barred: false,
+        blends: false,
+        ..Self::MOVE
+    };
+
+    /// The search for the reference.
+    const HOMING: Self = Self {
+        kind: WorkKind::Home,
+        start: AxisEvent::StartHoming,
+        watch: Watch::Never,
+        ..Self::RAMP
+    };
+
+    /// No motion: it writes something when its turn comes.
+    const WRITING: Self = Self {
+        ending: Ending::Never,
+        moves: false,
+        ..Self::HOMING
+    };
+}
+
 impl Work {
+    /// What it is.
+    #[inline]
+    pub const fn manner(&self) -> Manner {
+        match *self {
+            Self::Position(position) => Manner {
+                place: Some(Place::At(position)),
+                ..Manner::MOVE
+            },
+            Self::Distance(distance) => Manner {
+                kind: WorkKind::Distance,
+                place: Some(Place::By(distance)),
+                ..Manner::MOVE
+            },
+            Self::Through { to, end_velocity } => Manner {
+                kind: WorkKind::Through,
+                place: Some(to),
+                velocity: end_velocity,
+                watch: if end_velocity == 0.0 {
+                    Watch::Way
+                } else {
+                    Watch::Always
+                },
+                ..Manner::ENDLESS
+            },
+            Self::Velocity { velocity, .. } => Manner {
+                kind: WorkKind::Velocity,
+                velocity,
+                ..Manner::ENDLESS
+            },
+            Self::Profile { kind, due, .. } => {
+                let manner = match kind {
+                    ProfileKind::Position => Manner::PROFILE,
+                    ProfileKind::Velocity | ProfileKind::Acceleration => Manner::ENDLESS_PROFILE,
+                };
+                if due {
+                    Manner {
+                        kind: WorkKind::ProfileDue,
+                        ending: Ending::Due,
+                        ..manner
+                    }
+                } else {
+                    manner
+                }
+            }
+            Self::Torque { .. } => Manner {
+                kind: WorkKind::Torque,
+                watch: Watch::Torque,
+                overridden: false,
+                ..Manner::ENDLESS
+            },
+            Self::Halt => Manner::RAMP,
+            Self::Stop => Manner {
+                kind: WorkKind::Stop,
+                start: AxisEvent::Stop,
+                ending: Ending::Locks,
+                ..Manner::RAMP
+            },
+            Self::Home(position) => Manner {
+                ending: Ending::Names(position),
+                ..Manner::HOMING
+            },
+            Self::SetPosition { .. } => Manner {
+                kind: WorkKind::SetPosition,
+                ..Manner::WRITING
+            },
+            Self::Write(Write::Output { .. }) => Manner {
+                kind: WorkKind::Output,
+                ..Manner::WRITING
+            },
+            Self::Write(Write::Parameter { .. }) => Manner {
+                kind: WorkKind::Parameter,
+                ..Manner::WRITING
+            },
+        }
+    }
+
     /// Where it leads (u), counted from `from` where it must be; `None` for what leads nowhere.
     pub fn end(&self, from: f64) -> Option<f64> {
-        match *self {
-            Self::Position(position)
-            | Self::Through {
-                to: Place::At(position),
-                ..
-            } => Some(position),
-            Self::Distance(distance)
-            | Self::Through {
-                to: Place::By(distance),
-                ..
-            } => Some(from + distance),
-            Self::Velocity { .. }
-            | Self::Profile { .. }
-            | Self::Torque { .. }
-            | Self::Halt
-            | Self::Stop
-            | Self::Home(_)
-            | Self::SetPosition { .. }
-            | Self::Write(_) => None,
-        }
-    }
-
-    /// Where it leads, if anywhere.
-    pub fn place(&self) -> Option<Place> {
-        match *self {
-            Self::Position(position) => Some(Place::At(position)),
-            Self::Distance(distance) => Some(Place::By(distance)),
-            Self::Through { to, .. } => Some(to),
-            Self::Velocity { .. }
-            | Self::Profile { .. }
-            | Self::Torque { .. }
-            | Self::Halt
-            | Self::Stop
-            | Self::Home(_)
-            | Self::SetPosition { .. }
-            | Self::Write(_) => None,
-        }
-    }
-
-    /// The velocity (u/s) it goes on with, 0 if it ends at rest.
-    pub fn velocity(&self) -> f64 {
-        match *self {
-            Self::Through { end_velocity, .. } => end_velocity,
-            Self::Velocity { velocity, .. } => velocity,
-            Self::Position(_)
-            | Self::Distance(_)
-            | Self::Profile { .. }
-            | Self::Torque { .. }
-            | Self::Halt
-            | Self::Stop
-            | Self::Home(_)
-            | Self::SetPosition { .. }
-            | Self::Write(_) => 0.0,
-        }
+        Some(match self.manner().place? {
+            Place::At(position) => position,
+            Place::By(distance) => from + distance,
+        })
     }
 
     /// The same with another velocity to go on with (u/s).
@@ -145,15 +344,7 @@ impl Work {
                 end_velocity: velocity,
             },
             Self::Velocity { along, .. } => Self::Velocity { velocity, along },
-            Self::Position(_)
-            | Self::Distance(_)
-            | Self::Profile { .. }
-            | Self::Torque { .. }
-            | Self::Halt
-            | Self::Stop
-            | Self::Home(_)
-            | Self::SetPosition { .. }
-            | Self::Write(_) => self,
+            other => other,
         }
     }
 
@@ -162,39 +353,6 @@ impl Work {
         match self {
             Self::Position(_) => Self::Position(position),
             other => other,
-        }
-    }
-
-    /// Whether the override holds for it: it does for moves, not for what stops or names places (V16).
-    pub fn obeys_override(&self) -> bool {
-        match self {
-            Self::Position(_) | Self::Distance(_) | Self::Through { .. } | Self::Velocity { .. } => true,
-            // A profile keeps its times, and a torque is no motion.
-            Self::Profile { .. }
-            | Self::Torque { .. }
-            | Self::Halt
-            | Self::Stop
-            | Self::Home(_)
-            | Self::SetPosition { .. }
-            | Self::Write(_) => false,
-        }
-    }
-
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Position(_) => "position",
-            Self::Distance(_) => "distance",
-            Self::Through { .. } => "through",
-            Self::Velocity { .. } => "velocity",
-            Self::Profile { due: true, .. } => "profile due",
-            Self::Profile { .. } => "profile",
-            Self::Torque { .. } => "torque",
-            Self::Halt => "halt",
-            Self::Stop => "stop",
-            Self::Home(_) => "home",
-            Self::SetPosition { .. } => "set position",
-            Self::Write(Write::Output { .. }) => "output",
-            Self::Write(Write::Parameter { .. }) => "parameter",
         }
     }
 }
@@ -256,7 +414,7 @@ impl Entry {
             limits,
             asked: Asked {
                 limits,
-                velocity: work.velocity(),
+                velocity: work.manner().velocity,
             },
             halted: false,
             passed: false,
@@ -276,34 +434,12 @@ impl Entry {
 
     /// Where it leads, if anywhere.
     pub fn place(&self) -> Option<Place> {
-        self.work.place()
-    }
-
-    /// Whether it moves the axis when its turn comes, rather than writing something.
-    pub fn is_motion(&self) -> bool {
-        !matches!(self.work, Work::SetPosition { .. } | Work::Write(_))
-    }
-
-    /// Whether it leads anywhere, so that it could be barred.
-    pub fn leads_on(&self) -> bool {
-        match self.work {
-            Work::Position(_)
-            | Work::Distance(_)
-            | Work::Through { .. }
-            | Work::Velocity { .. }
-            | Work::Profile { .. }
-            | Work::Torque { .. } => true,
-            Work::Halt | Work::Stop | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
-        }
+        self.work.manner().place
     }
 
     /// Whether it goes on until another command takes over.
     pub fn is_endless(&self) -> bool {
-        match self.work {
-            Work::Velocity { .. } | Work::Through { .. } | Work::Torque { .. } => true,
-            Work::Profile { kind, .. } => kind != ProfileKind::Position,
-            _ => false,
-        }
+        self.work.manner().endless
     }
 }
 
@@ -323,24 +459,6 @@ pub(super) fn direction_of(command: &Command) -> Option<Direction> {
         | Command::Halt { .. }
         | Command::Stop { .. }
         | Command::Home { .. } => None,
-    }
-}
-
-/// The state a command leads to.
-pub(super) fn start_event(work: &Work) -> AxisEvent {
-    match work {
-        Work::Position(_)
-        | Work::Distance(_)
-        | Work::Halt
-        | Work::Profile {
-            kind: ProfileKind::Position,
-            ..
-        } => AxisEvent::StartDiscrete,
-        Work::Velocity { .. } | Work::Through { .. } | Work::Profile { .. } | Work::Torque { .. } => {
-            AxisEvent::StartContinuous
-        }
-        Work::Stop => AxisEvent::Stop,
-        Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => AxisEvent::StartHoming,
     }
 }
 

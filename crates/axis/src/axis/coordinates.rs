@@ -83,7 +83,7 @@ impl<P: Planner> Axis<P> {
     /// Grows whenever coordinates move (MC_SetPosition, MC_Home), and comes round: positions taken at different numbers
     /// cannot be compared.
     pub fn coordinates(&self) -> u32 {
-        self.coordinates
+        self.frame.moves()
     }
 
     fn move_coordinates(
@@ -95,7 +95,7 @@ impl<P: Planner> Axis<P> {
         let by = if relative {
             position
         } else {
-            position - self.actual
+            position - self.feedback.position()
         };
         // Whole turns change nothing but the resolution of what is planned.
         let by = match &self.modulo {
@@ -103,7 +103,10 @@ impl<P: Planner> Axis<P> {
             _ => by,
         };
         let at = self.setpoint.position + by;
-        if !(at.is_finite() && (self.actual + by).is_finite() && (self.shift + by).is_finite()) {
+        if !(at.is_finite()
+            && (self.feedback.position() + by).is_finite()
+            && (self.frame.shift() + by).is_finite())
+        {
             return Err(ErrorId::PositionInvalid);
         }
         let before = (self.setpoint, self.layer);
@@ -115,26 +118,27 @@ impl<P: Planner> Axis<P> {
             (self.setpoint, self.layer) = before;
             return Err(error);
         }
-        self.coordinates = self.coordinates.wrapping_add(1);
+        self.frame.count_move();
         self.rename_places();
-        self.shift_actual(by);
+        self.feedback.shift(by);
         self.homing.shift(by);
         if !relative {
-            self.actual = position;
+            self.feedback.call(position);
         }
         if let Some(modulo) = &self.modulo {
-            self.actual = split(self.actual, modulo.length).1;
+            let (_, in_turn) = split(self.feedback.position(), modulo.length);
+            self.feedback.call(in_turn);
         }
         let following = matches!(self.motion, Motion::Follow);
         if following {
-            self.setpoint = Setpoint::at_rest(self.actual);
+            self.setpoint = Setpoint::at_rest(self.feedback.position());
         }
         if self.config.scaling.is_some() {
-            self.shift += by;
+            self.frame.shift_by(by);
         } else {
             // Out of operation the drive stands at its actual position, where it may have been pushed to.
             self.stir();
-            self.rename = Some(self.setpoint().position);
+            self.frame.rename(self.setpoint().position);
         }
         self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
         self.tell_moved(by, scope);
@@ -173,7 +177,7 @@ impl<P: Planner> Axis<P> {
 
     /// Coordinates were moved by `by` (u).
     pub(super) fn tell_moved(&mut self, by: f64, scope: &mut Scope<'_>) {
-        self.moved = (scope.scan, self.coordinates_moved(scope.scan) + by);
+        self.frame.note_moved(scope.scan, by);
         self.record(Event::Shifted { by }, scope);
     }
 
@@ -183,14 +187,14 @@ impl<P: Planner> Axis<P> {
         if by != 0.0 {
             self.tell_moved(by, &mut self.owner_scope(scope));
         }
-        self.coordinates = self.coordinates.wrapping_add(1);
+        self.frame.count_move();
         self.rename_places();
         self.rename_actual(self.setpoint.position, position);
         if self.config.scaling.is_some() {
-            self.shift += position - self.setpoint.position;
+            self.frame.shift_by(position - self.setpoint.position);
         } else {
             self.stir();
-            self.rename = Some(position);
+            self.frame.rename(position);
         }
         self.setpoint = Setpoint::at_rest(position);
     }

@@ -120,7 +120,7 @@ impl<P: Planner> Axis<P> {
 
     /// What the override makes of `entry`.
     pub(super) fn override_entry(&self, entry: &mut Entry) {
-        if !entry.work.obeys_override() {
+        if !entry.work.manner().overridden {
             return;
         }
         let (factors, axis) = (&self.factors, &self.parameters.limits);
@@ -141,7 +141,7 @@ impl<P: Planner> Axis<P> {
     }
 
     fn override_owner(&mut self, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
-        let Some(mut owner) = self.owner.filter(|owner| owner.work.obeys_override()) else {
+        let Some(mut owner) = self.owner.filter(|owner| owner.work.manner().overridden) else {
             return Ok(());
         };
         self.note_passing(&mut owner);

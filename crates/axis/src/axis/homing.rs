@@ -171,7 +171,7 @@ impl<P: Planner> Axis<P> {
 
     /// Why a homing may not go where it wants to.
     fn homing_barred(&self, search: &Search) -> Option<ErrorId> {
-        let permitted = self.power.permitted;
+        let permitted = self.power.permitted();
         // Where a switch makes it turn round it needs no permission of the switch.
         let turns = matches!(
             self.config.homing.procedure,
@@ -226,7 +226,7 @@ impl<P: Planner> Axis<P> {
         }
         let homing = self.config.homing;
         let mut search = self.homing;
-        let step = self.actual_step();
+        let step = self.feedback.step();
         search.scans = search.scans.saturating_add(1);
         search.way += step.abs();
         if search.phase == Phase::Found || self.state != AxisState::Homing {
@@ -275,7 +275,7 @@ impl<P: Planner> Axis<P> {
         let searches = self.state == AxisState::Homing && self.velocity_of(&search).is_some();
         if let Some(error) = self
             .power
-            .permitted
+            .permitted()
             .bars(search.up, !search.up)
             .filter(|_| searches)
         {
@@ -304,7 +304,7 @@ impl<P: Planner> Axis<P> {
             self.go_on(Phase::Pulse, self.homing.up, scope);
             self.beside.order.marker = !self.beside.report.marker.armed;
         } else {
-            self.found(self.actual, None, scope);
+            self.found(self.feedback.position(), None, scope);
         }
     }
 
@@ -341,7 +341,7 @@ impl<P: Planner> Axis<P> {
         self.homing = search;
         if search.still >= block.scans {
             let back = self.setpoint.position - self.following_error();
-            self.found(self.actual, Some(back), scope);
+            self.found(self.feedback.position(), Some(back), scope);
         }
     }
 

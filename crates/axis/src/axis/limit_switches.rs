@@ -43,7 +43,7 @@ impl<P: Planner> Axis<P> {
     /// The directions that neither MC_Power bars nor a limit switch.
     pub(super) fn permission(&self) -> Permission {
         let free = |up: bool| !(self.config.hardware_limits && self.is_on_limit_switch(up));
-        let permitted = self.power.permitted;
+        let permitted = self.power.permitted();
         Permission {
             positive: permitted.positive && free(true),
             negative: permitted.negative && free(false),
@@ -52,7 +52,7 @@ impl<P: Planner> Axis<P> {
 
     /// Why a motion that leads so far up or down is barred, if it is.
     pub(super) fn bars(&self, up: bool, down: bool) -> Option<ErrorId> {
-        let by_power = self.power.permitted.bars(up, down);
+        let by_power = self.power.permitted().bars(up, down);
         by_power.or_else(|| {
             let barred = self.permission().bars(up, down);
             barred.map(|_| ErrorId::OutwardFromLimitSwitch)

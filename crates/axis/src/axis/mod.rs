@@ -1,14 +1,27 @@
 //! One axis: what it knows and what others may ask.
 //!
-//! The parts of its behaviour have a file each: [`dynamics`] turns pin values into limits, [`accept`] decides
-//! on commands, [`step`] moves and hands over, [`blend`] says how fast, [`inside`] keeps take-overs within the axis
-//! limits, [`superimposed`] adds a second motion, [`factors`] is the override, [`guard`] lets no set-point jump, [`replan`] changes the owner's motion
-//! while it runs, [`update`] gives it new values, [`jog`] checks what MC_Jog asks for, [`queued`] lets administrative
-//! commands wait, [`retrigger`] takes the place of one that waits, [`parameters`] has what can be written by number, [`torque`] holds torques, [`supervision`] watches the distance to the
-//! actual position, [`outputs`] reads and writes digital inputs and outputs, [`probe`] records positions at edges, [`profile`] moves along curves through points,
-//! [`coordinates`] moves coordinates, [`modulo`] counts turns and finds the way round, [`software_limits`] keeps
-//! motions inside, [`limit_switches`] off the hardware ones, [`permission`] out of barred directions, [`homing`] searches the reference, [`power`] reacts to feedback, power, faults and resets, [`reading`] answers what reading blocks
-//! ask.
+//! `Axis` decides; values and arithmetic of their own stand in parts with private fields:
+//!
+//! | part | what it holds |
+//! | --- | --- |
+//! | [`commands`] | what a command is: its work, the table of what each kind of work is, its entry |
+//! | [`queue`] | commands that wait |
+//! | [`stage`] | the power stage: what is wanted of it, what the drive tells of it |
+//! | [`feedback`] | actual positions, and which can be compared |
+//! | [`frame`] | what positions are called, for the drive and since when |
+//! | [`modulo`] | turns, and the way round |
+//!
+//! What it decides has a file for each subject:
+//!
+//! | file | subject |
+//! | --- | --- |
+//! | [`accept`], [`queued`], [`update`], [`retrigger`] | commands: taken or refused, administrative ones that wait, new values, replaced ones |
+//! | [`dynamics`], [`factors`], [`parameters`] | limits from pins, the override, what can be written by number |
+//! | [`step`], [`replan`], [`blend`], [`inside`], [`guard`] | the motion step and hand-over, the owner's motion changed while it runs, how fast it passes its end, take-overs within the limits, no jump |
+//! | [`superimposed`] | a second motion on top |
+//! | [`profile`], [`torque`], [`jog`], [`homing`] | curves through points, torques, MC_Jog, the search for the reference |
+//! | [`power`], [`permission`], [`limit_switches`], [`software_limits`], [`supervision`] | feedback, power, faults and resets; directions, switches, limits, following error |
+//! | [`coordinates`], [`reading`], [`outputs`], [`probe`] | moved coordinates, what reading blocks ask, inputs and outputs, positions at edges |
 
 mod accept;
 mod blend;
@@ -16,6 +29,8 @@ mod commands;
 mod coordinates;
 mod dynamics;
 mod factors;
+mod feedback;
+mod frame;
 mod guard;
 mod homing;
 mod inside;
@@ -34,6 +49,7 @@ mod reading;
 mod replan;
 mod retrigger;
 mod software_limits;
+mod stage;
 mod step;
 mod superimposed;
 mod supervision;
@@ -42,12 +58,15 @@ mod update;
 
 use crate::fate::Fates;
 use crate::{
-    AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, Comms, ConfigError, DIGITAL,
-    DriveCommand, DriveOrder, DrivePosition, DriveReport, DriveSignals, ErrorId, Event, Fate, Fault,
-    InstanceId, QUEUE_MAX, Record, Scope, StartState, state,
+    AxisConfig, AxisEvent, AxisId, AxisState, BufferMode, CommandId, ConfigError, DIGITAL, DriveCommand,
+    DriveOrder, DrivePosition, DriveReport, DriveSignals, ErrorId, Event, Fate, QUEUE_MAX, Record, Scope,
+    StartState, state,
 };
-use commands::{Entry, Work};
+pub use commands::WorkKind;
+use commands::{Ending, Entry, Work};
 pub use factors::Factors;
+use feedback::Feedback;
+use frame::Frame;
 use modulo::Modulo;
 pub use outputs::CamTrack;
 pub use permission::Permission;
@@ -55,6 +74,7 @@ pub use probe::TouchProbe;
 pub use profile::{Profile, ProfileRow};
 use queue::Queue;
 pub use reading::{MotionState, Pace, Way};
+use stage::Power;
 use standstill_planner::{Limits, Plan, Planner, Setpoint, Standard};
 
 /// Where the set-point comes from.
@@ -120,35 +140,6 @@ impl Calm {
     }
 }
 
-/// What is known of the power stage.
-#[derive(Clone, Copy, Debug)]
-struct Power {
-    /// MC_Power.Enable.
-    wanted: bool,
-    /// Operation is enabled.
-    on: bool,
-    /// Switched off on request; the axis ramps down or waits for the power stage.
-    going_off: bool,
-    /// Power was lost, or not confirmed in time: it does not come back before a reset or a new rising Enable.
-    tripped: bool,
-    /// It was not confirmed in time.
-    unconfirmed: bool,
-    /// Latches in a row that power was asked for and not confirmed; counted only if that has a time-out.
-    waited: u64,
-    /// What the last MC_Power of this scan asked for, and which instance, unless that is the decider.
-    overruled: Option<(bool, Permission, InstanceId)>,
-    /// The directions MC_Power permits.
-    permitted: Permission,
-    /// The instance that spoke last in the scan before.
-    decider: Option<InstanceId>,
-    /// Power for the stage is available, as last told.
-    voltage: bool,
-    /// The fault last told; only in ErrorStop.
-    fault: Option<Fault>,
-    /// State of the communication; other than Ok only in ErrorStop.
-    comms: Comms,
-}
-
 /// What an axis will do next, see [`Axis::outlook`]; for searches over all reachable states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Outlook {
@@ -157,11 +148,11 @@ pub struct Outlook {
     /// `None` if the set-point follows the feedback, 0 if it holds, else one more than the scans to the goal.
     pub scans_left: Option<u32>,
     /// The owner: its number, what it does, and whether MC_Stop's Execute holds it.
-    pub owner: Option<(CommandId, &'static str, bool)>,
+    pub owner: Option<(CommandId, WorkKind, bool)>,
     /// MC_Stop has come to rest and is held.
     pub stop_held: bool,
     /// Commands that wait, in order, with how they follow the one before.
-    pub waiting: [Option<(CommandId, &'static str, BufferMode)>; QUEUE_MAX],
+    pub waiting: [Option<(CommandId, WorkKind, BufferMode)>; QUEUE_MAX],
     /// MC_Power.Enable.
     pub power_wanted: bool,
     /// The directions MC_Power permits.
@@ -206,7 +197,7 @@ pub struct Outlook {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Beside {
     /// The command: its number, what it does, and whether the motion is its own; else it waits for room.
-    pub command: Option<(CommandId, &'static str, bool)>,
+    pub command: Option<(CommandId, WorkKind, bool)>,
     /// 0 if what is added holds, else one more than the scans to its goal.
     pub scans_left: u32,
     /// Scans of the owner's plan until a command that waits or was lowered is tried again; the largest number if
@@ -249,9 +240,9 @@ pub struct Axis<P: Planner = Standard> {
     state: AxisState,
     /// On a modulo axis its position may be some turns away from the one shown.
     setpoint: Setpoint,
-    actual: f64,
     modulo: Option<Modulo>,
-    past: reading::Past,
+    /// Actual positions.
+    feedback: Feedback,
     /// What the drive reported last beside its position.
     signals: DriveSignals,
     /// What the drive has beside its motion.
@@ -260,8 +251,8 @@ pub struct Axis<P: Planner = Standard> {
     probes: probe::Probes,
     /// Of outputs that follow positions.
     cam_tracks: [CamTrack; DIGITAL as usize],
-    /// How often coordinates have moved.
-    coordinates: u32,
+    /// What positions are called.
+    frame: Frame,
     motion: Motion<P::Plan>,
     /// A second motion on top of it.
     layer: Option<superimposed::Layer<P::Plan>>,
@@ -278,7 +269,6 @@ pub struct Axis<P: Planner = Standard> {
     stop_held: bool,
     queue: Queue,
     fates: Fates,
-    last_id: u64,
     power: Power,
     error: ErrorId,
     error_code: u16,
@@ -288,13 +278,6 @@ pub struct Axis<P: Planner = Standard> {
     homed: bool,
     /// The search of MC_Home.
     homing: homing::Search,
-    /// What the drive's present commanded position is called from now on (u); none for drives that count
-    /// increments.
-    rename: Option<f64>,
-    /// What positions are called more than increments say (u); 0 for drives that speak units.
-    shift: f64,
-    /// The last scan in which coordinates moved, and by how much in all (u).
-    moved: (u64, f64),
     /// The owner's motion may leave the software limits, so every set-point is looked at.
     watched: bool,
     /// A queued MC_SetPosition takes effect at the next latch.
@@ -303,14 +286,12 @@ pub struct Axis<P: Planner = Standard> {
     factors: Factors,
     /// What the application can write by number.
     parameters: parameters::Parameters,
-    /// Scans in a row the axis has been inside the in-position window, at the end of a move.
-    inside_for: u32,
+    /// The end of a move in position.
+    arrival: supervision::Arrival,
     /// The owner has values that its motion does not have yet, for lack of room beside something superimposed.
     replan_due: bool,
     /// How little there is to look after in a scan.
     calm: Calm,
-    /// Grows whenever the fate of a command has changed, or may have.
-    changes: u64,
 }
 
 impl<P: Planner> Axis<P> {
@@ -331,14 +312,13 @@ impl<P: Planner> Axis<P> {
                 AxisState::Disabled
             },
             setpoint: Setpoint::at_rest(config.position),
-            actual: config.position,
             modulo: Modulo::new(&config),
-            past: reading::Past::new(config.position),
+            feedback: Feedback::new(config.position),
             signals: DriveSignals::default(),
             beside: BesideMotion::default(),
             probes: probe::Probes::default(),
             cam_tracks: [CamTrack::default(); DIGITAL as usize],
-            coordinates: 0,
+            frame: Frame::default(),
             motion: if powered { Motion::Hold } else { Motion::Follow },
             layer: None,
             covered: None,
@@ -349,38 +329,20 @@ impl<P: Planner> Axis<P> {
             stop_held: false,
             queue: Queue::default(),
             fates: Fates::default(),
-            last_id: 0,
-            power: Power {
-                wanted: powered,
-                on: powered,
-                going_off: false,
-                tripped: false,
-                unconfirmed: false,
-                waited: 0,
-                overruled: None,
-                permitted: Permission::BOTH,
-                decider: None,
-                voltage: true,
-                fault: None,
-                comms: Comms::Ok,
-            },
+            power: Power::new(powered),
             error: ErrorId::None,
             error_code: 0,
             cause_present: false,
             reset: None,
             homed: false,
             homing: homing::Search::default(),
-            rename: None,
-            shift: 0.0,
-            moved: (0, 0.0),
             watched: false,
             shift_due: false,
             factors: Factors::ONE,
             parameters: parameters::Parameters::new(&config),
-            inside_for: 0,
+            arrival: supervision::Arrival::default(),
             replan_due: false,
             calm: Calm::No,
-            changes: 0,
         })
     }
 
@@ -411,25 +373,24 @@ impl<P: Planner> Axis<P> {
     /// Actual position (u), as last latched: while the communication is lost, or what the drive tells is no number, the last
     /// good one.
     pub fn actual_position(&self) -> f64 {
-        self.actual
+        self.feedback.position()
     }
 
     /// By how much positions are called more from `scan` on (u), if that is the last scan in which coordinates moved; else
     /// 0. Unlike the records of it, which a ring of [`LOG_KEPT`](crate::LOG_KEPT) may lose, it is there for every axis.
     pub fn coordinates_moved(&self, scan: u64) -> f64 {
-        let (last, by) = self.moved;
-        if last == scan { by } else { 0.0 }
+        self.frame.moved_in(scan)
     }
 
     /// Operation is enabled (MC_Power.Status).
     pub fn is_powered(&self) -> bool {
-        self.power.on
+        self.power.is_on()
     }
 
     /// Why power that is wanted does not come: [`ErrorId::PowerNotConfirmed`] after the time-out of the axis, until MC_Power wants
     /// it no longer or MC_Reset has it tried again.
     pub fn power_error(&self) -> Option<ErrorId> {
-        self.power.unconfirmed.then_some(ErrorId::PowerNotConfirmed)
+        self.power.is_unconfirmed().then_some(ErrorId::PowerNotConfirmed)
     }
 
     /// The set-point is the actual position, not one of ours: the axis is not in operation.
@@ -467,7 +428,7 @@ impl<P: Planner> Axis<P> {
 
     /// The command accepted last: its number, for whoever follows what becomes of it.
     pub fn newest_command(&self) -> CommandId {
-        CommandId(self.last_id)
+        self.fates.newest()
     }
 
     /// Commands that wait.
@@ -478,7 +439,7 @@ impl<P: Planner> Axis<P> {
     /// While this number stays, so does the fate of every command: a block need not ask again.
     #[inline]
     pub fn changes(&self) -> u64 {
-        self.changes
+        self.fates.changes()
     }
 
     /// What became of command `id`. Bounded by the queue and the fates kept.
@@ -487,20 +448,13 @@ impl<P: Planner> Axis<P> {
         if let Some(owner) = &self.owner
             && owner.id == id
         {
-            return match owner.work {
-                Work::Stop if self.stop_held => Fate::Done,
-                Work::Velocity { .. } | Work::Through { .. } | Work::Torque { .. } => Fate::Active {
-                    reached: self.goal_reached() && !self.is_held_up(),
-                },
-                Work::Profile { .. } if self.profile_is_over() => Fate::Done,
-                Work::Position(_)
-                | Work::Distance(_)
-                | Work::Profile { .. }
-                | Work::Halt
-                | Work::Stop
-                | Work::Home(_)
-                | Work::SetPosition { .. }
-                | Work::Write(_) => Fate::Active { reached: false },
+            // A stop that stands has completed, and a profile that runs on.
+            if self.stop_held || self.profile_is_over() {
+                return Fate::Done;
+            }
+            let holds = owner.work.manner().ending == Ending::Holds;
+            return Fate::Active {
+                reached: holds && self.goal_reached() && !self.is_held_up(),
             };
         }
         self.fate_of_other(id)
@@ -526,7 +480,7 @@ impl<P: Planner> Axis<P> {
     pub fn outlook(&self) -> Outlook {
         let mut waiting = [None; QUEUE_MAX];
         for (slot, entry) in waiting.iter_mut().zip(self.queue.iter()) {
-            *slot = Some((entry.id, entry.work.kind(), entry.mode));
+            *slot = Some((entry.id, entry.work.manner().kind, entry.mode));
         }
         Outlook {
             state: self.state,
@@ -534,17 +488,17 @@ impl<P: Planner> Axis<P> {
             owner: self
                 .owner
                 .as_ref()
-                .map(|owner| (owner.id, owner.work.kind(), owner.held)),
+                .map(|owner| (owner.id, owner.work.manner().kind, owner.held)),
             stop_held: self.stop_held,
             waiting,
-            power_wanted: self.power.wanted,
-            permitted: self.power.permitted,
+            power_wanted: self.power.is_wanted(),
+            permitted: self.power.permitted(),
             paused: self.is_paused(),
-            power_on: self.power.on,
-            going_off: self.power.going_off,
-            tripped: self.power.tripped,
-            unconfirmed: self.power.unconfirmed,
-            power_waited: self.power.waited,
+            power_on: self.power.is_on(),
+            going_off: self.power.is_going_off(),
+            tripped: self.power.is_tripped(),
+            unconfirmed: self.power.is_unconfirmed(),
+            power_waited: self.power.waited(),
             error: self.error,
             cause_present: self.cause_present,
             reset: self.reset.as_ref().map(|reset| reset.id),
@@ -554,7 +508,7 @@ impl<P: Planner> Axis<P> {
             superimposed: self.superimposed_outlook(),
             factors: self.factors.bits(),
             parameters: self.parameters.bits(),
-            inside_for: self.inside_for,
+            inside_for: self.arrival.scans(),
             held_up: self.is_held_up(),
         }
     }
@@ -580,7 +534,7 @@ impl<P: Planner> Axis<P> {
         let rename = if self.calm.is_any() {
             None
         } else {
-            self.rename.take()
+            self.frame.take_rename()
         };
         DriveCommand {
             request: self.drive_request(),
@@ -594,7 +548,7 @@ impl<P: Planner> Axis<P> {
     // the rest of the scan's drive command.
     #[inline]
     fn position_at_drive(&self) -> DrivePosition {
-        let position = self.setpoint.position - self.shift;
+        let position = self.setpoint.position - self.frame.shift();
         match (&self.config.scaling, &self.modulo) {
             (None, None) => DrivePosition::Units(position),
             (Some(scaling), None) => DrivePosition::Increments(scaling.to_increments(position)),
@@ -634,18 +588,16 @@ impl<P: Planner> Axis<P> {
 
     /// The fate of a command has changed, or may have.
     fn touch(&mut self) {
-        self.changes = self.changes.wrapping_add(1);
+        self.fates.touch();
     }
 
     /// Command `id` has ended with `fate`.
     fn decide(&mut self, id: CommandId, fate: Fate) {
         self.fates.record(id, fate);
-        self.touch();
     }
 
     fn new_id(&mut self) -> CommandId {
-        self.last_id = self.last_id.wrapping_add(1);
-        CommandId(self.last_id)
+        self.fates.new_id()
     }
 
     /// Ends the owner, what is superimposed on it and everything that waits.

@@ -54,7 +54,7 @@ impl<P: Planner> Axis<P> {
     #[cold]
     #[inline(never)]
     pub(super) fn permit(&mut self, permitted: Permission, scope: &mut Scope<'_>) {
-        self.power.permitted = permitted;
+        self.power.permit(permitted);
         if let Some(error) = self.barred_now() {
             self.pause(error, scope);
         }
@@ -75,7 +75,7 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub(super) fn permitted(&self, entry: &Entry, plan: &P::Plan, before: &Limits) -> Result<(), ErrorId> {
         let brakes = entry.halted && !entry.paused;
-        if self.permission() == Permission::BOTH || brakes || !entry.leads_on() {
+        if self.permission() == Permission::BOTH || brakes || !entry.work.manner().barred {
             return Ok(());
         }
         let limits = if entry.paused {
@@ -112,7 +112,7 @@ impl<P: Planner> Axis<P> {
         let limits = self.stop_limits();
         let owner = match (&self.motion, &self.owner) {
             (Motion::Run { plan, elapsed, .. } | Motion::Torque { plan, elapsed, .. }, Some(owner))
-                if owner.leads_on() && !owner.paused =>
+                if owner.work.manner().barred && !owner.paused =>
             {
                 self.barred((plan, *elapsed), &limits, &self.in_force)
             }
@@ -142,7 +142,7 @@ impl<P: Planner> Axis<P> {
         if !matches!(self.motion, Motion::Run { .. } | Motion::Torque { .. }) {
             return self.brake_superimposed();
         }
-        if let Some(mut owner) = self.owner.filter(Entry::leads_on) {
+        if let Some(mut owner) = self.owner.filter(|owner| owner.work.manner().barred) {
             self.note_passing(&mut owner);
             owner.paused = true;
             owner.turns = 0;

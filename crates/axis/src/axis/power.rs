@@ -3,7 +3,8 @@
 //! Source: PLCopen Motion Control Part 1, notes 1 to 5 of the state diagram, MC_Power, MC_Reset; V9a, V10a,
 //! S10 to S14; iec61131-executor CI-5, CI-8.
 
-use super::{Axis, Calm, Motion, Permission, Power};
+use super::stage::Wish;
+use super::{Axis, Calm, Motion, Permission};
 use crate::{
     AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
     InstanceId, PowerOff, Scope,
@@ -49,7 +50,7 @@ impl<P: Planner> Axis<P> {
         {
             debug_assert_eq!(self.calm, self.calmness());
             self.signals = feedback.signals;
-            self.power.voltage = feedback.voltage;
+            self.power.latch_voltage(feedback.voltage);
         } else {
             self.follow_change(feedback, scope);
         }
@@ -64,9 +65,9 @@ impl<P: Planner> Axis<P> {
             (DrivePosition::Increments(increments), None) => self.position_at_increment(increments),
             (_, Some(_)) => return self.latch_round(told),
         };
-        let is_usual = (position - self.actual).abs() <= USUAL_STEP;
+        let is_usual = (position - self.feedback.position()).abs() <= USUAL_STEP;
         if is_usual {
-            self.latch(position);
+            self.feedback.latch(position);
         }
         is_usual
     }
@@ -87,25 +88,17 @@ impl<P: Planner> Axis<P> {
     /// Looked at once, when that may have begun; whatever ends it says so ([`Axis::stir`]). A scan saves ten
     /// comparisons by it.
     fn calmness(&self) -> Calm {
-        let Power {
-            wanted,
-            on,
-            going_off,
-            tripped,
-            overruled,
-            fault,
-            comms,
-            ..
-        } = self.power;
-        let is_powered = on && wanted && !going_off && !tripped && overruled.is_none();
-        let is_well = fault.is_none()
-            && comms == Comms::Ok
-            && !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
-        let is_pending = self.reset.is_some() || self.shift_due || self.rename.is_some();
+        let is_in_operation = !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
+        let is_pending = self.reset.is_some() || self.shift_due || self.frame.is_renaming();
         // The order of one that has handed over is taken back in the scan after.
         let is_torque = matches!(self.motion, Motion::Torque { .. }) || self.beside.order.torque.is_some();
         let is_watched = self.parameters.lag.on || self.is_homing() || is_torque;
-        if !(is_powered && is_well && !is_pending && self.past.is_whole() && !is_watched) {
+        if !(self.power.is_calm()
+            && is_in_operation
+            && !is_pending
+            && self.feedback.is_whole()
+            && !is_watched)
+        {
             Calm::No
         } else if self.layer.is_some() {
             Calm::Beside
@@ -125,7 +118,7 @@ impl<P: Planner> Axis<P> {
         match (told, &mut self.modulo) {
             (DrivePosition::Units(units), None) => units,
             (DrivePosition::Increments(increments), None) => self.position_at_increment(increments),
-            (position, Some(modulo)) => modulo.latch(&self.config, position, self.shift),
+            (position, Some(modulo)) => modulo.latch(&self.config, position, self.frame.shift()),
         }
     }
 
@@ -136,9 +129,9 @@ impl<P: Planner> Axis<P> {
             return false;
         }
         let position = self.position_of(told);
-        self.latch(position);
+        self.feedback.latch(position);
         if let Some(modulo) = &self.modulo {
-            self.past.come_round(position, modulo.length);
+            self.feedback.come_round(modulo.length);
         }
         true
     }
@@ -146,7 +139,7 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     pub(super) fn position_at_increment(&self, increments: i64) -> f64 {
         match self.config.scaling {
-            Some(scaling) => scaling.to_units(increments) + self.shift,
+            Some(scaling) => scaling.to_units(increments) + self.frame.shift(),
             // A drive that counts increments needs a scaling; take one increment as one unit.
             None => increments as f64,
         }
@@ -155,18 +148,19 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     fn follow_change(&mut self, feedback: &DriveFeedback, scope: &mut Scope<'_>) {
         self.latch_signals(feedback.signals);
-        self.power.voltage = feedback.voltage;
-        self.power.fault = feedback.fault;
         let is_known = feedback.comms == Comms::Ok;
-        self.power.comms = if is_known && !self.latch_told(feedback.position) {
+        let comms = if is_known && !self.latch_told(feedback.position) {
             Comms::Invalid
         } else {
             feedback.comms
         };
+        self.power.latch(feedback, comms);
         if let Err(error) = self.fresh_position() {
             // A stage that was asked to go off while nothing tells whether it has counts as off: before it is enabled again
             // the drive has to tell where it stands.
-            self.power.on &= self.drive_request() == DriveRequest::Enable;
+            if self.drive_request() != DriveRequest::Enable {
+                self.power.count_as_off();
+            }
             self.latch_nothing();
             self.trip(error, 0, Reaction::Ramp, scope);
         } else {
@@ -187,19 +181,18 @@ impl<P: Planner> Axis<P> {
     }
 
     fn follow_power(&mut self, feedback: &DriveFeedback, scope: &mut Scope<'_>) {
-        let was_on = self.power.on;
-        self.power.on = feedback.enabled;
+        let is_lost = self.power.latch_enabled(feedback.enabled);
         if let Some(fault) = feedback.fault {
-            self.power.tripped = true;
+            self.power.trip();
             self.trip(ErrorId::DriveFault, fault.code, Reaction::Follow, scope);
-        } else if was_on && !feedback.enabled && self.power.wanted && !self.power.going_off {
-            self.power.tripped = true;
+        } else if is_lost {
+            self.power.trip();
             if self.state != AxisState::Disabled {
                 self.trip(ErrorId::PowerLost, 0, Reaction::Follow, scope);
             }
         }
         match self.state {
-            AxisState::Disabled if feedback.enabled && self.power.wanted && !self.power.tripped => {
+            AxisState::Disabled if feedback.enabled && self.power.is_wanted() && !self.power.is_tripped() => {
                 self.hold_at_actual();
                 self.enter(AxisEvent::PowerOn);
             }
@@ -208,8 +201,8 @@ impl<P: Planner> Axis<P> {
                 self.hold_at_actual();
             }
             AxisState::Disabled | AxisState::ErrorStop => {}
-            _ if self.power.going_off && !feedback.enabled => {
-                self.power.going_off = false;
+            _ if self.power.is_going_off() && !feedback.enabled => {
+                self.power.end_going_off();
                 self.motion = Motion::Follow;
                 self.enter(AxisEvent::PowerOff);
             }
@@ -222,20 +215,15 @@ impl<P: Planner> Axis<P> {
         let Some(timeout) = self.config.power_timeout else {
             return;
         };
-        let power = &mut self.power;
-        let waits = power.wanted && !power.on && !power.tripped && !power.going_off;
-        power.waited = if waits { power.waited.saturating_add(1) } else { 0 };
-        if power.waited >= timeout {
-            (power.tripped, power.unconfirmed, power.waited) = (true, true, 0);
-            let scope = &mut scope.with(power.decider.unwrap_or_default());
+        if let Some(instance) = self.power.wait(timeout) {
             let error = ErrorId::PowerNotConfirmed;
-            self.refuse("", f64::NAN, f64::NAN, error, scope);
+            self.refuse("", f64::NAN, f64::NAN, error, &mut scope.with(instance));
         }
     }
 
     /// The set-point takes over where the feedback is: enabling never makes it step.
     pub(super) fn hold_at_actual(&mut self) {
-        self.setpoint = standstill_planner::Setpoint::at_rest(self.actual);
+        self.setpoint = standstill_planner::Setpoint::at_rest(self.feedback.position());
         self.count_actual_turns();
         self.motion = Motion::Hold;
     }
@@ -248,36 +236,35 @@ impl<P: Planner> Axis<P> {
     /// before is obeyed at once, others at the end of the scan if nobody spoke after them.
     #[inline]
     pub fn set_power(&mut self, wanted: bool, permitted: Permission, scope: &mut Scope<'_>) {
-        match self.power.decider {
-            Some(decider) if decider != scope.instance => {
-                self.power.overruled = Some((wanted, permitted, scope.instance));
-                self.stir();
-                return;
-            }
-            Some(_) => {}
-            None => self.power.decider = Some(scope.instance),
+        let wish = Wish {
+            wanted,
+            permitted,
+            instance: scope.instance,
+        };
+        if self.power.hear(wish) {
+            self.switch(wanted, permitted, scope);
+        } else {
+            self.stir();
         }
-        self.power.overruled = None;
-        self.switch(wanted, permitted, scope);
     }
 
     /// Whether the axis is in operation and [`Axis::set_power`] by `instance`, wanting that and permitting so much,
     /// would change nothing. FALSE where that takes more than a glance to tell.
     #[inline]
     pub fn is_on_for(&self, instance: InstanceId, permitted: Permission) -> bool {
-        self.calm.is_any() && self.power.decider == Some(instance) && self.power.permitted == permitted
+        self.calm.is_any() && self.power.is_decided(instance, permitted)
     }
 
     /// Switches the axis off whatever MC_Power says: the runtime stops.
     pub fn switch_off(&mut self, scope: &mut Scope<'_>) {
-        self.power.overruled = None;
-        self.switch(false, self.power.permitted, scope);
+        self.power.forget_overruled();
+        self.switch(false, self.power.permitted(), scope);
     }
 
     /// The end of a scan's calls: the last MC_Power decides.
     #[inline]
     pub(super) fn apply_power(&mut self, scope: &mut Scope<'_>) {
-        if self.power.overruled.is_some() {
+        if self.power.is_overruled() {
             self.change_decider(scope);
         }
     }
@@ -285,18 +272,17 @@ impl<P: Planner> Axis<P> {
     #[cold]
     #[inline(never)]
     fn change_decider(&mut self, scope: &mut Scope<'_>) {
-        if let Some((wanted, permitted, instance)) = self.power.overruled.take() {
-            self.power.decider = Some(instance);
-            self.switch(wanted, permitted, &mut scope.with(instance));
+        if let Some(wish) = self.power.take_overruled() {
+            self.switch(wish.wanted, wish.permitted, &mut scope.with(wish.instance));
         }
     }
 
     #[inline]
     fn switch(&mut self, wanted: bool, permitted: Permission, scope: &mut Scope<'_>) {
-        self.power.wanted = wanted;
+        self.power.want(wanted);
         if !wanted {
             self.switch_to_off(scope);
-        } else if permitted != self.power.permitted {
+        } else if permitted != self.power.permitted() {
             self.permit(permitted, scope);
         }
     }
@@ -304,13 +290,13 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     fn switch_to_off(&mut self, scope: &mut Scope<'_>) {
         self.stir();
-        self.let_power_return();
+        self.power.let_return();
         let idle = matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
-        if idle || self.power.going_off {
+        if idle || self.power.is_going_off() {
             return;
         }
         self.end_all(Fate::Aborted, Fate::Aborted);
-        self.power.going_off = true;
+        self.power.go_off();
         match self.config.on_power_off {
             PowerOff::Ramp => self.ramp_down(scope),
             PowerOff::Coast | PowerOff::Drive => self.motion = Motion::Follow,
@@ -366,9 +352,9 @@ impl<P: Planner> Axis<P> {
         self.end_all(Fate::Failed(error), Fate::Failed(ErrorId::InErrorStop));
         self.error = error;
         self.error_code = code;
-        self.power.going_off = false;
+        self.power.end_going_off();
         match reaction {
-            Reaction::Ramp if self.power.on && !self.moves_itself() => self.ramp_down(scope),
+            Reaction::Ramp if self.power.is_on() && !self.moves_itself() => self.ramp_down(scope),
             Reaction::Ramp | Reaction::Follow => self.motion = Motion::Follow,
         }
         self.enter(AxisEvent::Fault);
@@ -395,9 +381,9 @@ impl<P: Planner> Axis<P> {
     fn cause_known(&self) -> bool {
         self.cause_present
             || self.is_silent()
-            || !self.power.voltage
+            || !self.power.has_voltage()
             || self.lags()
-            || self.power.fault.is_some_and(|fault| fault.cause_present)
+            || self.power.fault().is_some_and(|fault| fault.cause_present)
     }
 
     /// Completes a reset when all it waits for has happened (notes 3 and 4, S12).
@@ -414,45 +400,40 @@ impl<P: Planner> Axis<P> {
         let id = reset.id;
         if self.state == AxisState::ErrorStop {
             reset.waited = reset.waited.saturating_add(1);
-            let given_up = reset.waited > RESET_PATIENCE && self.power.fault.is_some();
+            let given_up = reset.waited > RESET_PATIENCE && self.power.fault().is_some();
             if given_up || self.cause_known() {
                 self.reset = None;
                 self.decide(id, Fate::Failed(ErrorId::CauseStillPresent));
                 return;
             }
             let moving = moves_itself || (matches!(self.motion, Motion::Run { .. }) && !reached);
-            let unwanted = self.power.on && !self.power.wanted;
-            if moving || unwanted || self.power.fault.is_some() {
+            let unwanted = self.power.is_on() && !self.power.is_wanted();
+            if moving || unwanted || self.power.fault().is_some() {
                 return;
             }
-            self.let_power_return();
+            self.power.let_return();
             self.error = ErrorId::None;
             self.error_code = 0;
-            self.enter(if self.power.on {
+            self.enter(if self.power.is_on() {
                 AxisEvent::ResetPowered
             } else {
                 AxisEvent::ResetUnpowered
             });
-        } else if self.power.unconfirmed {
-            self.let_power_return();
+        } else if self.power.is_unconfirmed() {
+            self.power.let_return();
         }
         self.reset = None;
         self.decide(id, Fate::Done);
     }
 
-    /// Whatever took the power away, it may be asked for again.
-    fn let_power_return(&mut self) {
-        (self.power.tripped, self.power.unconfirmed) = (false, false);
-    }
-
     #[cold]
     fn is_resetting_drive(&self) -> bool {
-        self.state == AxisState::ErrorStop && self.power.fault.is_some()
+        self.state == AxisState::ErrorStop && self.power.fault().is_some()
     }
 
     /// Nothing is known of the drive.
     fn is_silent(&self) -> bool {
-        self.power.comms != Comms::Ok
+        self.power.comms() != Comms::Ok
     }
 
     /// What is asked of the power stage in this scan.
@@ -464,13 +445,13 @@ impl<P: Planner> Axis<P> {
         let ramping = matches!(self.motion, Motion::Run { .. });
         if self.reset.is_some() && self.is_resetting_drive() {
             DriveRequest::FaultReset
-        } else if ramping && self.power.on {
+        } else if ramping && self.power.is_on() {
             DriveRequest::Enable
-        } else if self.power.going_off && self.config.on_power_off == PowerOff::Drive {
+        } else if self.power.is_going_off() && self.config.on_power_off == PowerOff::Drive {
             DriveRequest::QuickStop
-        } else if self.power.going_off || self.power.tripped || !self.power.wanted {
+        } else if self.power.is_going_off() || self.power.is_tripped() || !self.power.is_wanted() {
             DriveRequest::Off
-        } else if self.is_silent() && !self.power.on {
+        } else if self.is_silent() && !self.power.is_on() {
             // Enabled now, it would step from wherever it is to where it was.
             DriveRequest::Off
         } else {

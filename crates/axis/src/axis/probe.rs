@@ -217,7 +217,7 @@ impl<P: Planner> Axis<P> {
     /// A position at the drive as programs see it (u).
     pub(super) fn place_of(&self, latched: DrivePosition) -> f64 {
         match (latched, &self.modulo) {
-            (position, Some(modulo)) => modulo.place_of(&self.config, position, self.shift).1,
+            (position, Some(modulo)) => modulo.place_of(&self.config, position, self.frame.shift()).1,
             (DrivePosition::Units(units), None) => units,
             (DrivePosition::Increments(increments), None) => self.position_at_increment(increments),
         }

@@ -11,7 +11,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, MC_PositionProfile, MC_VelocityProfile, MC_AccelerationProfile; V24.
 
-use super::commands::{Entry, Start, Work, start_event};
+use super::commands::{Ending, Entry, Start, Work};
 use super::power::Reaction;
 use super::{Axis, Motion};
 use crate::{AxisEvent, BufferMode, Command, CommandId, Dynamics, ErrorId, Event, Fate, Raw, Request, Scope};
@@ -233,7 +233,7 @@ impl<P: Planner> Axis<P> {
             Ok(motion) => {
                 // The curve starts where the sum is.
                 self.end_superimposed(Fate::Aborted);
-                self.enter(start_event(&owner.work));
+                self.enter(owner.work.manner().start);
                 self.before = self.limits_before(&owner.limits);
                 self.adopt(owner, motion, scope);
             }
@@ -305,17 +305,15 @@ impl<P: Planner> Axis<P> {
         self.enter(if starts_at_rest {
             AxisEvent::StartDiscrete
         } else {
-            start_event(&next.work)
+            next.work.manner().start
         });
         self.own(next);
     }
 
     /// Whether the owner is a profile without an end that has come to its end: it has completed, and keeps its velocity.
     pub(super) fn profile_is_over(&self) -> bool {
-        let is_endless = self.owner.as_ref().is_some_and(|owner| {
-            matches!(owner.work, Work::Profile { due: false, .. }) && owner.is_endless() && !owner.paused
-        });
-        is_endless && self.goal_reached()
+        let runs_on = |owner: &Entry| owner.work.manner().ending == Ending::RunsOn && !owner.paused;
+        self.owner.as_ref().is_some_and(runs_on) && self.goal_reached()
     }
 
     /// A due profile cannot start.

@@ -55,7 +55,7 @@ impl Queue {
 
     /// The last one that will move the axis.
     pub fn last_motion(&self) -> Option<&Entry> {
-        self.iter().filter(|entry| entry.is_motion()).last()
+        self.iter().filter(|entry| entry.work.manner().moves).last()
     }
 
     pub fn iter(&self) -> impl Iterator<Item = &Entry> {

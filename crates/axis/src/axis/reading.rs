@@ -6,7 +6,6 @@
 use super::commands::Work;
 use super::{Axis, Motion};
 use crate::{Comms, DriveSignals, ErrorId, Raw, ValueSource};
-use standstill_planner::turns::split;
 use standstill_planner::{Plan, Planner, Setpoint};
 
 /// Part of the lower of the acceleration limits below which a change of the actual velocity counts as none.
@@ -60,148 +59,30 @@ pub struct MotionState {
     pub way: Way,
 }
 
-/// The actual positions of the two scans before, and what keeps them from being comparable with the newest.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Past {
-    /// Of the scan before (u).
-    before: f64,
-    /// Of the scan before that (u).
-    earlier: f64,
-    seam: Option<Seam>,
-}
-
-/// Between the last latched position and the next one.
-#[derive(Clone, Copy, Debug, Default)]
-struct Seam {
-    /// Nothing was latched yet.
-    first: bool,
-    /// Scans without a fresh position.
-    lost: u32,
-    /// Until now so called (u), from now on so (u).
-    renamed: Option<(f64, f64)>,
-}
-
-impl Past {
-    /// Before the first scan.
-    pub fn new(position: f64) -> Self {
-        Self {
-            before: position,
-            earlier: position,
-            seam: Some(Seam {
-                first: true,
-                ..Seam::default()
-            }),
-        }
-    }
-
-    /// The positions it holds are comparable with the next one.
-    pub fn is_whole(&self) -> bool {
-        self.seam.is_none()
-    }
-
-    fn seam(&mut self) -> &mut Seam {
-        self.seam.get_or_insert_default()
-    }
-
-    /// Names what came before as it lies nearest to what came after it, on an axis with turns of `length` (u).
-    #[inline]
-    pub fn come_round(&mut self, actual: f64, length: f64) {
-        let half = length / 2.0;
-        let is_near = (self.before - actual).abs() < half && (self.earlier - self.before).abs() < half;
-        if !is_near {
-            self.before = nearest(self.before, actual, length);
-            self.earlier = nearest(self.earlier, self.before, length);
-        }
-    }
-
-    /// Makes what came before the seam comparable with `actual` (u).
-    #[cold]
-    #[inline(never)]
-    fn mend(&mut self, actual: f64) {
-        let seam = self.seam.take().unwrap_or_default();
-        if seam.first {
-            // Before the first scan the axis stood still, wherever it was.
-            (self.before, self.earlier) = (actual, actual);
-        }
-        if let Some((old, name)) = seam.renamed {
-            // What stood at the old name takes the new one exactly, without rounding a shift.
-            let shifted = |place: f64| {
-                if place == old { name } else { place + (name - old) }
-            };
-            (self.before, self.earlier) = (shifted(self.before), shifted(self.earlier));
-        }
-        if seam.lost > 0 {
-            // The mean over the scans without feedback.
-            let step = (actual - self.before) / (f64::from(seam.lost) + 1.0);
-            (self.before, self.earlier) = (actual - step, actual - 2.0 * step);
-        }
-    }
-}
-
-/// `place` (u) as many turns of `length` (u) away as bring it nearest to `to`.
-#[cold]
-pub(super) fn nearest(place: f64, to: f64, length: f64) -> f64 {
-    if (place - to).abs() < length / 2.0 {
-        return place;
-    }
-    let (_, ahead) = split(place - to, length);
-    to + if ahead > length / 2.0 {
-        ahead - length
-    } else {
-        ahead
-    }
-}
-
 impl<P: Planner> Axis<P> {
-    /// Takes over this scan's actual position (u).
-    #[inline]
-    pub(super) fn latch(&mut self, position: f64) {
-        self.past.earlier = self.past.before;
-        self.past.before = self.actual;
-        self.actual = position;
-    }
-
-    /// The same where what came before may need names that fit. Returns whether the velocity it means is a number; if not,
-    /// nothing is taken over.
+    /// Takes over this scan's actual position (u) where what came before may need names that fit. Returns whether the velocity
+    /// it means is a number; if not, nothing is taken over.
     pub(super) fn latch_and_mend(&mut self, position: f64) -> bool {
-        let before = (self.actual, self.past);
-        self.latch(position);
-        if self.past.seam.is_some() {
-            self.past.mend(position);
-        }
-        if let Some(modulo) = &self.modulo {
-            self.past.come_round(position, modulo.length);
-        }
+        let before = self.feedback;
+        let length = self.modulo.as_ref().map(|modulo| modulo.length);
+        self.feedback.latch_and_mend(position, length);
         let is_number = self.latched_velocity().is_finite();
         if !is_number {
-            (self.actual, self.past) = before;
+            self.feedback = before;
         }
         is_number
-    }
-
-    /// The way the actual position has gone since the scan before (u).
-    pub(super) fn actual_step(&self) -> f64 {
-        self.actual - self.past.before
     }
 
     /// This scan has no fresh actual position.
     pub(super) fn latch_nothing(&mut self) {
         self.stir();
-        let seam = self.past.seam();
-        seam.lost = seam.lost.saturating_add(1);
+        self.feedback.latch_nothing();
     }
 
     /// From the next feedback on, what is called `old` (u) is called `name` (u); no motion.
     pub(super) fn rename_actual(&mut self, old: f64, name: f64) {
         self.stir();
-        self.past.seam().renamed = Some((old, name));
-    }
-
-    /// Every actual position so far, the present one included, is called `by` (u) more; no motion.
-    pub(super) fn shift_actual(&mut self, by: f64) {
-        self.actual += by;
-        self.past.before += by;
-        self.past.earlier += by;
+        self.feedback.rename(old, name);
     }
 
     /// The actual position (u) if it is fresh.
@@ -210,8 +91,8 @@ impl<P: Planner> Axis<P> {
     /// If it was not latched in this scan: [`ErrorId::CommunicationLost`], or [`ErrorId::FeedbackInvalid`] if what the
     /// drive told is no number.
     pub fn fresh_position(&self) -> Result<f64, ErrorId> {
-        match self.power.comms {
-            Comms::Ok => Ok(self.actual),
+        match self.power.comms() {
+            Comms::Ok => Ok(self.feedback.position()),
             Comms::Lost => Err(ErrorId::CommunicationLost),
             Comms::Invalid => Err(ErrorId::FeedbackInvalid),
         }
@@ -230,12 +111,12 @@ impl<P: Planner> Axis<P> {
 
     /// The actual velocity (u/s) by the positions latched last.
     fn latched_velocity(&self) -> f64 {
-        self.actual_step() / self.planner.cycle()
+        self.feedback.step() / self.planner.cycle()
     }
 
     /// The actual velocity of the scan before (u/s).
     pub(super) fn velocity_before(&self) -> f64 {
-        (self.past.before - self.past.earlier) / self.planner.cycle()
+        self.feedback.step_before() / self.planner.cycle()
     }
 
     /// What the motion is doing, by the values `source` names.
@@ -274,10 +155,7 @@ impl<P: Planner> Axis<P> {
             (Motion::Run { plan, .. }, Some(Work::Through { .. })) if self.goal_reached() => {
                 return Way::of(plan.at(u64::from(plan.scans())).velocity);
             }
-            (
-                Motion::Run { plan, .. },
-                Some(Work::Position(_) | Work::Distance(_) | Work::Through { .. }),
-            ) => {
+            (Motion::Run { plan, .. }, Some(work)) if work.manner().place.is_some() => {
                 let place = self.layer.as_ref().map_or(&self.setpoint, |layer| &layer.base);
                 plan.at(u64::from(plan.scans())).position - place.position
             }
@@ -288,8 +166,8 @@ impl<P: Planner> Axis<P> {
 
     fn measured_state(&self, actual: f64) -> MotionState {
         let (limits, cycle) = (&self.config.limits, self.planner.cycle());
-        let step = actual - self.past.before;
-        let step_before = self.past.before - self.past.earlier;
+        let step = self.feedback.step();
+        let step_before = self.feedback.step_before();
         let resolution = match self.config.scaling {
             // Each of the positions is off by half an increment at most, their second difference by two.
             Some(scaling) => 2.0 * f64::from(scaling.units()) / f64::from(scaling.increments()),
@@ -313,12 +191,12 @@ impl<P: Planner> Axis<P> {
 
     /// The communication with the drive is up.
     pub fn is_communicating(&self) -> bool {
-        self.power.comms == Comms::Ok
+        self.power.comms() == Comms::Ok
     }
 
     /// Nothing known keeps the power stage from being on: communication and supply are there, no fault pends.
     pub fn is_ready_for_power(&self) -> bool {
-        self.is_communicating() && self.power.voltage && self.power.fault.is_none()
+        self.is_communicating() && self.power.has_voltage() && self.power.fault().is_none()
     }
 
     /// What the drive reports beside its position.

@@ -7,8 +7,9 @@
 //!
 //! Source: PLCopen Motion Control Part 1, sections on ContinuousUpdate and MC_SetOverride; R9, R12, B15 to B17.
 
-use super::commands::{Entry, Place, Work};
+use super::commands::{Ending, Entry, Place, Work};
 use super::superimposed::Layer;
+use super::supervision::Arrival;
 use super::{Axis, Motion};
 use crate::{ErrorId, Event, Goal, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -174,7 +175,7 @@ impl<P: Planner> Axis<P> {
             self.stir();
         }
         self.motion = motion;
-        self.inside_for = 0;
+        self.arrival = Arrival::default();
         if self.modulo.is_some() {
             self.start_of_plan();
         }
@@ -189,10 +190,7 @@ impl<P: Planner> Axis<P> {
 
     fn record_plan(&self, entry: &Entry, plan: &P::Plan, scope: &mut Scope<'_>) {
         let scope = &mut scope.with(entry.instance);
-        let positioning = matches!(
-            entry.work,
-            Work::Position(_) | Work::Distance(_) | Work::Profile { .. }
-        );
+        let positioning = entry.work.manner().ending == Ending::InPosition;
         let end = plan.at(u64::from(plan.scans()));
         let goal = match entry.end {
             _ if entry.halted || entry.passed => Goal::Velocity(end.velocity),

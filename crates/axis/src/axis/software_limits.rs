@@ -6,7 +6,7 @@
 //! dynamics can keep it inside it ends in ErrorStop. An axis that is outside, because it was pushed there or its
 //! coordinates moved, may move to any place inside.
 
-use super::commands::{Entry, Work};
+use super::commands::{Entry, Manner, Watch};
 use super::{Axis, Motion};
 use crate::ErrorId;
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -50,25 +50,20 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     fn may_leave(&self, entry: &Entry, (min, max): (f64, f64)) -> bool {
         let outside = |rest: f64| rest < min || rest > max;
-        match entry.work {
+        match entry.work.manner().watch {
             // It brakes as hard as it would there.
             _ if entry.paused => outside(self.end_of_plan()),
-            Work::Velocity { .. } => true,
+            Watch::Always => true,
             // A curve was checked when it was planned, but its places may have other names since.
-            Work::Profile { .. } if !entry.is_endless() => {
-                outside(self.end_of_plan()) || self.turns_outside()
-            }
-            Work::Profile { .. } => true,
-            Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
-            Work::Halt | Work::Stop => outside(self.end_of_plan()),
+            Watch::Curve => outside(self.end_of_plan()) || self.turns_outside(),
+            Watch::Ramp => outside(self.end_of_plan()),
             // From rest the way leads straight to the target, from motion perhaps past it.
-            Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
+            Watch::Way => {
                 outside(self.end_of_plan())
                     || (!self.setpoint.is_at_rest()
                         && (outside(self.rest(&self.setpoint, &entry.limits)) || self.turns_outside()))
             }
-            // A torque has no plan to look at: it is watched after every latch.
-            Work::Torque { .. } | Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => false,
+            Watch::Torque | Watch::Never => false,
         }
     }
 
@@ -95,7 +90,7 @@ impl<P: Planner> Axis<P> {
         let outside = |position: f64| position < min || position > max;
         let comes_out = outside(next.position) && !outside(self.setpoint.position);
         let work = match (&self.motion, &self.owner) {
-            (Motion::Run { .. }, Some(owner)) => Some(owner.work),
+            (Motion::Run { .. }, Some(owner)) => Some(owner.work.manner()),
             // Over an owner that stands, or none, a superimposed motion goes on alone: it was checked when it was
             // planned, but then its end may have had another name, or none.
             (Motion::Hold, _) => None,
@@ -103,35 +98,25 @@ impl<P: Planner> Axis<P> {
         };
         let leaving = match work {
             None => leaves(next.position + self.superimposed_left()),
-            Some(work) => match work {
-                Work::Velocity { .. } => true,
-                Work::Profile { .. } => match self.owner.as_ref().is_some_and(Entry::is_endless) {
-                    true => true,
-                    false if !self.watched => return false,
-                    false => leaves(self.end_of_plan()) || self.turns_outside(),
-                },
-                Work::Through { end_velocity, .. } if end_velocity != 0.0 => true,
-                // A torque has a plan only while it is barred, and that leads to rest.
-                Work::Halt | Work::Stop | Work::Torque { .. } => {
-                    leaves(self.end_of_plan() + self.superimposed_left())
-                }
+            Some(Manner { watch, endless, .. }) => match watch {
+                Watch::Always => true,
+                Watch::Ramp | Watch::Torque => leaves(self.end_of_plan() + self.superimposed_left()),
                 // Where one that goes on leads to with something superimposed was not checked.
-                Work::Through { .. } if self.layer.is_some() => {
+                Watch::Way if endless && self.layer.is_some() => {
                     leaves(self.end_of_plan() + self.superimposed_left())
                 }
                 // With something superimposed, ends and turns were checked when it was planned.
-                Work::Position(_) | Work::Distance(_) | Work::Through { .. } if !self.watched => {
-                    return false;
-                }
+                Watch::Curve | Watch::Way if !self.watched => return false,
+                Watch::Curve => leaves(self.end_of_plan()) || self.turns_outside(),
                 // It turns back where it stops, or its end has another name since it began.
-                Work::Position(_) | Work::Distance(_) | Work::Through { .. } => {
+                Watch::Way => {
                     leaves(self.end_of_plan())
                         || self
                             .owner
                             .is_some_and(|owner| leaves(self.rest(next, &owner.limits)))
                         || self.turns_outside()
                 }
-                Work::Home(_) | Work::SetPosition { .. } | Work::Write(_) => return false,
+                Watch::Never => return false,
             },
         };
         comes_out || (leaving && leaves(self.rest(next, &self.stop_limits())))
@@ -152,7 +137,7 @@ impl<P: Planner> Axis<P> {
         } else {
             velocity
         };
-        let position = self.actual + velocity * self.planner.cycle();
+        let position = self.feedback.position() + velocity * self.planner.cycle();
         let next = Setpoint {
             velocity,
             ..Setpoint::at_rest(position)

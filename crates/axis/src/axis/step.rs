@@ -2,7 +2,7 @@
 //!
 //! It comes after all block calls of a scan, so what it decides shows in the next one (R70).
 
-use super::commands::{Entry, Work};
+use super::commands::{Ending, Entry, Work};
 use super::{Axis, Calm, Motion, power::Reaction};
 use crate::{AxisEvent, AxisState, ErrorId, Fate, InstanceId, QUEUE_MAX, Scope};
 use standstill_planner::{Plan, Planner, Setpoint};
@@ -116,7 +116,7 @@ impl<P: Planner> Axis<P> {
         }
         match &mut self.motion {
             Motion::Follow => {
-                self.publish(Setpoint::at_rest(self.actual));
+                self.publish(Setpoint::at_rest(self.feedback.position()));
                 self.count_actual_turns();
             }
             Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
@@ -177,31 +177,25 @@ impl<P: Planner> Axis<P> {
         if self.is_held_up() {
             return self.settle_paused(scope);
         }
-        match owner.work {
-            Work::Position(_) | Work::Distance(_) => self.complete_move(scope),
-            Work::Halt => self.complete(scope),
-            Work::Home(position) => self.settle_homing(position, scope),
-            Work::Stop if owner.held => {
+        match owner.work.manner().ending {
+            Ending::InPosition => self.complete_move(scope),
+            Ending::AtRest => self.complete(scope),
+            Ending::Names(position) => self.settle_homing(position, scope),
+            Ending::Locks if owner.held => {
                 self.motion = Motion::Hold;
                 self.stop_held = true;
                 self.touch();
             }
-            Work::Stop => {
+            Ending::Locks => {
                 self.motion = Motion::Hold;
                 self.end_owner(Fate::Done);
                 self.enter(AxisEvent::StopReleased);
                 self.hand_over(self.setpoint.position, scope);
             }
             // An endless motion gives way when it has reached its velocity.
-            Work::Velocity { .. } | Work::Through { .. } | Work::Torque { .. } => {
-                self.hand_over(self.passed_end(), scope);
-            }
-            // Its block has yet to give the points.
-            Work::Profile { due: true, .. } => {}
-            Work::Profile { .. } if owner.is_endless() => self.hand_over(self.setpoint.position, scope),
-            Work::Profile { .. } => self.complete_move(scope),
-            // They never own the axis.
-            Work::SetPosition { .. } | Work::Write(_) => {}
+            Ending::Holds => self.hand_over(self.passed_end(), scope),
+            Ending::RunsOn => self.hand_over(self.setpoint.position, scope),
+            Ending::Due | Ending::Never => {}
         }
     }
 

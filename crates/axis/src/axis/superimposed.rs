@@ -10,7 +10,7 @@
 mod plan;
 mod update;
 
-use super::commands::{Entry, REST, Work};
+use super::commands::{Entry, REST, Work, WorkKind};
 use super::{Axis, Motion};
 use crate::{AxisEvent, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, Scope, Superimpose};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -43,23 +43,43 @@ pub(super) struct Added {
     asked: Limits,
     /// The override holds it: it comes to rest and goes on when the factor of the velocity is raised.
     halting: bool,
-    /// The motion added is this command's; else it waits for room and the one before it comes to its end.
-    planned: bool,
-    /// That motion is slower than asked for.
-    lowered: bool,
+    progress: Progress,
     /// No block follows it: its instance was triggered anew and refused.
     orphaned: bool,
 }
 
+/// How far a superimposed command has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Progress {
+    /// It waits for room, and the one before it comes to its end.
+    Waits,
+    /// The motion added is this command's.
+    Runs,
+    /// The same, slower than asked for.
+    RunsSlower,
+}
+
 impl Added {
+    /// The motion added is this command's.
+    fn runs(&self) -> bool {
+        self.progress != Progress::Waits
+    }
+
+    /// More room would change something: it would begin, or go faster.
+    fn lacks_room(&self) -> bool {
+        self.progress != Progress::Runs
+    }
+
     /// It has to wait before it goes on; without a block it does not, and is a halt from now on.
     fn wait(&mut self) {
         if self.orphaned {
             self.adds = Adds::Halt;
             self.halting = false;
         }
-        self.planned = self.adds == Adds::Halt;
-        self.lowered = false;
+        self.progress = match self.adds {
+            Adds::Halt => Progress::Runs,
+            Adds::Distance { .. } => Progress::Waits,
+        };
     }
 }
 
@@ -252,8 +272,11 @@ impl<P: Planner> Axis<P> {
             limits,
             asked: limits,
             halting: false,
-            planned: !layer.moves(),
-            lowered: false,
+            progress: if layer.moves() {
+                Progress::Waits
+            } else {
+                Progress::Runs
+            },
             orphaned: false,
         };
         let proposed = if layer.moves() {
@@ -265,7 +288,7 @@ impl<P: Planner> Axis<P> {
         self.end_superimposed_command(Fate::Aborted);
         self.stir();
         self.layer.get_or_insert(layer).command = Some(command);
-        if !command.planned {
+        if !command.runs() {
             self.add(proposed, scope);
         }
         Ok(command.id)
@@ -290,7 +313,7 @@ impl<P: Planner> Axis<P> {
     /// What became of superimposed command `id`, if it is the present one.
     pub(super) fn superimposed_fate(&self, id: CommandId) -> Option<Fate> {
         let command = self.layer.as_ref()?.command.as_ref()?;
-        (command.id == id).then_some(if command.planned {
+        (command.id == id).then_some(if command.runs() {
             Fate::Active { reached: false }
         } else {
             Fate::Waiting
@@ -309,7 +332,7 @@ impl<P: Planner> Axis<P> {
 
     /// The states it may start in (R64, S9).
     fn admit_superimposed(&self) -> Result<(), ErrorId> {
-        if self.power.going_off {
+        if self.power.is_going_off() {
             return Err(ErrorId::PoweringOff);
         }
         match self.state {
@@ -330,7 +353,7 @@ impl<P: Planner> Axis<P> {
         match (&self.motion, self.owner.as_ref().map(|owner| owner.work)) {
             (Motion::Run { .. }, Some(Work::Velocity { .. } | Work::Through { .. })) => f64::NAN,
             // Halted, its plan ends elsewhere.
-            (Motion::Run { .. }, Some(Work::Position(_) | Work::Distance(_))) => self
+            (Motion::Run { .. }, Some(work)) if work.manner().blends => self
                 .owner
                 .as_ref()
                 .and_then(|owner| owner.end)
@@ -369,13 +392,13 @@ impl<P: Planner> Axis<P> {
         let Some(layer) = &mut self.layer else {
             return false;
         };
-        let waits = |command: &&mut Added| command.id == id && (!command.planned || command.halting);
+        let waits = |command: &&mut Added| command.id == id && (!command.runs() || command.halting);
         let Some(command) = layer.command.as_mut().filter(waits) else {
             return false;
         };
         command.orphaned = true;
         command.wait();
-        command.planned = false;
+        command.progress = Progress::Waits;
         layer.try_soon();
         self.stir();
         true
@@ -411,12 +434,12 @@ impl<P: Planner> Axis<P> {
     pub(super) fn advance_both(&mut self, scope: &mut Scope<'_>) {
         let Some(layer) = &mut self.layer else { return };
         layer.base = match &mut self.motion {
-            Motion::Follow => Setpoint::at_rest(self.actual),
+            Motion::Follow => Setpoint::at_rest(self.feedback.position()),
             Motion::Hold | Motion::Torque { .. } => Setpoint::at_rest(layer.base.position),
             Motion::Run { plan, elapsed, scans } => {
                 *elapsed = elapsed.saturating_add(1);
                 if elapsed == scans {
-                    self.changes = self.changes.wrapping_add(1);
+                    self.fates.touch();
                 }
                 plan.next(*elapsed)
             }
@@ -460,12 +483,7 @@ impl<P: Planner> Axis<P> {
             let stopped = layer.moves();
             layer.motion = Motion::Hold;
             match layer.command {
-                Some(Added {
-                    planned,
-                    adds,
-                    halting: false,
-                    ..
-                }) if planned || adds == Adds::Halt => {
+                Some(command) if !command.halting && (command.runs() || command.adds == Adds::Halt) => {
                     self.end_superimposed_command(Fate::Done);
                 }
                 // It stands now, from where more may fit.
@@ -513,14 +531,14 @@ impl<P: Planner> Axis<P> {
         self.layer.as_ref().map(|layer| super::Beside {
             command: layer.command.as_ref().map(|command| {
                 let kind = match command.adds {
-                    Adds::Distance { .. } => "superimposed",
-                    Adds::Halt => "halt superimposed",
+                    Adds::Distance { .. } => WorkKind::Distance,
+                    Adds::Halt => WorkKind::Halt,
                 };
-                (command.id, kind, command.planned)
+                (command.id, kind, command.runs())
             }),
             scans_left: layer.motion.scans_left().unwrap_or(0),
             tried_in: match (&layer.command, &self.motion) {
-                (Some(command), Motion::Run { elapsed, .. }) if !command.planned || command.lowered => {
+                (Some(command), Motion::Run { elapsed, .. }) if command.lacks_room() => {
                     u32::try_from(layer.retry.saturating_sub(*elapsed)).unwrap_or(u32::MAX)
                 }
                 _ => 0,

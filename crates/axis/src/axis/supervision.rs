@@ -5,10 +5,10 @@
 //!
 //! Source: PLCopen Motion Control Part 1, parameters 6 and 7; V12d.
 
+use super::feedback::nearest;
 use super::power::Reaction;
-use super::reading::nearest;
 use super::{Axis, Motion};
-use crate::{ErrorId, Scope};
+use crate::{ErrorId, InPosition, Scope};
 use standstill_planner::Planner;
 
 /// Supervision of the following error.
@@ -29,10 +29,35 @@ impl Lag {
     }
 }
 
+/// The end of a move, until the axis is in position.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Arrival {
+    /// Scans in a row inside the window.
+    inside_for: u32,
+}
+
+impl Arrival {
+    /// Scans in a row the axis has been inside the window.
+    pub fn scans(&self) -> u32 {
+        self.inside_for
+    }
+
+    /// Whether it has been inside for the time, another scan with this following error (u) gone by. NaN is outside.
+    fn is_in_position(&mut self, error: f64, window: InPosition) -> bool {
+        if !(error.abs() <= window.window) {
+            self.inside_for = 0;
+            return false;
+        }
+        let inside_for = self.inside_for;
+        self.inside_for = inside_for.saturating_add(1);
+        inside_for >= window.scans
+    }
+}
+
 impl<P: Planner> Axis<P> {
     /// The set position last published less the actual position (u), on a modulo axis the shorter way round.
     pub(super) fn following_error(&self) -> f64 {
-        let error = self.setpoint.position - self.actual;
+        let error = self.setpoint.position - self.feedback.position();
         match &self.modulo {
             None => error,
             Some(modulo) => nearest(error, 0.0, modulo.length),
@@ -42,7 +67,7 @@ impl<P: Planner> Axis<P> {
     /// The following error is larger than it may be, or no number.
     pub(super) fn lags(&self) -> bool {
         let lag = &self.parameters.lag;
-        let is_led = self.power.on && !matches!(self.motion, Motion::Follow | Motion::Torque { .. });
+        let is_led = self.power.is_on() && !matches!(self.motion, Motion::Follow | Motion::Torque { .. });
         lag.on && is_led && !(self.following_error().abs() <= lag.most)
     }
 
@@ -60,12 +85,7 @@ impl<P: Planner> Axis<P> {
         let Some(window) = self.config.in_position else {
             return true;
         };
-        if !(self.following_error().abs() <= window.window) {
-            self.inside_for = 0;
-            return false;
-        }
-        let inside_for = self.inside_for;
-        self.inside_for = inside_for.saturating_add(1);
-        inside_for >= window.scans
+        let error = self.following_error();
+        self.arrival.is_in_position(error, window)
     }
 }

@@ -103,7 +103,7 @@ impl<P: Planner> Axis<P> {
         if let (Motion::Torque { .. }, Ok(velocity)) = (&self.motion, self.actual_velocity()) {
             self.setpoint = Setpoint {
                 velocity,
-                ..Setpoint::at_rest(self.actual)
+                ..Setpoint::at_rest(self.feedback.position())
             };
             self.count_actual_turns();
         }

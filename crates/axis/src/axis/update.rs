@@ -9,7 +9,8 @@
 
 use super::commands::{Asked, Entry, Place, REST, Start, Work, direction_of};
 use super::{Axis, Motion};
-use crate::{BufferMode, Command, CommandId, ErrorId, Scope};
+use crate::{Command, CommandId, ErrorId, Scope};
+use core::mem;
 use standstill_planner::{Limits, Planner};
 
 impl<P: Planner> Axis<P> {
@@ -37,7 +38,7 @@ impl<P: Planner> Axis<P> {
             return Ok(());
         };
         let direction = direction_of(command);
-        let moved = work.place() != owner.work.place() || direction != owner.direction;
+        let moved = work.manner().place != owner.work.manner().place || direction != owner.direction;
         let same_work = work == owner.work.with_velocity(owner.asked.velocity);
         if same_work && !moved && limits == owner.asked.limits {
             // Back at the values it has, from others that were refused.
@@ -95,9 +96,8 @@ impl<P: Planner> Axis<P> {
             }
             _ => self.check(command, Start::Wait, scope)?,
         };
-        let same_kind = work.kind() == entry.work.kind()
-            && (work.obeys_override() || matches!(work, Work::Torque { .. }));
-        Ok(same_kind.then_some((work, limits)))
+        let is_same_kind = mem::discriminant(&work) == mem::discriminant(&entry.work);
+        Ok((is_same_kind && work.manner().updated).then_some((work, limits)))
     }
 
     fn take_values(&self, entry: &mut Entry, work: Work, limits: Limits) {
@@ -105,7 +105,7 @@ impl<P: Planner> Axis<P> {
         entry.limits = limits;
         entry.asked = Asked {
             limits,
-            velocity: work.velocity(),
+            velocity: work.manner().velocity,
         };
         self.override_entry(entry);
     }
@@ -125,7 +125,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn arm_anew(&mut self, scope: &mut Scope<'_>) {
         let leads = |owner: &Entry| owner.end.is_some();
         if !self.pass_at_rest(scope) && self.owner.as_ref().is_some_and(leads) {
-            self.arm(BufferMode::BlendingPrevious, scope);
+            self.arm_owner(scope);
         }
     }
 
@@ -138,8 +138,9 @@ impl<P: Planner> Axis<P> {
         if self.passage(&owner, self.base().position, 0) != REST {
             return false;
         }
-        if matches!(self.motion, Motion::Run { .. }) && self.replan(owner, scope).is_err() {
-            // To rest from here it would take too long: it goes on as it was planned.
+        if matches!(self.motion, Motion::Run { .. }) {
+            // Where it would take too long to rest from here, it goes on as it was planned.
+            let _planned = self.replan(owner, scope);
         }
         true
     }

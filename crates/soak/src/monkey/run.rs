@@ -7,6 +7,7 @@ use crate::rules::limits::{Track, check_excess};
 use crate::rules::{Broken, Call, Held, Kind, Outputs, Shown, Truth, check_call, check_truth};
 use standstill_axis::{
     Axis, AxisState, CommandId, ErrorId, Event, Fate, IdealDrive, InstanceId, LOG_KEPT, Plan, Standard,
+    WorkKind,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, Value};
@@ -502,7 +503,7 @@ impl<H: Hands> Run<'_, H> {
 #[cold]
 fn shift_is_due(axis: &Axis<Standard>) -> bool {
     let [first, ..] = axis.outlook().waiting;
-    first.is_some_and(|(_, kind, _)| kind == "set position")
+    first.is_some_and(|(_, kind, _)| kind == WorkKind::SetPosition)
 }
 
 /// Done, CommandAborted and Error of a fate.

@@ -3,8 +3,8 @@
 //! Source: CiA 402, homing mode; V11, CI-3.
 
 use super::super::commands::Work;
+use super::super::feedback::Feedback;
 use super::super::power::Reaction;
-use super::super::reading::Past;
 use super::super::{Axis, Motion};
 use super::Phase;
 use crate::{AxisState, DriveHoming, DrivePosition, ErrorId, Scope};
@@ -24,8 +24,8 @@ impl<P: Planner> Axis<P> {
     /// Whether the set-point follows a drive that obeys the command again.
     pub(super) fn is_to_return(&self) -> bool {
         let in_operation = matches!(self.state, AxisState::Homing | AxisState::Stopping)
-            && self.power.on
-            && !self.power.going_off;
+            && self.power.is_on()
+            && !self.power.is_going_off();
         in_operation && matches!(self.motion, Motion::Follow) && !self.moves_itself()
     }
 
@@ -74,13 +74,13 @@ impl<P: Planner> Axis<P> {
         self.homing.phase = Phase::Named;
         self.homing.reference = position;
         let by = position - self.place_of(reference);
-        self.shift += by;
-        self.actual = self.shown_place(self.actual + by);
-        let step = self.actual - self.setpoint.position;
+        self.frame.shift_by(by);
+        let actual = self.shown_place(self.feedback.position() + by);
+        let step = actual - self.setpoint.position;
         self.tell_moved(step, &mut self.owner_scope(scope));
-        self.coordinates = self.coordinates.wrapping_add(1);
-        self.past = Past::new(self.actual);
-        self.setpoint = Setpoint::at_rest(self.actual);
+        self.frame.count_move();
+        self.feedback = Feedback::new(actual);
+        self.setpoint = Setpoint::at_rest(actual);
         self.motion = Motion::Follow;
     }
 }

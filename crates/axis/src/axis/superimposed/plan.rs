@@ -1,6 +1,6 @@
 //! Finding a superimposed motion that leaves the sum inside the axis limits.
 
-use super::{Added, Adds, Layer};
+use super::{Added, Adds, Layer, Progress};
 use crate::axis::commands::{Entry, Work, refusal};
 use crate::axis::{Axis, Motion};
 use crate::{AxisState, Dynamics, ErrorId, Event, Fate, Scope};
@@ -201,7 +201,7 @@ impl<P: Planner> Axis<P> {
             _ => u64::MAX,
         };
         let left = match &layer.motion {
-            Motion::Run { elapsed, scans, .. } if command.planned => scans.saturating_sub(*elapsed),
+            Motion::Run { elapsed, scans, .. } if command.runs() => scans.saturating_sub(*elapsed),
             Motion::Run { .. } | Motion::Hold | Motion::Follow | Motion::Torque { .. } => u64::MAX,
         };
         match proposed.filter(|proposal| u64::from(proposal.plan.scans()) < left) {
@@ -210,8 +210,11 @@ impl<P: Planner> Axis<P> {
                 limits,
                 lowered,
             }) => {
-                command.planned = true;
-                command.lowered = lowered;
+                command.progress = if lowered {
+                    Progress::RunsSlower
+                } else {
+                    Progress::Runs
+                };
                 let command = *command;
                 layer.before = before;
                 layer.in_force = limits;
@@ -225,7 +228,7 @@ impl<P: Planner> Axis<P> {
                 self.record_as(&command, Event::Superimposed { distance, scans }, scope);
                 self.touch();
             }
-            None if first && !command.planned && (!command.halting || moves) => {
+            None if first && !command.runs() && (!command.halting || moves) => {
                 let command = *command;
                 self.record_as(&command, Event::RoomAwaited, scope);
             }
@@ -266,7 +269,7 @@ impl<P: Planner> Axis<P> {
         if command.halting {
             command.wait();
         }
-        command.planned = false;
+        command.progress = Progress::Waits;
         layer.try_soon();
         self.stir();
         self.layer = Some(layer);
@@ -281,7 +284,7 @@ impl<P: Planner> Axis<P> {
             Motion::Run { elapsed, .. } => *elapsed >= layer.retry,
             Motion::Hold | Motion::Follow | Motion::Torque { .. } => true,
         };
-        if (command.planned && !command.lowered) || !due {
+        if !command.lacks_room() || !due {
             return;
         }
         // What the planner took once it takes again; if not, or while it is barred, everything stays as it is.

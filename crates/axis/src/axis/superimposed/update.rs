@@ -1,6 +1,6 @@
 //! The values at the pins of MC_MoveSuperimposed: as a new command, and changed while it runs.
 
-use super::{Added, Adds, Layer};
+use super::{Added, Adds, Layer, Progress};
 use crate::axis::Axis;
 use crate::{CommandId, ErrorId, Scope, Superimpose};
 use standstill_planner::Planner;
@@ -74,8 +74,7 @@ impl<P: Planner> Axis<P> {
             limits: self.factors.of(&asked, &self.parameters.limits),
             asked,
             halting: self.factors.halt(),
-            planned: false,
-            lowered: false,
+            progress: Progress::Waits,
             orphaned: false,
         })
     }

@@ -1,0 +1,152 @@
+//! Actual positions as they were latched, and which of them can be compared.
+
+use standstill_planner::turns::split;
+
+/// The actual position of this scan and of the two before, and what keeps them from being comparable with the next one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Feedback {
+    /// As last latched (u).
+    position: f64,
+    /// Of the scan before (u).
+    before: f64,
+    /// Of the scan before that (u).
+    earlier: f64,
+    seam: Option<Seam>,
+}
+
+/// Between the last latched position and the next one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seam {
+    /// Nothing was latched yet.
+    first: bool,
+    /// Scans without a fresh position.
+    lost: u32,
+    /// Until now so called (u), from now on so (u).
+    renamed: Option<(f64, f64)>,
+}
+
+impl Feedback {
+    /// Before the first scan.
+    pub fn new(position: f64) -> Self {
+        Self {
+            position,
+            before: position,
+            earlier: position,
+            seam: Some(Seam {
+                first: true,
+                ..Seam::default()
+            }),
+        }
+    }
+
+    /// The actual position (u).
+    #[inline]
+    pub fn position(&self) -> f64 {
+        self.position
+    }
+
+    /// The way since the scan before (u).
+    pub fn step(&self) -> f64 {
+        self.position - self.before
+    }
+
+    /// The way in the scan before (u).
+    pub fn step_before(&self) -> f64 {
+        self.before - self.earlier
+    }
+
+    /// What it holds is comparable with the next position.
+    pub fn is_whole(&self) -> bool {
+        self.seam.is_none()
+    }
+
+    /// Takes over this scan's position (u).
+    #[inline]
+    pub fn latch(&mut self, position: f64) {
+        self.earlier = self.before;
+        self.before = self.position;
+        self.position = position;
+    }
+
+    /// The same where what came before may need names that fit; `length` (u) is that of a turn.
+    pub fn latch_and_mend(&mut self, position: f64, length: Option<f64>) {
+        self.latch(position);
+        if self.seam.is_some() {
+            self.mend(position);
+        }
+        if let Some(length) = length {
+            self.come_round(length);
+        }
+    }
+
+    /// This scan has no fresh position.
+    pub fn latch_nothing(&mut self) {
+        let seam = self.seam.get_or_insert_default();
+        seam.lost = seam.lost.saturating_add(1);
+    }
+
+    /// From the next position on, what is called `old` (u) is called `name` (u); no motion.
+    pub fn rename(&mut self, old: f64, name: f64) {
+        self.seam.get_or_insert_default().renamed = Some((old, name));
+    }
+
+    /// Every position so far is called `by` (u) more; no motion.
+    pub fn shift(&mut self, by: f64) {
+        self.position += by;
+        self.before += by;
+        self.earlier += by;
+    }
+
+    /// The present position is called this (u): what a shift by its rounded difference made of it, or a turn less.
+    pub fn call(&mut self, position: f64) {
+        self.position = position;
+    }
+
+    /// Names what came before as it lies nearest to what came after it, on an axis with turns of `length` (u).
+    #[inline]
+    pub fn come_round(&mut self, length: f64) {
+        let half = length / 2.0;
+        let is_near = (self.before - self.position).abs() < half && (self.earlier - self.before).abs() < half;
+        if !is_near {
+            self.before = nearest(self.before, self.position, length);
+            self.earlier = nearest(self.earlier, self.before, length);
+        }
+    }
+
+    /// Makes what came before the seam comparable with `actual` (u).
+    #[cold]
+    #[inline(never)]
+    fn mend(&mut self, actual: f64) {
+        let seam = self.seam.take().unwrap_or_default();
+        if seam.first {
+            // Before the first scan the axis stood still, wherever it was.
+            (self.before, self.earlier) = (actual, actual);
+        }
+        if let Some((old, name)) = seam.renamed {
+            // What stood at the old name takes the new one exactly, without rounding a shift.
+            let shifted = |place: f64| {
+                if place == old { name } else { place + (name - old) }
+            };
+            (self.before, self.earlier) = (shifted(self.before), shifted(self.earlier));
+        }
+        if seam.lost > 0 {
+            // The mean over the scans without feedback.
+            let step = (actual - self.before) / (f64::from(seam.lost) + 1.0);
+            (self.before, self.earlier) = (actual - step, actual - 2.0 * step);
+        }
+    }
+}
+
+/// `place` (u) as many turns of `length` (u) away as bring it nearest to `to`.
+#[cold]
+pub(super) fn nearest(place: f64, to: f64, length: f64) -> f64 {
+    if (place - to).abs() < length / 2.0 {
+        return place;
+    }
+    let (_, ahead) = split(place - to, length);
+    to + if ahead > length / 2.0 {
+        ahead - length
+    } else {
+        ahead
+    }
+}
