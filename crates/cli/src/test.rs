@@ -177,12 +177,15 @@ impl Tally {
         let (count, word) = match (&report.golden, report.passed()) {
             (_, false) | (Standing::Failed(_), _) => (&mut self.failed, "FAILED"),
             (Standing::Accepted, true) => (&mut self.accepted, "accepted"),
-            (Standing::Same | Standing::Close(_), true) => (&mut self.passed, "ok"),
+            (Standing::Same | Standing::Close(_) | Standing::Old(_), true) => (&mut self.passed, "ok"),
         };
         *count += 1;
         writeln!(out, "{word:<8}  {name}")?;
         if let (Standing::Close(Some(how)), true) = (&report.golden, report.passed()) {
             writeln!(out, "    {how}")?;
+        }
+        if let (Standing::Old(note), true) = (&report.golden, report.passed()) {
+            writeln!(out, "    {note}")?;
         }
         let text = report.to_string();
         for line in text.lines() {

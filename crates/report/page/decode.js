@@ -1,7 +1,7 @@
 // The rows of a trace, from the exact companion that the runtime writes: every bit of it, deflated.
 // The form is told in crates/trace/src/exact/mod.rs; what is written there is read here, in the same order of arithmetic.
 
-const MAGIC = 'standstill exact 1\n';
+const MAGIC = 'standstill exact 2\n';
 const KINDS = ['bool', 'real', 'integer', 'name'];
 const ROLES = ['state', 'value', 'variable', 'in_out', 'input', 'output'];
 const EXTRAPOLATIONS = [

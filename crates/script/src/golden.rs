@@ -56,6 +56,8 @@ pub enum Standing {
     Same,
     /// Events are as reviewed, and set-points within the tolerance asked for: how far they are.
     Close(Option<Closeness>),
+    /// Every bit that the golden knows is as reviewed, but it is of version 1: what to do about it.
+    Old(String),
     /// It was written in this run.
     Accepted,
     /// It is not as reviewed: what differs, and what can be done.
@@ -117,6 +119,15 @@ pub fn judge(
                 golden::withdraw(&snap)?;
             }
             return Ok(Standing::Same);
+        }
+        Verdict::Old => {
+            if proposing {
+                golden::withdraw(&snap)?;
+            }
+            let name = standstill_trace::file::shown(script);
+            return Ok(Standing::Old(format!(
+                "a golden of version 1, met; this renews it: standstill test --accept {name}"
+            )));
         }
         Verdict::Close(how) => return Ok(Standing::Close(how)),
         Verdict::Companion(_) if proposing => {

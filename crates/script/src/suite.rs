@@ -49,7 +49,7 @@ impl fmt::Display for Report {
             writeln!(out, "{failure}")?;
         }
         match &self.golden {
-            Standing::Same | Standing::Close(_) | Standing::Accepted => Ok(()),
+            Standing::Same | Standing::Close(_) | Standing::Old(_) | Standing::Accepted => Ok(()),
             Standing::Failed(why) => writeln!(out, "golden: {}", why.trim_end()),
         }
     }

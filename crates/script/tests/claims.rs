@@ -4,6 +4,7 @@
 //! from scan 4 on; axis X moves 3 -> 5 in three scans from scan 1 on (3, 3.5, 4.5, 5, ..).
 
 use standstill_script::{Outcome, judge_recording, read, run};
+use standstill_trace::Trace;
 
 fn judged(claims: &str) -> Outcome {
     let text = format!(
@@ -222,44 +223,76 @@ fn verdicts_stand_in_the_header_of_the_trace() {
     );
 }
 
-/// Axes that are called anew in the same scan: more than the ring of records holds.
-fn seventy_axes_moved_at_once() -> String {
+/// Seventy axes, more than the ring of records holds records: each moves 1 mm from scan 2 on, if asked to, and is called
+/// 1000 mm more, at once or once it stands.
+fn seventy_axes(moves: bool, mode: &str) -> String {
     let each = |text: &dyn Fn(usize) -> String| (0..70).map(text).collect::<Vec<_>>().join(", ");
     let axes = each(&|axis| {
         format!(
             r#""X{axis}": {{"limits": {{"velocity": 100, "acceleration": 1000}}, "state": "Standstill"}}"#
         )
     });
-    let blocks = each(&|axis| {
+    let moved = |axis| {
         format!(
-            r#"{{"name": "s{axis}", "type": "MC_SetPosition", "pins": {{"Axis": "X{axis}", "Execute": {{"from": "GO"}}, "Position": 1000, "Relative": true}}}}"#
+            r#"{{"name": "m{axis}", "type": "MC_MoveRelative", "pins": {{"Axis": "X{axis}", "Execute": {{"from": "GO"}}, "Distance": 1, "Velocity": 100}}}}, "#
+        )
+    };
+    let blocks = each(&|axis| {
+        let moved = if moves { moved(axis) } else { String::new() };
+        format!(
+            r#"{moved}{{"name": "s{axis}", "type": "MC_SetPosition", "pins": {{"Axis": "X{axis}", "Execute": {{"from": "GO"}}, "Position": 1000, "Relative": true, "ExecutionMode": "{mode}"}}}}"#
         )
     });
     let claims = each(&|axis| {
-        format!(r#"{{"within_limits": "X{axis}"}}, {{"always": {{"X{axis}.Position.d1": 0}}}}"#)
+        format!(
+            r#"{{"within_limits": "X{axis}"}}, {{"always": {{"X{axis}.Position.d1": {{"le": 101}}}}}}, {{"by": 90, "that": {{"s{axis}.Done": true}}}}"#
+        )
     });
     format!(
-        r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 5, "inputs": {{"GO": false}}, "axes": {{{axes}}}, "blocks": [{blocks}],
+        r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 100, "inputs": {{"GO": false}}, "axes": {{{axes}}}, "blocks": [{blocks}],
             "steps": [{{"at": 2, "set": {{"GO": true}}}}], "expect": [{claims}]}}"#
     )
 }
 
-#[test]
-fn coordinates_that_move_are_no_motion_however_many_records_the_scan_has() {
-    let script = read(&seventy_axes_moved_at_once(), "test.scan.json", &[]).expect("it is a script");
+/// The run of seventy axes, whose claims hold, also judged on the trace alone.
+fn run_of_seventy(moves: bool, mode: &str) -> Trace {
+    let script = read(&seventy_axes(moves, mode), "test.scan.json", &[]).expect("it is a script");
     let outcome = run(&script).expect("it runs");
     let failures = |outcome: &Outcome| -> Vec<String> {
         let verdicts = outcome.verdicts.iter().flat_map(|verdict| &verdict.failures);
         verdicts.map(ToString::to_string).collect()
     };
     assert_eq!(failures(&outcome), Vec::<String>::new());
-    let notes = outcome.trace.notes();
-    assert!(
-        notes
-            .iter()
-            .any(|note| note.text.contains("records of this scan are lost"))
-    );
-    // The trace tells it all, so claims judged on it come out the same.
-    let again = judge_recording(&script, outcome.trace).expect("it is of this script");
+    let again = judge_recording(&script, outcome.trace.clone()).expect("it is of this script");
     assert_eq!(failures(&again), Vec::<String>::new());
+    outcome.trace
+}
+
+fn notes_with(trace: &Trace, text: &str) -> usize {
+    trace
+        .notes()
+        .iter()
+        .filter(|note| note.text.contains(text))
+        .count()
+}
+
+#[test]
+fn no_note_is_lost_however_many_axes_are_called_in_a_scan() {
+    let trace = run_of_seventy(false, "mcImmediately");
+    assert_eq!(notes_with(&trace, "coordinates"), 70);
+    assert_eq!(notes_with(&trace, "are lost"), 0);
+    // A plan and a shift of each: 140 records of calls in scan 2.
+    let trace = run_of_seventy(true, "mcImmediately");
+    assert_eq!(notes_with(&trace, "plan for"), 70);
+    assert_eq!(notes_with(&trace, "coordinates"), 70);
+    assert_eq!(notes_with(&trace, "are lost"), 0);
+}
+
+#[test]
+fn coordinates_that_move_are_no_motion_where_records_are_lost() {
+    // All shifts are of one motion step, at whose end the moves are.
+    let trace = run_of_seventy(true, "mcQueued");
+    assert_eq!(notes_with(&trace, "plan for"), 70);
+    assert_eq!(notes_with(&trace, "coordinates"), 70);
+    assert_eq!(notes_with(&trace, "records of this scan are lost"), 1);
 }

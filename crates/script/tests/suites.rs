@@ -270,3 +270,42 @@ fn the_scripts_of_the_suite_are_in_the_canonical_layout() {
         assert!(text == laid_out, "{name}: run `standstill fmt scan-tests`");
     }
 }
+
+/// Goldens as version 1 wrote them, kept beside this test: they pass, with the command that renews them, and that renews them.
+#[test]
+fn goldens_of_version_1_are_met_and_say_how_they_are_renewed() {
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/version_1");
+    let folder = Folder::new("version_1");
+    for entry in fs::read_dir(&kept).expect("it is there") {
+        let file = entry.expect("readable").path();
+        let name = file.file_name().expect("a file has a name");
+        fs::copy(&file, folder.0.join(name)).expect("the folder is ours");
+    }
+    let scripts = find(&folder.0).expect("it is there");
+    assert_eq!(scripts.len(), 3);
+    for script in &scripts {
+        let golden =
+            |path: &Path| fs::read(path.with_extension("").with_extension("snap")).expect("it is there");
+        let before = golden(script);
+        for mode in [Mode::Check, Mode::Propose] {
+            let report = judged(script, mode);
+            let Standing::Old(note) = &report.golden else {
+                panic!("{:?}", report.golden)
+            };
+            let command = format!("standstill test --accept {}", shown(script));
+            assert!(report.passed() && note.ends_with(&command), "{note}");
+            assert_eq!(golden(script), before, "nothing is written");
+        }
+        // One scan of another length is another run.
+        let text = fs::read_to_string(script).expect("it is there");
+        let cycle = text.replacen("\"cycle\": \"T#", "\"cycle\": \"T#1", 1);
+        assert_ne!(cycle, text);
+        fs::write(script, cycle).expect("the folder is ours");
+        let changed = judged(script, Mode::Check);
+        assert!(failed(&changed).contains("differs from its golden"), "{changed}");
+        fs::write(script, text).expect("the folder is ours");
+        assert_eq!(judged(script, Mode::Accept).golden, Standing::Accepted);
+        assert_ne!(golden(script), before);
+        assert_eq!(judged(script, Mode::Check).golden, Standing::Same);
+    }
+}

@@ -1,6 +1,7 @@
 //! Columns and cells.
 
 use crate::header::Direction;
+use crate::number;
 
 /// What the cells of a column are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -70,6 +71,12 @@ pub struct Column {
     pub role: Role,
     /// It is a TIME (ns), which may tick in every scan.
     pub is_time: bool,
+    /// The text of the value it has by itself, where that is known: of an input or output pin. Unless it is
+    /// [named](Self::named) events tell it only once it has another one, and a column that has it in all rows is no part of a
+    /// golden.
+    pub default: Option<String>,
+    /// It is an input pin that the script names: with a constant, a wire or a step. Then every row counts.
+    pub named: bool,
 }
 
 impl Column {
@@ -77,6 +84,16 @@ impl Column {
     #[must_use]
     pub fn subject(&self) -> &str {
         self.name.split_once('.').map_or("", |(subject, _)| subject)
+    }
+
+    /// The value of [`Column::default`]; none either if its text is no value of the column's kind.
+    pub(crate) fn default_cell(&self) -> Option<Cell<'_>> {
+        Cell::read(self.kind, self.default.as_deref()?)
+    }
+
+    /// As [`Column::default_cell`], where the default goes without saying.
+    pub(crate) fn unsaid(&self) -> Option<Cell<'_>> {
+        self.default_cell().filter(|_| !self.named)
     }
 
     /// The pin, the axis signal or the input variable.
@@ -102,7 +119,21 @@ pub enum Cell<'a> {
     Name(&'a str),
 }
 
-impl Cell<'_> {
+impl<'a> Cell<'a> {
+    /// The cell of a kind that has this text; none if there is none.
+    pub(crate) fn read(kind: Kind, text: &'a str) -> Option<Self> {
+        match kind {
+            Kind::Bool => match text {
+                "TRUE" => Some(Self::Bool(true)),
+                "FALSE" => Some(Self::Bool(false)),
+                _ => None,
+            },
+            Kind::Real => number::parse(text).map(Self::Real),
+            Kind::Integer => text.parse().ok().map(Self::Integer),
+            Kind::Name => Some(Self::Name(text)),
+        }
+    }
+
     /// What it is.
     #[must_use]
     pub const fn kind(&self) -> Kind {

@@ -1,4 +1,5 @@
-//! Digests of all exact bits of a trace, equal on every processor.
+//! The digest of all exact bits of a trace, equal on every processor: what `run` prints. Goldens are judged by subject
+//! instead ([`subjects`](mod@crate::subjects)), those of version 1 by this.
 //!
 //! FNV-1a with 64 bits, over the rows in scan order and in each row over the columns in file order. A
 //! number counts as its eight bytes, least significant first; a BOOL or a name as its text in CSV and a
@@ -7,9 +8,6 @@
 
 use crate::column::Cell;
 use crate::trace::Trace;
-
-/// Scans that one digest of [`by_block`] covers.
-pub const BLOCK_SCANS: usize = 64;
 
 /// FNV-1a, 64 bits: order-sensitive, seedless, four lines. It finds accidents, not attacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,21 +51,8 @@ pub fn fnv1a(bytes: &[u8]) -> u64 {
 /// The digest of every bit of the trace.
 #[must_use]
 pub fn whole(trace: &Trace) -> u64 {
-    of_scans(trace, 0, trace.scans())
-}
-
-/// One digest for every [`BLOCK_SCANS`] scans, each by itself; the last may cover fewer.
-#[must_use]
-pub fn by_block(trace: &Trace) -> Vec<u64> {
-    (0..trace.scans())
-        .step_by(BLOCK_SCANS)
-        .map(|first| of_scans(trace, first, (first + BLOCK_SCANS).min(trace.scans())))
-        .collect()
-}
-
-fn of_scans(trace: &Trace, first: usize, end: usize) -> u64 {
     let mut digest = Fnv1a::new();
-    for cell in (first..end).flat_map(|scan| trace.row(scan)) {
+    for cell in (0..trace.scans()).flat_map(|scan| trace.row(scan)) {
         match cell {
             Cell::Real(value) => digest.write(&value.to_bits().to_le_bytes()),
             Cell::Integer(value) => digest.write(&value.to_le_bytes()),
@@ -115,16 +100,5 @@ mod tests {
         assert_eq!(whole(&trace(&["a"])), fnv1a(b"a\0"));
         assert_eq!(whole(&trace(&["b", "a"])), fnv1a(b"b\0a\0"));
         assert_ne!(whole(&trace(&["ab", "c"])), whole(&trace(&["a", "bc"])));
-    }
-
-    #[test]
-    fn blocks_are_digests_by_themselves() {
-        let mut words = vec!["a"; 64];
-        words.push("b");
-        assert_eq!(
-            by_block(&trace(&words)),
-            [fnv1a(&b"a\0".repeat(64)), fnv1a(b"b\0")]
-        );
-        assert!(by_block(&trace(&[])).is_empty());
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! Booleans, states, names and whole numbers make an event whenever they change. Reals and times may
 //! change in every scan, so outputs of these kinds make none; inputs are told at rising edges of their
-//! block, where they are taken, and when they change after having stood still.
+//! block, where they are taken, and when they change after having stood still. A pin that the script does not
+//! name is told only once it has another value than its default.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -143,13 +144,13 @@ fn note_event(note: &Note) -> Event {
 
 /// The columns of one subject.
 #[derive(Clone, Debug)]
-struct Group {
-    subject: String,
-    columns: Vec<usize>,
+pub(crate) struct Group {
+    pub(crate) subject: String,
+    pub(crate) columns: Vec<usize>,
 }
 
 /// The subjects in the order in which their events of a scan are told.
-fn groups(columns: &[Column]) -> Vec<Group> {
+pub(crate) fn groups(columns: &[Column]) -> Vec<Group> {
     let mut groups: Vec<(u8, Group)> = Vec::new();
     let mut places: BTreeMap<(u8, &str), usize> = BTreeMap::new();
     for (at, column) in columns.iter().enumerate() {
@@ -187,6 +188,7 @@ fn changes(trace: &Trace, group: &Group, scan: usize, told: &mut [Option<usize>]
         let before = scan
             .checked_sub(1)
             .and_then(|scan| trace.cell(scan, at))
+            .or_else(|| column.unsaid())
             .unwrap_or(Cell::Bool(false));
         match trace.cell(scan, at) {
             Some(Cell::Bool(now)) if before != Cell::Bool(now) => {
@@ -224,11 +226,13 @@ fn transition(before: Option<Cell<'_>>, now: Cell<'_>) -> Option<String> {
     }
 }
 
-/// Whether an input that a block takes is to be told: not if it was told before, nor if it is zero and
-/// never was anything else. Zero takes the default, but for the pins that say where to go.
+/// Whether an input that a block takes is to be told: not if it was told before, nor if it has its own default and never
+/// had anything else. Of one that the script names zero, which takes the default of the axis, is not told
+/// either, but for the pins that say where to go.
 fn is_news(column: &Column, now: Cell<'_>, told: Option<Cell<'_>>) -> bool {
     match told {
         Some(told) => !same(told, now),
+        None if column.unsaid().is_some() => !is_default(column, now),
         None => !is_zero(now) || matches!(column.signal(), "Position" | "Distance"),
     }
 }
@@ -244,9 +248,11 @@ fn is_change(trace: &Trace, at: usize, column: &Column, scan: usize) -> bool {
             stood && !same(before, now)
         }
         (Some(before), _) => !jitters && before != now,
-        // Variables and whole numbers start from zero, names from whatever they are. The other inputs of a
-        // block are told when it takes them.
-        (None, role) => (!jitters || role == Role::Variable) && !is_zero(now) && column.kind != Kind::Name,
+        // Variables and whole numbers start from zero or their default, names from whatever they are. The other inputs of
+        // a block are told when it takes them.
+        (None, role) => {
+            (!jitters || role == Role::Variable) && !is_default(column, now) && column.kind != Kind::Name
+        }
     }
 }
 
@@ -256,6 +262,14 @@ fn assignment(column: &Column, cell: Cell<'_>) -> String {
         _ => cell_text(cell),
     };
     format!("{}={text}", column.signal())
+}
+
+/// Whether a value goes without saying; zero where there is no such value.
+fn is_default(column: &Column, cell: Cell<'_>) -> bool {
+    match column.unsaid() {
+        Some(default) => same(cell, default),
+        None => is_zero(cell),
+    }
 }
 
 fn is_zero(cell: Cell<'_>) -> bool {

@@ -142,6 +142,12 @@ pub struct Pin {
     pub iec_type: String,
     /// Which way it points.
     pub direction: Direction,
+    /// Text of the value it has by itself, if that is known; see [`Column::default`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub default: Option<String>,
+    /// The script names it; see [`Column::named`].
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub named: bool,
 }
 
 /// Which way a pin points.
@@ -226,7 +232,11 @@ impl Header {
             let pins = instance.pins.iter_mut();
             [&mut instance.name, &mut instance.block]
                 .into_iter()
-                .chain(pins.flat_map(|pin| [&mut pin.name, &mut pin.iec_type]))
+                .chain(pins.flat_map(|pin| {
+                    [&mut pin.name, &mut pin.iec_type]
+                        .into_iter()
+                        .chain(&mut pin.default)
+                }))
         });
         let claims = claims.iter_mut().flat_map(Claim::texts_mut);
         [runtime, title, script_hash]
@@ -251,6 +261,8 @@ impl Header {
             kind: Kind::of_iec_type(&input.iec_type),
             role: Role::Variable,
             is_time: is_time(&input.iec_type),
+            default: None,
+            named: false,
         });
         let pins = self.instances.iter().flat_map(|instance| {
             instance.pins.iter().map(|pin| Column {
@@ -258,6 +270,8 @@ impl Header {
                 kind: Kind::of_iec_type(&pin.iec_type),
                 role: Role::of_direction(pin.direction),
                 is_time: is_time(&pin.iec_type),
+                default: pin.default.clone(),
+                named: pin.named,
             })
         });
         axes.chain(inputs).chain(pins).collect()
@@ -341,6 +355,8 @@ pub(crate) fn axis_column(axis: &str, signal: &str) -> Column {
             Role::AxisValue
         },
         is_time: false,
+        default: None,
+        named: false,
     }
 }
 

@@ -26,6 +26,7 @@
 #![forbid(unsafe_code)]
 
 mod column;
+mod columns;
 pub mod compare;
 pub mod csv;
 pub mod digest;
@@ -45,6 +46,7 @@ pub mod plot;
 mod printable;
 mod read;
 pub mod story;
+pub mod subjects;
 pub mod svg;
 mod trace;
 pub mod vcd;

@@ -222,6 +222,8 @@ fn unknown_column(name: &str, kind: Kind, axes: &BTreeSet<String>) -> Column {
         kind,
         role,
         is_time: false,
+        default: None,
+        named: false,
     }
 }
 
@@ -234,7 +236,7 @@ fn push_line(trace: &mut Trace, line: &Line<'_>) -> Result<(), ReadError> {
         .iter()
         .zip(line.fields.iter().skip(2))
         .map(|(column, field)| {
-            cell(column.kind, &field.text).ok_or_else(|| {
+            Cell::read(column.kind, &field.text).ok_or_else(|| {
                 let wanted = match column.kind {
                     Kind::Bool => "TRUE or FALSE",
                     Kind::Real => "a number",
@@ -260,18 +262,5 @@ fn check_clock(line: &Line<'_>, at: usize, name: &str, expected: u64) -> Result<
             Err(ReadError::at(line.number, field.column, message))
         }
         None => Err(ReadError::at(line.number, None, format!("`{name}` is missing"))),
-    }
-}
-
-fn cell(kind: Kind, text: &str) -> Option<Cell<'_>> {
-    match kind {
-        Kind::Bool => match text {
-            "TRUE" => Some(Cell::Bool(true)),
-            "FALSE" => Some(Cell::Bool(false)),
-            _ => None,
-        },
-        Kind::Real => number::parse(text).map(Cell::Real),
-        Kind::Integer => text.parse().ok().map(Cell::Integer),
-        Kind::Name => Some(Cell::Name(text)),
     }
 }

@@ -298,6 +298,16 @@ impl Trace {
         Some(trace)
     }
 
+    /// The rows as they are held: a word a cell; that of a name is its place in [`Trace::texts`].
+    pub(crate) fn words(&self) -> impl Iterator<Item = &[u64]> {
+        self.bits.chunks_exact(self.columns.len().max(1))
+    }
+
+    /// The names that occur.
+    pub(crate) fn texts(&self) -> &[String] {
+        &self.names.texts
+    }
+
     fn decode(&self, kind: Kind, word: u64) -> Cell<'_> {
         match kind {
             Kind::Bool => Cell::Bool(word != 0),

@@ -28,6 +28,8 @@ fn header() -> Header {
         name: name.into(),
         iec_type: iec_type.into(),
         direction,
+        default: None,
+        named: false,
     });
     Header {
         cycle_ns: 1_000_000,

@@ -36,6 +36,8 @@ fn what_is_accepted_is_the_same_until_it_is_not() {
         told.starts_with("first difference in scan 400 (T#400ms), 1 signal\n  X.Position"),
         "{told}"
     );
+    let digests = "\ndigests that differ: read, X; the same: inputs, power, there, back, wait\n";
+    assert!(told.contains(digests), "{told}");
     assert!(
         told.contains("\n-end  800 scans  ") && told.contains("\n+end  800 scans  "),
         "{told}"

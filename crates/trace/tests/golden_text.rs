@@ -2,14 +2,14 @@
 
 mod common;
 
-use standstill_trace::{Axis, Cell, Claim, ClaimVerdict, Header, Limits, Trace, golden};
+use standstill_trace::{Axis, Cell, Claim, ClaimVerdict, Header, Limits, Trace, golden, subjects};
 
 #[test]
 fn a_move_there_and_back_reads_well_and_stays_short() {
     let text = golden::text(&common::run(2000, None));
     println!("{text}");
     let lines = text.lines().count();
-    assert!(lines <= 60, "{lines} lines");
+    assert!(lines <= 64, "{lines} lines");
     assert!(
         text.lines().all(|line| line.trim_end() == line),
         "no blanks at the ends of lines"
@@ -25,20 +25,36 @@ fn a_move_there_and_back_reads_well_and_stays_short() {
     ] {
         assert!(text.lines().any(|other| other == line), "missing: {line}");
     }
+    let subjects = subjects::subjects(&common::run(2000, None));
     assert!(text.ends_with(&format!(
         "end  2000 scans  {:016x}\n",
-        standstill_trace::digest::whole(&common::run(2000, None))
+        subjects::together(&subjects)
     )));
+    let names: Vec<_> = subjects.iter().map(|subject| subject.name.as_str()).collect();
+    assert_eq!(names, ["inputs", "power", "there", "back", "read", "wait", "X"]);
+    for subject in &subjects {
+        let line = format!("  {:<6}  {:016x}", subject.name, subject.digest);
+        assert!(text.lines().any(|other| other == line), "missing: {line}");
+    }
 }
 
 #[test]
-fn one_bit_changes_one_block_digest_and_the_last_line() {
+fn one_bit_changes_the_digests_of_what_has_it_and_the_last_line() {
+    // `read` tells the position, too.
     let [a, b] = [None, Some(700)].map(|nudge| golden::text(&common::run(1000, nudge)));
     let changed: Vec<_> = a.lines().zip(b.lines()).filter(|(a, b)| a != b).collect();
-    assert_eq!(changed.len(), 2, "{changed:?}");
+    let [read, axis, end] = changed.as_slice() else {
+        panic!("{changed:?}")
+    };
     let differing = |(a, b): (&str, &str)| a.split(' ').zip(b.split(' ')).filter(|(a, b)| a != b).count();
-    assert_eq!(differing(changed[0]), 1, "{changed:?}");
-    assert!(changed[1].0.starts_with("end  1000 scans"));
+    for (line, begin) in [
+        (read, "  read    "),
+        (axis, "  X       "),
+        (end, "end  1000 scans  "),
+    ] {
+        assert_eq!(differing(*line), 1, "{line:?}");
+        assert!(line.0.starts_with(begin), "{line:?}");
+    }
 }
 
 #[test]

@@ -12,7 +12,7 @@
 
 use super::commands::{Entry, Place};
 use super::{Axis, Motion};
-use crate::{AxisEvent, ErrorId, Event, Fate, Scope};
+use crate::{AxisEvent, AxisState, ErrorId, Event, Fate, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 /// How much further than a stop is none: rounding, relative to the way.
@@ -189,6 +189,10 @@ impl<P: Planner> Axis<P> {
                 self.motion = Motion::Hold;
                 self.enter(AxisEvent::MotionDone);
                 self.hand_over(self.setpoint.position, scope);
+                if self.owner.is_none() && self.state == AxisState::ContinuousMotion {
+                    // No arrow leads from there to Standstill but by way of a halt.
+                    self.halt_after(&owner, scope);
+                }
             }
             // It brakes on, and is asked again at rest.
             Err(_) => {}

@@ -102,17 +102,19 @@ impl<P: Planner> Axis<P> {
     #[cold]
     pub(super) fn halt_behind_end(&mut self, scope: &mut Scope<'_>) {
         let scope = &mut self.owner_scope(scope);
-        let Some(owner) = self.owner else { return };
-        self.end_owner(Fate::Done);
+        if let Some(owner) = self.owner {
+            self.end_owner(Fate::Done);
+            self.halt_after(&owner, scope);
+        }
+    }
+
+    /// `ended` has ended, and nothing takes over: the axis comes to rest, if it is not, with an end of its own.
+    pub(super) fn halt_after(&mut self, ended: &Entry, scope: &mut Scope<'_>) {
+        let id = self.new_id();
         let halt = Entry {
-            orphaned: owner.orphaned,
-            ..Entry::new(
-                self.new_id(),
-                owner.instance,
-                Work::Halt,
-                owner.limits,
-                owner.mode,
-            )
+            // Of what stands there is nothing to record.
+            orphaned: ended.orphaned || self.setpoint.is_at_rest(),
+            ..Entry::new(id, ended.instance, Work::Halt, ended.limits, ended.mode)
         };
         self.halt_alone(halt, scope);
     }

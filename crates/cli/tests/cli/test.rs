@@ -2,6 +2,7 @@
 
 use crate::support::{SCRIPT, command, ended, read, scratch, standstill, with_script, write};
 use std::fs;
+use std::path::Path;
 
 #[test]
 fn a_golden_is_accepted_once_and_judges_from_then_on() {
@@ -41,6 +42,31 @@ fn a_golden_is_accepted_once_and_judges_from_then_on() {
                 .contains("    likely cause\n      another input: GO is FALSE instead of TRUE\n"),
         "{}",
         differs.out
+    );
+}
+
+#[test]
+fn a_golden_of_version_1_passes_with_the_command_that_renews_it() {
+    let folder = scratch("test_version_1");
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../script/tests/version_1");
+    for ending in ["scan.json", "snap", "exact"] {
+        let name = format!("abort.{ending}");
+        fs::copy(kept.join(&name), folder.join(&name)).unwrap();
+    }
+    let old = standstill(&folder, &["test", "abort.scan.json"]);
+    let command = "standstill test --accept abort.scan.json";
+    let note = format!("    a golden of version 1, met; this renews it: {command}\n");
+    let passed = "ok        abort.scan.json\n";
+    assert_eq!(
+        (old.status, old.out),
+        (0, format!("{passed}{note}1 script: 1 passed\n"))
+    );
+    let renewed = standstill(&folder, &command.split(' ').skip(1).collect::<Vec<_>>());
+    assert_eq!(renewed.out, "accepted  abort.scan.json\n1 script: 1 accepted\n");
+    let new = standstill(&folder, &["test", "abort.scan.json"]);
+    assert_eq!(
+        (new.status, new.out),
+        (0, format!("{passed}1 script: 1 passed\n"))
     );
 }
 

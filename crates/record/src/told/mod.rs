@@ -49,6 +49,8 @@ pub fn instance(name: String, block: &BlockInfo) -> trace::Instance {
                     Direction::Input => trace::Direction::Input,
                     Direction::Output => trace::Direction::Output,
                 },
+                default: None,
+                named: false,
             })
             .collect(),
     }

@@ -291,6 +291,7 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
             let actions = script.steps.get(index).map_or(&[][..], |step| &step.actions);
             for action in actions {
                 self.apply(index, action, time, machine);
+                self.notes.collect(machine.log());
             }
         }
         for (point, value) in std::mem::take(&mut self.changes) {
@@ -307,6 +308,7 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
     fn run(&mut self, program: ProgramId, context: &mut Context<'_, Standard>) -> Result<u64, ProgramFault> {
         let script = self.script;
         let ProgramId(task) = program;
+        self.notes.collect(context.scope.log);
         for place in 0.. {
             let index = self.tasks.get(task).and_then(|(blocks, _)| blocks.get(place));
             let Some((index, declared)) = index.and_then(|&index| Some((index, script.blocks.get(index)?)))
@@ -317,6 +319,7 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
             context.scope.instance = instance_id(index);
             if let Some(instance) = self.values.instances.get_mut(index) {
                 instance.call(context);
+                self.notes.collect(context.scope.log);
             }
         }
         let guests = self.tasks.get(task).map(|(_, guests)| guests.as_slice());
@@ -325,12 +328,14 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
             if let Some(values) = self.values.symbols.get_mut(index) {
                 self.guests.refresh(index, values);
             }
+            self.notes.collect(context.scope.log);
             outcome.map_err(|reason| ProgramFault { reason })?;
         }
         Ok(0)
     }
 
     fn observe(&mut self, _time: ScanTime, machine: &ScriptMachine) {
+        self.notes.collect(machine.log());
         self.states.clear();
         self.states.extend(machine.axes().iter().map(|axis| axis.state()));
     }

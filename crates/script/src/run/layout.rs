@@ -1,9 +1,12 @@
 //! Where the signals of a script stand in a row of a trace, and the header of its own one.
 
-use crate::model::{AxisNumber, Point, Program, Script, Symbol};
-use standstill_fb::{PinType, Value};
+use super::cells;
+use crate::model::{Action, AxisNumber, Point, Program, Script, Symbol};
+use standstill_blocks::BlockInstance;
+use standstill_fb::{AnyInstance, Direction, PinType, Value};
 use standstill_record::told;
-use standstill_trace as trace;
+use standstill_trace::{self as trace, Kind};
+use std::collections::BTreeSet;
 
 /// Column numbers of a script's signals: the axes, the input variables, the pins in call order.
 #[derive(Clone, Debug)]
@@ -115,28 +118,73 @@ pub(crate) fn header(script: &Script) -> trace::Header {
                 iec_type: type_of(input.initial).to_owned(),
             })
             .collect(),
-        instances: script
-            .blocks
-            .iter()
-            .map(|instance| told::instance(instance.name.clone(), instance.block))
+        instances: blocks(script)
+            .into_iter()
             .chain(script.programs.iter().map(program))
             .collect(),
         claims: Vec::new(),
     }
 }
 
-/// A guest program stands in a trace as an instance whose pins are its symbols.
+/// The block instances, with the defaults of their pins and which inputs the script names.
+fn blocks(script: &Script) -> Vec<trace::Instance> {
+    let actions = script.steps.iter().flat_map(|step| &step.actions);
+    let set: BTreeSet<(usize, usize)> = actions
+        .filter_map(|action| match action {
+            Action::Set(Point::Pin(instance, pin), _) => Some((*instance, *pin)),
+            _ => None,
+        })
+        .collect();
+    let mut texts = cells::cells(script);
+    let mut all = Vec::with_capacity(script.blocks.len());
+    for (index, instance) in script.blocks.iter().enumerate() {
+        let constants = instance.constants.iter().map(|(pin, _)| *pin);
+        let named: BTreeSet<usize> = constants
+            .chain(instance.wires.iter().map(|(pin, _)| *pin))
+            .collect();
+        let fresh = BlockInstance::new(instance.block.name);
+        let mut header = told::instance(instance.name.clone(), instance.block);
+        for ((at, pin), header) in instance.block.pins().enumerate().zip(&mut header.pins) {
+            if pin.direction == Direction::InOut {
+                continue;
+            }
+            header.named = named.contains(&at) || set.contains(&(index, at));
+            if let Some(value) = fresh.as_ref().and_then(|fresh| fresh.get(at)) {
+                texts.prepare(pin.ty, value);
+                header.default = Some(trace::cell_text(texts.cell(pin.ty, value)));
+            }
+        }
+        all.push(header);
+    }
+    all
+}
+
+/// A guest program stands in a trace as an instance whose pins are its symbols. All are outputs, and zero before it writes
+/// them.
 fn program(program: &Program) -> trace::Instance {
     let pin = |symbol: &Symbol| trace::Pin {
         name: symbol.name.clone(),
         iec_type: symbol.ty.iec_name().to_owned(),
         direction: trace::Direction::Output,
+        default: zero(Kind::of_iec_type(symbol.ty.iec_name())),
+        named: false,
     };
     trace::Instance {
         name: program.name.clone(),
         block: "PROGRAM".to_owned(),
         pins: program.symbols.iter().map(pin).collect(),
     }
+}
+
+/// What a variable of a guest has by itself.
+fn zero(kind: Kind) -> Option<String> {
+    let text = match kind {
+        Kind::Bool => "FALSE",
+        Kind::Real => "0.0",
+        Kind::Integer => "0",
+        Kind::Name => return None,
+    };
+    Some(text.to_owned())
 }
 
 /// Type of an input variable; a script knows only these two.

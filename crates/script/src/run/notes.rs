@@ -3,15 +3,20 @@
 use super::bench::{ScriptMachine, instance_id};
 use super::rows::Shift;
 use crate::model::Script;
-use standstill_axis::{AxisId, Event, LOG_KEPT, Record};
+use standstill_axis::{AxisId, Event, LOG_KEPT, Log, Record};
 use standstill_record::told::{Names, note};
 use standstill_scan::RUNTIME;
 use standstill_trace::{Note, Trace};
 
-/// How many records have been taken from the ring so far, and what they speak of.
+/// The records of the scan, and what they speak of.
 #[derive(Clone, Debug)]
 pub(crate) struct Notes {
+    /// Records taken from the ring so far.
     taken: u64,
+    /// Those of this scan.
+    records: Vec<Record>,
+    /// Those of this scan that the ring had lost before they were taken.
+    lost: u64,
     names: Names,
 }
 
@@ -24,7 +29,12 @@ impl Notes {
                 .map(|(index, instance)| (instance_id(index).0, instance.name.clone()))
                 .collect(),
         };
-        Self { taken: 0, names }
+        Self {
+            taken: 0,
+            records: Vec::new(),
+            lost: 0,
+            names,
+        }
     }
 
     /// Gives a block instance of a guest its name.
@@ -32,13 +42,23 @@ impl Notes {
         self.names.instances.insert(id, name);
     }
 
+    /// Takes what was recorded since the last call. The ring holds [`LOG_KEPT`] records and a scan may have more, so this is
+    /// called between the steps of a scan and after every block.
+    pub(crate) fn collect(&mut self, log: &Log) {
+        let total = log.total();
+        if total == self.taken {
+            return;
+        }
+        self.lost += (total - self.taken).saturating_sub(LOG_KEPT as u64);
+        self.records.extend(log.since(self.taken).copied());
+        self.taken = total;
+    }
+
     /// Takes this scan's records into the trace, and where coordinates moved, which claims need to know, from the axes
-    /// themselves: records are in a ring, and of a scan with more of them some are lost.
+    /// themselves: of a step with more records than the ring holds some are lost.
     pub(crate) fn take(&mut self, machine: &ScriptMachine, trace: &mut Trace, shifts: &mut Vec<Shift>) {
-        let log = machine.log();
-        let lost = (log.total() - self.taken).saturating_sub(LOG_KEPT as u64);
-        let records: Vec<_> = log.since(self.taken).collect();
-        self.taken = log.total();
+        self.collect(machine.log());
+        let (lost, records) = (std::mem::take(&mut self.lost), &self.records);
         let scan = trace.scans().saturating_sub(1);
         if lost > 0 {
             trace.push_note(Note {
@@ -58,7 +78,7 @@ impl Notes {
                 by,
             });
             // A trace is judged by its notes where there are no axes any more.
-            let left = by - told(&records, axis.id());
+            let left = by - told(records, axis.id());
             if lost > 0 && left != 0.0 {
                 let record = Record {
                     scan: scan as u64,
@@ -83,11 +103,12 @@ impl Notes {
             let scan = usize::try_from(record.scan).unwrap_or(scan);
             trace.push_note(note(&self.names, record, scan, plan));
         }
+        self.records.clear();
     }
 }
 
 /// By how much the records say that the coordinates of an axis moved (u).
-fn told(records: &[&Record], axis: AxisId) -> f64 {
+fn told(records: &[Record], axis: AxisId) -> f64 {
     let own = records.iter().filter(|record| record.axis == axis);
     own.map(|record| match record.event {
         Event::Shifted { by } => by,

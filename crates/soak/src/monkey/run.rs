@@ -6,7 +6,8 @@ use crate::rules::fence::Fence;
 use crate::rules::limits::{Track, check_excess};
 use crate::rules::{Broken, Call, Held, Kind, Outputs, Shown, Truth, check_call, check_truth};
 use standstill_axis::{
-    Axis, AxisState, CommandId, ErrorId, Event, Fate, IdealDrive, InstanceId, Plan, Standard, WorkKind,
+    Axis, AxisState, CommandId, ErrorId, Event, Fate, IdealDrive, InstanceId, LOG_KEPT, Plan, Standard,
+    WorkKind,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, Value};
@@ -455,6 +456,9 @@ impl<H: Hands> Run<'_, H> {
         if total == self.records {
             return;
         }
+        // The rules take facts from the records: a machine with so many axes that some are lost would be judged wrongly.
+        let new = total - self.records;
+        assert!(new <= LOG_KEPT as u64, "{new} records in scan {}", time.scan);
         let mut found = None;
         for record in machine.log().since(self.records) {
             let Some(track) = self.tracks.get_mut(record.axis.index()) else {

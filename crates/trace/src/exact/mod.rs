@@ -4,8 +4,8 @@
 //! small because signals of motion are smooth: each number is predicted from the ones before it, and only
 //! the distance between prediction and truth, counted in representable numbers, is kept and deflated.
 //!
-//! Layout: a line of text with the version; the digest of the trace (8 bytes, least significant first);
-//! then in zlib form: cycle, number of rows and columns, the columns, the names, and column after column the
+//! Layout: a line of text with the version; the digest of the trace (8 bytes, least significant first: that of all
+//! subjects together, in version 1 of all rows, [`digest::whole`]); then in zlib form: cycle, number of rows and columns, the columns, the names, and column after column the
 //! distances. Whole numbers are LEB128, signed ones zigzag. Predictions use `+ - *` on f64 in a fixed
 //! order, so the same trace gives the same bytes everywhere. A new version of the compressor may pack
 //! tighter; [`crate::golden::accept`] leaves a file alone that holds the right content.
@@ -23,10 +23,14 @@ use predict::{EXTRAPOLATION_ORDERS, Predictor, cheapest};
 use crate::column::{Cell, Column, Kind, Role};
 use crate::digest;
 use crate::header::{Axis, Header};
+use crate::subjects::{of_all_columns, together};
 use crate::trace::Trace;
 
 /// The first bytes of a companion, with the version of its form.
-const MAGIC: &[u8] = b"standstill exact 1\n";
+const MAGIC: &[u8] = b"standstill exact 2\n";
+
+/// As [`MAGIC`], of a form that is still read: all but its digest is the same.
+const MAGIC_1: &[u8] = b"standstill exact 1\n";
 
 /// Bytes that surely hold the cycle and the numbers of rows and columns.
 const HEAD_BYTES: usize = 64;
@@ -93,9 +97,14 @@ pub fn encode(trace: &Trace) -> Vec<u8> {
         }
     }
     let mut file = MAGIC.to_vec();
-    file.extend(digest::whole(trace).to_le_bytes());
+    file.extend(together(&of_all_columns(trace)).to_le_bytes());
     file.extend(miniz_oxide::deflate::compress_to_vec_zlib(&body, 9));
     file
+}
+
+/// Whether a companion is of the version that [`encode`] writes.
+pub(crate) fn is_current(file: &[u8]) -> bool {
+    file.starts_with(MAGIC)
 }
 
 /// The digest of the trace in a companion, without unpacking it.
@@ -103,8 +112,9 @@ pub fn encode(trace: &Trace) -> Vec<u8> {
 /// # Errors
 /// Another file, or one cut short.
 pub fn digest_of(file: &[u8]) -> Result<u64, ExactError> {
-    let rest = file.strip_prefix(MAGIC).ok_or(ExactError::Foreign)?;
-    rest.first_chunk()
+    let rest = file.strip_prefix(MAGIC).or_else(|| file.strip_prefix(MAGIC_1));
+    rest.ok_or(ExactError::Foreign)?
+        .first_chunk()
         .map(|bytes| u64::from_le_bytes(*bytes))
         .ok_or(ExactError::Damaged)
 }
@@ -147,7 +157,12 @@ pub fn decode_within(file: &[u8], most: usize) -> Result<Trace, ExactError> {
         Err(_) => return Err(ExactError::Damaged),
     };
     let trace = Reader(&body).trace().ok_or(ExactError::Damaged)?;
-    if digest::whole(&trace) == stated {
+    let found = if file.starts_with(MAGIC_1) {
+        digest::whole(&trace)
+    } else {
+        together(&of_all_columns(&trace))
+    };
+    if found == stated {
         Ok(trace)
     } else {
         Err(ExactError::Damaged)
@@ -234,6 +249,8 @@ impl Reader<'_> {
             kind,
             role,
             is_time: self.byte()? != 0,
+            default: None,
+            named: false,
         })
     }
 

@@ -1,12 +1,14 @@
 //! Goldens: the record of a run that people reviewed, and the judgement whether a run still agrees with it.
 //!
 //! A golden is two files side by side. `x.snap` is an insta snapshot of [`text`]: it is reviewed, and
-//! judges every bit by its digest. `x.exact` is its companion ([`crate::exact`]): it is not reviewed, and is
-//! there to name the first scan and signal in which a run differs.
+//! judges every bit by the digests of its [subjects](mod@crate::subjects). `x.exact` is its companion
+//! ([`crate::exact`]): it is not reviewed, and is there to name the first scan and signal in which a run differs. It holds
+//! the columns that count; the others have their defaults. Goldens of version 1 are judged in `version_1`.
 
 mod near;
 mod snap;
 mod text;
+mod version_1;
 
 use std::borrow::Cow;
 use std::fmt;
@@ -17,10 +19,10 @@ use std::path::{Path, PathBuf};
 use similar::TextDiff;
 
 use crate::compare::{Closeness, Difference, Tolerance, Yardstick, closeness, compare, compare_by};
-use crate::digest;
 use crate::exact::{self, ExactError};
 use crate::file::{FileError, read_regular, replace_beside, shown};
 use crate::printable::printable;
+use crate::subjects::{subjects, together};
 use crate::trace::Trace;
 
 pub use text::text;
@@ -36,6 +38,8 @@ const DIFF_LINES_MOST: usize = 4000;
 pub enum Verdict {
     /// Every bit is as reviewed.
     Same,
+    /// Every bit that a golden of version 1 knows is as reviewed. Accepting again brings it to the present version.
+    Old,
     /// Events are as reviewed, and set-points within the tolerance asked for.
     Close(Option<Closeness>),
     /// There is no golden yet.
@@ -56,6 +60,8 @@ pub struct Mismatch {
     pub difference: Option<Difference>,
     /// Why the companion is no help; empty if it is.
     pub companion: String,
+    /// The subjects whose digests differ, and those whose digests are the same; both empty for a golden of version 1.
+    pub subjects: [Vec<String>; 2],
     /// The difference of the texts, of their events only where no more was asked for, in unified form, golden first.
     pub text: String,
 }
@@ -111,16 +117,24 @@ pub fn judge_by(snap: &Path, trace: &Trace, yardstick: Yardstick) -> Result<Verd
         return Ok(Verdict::Missing);
     };
     let companion = read_if_there(&exact_path(snap))?;
+    if version_1::is_it(&reviewed) {
+        return Ok(version_1::judge(
+            &reviewed,
+            companion.as_deref(),
+            trace,
+            yardstick,
+        ));
+    }
     let found = text(trace);
     if snap::same(&reviewed, &found) {
         return Ok(match companion.as_deref().map(exact::digest_of) {
-            Some(Ok(stated)) if stated == digest::whole(trace) => Verdict::Same,
+            Some(Ok(stated)) if stated == together(&subjects(trace)) => Verdict::Same,
             Some(Ok(_)) => Verdict::Companion("the exact trace is of another run".to_owned()),
             Some(Err(error)) => Verdict::Companion(error.to_string()),
             None => Verdict::Companion("there is no exact trace".to_owned()),
         });
     }
-    let expected = expected_trace(&reviewed, companion.as_deref(), most_cells(trace));
+    let expected = expected_trace(&reviewed, companion.as_deref(), trace);
     if let (Yardstick::Events(tolerance), Ok(expected)) = (yardstick, &expected)
         && near::same_events(&reviewed, &found, tolerance)
         && compare_by(expected, trace, yardstick).is_none()
@@ -139,6 +153,7 @@ pub fn judge_by(snap: &Path, trace: &Trace, yardstick: Yardstick) -> Result<Verd
         yardstick,
         difference,
         companion,
+        subjects: text::moved(&reviewed, &found).map(|names| names.into_iter().map(str::to_owned).collect()),
         text,
     })))
 }
@@ -153,7 +168,7 @@ pub fn expected(snap: &Path, run: &Trace) -> Result<Option<Trace>, GoldenError> 
         return Ok(None);
     };
     let companion = read_if_there(&exact_path(snap))?;
-    Ok(expected_trace(&reviewed, companion.as_deref(), most_cells(run)).ok())
+    Ok(expected_trace(&reviewed, companion.as_deref(), run).ok())
 }
 
 /// Makes this run the golden of this path: writes `x.snap` and `x.exact` where they do not hold it already,
@@ -175,16 +190,14 @@ pub fn accept(snap: &Path, trace: &Trace) -> Result<bool, GoldenError> {
         write(snap, snap::file(snap, &found).as_bytes())?;
         wrote = true;
     }
+    let trace = &trace.only_counted();
     let path = exact_path(snap);
     let file = read_if_there(&path)?;
     let decoded = file
         .as_deref()
         .map(|file| exact::decode_within(file, most_cells(trace)));
-    let holds = decoded.is_some_and(|held| {
-        // Digests do not tell of columns that were renamed, the comparison does.
-        held.is_ok_and(|held| compare(&held, trace).is_none())
-    });
-    if !holds {
+    let holds = decoded.is_some_and(|held| held.is_ok_and(|held| compare(&held, trace).is_none()));
+    if !holds || !file.is_some_and(|file| exact::is_current(&file)) {
         write(&path, &exact::encode(trace))?;
         wrote = true;
     }
@@ -253,8 +266,14 @@ fn most_cells(run: &Trace) -> usize {
     cells.saturating_mul(4).max(1 << 20)
 }
 
-/// The reviewed run from its companion, if that is the one the snapshot's last line speaks of.
-fn expected_trace(reviewed: &str, companion: Option<&[u8]>, most: usize) -> Result<Trace, String> {
+/// The reviewed run from its companion, if that is the one the snapshot's last line speaks of, with the columns of `run` that
+/// it leaves out.
+fn expected_trace(reviewed: &str, companion: Option<&[u8]>, run: &Trace) -> Result<Trace, String> {
+    kept_trace(reviewed, companion, most_cells(run)).map(|kept| kept.completed_as(run))
+}
+
+/// As [`expected_trace`], with the columns that are kept alone.
+fn kept_trace(reviewed: &str, companion: Option<&[u8]>, most: usize) -> Result<Trace, String> {
     let file = companion.ok_or("there is no exact trace")?;
     let stated = exact::digest_of(file).map_err(|error: ExactError| error.to_string())?;
     if !reviewed.trim_end().ends_with(&text::digest_text(stated)) {
@@ -320,6 +339,14 @@ impl fmt::Display for Mismatch {
                 writeln!(out, "the first differing scan cannot be named: {why}")?;
             }
             (None, why) => writeln!(out, "set-points cannot be compared: {why}")?,
+        }
+        let [other, same] = &self.subjects;
+        if !other.is_empty() && self.yardstick == Yardstick::Exact {
+            write!(out, "digests that differ: {}", other.join(", "))?;
+            match same.is_empty() {
+                true => writeln!(out)?,
+                false => writeln!(out, "; the same: {}", same.join(", "))?,
+            }
         }
         match (self.yardstick, self.text.as_str()) {
             (_, "") => Ok(()),

@@ -4,22 +4,21 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use crate::column::{Cell, Role};
-use crate::digest;
 use crate::events::{events, lines};
 use crate::extremes::{axis_title, extremes_text};
 use crate::header::{Axis, Header, Limits};
 use crate::number::{cell_text, fixed, shortest, time_literal};
+use crate::subjects::{Subject, subjects, together};
 use crate::trace::Trace;
+
+/// The heading above the digests.
+const DIGESTS: &str = "digests";
 
 /// A set-point table holds about so many rows at equal distances, besides those of events.
 const TABLE_ROWS: usize = 16;
 
-/// Block digests on one line.
-const DIGESTS_PER_LINE: usize = 8;
-
-/// The golden text: header, events, a thin table of set-points per axis, extremes against limits, a digest
-/// per [`digest::BLOCK_SCANS`] scans, and at the end one of every bit. No version, date or path, so it
-/// changes only when behaviour does.
+/// The golden text: header, events, a thin table of set-points per axis, extremes against limits, the digest of every
+/// subject, and at the end one of them all. No version, date or path, so it changes only when behaviour does.
 #[must_use]
 pub fn text(trace: &Trace) -> String {
     let events = events(trace);
@@ -36,22 +35,19 @@ pub fn text(trace: &Trace) -> String {
     }
     text.push('\n');
     text.push_str(&extremes_text(trace));
-    section(
-        &mut text,
-        &format!("digest per {} scans", digest::BLOCK_SCANS),
-        &block_digests(trace),
-    );
+    let subjects = subjects(trace);
+    section(&mut text, DIGESTS, &digest_lines(&subjects));
     // Writing to a String cannot fail, here and below.
     let _ = writeln!(
         text,
         "\nend  {} scans  {}",
         trace.scans(),
-        digest_text(digest::whole(trace))
+        digest_text(together(&subjects))
     );
     text
 }
 
-/// The digest of every bit as it stands at the end of the text.
+/// The digest of all subjects as it stands at the end of the text.
 pub fn digest_text(digest: u64) -> String {
     format!("{digest:016x}")
 }
@@ -206,15 +202,43 @@ fn round_step(least: usize) -> usize {
     }
 }
 
-/// The block digests folded to 32 bits, the first scan of each line before them.
-fn block_digests(trace: &Trace) -> String {
-    let mut text = String::new();
-    for (line, digests) in digest::by_block(trace).chunks(DIGESTS_PER_LINE).enumerate() {
-        let _ = write!(text, "{:>7}", line * DIGESTS_PER_LINE * digest::BLOCK_SCANS);
-        for digest in digests {
-            let _ = write!(text, " {:08x}", (digest >> 32) ^ (digest & 0xffff_ffff));
-        }
-        text.push('\n');
-    }
-    text
+/// One line a subject: its name and its digest.
+fn digest_lines(subjects: &[Subject]) -> String {
+    let names = subjects.iter().map(|subject| subject.name.chars().count());
+    let width = names.max().unwrap_or(0);
+    subjects.iter().fold(String::new(), |mut text, subject| {
+        let digest = digest_text(subject.digest);
+        let _ = writeln!(text, "  {:<width$}  {digest}", subject.name);
+        text
+    })
+}
+
+/// The subjects of two golden texts whose digests differ, and those whose digests are the same. One that only one of them
+/// has differs.
+pub fn moved<'t>(reviewed: &'t str, found: &'t str) -> [Vec<&'t str>; 2] {
+    let (reviewed, found) = (digests(reviewed), digests(found));
+    let mut names: Vec<&str> = found.iter().map(|(name, _)| *name).collect();
+    let gone = reviewed.iter().map(|(name, _)| *name);
+    names.extend(gone.filter(|name| found.iter().all(|(other, _)| other != name)));
+    names.dedup();
+    let of = |all: &[(&'t str, &'t str)], name: &str| -> Vec<&'t str> {
+        let own = all.iter().filter(|(other, _)| *other == name);
+        own.map(|(_, digest)| *digest).collect()
+    };
+    let (same, other) = names
+        .into_iter()
+        .partition(|name| of(&reviewed, name) == of(&found, name));
+    [other, same]
+}
+
+/// The names and digests that a golden text lists.
+fn digests(text: &str) -> Vec<(&str, &str)> {
+    let lines = text.lines().skip_while(|line| *line != DIGESTS).skip(1);
+    lines
+        .take_while(|line| !line.is_empty())
+        .filter_map(|line| {
+            let (name, digest) = line.trim().rsplit_once("  ")?;
+            Some((name.trim_end(), digest))
+        })
+        .collect()
 }

@@ -19,6 +19,8 @@ fn pin(name: &str, iec_type: &str, direction: Direction) -> Pin {
         name: name.into(),
         iec_type: iec_type.into(),
         direction,
+        default: None,
+        named: false,
     }
 }
 

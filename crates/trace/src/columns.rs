@@ -1,0 +1,79 @@
+//! Traces with fewer or more columns than another one.
+
+use std::collections::BTreeSet;
+
+use crate::column::Column;
+use crate::subjects::counted;
+use crate::trace::Trace;
+
+impl Trace {
+    /// The same run with the columns at these places only, in this order; what is outside is skipped. All of them count
+    /// from then on, whatever they hold.
+    pub(crate) fn only(&self, places: &[usize]) -> Self {
+        let kept = places.iter().filter_map(|&at| self.columns().get(at).cloned());
+        let kept = kept.map(|column| Column {
+            default: None,
+            named: false,
+            ..column
+        });
+        let mut only = Self::with_columns(self.header().clone(), kept.collect());
+        only.reserve(self.scans());
+        for scan in 0..self.scans() {
+            let cells = places.iter().filter_map(|&at| self.cell(scan, at));
+            // The cells are those of the columns, and were taken once before.
+            let _taken = only.push_cells(cells);
+        }
+        for note in self.notes() {
+            only.push_note(note.clone());
+        }
+        only
+    }
+
+    /// The columns that count: what a golden keeps of a run.
+    pub(crate) fn only_counted(&self) -> Self {
+        self.only(&counted(self))
+    }
+
+    /// This run of which only the columns that counted were kept, with those that `run` has besides, at their defaults,
+    /// and with what `run` says of defaults. Columns of subjects that it does not have stay away, unless they count in
+    /// neither.
+    pub(crate) fn completed_as(self, run: &Self) -> Self {
+        let own = self.columns().iter().map(|column| {
+            let other = run.column(&column.name).and_then(|at| run.columns().get(at));
+            Column {
+                default: other.and_then(|other| other.default.clone()),
+                named: other.is_some_and(|other| other.named),
+                ..column.clone()
+            }
+        });
+        let subjects: BTreeSet<&str> = self.columns().iter().map(Column::subject).collect();
+        let counts: BTreeSet<usize> = counted(run).into_iter().collect();
+        let added: Vec<&Column> = run
+            .columns()
+            .iter()
+            .enumerate()
+            .filter(|(at, column)| {
+                let known = subjects.contains(column.subject()) || !counts.contains(at);
+                known && self.column(&column.name).is_none() && column.default_cell().is_some()
+            })
+            .map(|(_, column)| column)
+            .collect();
+        // A pin that is named now and had its default then was not named.
+        let unnamed = added.iter().map(|column| Column {
+            named: false,
+            ..(*column).clone()
+        });
+        let columns = own.chain(unnamed).collect();
+        let mut whole = Self::with_columns(self.header().clone(), columns);
+        whole.reserve(self.scans());
+        for scan in 0..self.scans() {
+            let defaults = added.iter().filter_map(|column| column.default_cell());
+            // Each cell is of its column: its own, or a default that was read as one of that kind.
+            let _taken = whole.push_cells(self.row(scan).chain(defaults));
+        }
+        for note in self.notes() {
+            whole.push_note(note.clone());
+        }
+        whole
+    }
+}
