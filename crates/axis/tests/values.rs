@@ -102,7 +102,8 @@ fn full() -> AxisConfig {
 #[test]
 fn magnitudes_are_above_0_and_finite_but_for_limits_left_out() {
     assert_eq!(full().check(), Ok(()));
-    let set: [(fn(&mut AxisConfig, f64), bool); 13] = [
+    type Set = fn(&mut AxisConfig, f64);
+    let set: [(Set, bool); 13] = [
         (|it, value| it.limits.velocity = value, true),
         (|it, value| it.limits.acceleration = value, true),
         (|it, value| it.limits.deceleration = value, true),
