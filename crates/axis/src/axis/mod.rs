@@ -448,13 +448,18 @@ impl<P: Planner> Axis<P> {
         if let Some(owner) = &self.owner
             && owner.id == id
         {
-            // A stop that stands has completed, and a profile that runs on.
-            if self.stop_held || self.profile_is_over() {
+            // A stop that stands has completed.
+            if self.stop_held {
                 return Fate::Done;
             }
-            let holds = owner.work.manner().ending == Ending::Holds;
-            return Fate::Active {
-                reached: holds && self.goal_reached() && !self.is_held_up(),
+            if !self.goal_reached() {
+                return Fate::Active { reached: false };
+            }
+            return match owner.work.manner().ending {
+                Ending::RunsOn if !owner.paused => Fate::Done,
+                ending => Fate::Active {
+                    reached: ending == Ending::Holds && !self.is_held_up(),
+                },
             };
         }
         self.fate_of_other(id)
