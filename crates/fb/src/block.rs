@@ -87,6 +87,8 @@ pub struct Instance<B: Block> {
 
 impl<B: Block> Instance<B> {
     /// Calls the block with the inputs as they stand.
+    // In line, outputs are written where they stay: copied there, a processor waits for what it has just written.
+    #[inline(always)]
     pub fn call<P: Planner>(&mut self, context: &mut Context<'_, P>) {
         self.outputs = self.block.call(&self.inputs, context);
     }

@@ -98,6 +98,7 @@ pub struct ExecuteCore {
 impl ExecuteCore {
     /// One call. `issue` gives the command at a rising edge (R8) and is told which command the instance
     /// held before (a retrigger replaces it silently, R32); it returns where to ask for its fate.
+    #[inline]
     pub fn scan<P: Planner>(
         &mut self,
         execute: bool,

@@ -66,6 +66,7 @@ impl<V> Default for UpdateCore<V> {
 
 impl<V: Values> UpdateCore<V> {
     /// One call. `values` reads the pins; `issue` gives the command at a rising edge, as for [`ExecuteCore::scan`].
+    #[inline]
     pub fn scan<P: Planner>(
         &mut self,
         pins: Move,

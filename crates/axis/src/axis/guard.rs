@@ -20,13 +20,16 @@ impl<P: Planner> Axis<P> {
     ///
     /// Cost: three comparisons for a set-point within the limits in force; one that is not is held against those it
     /// took over from, too, those of the axis, and what is recorded as unavoidable.
-    #[inline(always)]
     pub(super) fn is_step(&self, next: &Setpoint) -> bool {
-        self.steps_within(next, &self.in_force, 1.0 + RELATIVE) || self.is_wider_step(next)
+        self.is_usual_step(next) || self.is_wider_step(next)
     }
 
-    #[cold]
-    #[inline(never)]
+    /// The same within the limits in force, which all but a few set-points are.
+    #[inline(always)]
+    pub(super) fn is_usual_step(&self, next: &Setpoint) -> bool {
+        self.steps_within(next, &self.in_force, 1.0 + RELATIVE)
+    }
+
     fn is_wider_step(&self, next: &Setpoint) -> bool {
         let layer = self
             .layer

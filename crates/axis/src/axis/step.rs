@@ -92,9 +92,27 @@ impl<P: Planner> Axis<P> {
         }
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scope);
-        } else if !self.is_step(&next) {
-            self.fail(ErrorId::SetpointStep, scope);
+        } else if !self.is_usual_step(&next) {
+            self.step_widely(scope);
         } else if self.watched && self.plan_would_leave() {
+            self.fail(ErrorId::SoftwareLimitReached, scope);
+        } else {
+            self.publish(next);
+        }
+    }
+
+    /// The same for a set-point beyond the limits in force. It is computed again, because handing over a reference would keep
+    /// the usual ones out of registers, in every scan of every axis.
+    #[cold]
+    #[inline(never)]
+    fn step_widely(&mut self, scope: &mut Scope<'_>) {
+        let Motion::Run { plan, elapsed, .. } = &self.motion else {
+            return;
+        };
+        let next = plan.at(*elapsed);
+        if !self.is_step(&next) {
+            self.fail(ErrorId::SetpointStep, scope);
+        } else if self.watched && self.would_leave(&next) {
             self.fail(ErrorId::SoftwareLimitReached, scope);
         } else {
             self.publish(next);
