@@ -187,10 +187,13 @@ impl<P: Planner> Axis<P> {
                 self.refuse_plan(&owner, error, &mut self.owner_scope(scope));
                 self.end_owner(Fate::Failed(error));
                 self.motion = Motion::Hold;
-                self.enter(AxisEvent::MotionDone);
+                // No arrow leads from ContinuousMotion to Standstill but by way of a halt.
+                let is_endless = self.state == AxisState::ContinuousMotion;
+                if !is_endless {
+                    self.enter(AxisEvent::MotionDone);
+                }
                 self.hand_over(self.setpoint.position, scope);
-                if self.owner.is_none() && self.state == AxisState::ContinuousMotion {
-                    // No arrow leads from there to Standstill but by way of a halt.
+                if self.owner.is_none() && is_endless {
                     self.halt_after(&owner, scope);
                 }
             }
