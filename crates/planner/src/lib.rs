@@ -15,6 +15,7 @@
 extern crate std;
 
 mod error;
+mod gear;
 pub mod grid;
 pub mod kernel;
 mod limits;
@@ -29,6 +30,7 @@ mod sum;
 pub mod turns;
 
 pub use error::{Field, PlanError};
+pub use gear::{Anchor, Gear, Place};
 pub use grid::{GridPlan, Method, UnequalPlan};
 pub use limits::{Limits, Order};
 pub use online::{OnlinePlan, Passage, Rung};

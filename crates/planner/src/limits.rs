@@ -158,8 +158,12 @@ impl Limits {
         let way = distance.abs() + speed * (settled + stopped);
         let reached = speed + (2.0 * sqrt(lower) * sqrt(way)).min(way / (SOONEST * cycle));
         let reached = if distance == 0.0 { speed } else { reached };
+        // Where a state of almost no speed settles sooner than bounds are reached at all, the bounds that follow from the
+        // speed are not below the state's own acceleration and jerk.
+        let soonest = SOONEST * cycle;
+        let least = soonest * (steepest + soonest * start.jerk.abs());
         let velocity = if reached > 0.0 {
-            self.velocity.min(REACH * reached)
+            self.velocity.min(REACH * reached.max(least))
         } else {
             self.velocity
         };

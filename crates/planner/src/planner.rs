@@ -3,7 +3,7 @@
 use crate::grid::Family;
 use crate::{
     Excess, GridPlan, Limits, Method, OnlinePlan, Passage, PlanError, ProfileFault, ProfileKind, ProfilePlan,
-    ProfilePoint, RampPlan, Rung, SampledPlan, Segment, Setpoint, UnequalPlan, online, sum,
+    ProfilePoint, RampPlan, Rung, SampledPlan, Segment, Setpoint, UnequalPlan, online, ramp, sum,
 };
 
 /// Plans moves for an axis.
@@ -112,6 +112,45 @@ pub trait Planner {
 
     /// How far (u) the rest of a plan moves up and how far down, up to its goal.
     fn ways(&self, rest: (&Self::Plan, u64)) -> (f64, f64);
+
+    /// Whether the rest of a master's plan, its derivatives times `factor`, and what a slave moves beside keep `limits` together
+    /// from now on, and nothing jumps whose derivative they bound; `now` is the sum as published. A planner that can't tell says no: its slaves are then looked after scan by scan.
+    fn fits_behind(
+        &self,
+        _master: (&Self::Plan, u64),
+        _factor: f64,
+        _now: &Setpoint,
+        _beside: Option<(&Self::Plan, u64)>,
+        _limits: &Limits,
+    ) -> bool {
+        false
+    }
+
+    /// The lowest and the highest velocity (u/s) of what [`Planner::fits_behind`] looks at; `None` where they are not known.
+    fn velocities_behind(
+        &self,
+        _master: (&Self::Plan, u64),
+        _factor: f64,
+        _beside: (&Self::Plan, u64),
+    ) -> Option<(f64, f64)> {
+        None
+    }
+
+    /// The next stretch of constant velocity of the rest of a plan: the scans of the plan at which it begins and ends, the
+    /// largest number if it has no end. `None` where that is not known.
+    fn stretch(&self, _rest: (&Self::Plan, u64)) -> Option<(u64, u64)> {
+        None
+    }
+
+    /// The largest magnitudes of the derivatives of the rest of a plan; `None` where they are not known.
+    fn peaks(&self, _rest: (&Self::Plan, u64)) -> Option<Setpoint> {
+        None
+    }
+
+    /// The velocity (u/s) that `start` comes to once its acceleration and jerk are zero as soon as `limits` allow.
+    fn coasting(&self, start: &Setpoint, _limits: &Limits) -> f64 {
+        start.velocity
+    }
 }
 
 /// How the moves of an axis to a position are planned (docs/planner.md, section 13).
@@ -445,6 +484,38 @@ impl Planner for Standard {
 
     fn ways(&self, rest: (&StandardPlan, u64)) -> (f64, f64) {
         sum::ways(rest, self.cycle)
+    }
+
+    fn fits_behind(
+        &self,
+        master: (&StandardPlan, u64),
+        factor: f64,
+        now: &Setpoint,
+        beside: Option<(&StandardPlan, u64)>,
+        limits: &Limits,
+    ) -> bool {
+        sum::fits_behind(master, factor, now, beside, limits, self.cycle)
+    }
+
+    fn velocities_behind(
+        &self,
+        master: (&StandardPlan, u64),
+        factor: f64,
+        beside: (&StandardPlan, u64),
+    ) -> Option<(f64, f64)> {
+        sum::velocities_behind(master, factor, beside, self.cycle)
+    }
+
+    fn stretch(&self, rest: (&StandardPlan, u64)) -> Option<(u64, u64)> {
+        sum::stretch(rest, self.cycle)
+    }
+
+    fn peaks(&self, rest: (&StandardPlan, u64)) -> Option<Setpoint> {
+        sum::peaks(rest, self.cycle)
+    }
+
+    fn coasting(&self, start: &Setpoint, limits: &Limits) -> f64 {
+        ramp::coasting(start, limits, self.cycle)
     }
 }
 

@@ -35,6 +35,19 @@ impl Setpoint {
         self.velocity == 0.0 && self.acceleration == 0.0 && self.jerk == 0.0
     }
 
+    /// The sum of both: what is published where one motion is beside another.
+    #[inline]
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            position: self.position + other.position,
+            velocity: self.velocity + other.velocity,
+            acceleration: self.acceleration + other.acceleration,
+            jerk: self.jerk + other.jerk,
+            snap: self.snap + other.snap,
+        }
+    }
+
     /// Position and derivatives in order. What a function out of line gives back as numbers, its caller can keep
     /// in registers; a set-point it would keep in memory, along with those it computed itself.
     #[inline]

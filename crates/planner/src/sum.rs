@@ -15,6 +15,9 @@ const MAX_SWITCHES: usize = 96;
 /// to the same scan end do not coincide to the bit.
 const GRAIN: f64 = 1e-9;
 
+/// What changes at once by this part of what it may change by in a cycle does so by rounding.
+const JUMP: f64 = 1e-6;
+
 /// How far a turning point may lie beyond the end of a range, relative to its numbers: rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -30,15 +33,23 @@ struct Walk<I> {
     left: f64,
     /// Velocity from the end of the plan on (u/s).
     goal: f64,
+    /// What its derivatives are multiplied by: those of a plan seen through a gear, else 1.
+    factor: f64,
 }
 
 impl<I: Iterator<Item = Segment>> Walk<I> {
-    fn new(segments: I, (plan, elapsed): Part<'_>, cycle: f64) -> Self {
+    fn new(segments: I, part: Part<'_>, cycle: f64) -> Self {
+        Self::geared(segments, part, 1.0, cycle)
+    }
+
+    /// Its derivatives times `factor`; the position is that of the plan.
+    fn geared(segments: I, (plan, elapsed): Part<'_>, factor: f64, cycle: f64) -> Self {
         let mut walk = Self {
             segments,
             state: Setpoint::default(),
             left: 0.0,
-            goal: plan.at(u64::from(plan.scans())).velocity,
+            goal: factor * plan.at(u64::from(plan.scans())).velocity,
+            factor,
         };
         walk.turn();
         let mut skip = elapsed as f64 * cycle;
@@ -69,10 +80,10 @@ impl<I: Iterator<Item = Segment>> Walk<I> {
                 segment.duration,
                 Setpoint {
                     position,
-                    velocity: segment.velocity,
-                    acceleration: segment.acceleration,
-                    jerk: segment.jerk,
-                    snap: segment.snap,
+                    velocity: self.factor * segment.velocity,
+                    acceleration: self.factor * segment.acceleration,
+                    jerk: self.factor * segment.jerk,
+                    snap: self.factor * segment.snap,
                 },
             ),
             None => (
@@ -89,16 +100,6 @@ impl<I: Iterator<Item = Segment>> Walk<I> {
         self.state = moved(&self.state, time);
         self.left -= time;
         self.turn();
-    }
-}
-
-fn sum(a: &Setpoint, b: &Setpoint) -> Setpoint {
-    Setpoint {
-        position: a.position + b.position,
-        velocity: a.velocity + b.velocity,
-        acceleration: a.acceleration + b.acceleration,
-        jerk: a.jerk + b.jerk,
-        snap: a.snap + b.snap,
     }
 }
 
@@ -139,7 +140,7 @@ pub(crate) fn fits(
     let mut two = Walk::new(second.0.segments(), second, cycle);
     let mut room = range.map(|range| Room::of(range, first, second));
     for _ in 0..MAX_SWITCHES {
-        let state = sum(&one.state, &two.state);
+        let state = one.state.plus(&two.state);
         let length = if one.left < two.left { one.left } else { two.left };
         if !length.is_finite() {
             return state.velocity.abs() <= limits.velocity * (1.0 + ROUNDING);
@@ -151,6 +152,126 @@ pub(crate) fn fits(
         two.go(length);
     }
     false
+}
+
+/// Whether the rest of a master's plan, its derivatives times `factor`, and what a slave moves beside keep `limits` together
+/// from now on. On a curve through points that is not known, and so it does not fit.
+///
+/// What jumps where `limits` bound its derivative does not fit; `now` is what was published of both for this instant.
+///
+/// Limits hold to 1e-9 of each. Bounded by [`MAX_SWITCHES`] pieces with at most two roots each.
+pub(crate) fn fits_behind(
+    master: Part<'_>,
+    factor: f64,
+    now: &Setpoint,
+    beside: Option<Part<'_>>,
+    limits: &Limits,
+    cycle: f64,
+) -> bool {
+    if is_curve(master) || beside.is_some_and(is_curve) {
+        return false;
+    }
+    let mut one = Walk::geared(master.0.segments(), master, factor, cycle);
+    let mut two = beside.map(|part| Walk::new(part.0.segments(), part, cycle));
+    let mut last = *now;
+    for _ in 0..MAX_SWITCHES {
+        let (state, left) = match &two {
+            Some(two) => (one.state.plus(&two.state), two.left),
+            None => (one.state, f64::INFINITY),
+        };
+        if !is_continuous(&last, &state, limits, cycle) {
+            return false;
+        }
+        let length = if one.left < left { one.left } else { left };
+        if !length.is_finite() {
+            return state.velocity.abs() <= limits.velocity * (1.0 + ROUNDING);
+        }
+        if length > GRAIN * cycle && !piece_fits(&state, length, limits, None) {
+            return false;
+        }
+        last = moved(&state, length);
+        one.go(length);
+        if let Some(two) = &mut two {
+            two.go(length);
+        }
+    }
+    false
+}
+
+/// The lowest and the highest velocity of the rest of a master's plan, its derivatives times `factor`, and of what a slave moves
+/// beside, together. `None` on a curve through points. Bounded by [`MAX_SWITCHES`] pieces with at most two roots each.
+pub(crate) fn velocities_behind(
+    master: Part<'_>,
+    factor: f64,
+    beside: Part<'_>,
+    cycle: f64,
+) -> Option<(f64, f64)> {
+    if is_curve(master) || is_curve(beside) {
+        return None;
+    }
+    let mut one = Walk::geared(master.0.segments(), master, factor, cycle);
+    let mut two = Walk::new(beside.0.segments(), beside, cycle);
+    let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for _ in 0..MAX_SWITCHES {
+        let state = one.state.plus(&two.state);
+        let mut see = |velocity: f64| {
+            lowest = lowest.min(velocity);
+            highest = highest.max(velocity);
+        };
+        see(state.velocity);
+        let length = if one.left < two.left { one.left } else { two.left };
+        if !length.is_finite() {
+            return Some((lowest, highest));
+        }
+        if length > GRAIN * cycle {
+            let piece = core::iter::once((length, state.snap));
+            let path = Path::<1>::follow(Order::Four, &state, f64::INFINITY, piece);
+            path.extremes(f64::INFINITY, |state, _| see(state.velocity));
+        }
+        one.go(length);
+        two.go(length);
+    }
+    None
+}
+
+/// Whether nothing jumps from one state to the next whose derivative is bounded.
+fn is_continuous(last: &Setpoint, next: &Setpoint, limits: &Limits, cycle: f64) -> bool {
+    let keeps =
+        |last: f64, next: f64, bound: f64| !bound.is_finite() || (next - last).abs() <= JUMP * bound * cycle;
+    // In a scan no jerk comes further than the snap takes it.
+    let jerk = limits.jerk.min(limits.snap * cycle);
+    keeps(last.acceleration, next.acceleration, jerk) && keeps(last.jerk, next.jerk, limits.snap)
+}
+
+/// The next stretch of constant velocity of a plan, at or after `elapsed`: the scans of the plan at which it begins and ends,
+/// the largest number if it has no end. `None` on a curve through points.
+///
+/// Bounded by [`MAX_SWITCHES`] pieces.
+pub(crate) fn stretch((plan, elapsed): Part<'_>, cycle: f64) -> Option<(u64, u64)> {
+    if is_curve((plan, elapsed)) {
+        return None;
+    }
+    let mut time = 0.0;
+    let mut walk = Walk::new(plan.segments(), (plan, elapsed), cycle);
+    for _ in 0..MAX_SWITCHES {
+        let state = &walk.state;
+        let is_even = state.acceleration == 0.0 && state.jerk == 0.0 && state.snap == 0.0;
+        let begin = elapsed.saturating_add(u64::from(crate::ramp::scans(time, cycle)?));
+        if !walk.left.is_finite() {
+            return Some((
+                begin.max(elapsed).min(u64::from(plan.scans()).max(elapsed)),
+                u64::MAX,
+            ));
+        }
+        // The scan before the one in which it ends is the last that is all in it.
+        let end = elapsed.saturating_add(((time + walk.left) / cycle * (1.0 + GRAIN)) as u64);
+        if is_even && end > begin {
+            return Some((begin, end));
+        }
+        time += walk.left;
+        walk.go(walk.left);
+    }
+    None
 }
 
 /// Where a sum may turn.
@@ -223,7 +344,7 @@ fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, room: Option<&mut 
 /// A motion within it keeps `limits` together with the plan whatever their times. Bounded by
 /// [`MAX_SWITCHES`] pieces.
 pub(crate) fn room(part: Part<'_>, limits: &Limits, cycle: f64) -> Limits {
-    if is_curve(part) {
+    let Some(peak) = peaks(part, cycle) else {
         return Limits {
             velocity: 0.0,
             acceleration: 0.0,
@@ -231,6 +352,29 @@ pub(crate) fn room(part: Part<'_>, limits: &Limits, cycle: f64) -> Limits {
             jerk: 0.0,
             snap: 0.0,
         };
+    };
+    let less = |limit: f64, peak: f64| {
+        let rest = limit - peak;
+        if rest > ROUNDING * limit || rest == f64::INFINITY {
+            rest
+        } else {
+            0.0
+        }
+    };
+    Limits {
+        velocity: less(limits.velocity, peak.velocity),
+        acceleration: less(limits.acceleration, peak.acceleration),
+        deceleration: less(limits.deceleration, peak.acceleration),
+        jerk: less(limits.jerk, peak.jerk),
+        snap: less(limits.snap, peak.snap),
+    }
+}
+
+/// The largest magnitudes of the derivatives of the rest of a plan; `None` on a curve through points. Bounded by
+/// [`MAX_SWITCHES`] pieces.
+pub(crate) fn peaks(part: Part<'_>, cycle: f64) -> Option<Setpoint> {
+    if is_curve(part) {
+        return None;
     }
     let mut walk = Walk::new(part.0.segments(), part, cycle);
     let mut peak = Setpoint {
@@ -257,21 +401,7 @@ pub(crate) fn room(part: Part<'_>, limits: &Limits, cycle: f64) -> Limits {
         }
         walk.go(walk.left);
     }
-    let less = |limit: f64, peak: f64| {
-        let rest = limit - peak;
-        if rest > ROUNDING * limit || rest == f64::INFINITY {
-            rest
-        } else {
-            0.0
-        }
-    };
-    Limits {
-        velocity: less(limits.velocity, peak.velocity),
-        acceleration: less(limits.acceleration, peak.acceleration),
-        deceleration: less(limits.deceleration, peak.acceleration),
-        jerk: less(limits.jerk, peak.jerk),
-        snap: less(limits.snap, peak.snap),
-    }
+    Some(peak)
 }
 
 /// The first scan after `elapsed` at or after the end of the piece in force at `elapsed`; `elapsed` itself

@@ -2,7 +2,7 @@
 
 mod grid_support;
 
-use grid_support::{Digest, Move, Random, limits, power, vector_move, vectors};
+use grid_support::{Digest, Move, Random, limits, power, servo, vector_move, vectors};
 use standstill_planner::grid::Euler;
 use standstill_planner::{GridPlan, Limits, Method, Order, Setpoint};
 
@@ -15,7 +15,7 @@ fn plans(seed: u64, count: usize, longest: u32) -> Vec<(Move, GridPlan)> {
         .iter()
         .filter(|vector| vector.get("error").is_none())
         .map(vector_move)
-        .chain((0..count).map(|_| random.servo()))
+        .chain((0..count).map(|_| servo(&mut random)))
         .collect::<Vec<_>>();
     let mut plans = Vec::new();
     for request in moves {
@@ -365,7 +365,7 @@ fn segments_add_up_to_the_move() {
 fn methods_are_ordered() {
     let mut random = Random(8);
     for _ in 0..3000 {
-        let request = random.servo();
+        let request = servo(&mut random);
         let [sequential, grid, overlapped] = METHODS.map(|method| request.plan(method).expect("valid"));
         assert!(overlapped.scans() <= grid.scans(), "{request:?}");
         assert!(grid.scans() <= sequential.scans(), "{request:?}");
@@ -387,7 +387,7 @@ fn fewest_scans_are_monotone() {
     for _ in 0..1000 {
         let request = Move {
             start: 0.0,
-            ..random.servo()
+            ..servo(&mut random)
         };
         for method in [Method::Grid, Method::Overlapped] {
             let scans = request.plan(method).expect("valid").scans();
@@ -425,7 +425,7 @@ fn scaling_by_powers_of_two_changes_no_box() {
     for _ in 0..1000 {
         let request = Move {
             start: 0.0,
-            ..random.servo()
+            ..servo(&mut random)
         };
         let length = power(2.0, random.below(41)) / power(2.0, 20);
         let time = power(2.0, random.below(21)) / power(2.0, 10);
@@ -461,7 +461,7 @@ fn scaling_by_powers_of_two_changes_no_box() {
 fn a_mirrored_move_is_the_exact_negative() {
     let mut random = Random(11);
     for _ in 0..300 {
-        let request = random.servo();
+        let request = servo(&mut random);
         let mirrored = Move {
             start: -request.start,
             target: -request.target,

@@ -3,7 +3,7 @@
 
 mod grid_support;
 
-use grid_support::{Move, Random, limits};
+use grid_support::{Move, Random, limits, servo};
 use standstill_planner::grid::Work;
 use standstill_planner::{GridPlan, Limits, Method};
 
@@ -22,7 +22,7 @@ fn random_moves_never_fail_overshoot_or_break_a_bound() {
     let mut samples = 0_u64;
     let mut longest = 0;
     for round in 0..rounds() {
-        let request = random.servo();
+        let request = servo(&mut random);
         let Move {
             start,
             target,

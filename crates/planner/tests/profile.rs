@@ -4,6 +4,7 @@
 use standstill_planner::{
     Limits, PROFILE_POINTS, ProfileCause, ProfileKind, ProfilePlan, ProfilePoint, Setpoint,
 };
+use standstill_testkit::Random;
 
 const FREE: Limits = Limits {
     velocity: 1e9,
@@ -15,16 +16,6 @@ const FREE: Limits = Limits {
 
 /// Fine enough to see everything, and a divisor of every time below.
 const CYCLE: f64 = 1.0 / 1024.0;
-
-/// Numbers in [0, 1), the same on every run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
 
 fn points(values: &[(f64, f64)]) -> Vec<ProfilePoint> {
     let mut time = 0.0;
@@ -54,23 +45,23 @@ const KINDS: [ProfileKind; 3] = [
 ];
 
 fn random_points(random: &mut Random) -> Vec<ProfilePoint> {
-    let count = 1 + (random.next() * 12.0) as usize;
+    let count = 1 + (random.unit() * 12.0) as usize;
     let mut time = 0.0;
     (0..count)
         .map(|_| {
             // A multiple of the cycle, so that each point is at a scan end.
-            time += f64::from(1 + (random.next() * 300.0) as u32) * CYCLE;
+            time += f64::from(1 + (random.unit() * 300.0) as u32) * CYCLE;
             ProfilePoint {
                 time,
-                value: random.next() * 20.0 - 10.0,
-                level: random.next() < 0.2,
+                value: random.unit() * 20.0 - 10.0,
+                level: random.unit() < 0.2,
             }
         })
         .collect()
 }
 
 fn random_start(random: &mut Random) -> Setpoint {
-    let mut signed = |most: f64| (random.next() * 2.0 - 1.0) * most;
+    let mut signed = |most: f64| (random.unit() * 2.0 - 1.0) * most;
     Setpoint {
         position: signed(10.0),
         velocity: signed(5.0),

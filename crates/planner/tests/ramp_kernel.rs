@@ -4,37 +4,7 @@ use standstill_planner::kernel::{
     Bounds, MAX_STEPS, Point, Profile, Sides, falling_root, second, third, zero,
 };
 use standstill_planner::math::cbrt;
-
-/// splitmix64, as a number in 0..1.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn signed(&mut self) -> f64 {
-        2.0 * self.unit() - 1.0
-    }
-
-    fn log(&mut self, low: f64, high: f64) -> f64 {
-        // Every binary digit of a uniform exponent by a square root: no logarithm, the same everywhere.
-        let (mut value, mut root, mut exponent) = (low, high / low, self.unit());
-        for _ in 0..20 {
-            root = root.sqrt();
-            exponent *= 2.0;
-            if exponent >= 1.0 {
-                value *= root;
-                exponent -= 1.0;
-            }
-        }
-        value
-    }
-}
+use standstill_testkit::Random;
 
 #[derive(Debug)]
 struct Case {
@@ -69,14 +39,14 @@ fn case(random: &mut Random, outside: f64) -> Case {
         }
     };
     let (v, a) = (
-        side(bounds.v, outside * random.signed()),
-        side(bounds.a, outside * random.signed()),
+        side(bounds.v, outside * random.between(-1.0, 1.0)),
+        side(bounds.a, outside * random.between(-1.0, 1.0)),
     );
     Case {
-        x: random.signed(),
+        x: random.between(-1.0, 1.0),
         v,
         a,
-        target: random.signed() * random.log(1e-6, 1e3),
+        target: random.between(-1.0, 1.0) * random.log(1e-6, 1e3),
         bounds,
     }
 }
@@ -159,8 +129,8 @@ fn where_every_bound_is_just_touched_it_arrives() {
     for _ in 0..60_000 {
         let near = |random: &mut Random| match (3.0 * random.unit()) as u32 {
             0 => 1.0,
-            1 => 1.0 + random.signed() * random.log(1e-16, 1e-6),
-            _ => 1.0 + 1e-9 * random.signed(),
+            1 => 1.0 + random.between(-1.0, 1.0) * random.log(1e-16, 1e-6),
+            _ => 1.0 + 1e-9 * random.between(-1.0, 1.0),
         };
         // A jerk up and down again reaches `rate * rate`, and twice that the distance.
         let rate = random.log(0.1, 10.0);
@@ -262,8 +232,8 @@ fn a_zero_needs_no_cap() {
     for case in 0..20_000 {
         let root = match case % 3 {
             0 => 0.0,
-            1 => random.signed() * random.log(1e-300, 1.0),
-            _ => random.signed(),
+            1 => random.between(-1.0, 1.0) * random.log(1e-300, 1.0),
+            _ => random.between(-1.0, 1.0),
         };
         let (up, down) = (random.log(1e-12, 1.0), random.log(1e-12, 1.0));
         let function = |at: f64| Point {

@@ -2,7 +2,7 @@
 
 mod grid_support;
 
-use grid_support::{Digest, Move, Random, power};
+use grid_support::{Digest, Move, Random, power, servo};
 use standstill_planner::grid::Family;
 use standstill_planner::{Field, Limits, Method, OnlinePlan, Order, PlanError, Setpoint, UnequalPlan};
 
@@ -24,7 +24,7 @@ fn try_plan(request: &Move, family: Family) -> Result<UnequalPlan, PlanError> {
 
 /// A servo-like move whose rates differ up to 6 times.
 fn unequal(random: &mut Random) -> Move {
-    let mut request = random.servo();
+    let mut request = servo(random);
     let limits = &mut request.limits;
     if limits.acceleration.is_infinite() {
         limits.acceleration = limits.velocity * random.log(1.0, 300.0);

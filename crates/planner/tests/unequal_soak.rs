@@ -3,7 +3,7 @@
 
 mod grid_support;
 
-use grid_support::{Move, Random};
+use grid_support::{Move, Random, servo};
 use standstill_planner::grid::{Family, UnequalWork};
 use standstill_planner::{Limits, Method, UnequalPlan};
 
@@ -20,7 +20,7 @@ fn rounds() -> u64 {
 /// A servo-like move whose deceleration is 0.2 to 5 times the acceleration, now and then 1000 times more or
 /// less.
 fn unequal(random: &mut Random) -> Move {
-    let mut request = random.servo();
+    let mut request = servo(random);
     let limits = &mut request.limits;
     if limits.acceleration.is_infinite() {
         limits.acceleration = limits.velocity * random.log(1.0, 300.0);

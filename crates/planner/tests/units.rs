@@ -4,7 +4,7 @@
 
 mod grid_support;
 
-use grid_support::{Move, Random, limits};
+use grid_support::{Move, Random, limits, servo};
 use standstill_planner::papers::{Profile, SCurve, ShortPath, ShortPathPolicy, Timed, Tracking, Trapezoid};
 use standstill_planner::{Limits, Method, Setpoint};
 
@@ -32,7 +32,7 @@ fn grid_plans_have_the_same_scans() {
     for _ in 0..1000 {
         let one = Move {
             start: 0.0,
-            ..random.servo()
+            ..servo(&mut random)
         };
         for unit in UNITS {
             let other = Move {

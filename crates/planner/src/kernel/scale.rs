@@ -40,6 +40,15 @@ impl Scale {
         scaled
     }
 
+    /// A value of the kernel, `levels` (at most 4) integrations above the input, in the user's unit.
+    pub(crate) fn outward_value(&self, value: f64, levels: u32) -> f64 {
+        let mut scaled = value * self.input;
+        for _ in 0..levels.min(4) {
+            scaled *= self.time;
+        }
+        scaled
+    }
+
     /// A duration of the kernel in seconds.
     pub const fn seconds(&self, duration: f64) -> f64 {
         duration * self.time

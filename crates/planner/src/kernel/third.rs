@@ -70,7 +70,9 @@ pub fn third(x: f64, v: f64, a: f64, target: f64, bounds: &Bounds) -> Profile {
     let stop = second(v, a, 0.0, bounds.a);
     let gap = distance - start.after_all(&stop).x;
     let t = stop.duration();
-    let added_up = x.abs() + target.abs() + t * (v.abs() + t * (a.abs() + t));
+    // What the input makes of `a` is no more than twice its bound, however long the stop takes.
+    let changed = t.min(a.abs() + 2.0 * bounds.a.plus.max(bounds.a.minus));
+    let added_up = x.abs() + target.abs() + t * (v.abs() + t * (a.abs() + changed));
     if gap.abs() <= NOISE * added_up {
         let mut spans = Spans::new();
         spans.extend(&stop);

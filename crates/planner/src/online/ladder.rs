@@ -10,6 +10,9 @@ use crate::ramp::solve::{RAMP_SPANS, Ramps};
 use crate::ramp::{is_there, scans};
 use crate::{Field, Limits, Order, PlanError, Setpoint};
 
+/// By how much a limit may be exceeded by what closes a plan on its target: half of what the contract grants.
+const UNSEEN: f64 = 0.5e-9;
+
 /// The way a plan was found, best first. A plan of a later rung is longer, not less exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rung {
@@ -89,6 +92,9 @@ struct Climb<'a> {
     start: Setpoint,
     distance: f64,
     end_velocity: f64,
+    cycle: f64,
+    /// How far apart (u) the positions of a scan may be for rounding alone.
+    resolved: f64,
     limits: &'a Limits,
     /// What can't be avoided, once it had to be known.
     unavoidable: Option<Excess>,
@@ -132,6 +138,8 @@ impl OnlinePlan {
             start: origin,
             distance,
             end_velocity,
+            cycle,
+            resolved: f64::EPSILON * (start.position.abs() + target.abs()),
             limits,
             unavoidable: None,
         };
@@ -185,12 +193,25 @@ impl Climb<'_> {
         let way = self.limits.velocity.max(self.start.velocity.abs()) * path.duration();
         let arrives = found.residual.abs() <= ON_LIMIT * way + NOISE * self.distance.abs()
             && (end.velocity - self.end_velocity).abs() <= ON_LIMIT * self.limits.velocity;
-        if !arrives {
+        let moving = scans(path.duration(), self.cycle).map_or(0.0, f64::from);
+        found.is_rounding = found.residual.abs() <= self.resolved * moving;
+        if !arrives || !(found.is_rounding || self.closes_gently(found.residual, path.duration())) {
             return false;
         }
         found.excess = excess::excess(path, self.end_velocity, None, self.limits);
         // There is nothing after the last rung.
         found.rung == Rung::Brake || found.excess.is_none_or(|excess| self.is_unavoidable(&excess))
+    }
+
+    /// Whether what spreads `residual` (u) over `duration` (s) takes no more than a part of each limit that nobody sees: the
+    /// most of the derivatives of the share (O9). Roots are not looked for beyond the noise of their positions.
+    fn closes_gently(&self, residual: f64, duration: f64) -> bool {
+        let (limits, residual) = (self.limits, residual.abs());
+        let square = duration * duration;
+        residual <= NOISE / f64::EPSILON * self.resolved
+            || (5.8 * residual <= UNSEEN * limits.lower_acceleration() * square
+                && 60.0 * residual <= UNSEEN * limits.jerk * (square * duration)
+                && 360.0 * residual <= UNSEEN * limits.snap * (square * square))
     }
 
     /// Whether a stop at once, or getting inside the limits as soon as can be, exceeds the limits as much.
@@ -257,6 +278,7 @@ impl Climb<'_> {
         let begin = scans(path.duration(), cycle).ok_or(too_long)?;
         found.excess = excess::excess(path, 0.0, None, self.limits);
         found.residual = 0.0;
+        found.is_rounding = true;
         found.tail = Some(Tail {
             grid: grid_from(rest, target, self.limits, cycle).map_err(|_| too_long)?,
             begin,

@@ -143,8 +143,6 @@ impl OnlinePlan {
         let moving = ramp::scans(plan.found.path.duration(), cycle).ok_or(too_long)?;
         // Both counts are below 2^31, so the sum fits.
         plan.scans = moving + plan.found.tail.map_or(0, |tail| tail.grid.scans());
-        let resolved = f64::EPSILON * (start.position.abs() + target.abs());
-        plan.found.is_rounding = plan.found.residual.abs() <= resolved * f64::from(moving);
         Ok(plan)
     }
 

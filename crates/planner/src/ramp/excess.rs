@@ -141,18 +141,8 @@ fn beyond(over: f64, bound: f64, within: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::Setpoint;
+    use standstill_testkit::Random;
     use std::vec::Vec;
-
-    /// A linear congruential generator.
-    struct Random(u64);
-
-    impl Random {
-        /// Evenly between -1 and 1.
-        fn unit(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        }
-    }
 
     #[test]
     fn what_is_surely_within_bounds_has_no_peak_beyond_them() {
@@ -162,24 +152,24 @@ mod tests {
             let order = [Order::Two, Order::Three, Order::Four][case % 3];
             let start = Setpoint {
                 position: 0.0,
-                velocity: random.unit(),
-                acceleration: random.unit(),
-                jerk: random.unit(),
+                velocity: random.between(-1.0, 1.0),
+                acceleration: random.between(-1.0, 1.0),
+                jerk: random.between(-1.0, 1.0),
                 snap: 0.0,
             };
             let mut path = Path::<5>::new(order);
-            let inputs = [-1.0, 0.0, 1.0, random.unit()];
+            let inputs = [-1.0, 0.0, 1.0, random.between(-1.0, 1.0)];
             let spans: Vec<(f64, f64)> = (0..1 + case % 5)
                 .map(|_| {
                     (
-                        1.0 + random.unit(),
-                        inputs[(2.0 + 2.0 * random.unit()) as usize % 4],
+                        1.0 + random.between(-1.0, 1.0),
+                        inputs[(2.0 + 2.0 * random.between(-1.0, 1.0)) as usize % 4],
                     )
                 })
                 .collect();
             let end = path.fill(&start, f64::INFINITY, spans.into_iter());
             let peaks = peaks(&path, end.velocity);
-            let mut bound = |peak: f64| peak * (1.0 + 0.3 * random.unit() + 1e-12);
+            let mut bound = |peak: f64| peak * (1.0 + 0.3 * random.between(-1.0, 1.0) + 1e-12);
             let bounds = [peaks.velocity, peaks.acceleration, peaks.jerk].map(&mut bound);
             let [velocity, acceleration, jerk] = bounds;
             let is_inside =

@@ -359,6 +359,14 @@ impl RampPlan {
     }
 }
 
+/// The velocity (u/s) that `start` comes to once its acceleration and jerk are zero as soon as `limits` allow, in
+/// magnitude at most that of `limits`.
+pub(crate) fn coasting(start: &Setpoint, limits: &Limits, cycle: f64) -> f64 {
+    let acting = limits.acting_for(start, start.velocity, 0.0, cycle);
+    let velocity = Ramps::new(&acting, &acting).coasting(start);
+    velocity.max(-limits.velocity).min(limits.velocity)
+}
+
 pub(crate) fn check(
     start: &Setpoint,
     velocity: f64,

@@ -245,8 +245,8 @@ impl<const N: usize> Path<N> {
             .map(|(piece, place)| moved(&piece.state, place.since(time)))
     }
 
-    /// As [`Path::at`] with the part of the whole duration that is over, for one who asks again and again for times not far apart, above 0: the piece is looked for
-    /// where it changes only.
+    /// As [`Path::at`] with the part of the whole duration that is over, for one who asks again and again for times not far
+    /// apart, above 0: the piece is looked for where it changes only.
     #[inline(always)]
     pub(crate) fn next(&mut self, time: f64) -> Option<(Setpoint, f64)> {
         if !self.is_current(time) {

@@ -195,6 +195,15 @@ impl Ramps {
         }
     }
 
+    /// The same for a start in the user's units, and in them.
+    pub(crate) fn coasting(&self, start: &Setpoint) -> f64 {
+        if start.acceleration == 0.0 && start.jerk == 0.0 {
+            return start.velocity;
+        }
+        let arrested = self.arrested(&self.state_inward(start));
+        self.scale.outward_value(arrested, levels(self.order, 1))
+    }
+
     /// Whether a ramp that changes its direction has different bounds on both sides of zero.
     fn splits(&self, course: Course) -> bool {
         course == Course::Free && self.acceleration != self.deceleration

@@ -3,6 +3,7 @@
 
 use serde_json::Value;
 use standstill_planner::{GridPlan, Limits, Method, PlanError, Setpoint};
+pub use standstill_testkit::Random;
 
 /// One move to plan.
 #[derive(Clone, Copy, Debug)]
@@ -74,70 +75,38 @@ pub fn power(x: f64, exponent: u64) -> f64 {
     (0..exponent).fold(1.0, |product, _| product * x)
 }
 
-/// The generator splitmix64: small, seeded, the same everywhere.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// From 0 to below 1.
-    pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub fn below(&mut self, bound: u64) -> u64 {
-        self.bits() % bound
-    }
-
-    /// Log-uniform, up to the error of a crude exponential that needs no math library.
-    pub fn log(&mut self, low: f64, high: f64) -> f64 {
-        let mut x = low;
-        let mut factor = high / low;
-        // Halve the exponent of the range 40 times, multiplying in a random half of the pieces.
-        for _ in 0..40 {
-            factor = factor.sqrt();
-            if self.bits() & 1 == 1 {
-                x *= factor;
-            }
-        }
-        x
-    }
-
-    /// A servo-like move of order 4, 3 or 2, mostly 4.
-    pub fn servo(&mut self) -> Move {
-        let velocity = self.log(0.01, 10.0);
-        let acceleration = velocity * self.log(1.0, 300.0);
-        let jerk = acceleration * self.log(1.0, 1000.0);
-        let snap = jerk * self.log(1.0, 3000.0);
-        let distance = velocity * self.log(1e-4, 10.0);
-        let absent = f64::INFINITY;
-        let kind = self.below(16);
-        let limits = match kind {
-            0 | 1 => limits(velocity, acceleration, jerk, absent),
-            2 => limits(velocity, acceleration, absent, absent),
-            3 => limits(absent, acceleration, jerk, snap),
-            4 => limits(velocity, absent, jerk, snap),
-            5 => limits(velocity, acceleration, absent, snap),
-            _ => limits(velocity, acceleration, jerk, snap),
-        };
-        let start = match self.below(3) {
-            0 => 0.0,
-            1 => self.log(1e-3, 1e3),
-            _ => -self.log(1e-3, 1e3),
-        };
-        let distance = if self.bits() & 1 == 1 { distance } else { -distance };
-        Move {
-            start,
-            target: start + distance,
-            limits,
-            cycle: self.log(1e-4, 1e-2),
-        }
+/// A servo-like move of order 4, 3 or 2, mostly 4.
+pub fn servo(random: &mut Random) -> Move {
+    let velocity = random.log(0.01, 10.0);
+    let acceleration = velocity * random.log(1.0, 300.0);
+    let jerk = acceleration * random.log(1.0, 1000.0);
+    let snap = jerk * random.log(1.0, 3000.0);
+    let distance = velocity * random.log(1e-4, 10.0);
+    let absent = f64::INFINITY;
+    let kind = random.below(16);
+    let limits = match kind {
+        0 | 1 => limits(velocity, acceleration, jerk, absent),
+        2 => limits(velocity, acceleration, absent, absent),
+        3 => limits(absent, acceleration, jerk, snap),
+        4 => limits(velocity, absent, jerk, snap),
+        5 => limits(velocity, acceleration, absent, snap),
+        _ => limits(velocity, acceleration, jerk, snap),
+    };
+    let start = match random.below(3) {
+        0 => 0.0,
+        1 => random.log(1e-3, 1e3),
+        _ => -random.log(1e-3, 1e3),
+    };
+    let distance = if random.bits() & 1 == 1 {
+        distance
+    } else {
+        -distance
+    };
+    Move {
+        start,
+        target: start + distance,
+        limits,
+        cycle: random.log(1e-4, 1e-2),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::support::{
     Random, bounds, case, case_bounds, cases, close, cube_root, integrated_until, number, numbers,
-    same_profile,
+    random_bounds, same_profile,
 };
 use serde_json::Value;
 use standstill_planner::papers::{SCurve, ShortPath, ShortPathPolicy, Timed, Tracking, Trapezoid};
@@ -146,7 +146,7 @@ fn the_static_formula_with_its_missing_bound_is_the_s_curve() {
     }
     let mut random = Random(0x2A06);
     for _ in 0..2000 {
-        let limits = random.bounds();
+        let limits = random_bounds(&mut random);
         let d = limits.velocity * random.log(1e-5, 1e3);
         let [_, _, c0, c1, c2] = static_formula(d, limits.velocity, limits.acceleration, limits.jerk);
         let duration = SCurve::new(0.0, d, &limits).expect("a plan").profile().duration();

@@ -1,7 +1,8 @@
 //! Rest to rest: limits, landing, least time, symmetry, scaling, and the second view.
 
 use crate::support::{
-    Random, bounds, case, case_bounds, cube_root, integrated, keeps_its_word, number, numbers, rounds,
+    Random, bounds, case, case_bounds, cube_root, integrated, keeps_its_word, number, numbers, random_bounds,
+    rounds,
 };
 use standstill_planner::papers::{SCurve, SCurveCase, Stepper};
 use standstill_planner::{Field, Limits, PlanError};
@@ -16,7 +17,7 @@ fn every_case_lands_and_keeps_its_limits() {
     let mut random = Random(0x5C01);
     let mut seen = BTreeSet::new();
     for _ in 0..rounds(4000) {
-        let limits = random.bounds();
+        let limits = random_bounds(&mut random);
         let start = random.sign() * random.log(1e-3, 1e3);
         let way = random.sign() * limits.velocity * random.log(1e-6, 1e3);
         let curve = plan(start, start + way, &limits);
@@ -35,7 +36,7 @@ fn every_case_lands_and_keeps_its_limits() {
 fn no_other_shape_is_faster() {
     let mut random = Random(0x5C02);
     for _ in 0..60 {
-        let limits = random.bounds();
+        let limits = random_bounds(&mut random);
         let s = limits.velocity * random.log(1e-4, 1e2);
         let duration = plan(0.0, s, &limits).profile().duration();
         for g in 1..=50 {
@@ -55,7 +56,7 @@ fn no_other_shape_is_faster() {
 fn times_are_continuous_across_every_border() {
     let mut random = Random(0x5C03);
     for _ in 0..500 {
-        let limits = random.bounds();
+        let limits = random_bounds(&mut random);
         let (v, a, j) = (limits.velocity, limits.acceleration, limits.jerk);
         let s_a = 2.0 * a * a * a / (j * j);
         let s_v = if v * j < a * a {
@@ -80,7 +81,7 @@ fn times_are_continuous_across_every_border() {
 fn mirrored_and_scaled_moves_are_mirrored_and_scaled() {
     let mut random = Random(0x5C04);
     for _ in 0..300 {
-        let limits = random.bounds();
+        let limits = random_bounds(&mut random);
         let s = limits.velocity * random.log(1e-3, 1e2);
         let one = *plan(0.0, s, &limits).profile();
         let other = *plan(0.0, -s, &limits).profile();
@@ -114,7 +115,7 @@ fn mirrored_and_scaled_moves_are_mirrored_and_scaled() {
 fn more_room_is_never_slower_and_a_longer_way_never_faster() {
     let mut random = Random(0x5C05);
     for _ in 0..1000 {
-        let limits = random.bounds();
+        let limits = random_bounds(&mut random);
         let s = limits.velocity * random.log(1e-4, 1e2);
         let time = |s: f64, limits: &Limits| plan(0.0, s, limits).profile().duration();
         let base = time(s, &limits);
@@ -149,7 +150,7 @@ fn extreme_lengths_land_and_no_length_takes_no_time() {
 fn stepping_is_the_same_move() {
     let mut random = Random(0x5C06);
     for _ in 0..200 {
-        let limits = random.bounds();
+        let limits = random_bounds(&mut random);
         let s = random.sign() * limits.velocity * random.log(1e-3, 10.0);
         let curve = plan(1.0, 1.0 + s, &limits);
         let profile = curve.profile();

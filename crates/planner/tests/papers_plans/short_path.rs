@@ -1,6 +1,6 @@
 //! Between two velocities: limits, landing, reversal in time, the policies, and least time.
 
-use crate::support::{Random, bounds, keeps_its_word, rounds};
+use crate::support::{Random, bounds, keeps_its_word, random_bounds, rounds};
 use standstill_planner::kernel::MAX_STEPS;
 use standstill_planner::papers::{SCurve, ShortPath, ShortPathPolicy, ShortPathType};
 use standstill_planner::{Field, Limits, PlanError};
@@ -18,7 +18,7 @@ struct Case {
 
 impl Case {
     fn random(random: &mut Random) -> Self {
-        let mut limits = random.bounds();
+        let mut limits = random_bounds(random);
         if random.unit() < 0.3 {
             limits.deceleration = limits.acceleration * random.log(0.2, 5.0);
         }
@@ -154,7 +154,7 @@ fn backwards_in_space_is_mirrored() {
 fn from_rest_to_rest_it_is_the_s_curve() {
     let mut random = Random(0xB004);
     for _ in 0..1000 {
-        let limits = random.bounds();
+        let limits = random_bounds(&mut random);
         let way = limits.velocity * random.log(1e-5, 1e2);
         let path = ShortPath::new(0.0, 0.0, way, 0.0, &limits, Nearest).expect("a plan");
         let curve = SCurve::new(0.0, way, &limits).expect("a plan");
@@ -257,7 +257,7 @@ fn no_way_to_go_keeps_the_velocity_or_is_refused() {
 fn the_stopping_distance_is_enough_to_stop() {
     let mut random = Random(0xB007);
     for _ in 0..500 {
-        let limits = random.bounds();
+        let limits = random_bounds(&mut random);
         let speed = limits.velocity * (1.0 - random.unit());
         let (a, j) = (limits.acceleration, limits.jerk);
         let time = if speed >= a * a / j {

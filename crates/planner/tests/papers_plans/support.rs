@@ -3,6 +3,7 @@
 use serde_json::Value;
 use standstill_planner::papers::Profile;
 use standstill_planner::{Limits, Segment};
+pub use standstill_testkit::Random;
 
 /// The cases of one system.
 pub fn cases(algorithm: &str) -> Vec<Value> {
@@ -167,43 +168,11 @@ pub fn rounds(count: u64) -> u64 {
     count * factor.unwrap_or(1)
 }
 
-/// The generator splitmix64: small, seeded, the same everywhere.
-pub struct Random(pub u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// From 0 to below 1.
-    pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Log-uniform, without a math library: each of the ever smaller factors is in or out.
-    pub fn log(&mut self, low: f64, high: f64) -> f64 {
-        let mut factor = high / low;
-        (0..40).fold(low, |x, _| {
-            factor = factor.sqrt();
-            if self.bits() & 1 == 1 { x * factor } else { x }
-        })
-    }
-
-    /// -1 or 1.
-    pub fn sign(&mut self) -> f64 {
-        if self.bits() & 1 == 1 { 1.0 } else { -1.0 }
-    }
-
-    /// Bounds of order 3 that may each be the decisive one.
-    pub fn bounds(&mut self) -> Limits {
-        let velocity = self.log(0.01, 100.0);
-        let acceleration = velocity * self.log(0.1, 100.0);
-        bounds(velocity, acceleration, acceleration * self.log(0.1, 100.0))
-    }
+/// Bounds of order 3 that may each be the decisive one.
+pub fn random_bounds(random: &mut Random) -> Limits {
+    let velocity = random.log(0.01, 100.0);
+    let acceleration = velocity * random.log(0.1, 100.0);
+    bounds(velocity, acceleration, acceleration * random.log(0.1, 100.0))
 }
 
 /// Asserts that a profile, stepped from `start` by its segments, keeps `limits`, is continuous and ends where

@@ -1,6 +1,6 @@
 //! Moves in a given time: limits, landing, the least duration, and the bridge to the least-time profile.
 
-use crate::support::{Random, bounds, keeps_its_word, rounds};
+use crate::support::{Random, bounds, keeps_its_word, random_bounds, rounds};
 use standstill_planner::papers::{SCurve, Timed, Trapezoid};
 use standstill_planner::{Field, Limits, Order, PlanError};
 
@@ -37,7 +37,7 @@ fn timed_moves_land_in_their_time() {
 fn a_duration_below_the_least_is_refused_with_the_least() {
     let mut random = Random(0x71EE);
     for _ in 0..rounds(1000) {
-        let limits = random.bounds();
+        let limits = random_bounds(&mut random);
         let (gamma, phi) = (0.5 * (1.0 - random.unit()), 0.5 * (1.0 - random.unit()));
         let way = random.sign() * limits.velocity * random.log(1e-4, 1e2);
         let plan = |duration: f64| Timed::new(0.0, way, duration, gamma, phi, &limits);
@@ -62,7 +62,7 @@ fn a_duration_below_the_least_is_refused_with_the_least() {
 fn the_least_time_profile_is_a_timed_one() {
     let mut random = Random(0x71EF);
     for _ in 0..500 {
-        let limits = random.bounds();
+        let limits = random_bounds(&mut random);
         let way = random.sign() * limits.velocity * random.log(1e-3, 1e2);
         let fastest = SCurve::new(0.0, way, &limits).expect("a plan");
         let times = fastest.times();

@@ -1,7 +1,7 @@
 //! Long chains of ramps, each starting in the middle of the one before.
 
 use crate::support::{self, ORDERS, Random, integrate};
-use standstill_planner::{Order, RampPlan, Setpoint};
+use standstill_planner::{Limits, Order, RampPlan, Setpoint};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -136,5 +136,48 @@ fn a_million_chained_ramps() {
             f64::from(steps) / times.len() as f64,
             samples[samples.len() / 2],
         );
+    }
+}
+
+/// At the turn of a motion the velocity may be 0 to the bit and the acceleration what rounding leaves, or more: what takes less
+/// than a scan to settle takes no more than two.
+#[test]
+fn what_is_almost_at_rest_is_at_rest_in_two_scans() {
+    let cycle = 0.001;
+    for order in [Order::Three, Order::Four] {
+        let limits = Limits {
+            velocity: 167.0,
+            acceleration: 1822.0,
+            deceleration: 583.0,
+            jerk: 8320.0,
+            snap: if order == Order::Four { 1e7 } else { f64::INFINITY },
+        };
+        for size in [
+            1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-12, 1e-13, 1e-15, 1e-18, 1e-60, 1e-300,
+        ] {
+            for acceleration in [0.0, size, -size] {
+                for velocity in [0.0, 1e-9, 1e-15, -1e-18, 1e-30, 1e-200] {
+                    // At order 3 the jerk of the start plays no part.
+                    let jerk = if order == Order::Four {
+                        acceleration
+                    } else {
+                        limits.jerk
+                    };
+                    let start = Setpoint {
+                        position: 3.5945805461077804,
+                        velocity,
+                        acceleration,
+                        jerk,
+                        snap: 0.0,
+                    };
+                    let ramp = RampPlan::new(&start, 0.0, &limits, &limits, cycle);
+                    let scans = ramp.map(|ramp| ramp.scans());
+                    assert!(
+                        scans.is_ok_and(|scans| scans <= 2),
+                        "{order:?} {start:?}: {scans:?}"
+                    );
+                }
+            }
+        }
     }
 }

@@ -636,3 +636,40 @@ fn absurd_inputs_end_in_a_plan_or_a_refusal() {
     println!("planned {planned} refused {refused}");
     assert!(planned > 2000);
 }
+
+/// A ramp that takes its acceleration back for minutes, with a jerk far below all other limits, still ends on a goal close to
+/// where it would come to rest.
+#[test]
+fn an_arrest_of_minutes_hides_no_goal_close_to_its_end() {
+    const JERK: f64 = 3e-7;
+    const CYCLE: f64 = 2e-5;
+    let limits = Limits {
+        velocity: 0.015,
+        acceleration: 12.0,
+        deceleration: 13.0,
+        jerk: JERK,
+        snap: 1e30,
+    };
+    for seconds in [20.0, 155.0, 300.0] {
+        let speed = 0.5 * JERK * seconds * seconds;
+        let start = Setpoint {
+            velocity: speed,
+            acceleration: -JERK * seconds,
+            jerk: JERK,
+            ..Setpoint::at_rest(0.0)
+        };
+        let mut share = 1.0;
+        for _ in 0..12 {
+            share *= 0.1;
+            for goal in [speed * share, -speed * share] {
+                let plan = plan(&start, goal, &limits, CYCLE);
+                let seen = support::integrate(&start, &plan, Order::Four);
+                let off = (seen.end.velocity - goal).abs();
+                assert!(off <= 1e-12 * speed, "{seconds} s to {goal:e}: off by {off:e}");
+                // Beyond its end the acceleration comes to the other side; before it, it only stays a little longer.
+                let least = seconds + 2.0 * (f64::max(goal, 0.0) / JERK).sqrt();
+                assert!(plan.duration() >= least * (1.0 - 1e-6), "{seconds} s to {goal:e}");
+            }
+        }
+    }
+}

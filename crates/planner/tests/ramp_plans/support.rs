@@ -1,45 +1,7 @@
 //! Random numbers, random problems, and an integrator that shares no code with the planner.
 
 use standstill_planner::{Limits, OnlinePlan, Order, Peaks, RampPlan, Segment, Setpoint};
-
-/// splitmix64.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    pub fn log(&mut self, low: f64, high: f64) -> f64 {
-        // Every binary digit of a uniform exponent by a square root: no logarithm, the same everywhere.
-        let (mut value, mut root, mut exponent) = (low, high / low, self.unit());
-        for _ in 0..20 {
-            root = root.sqrt();
-            exponent *= 2.0;
-            if exponent >= 1.0 {
-                value *= root;
-                exponent -= 1.0;
-            }
-        }
-        value
-    }
-
-    pub fn below(&mut self, count: u64) -> u64 {
-        self.bits() % count
-    }
-}
+pub use standstill_testkit::Random;
 
 /// Limits of the size servo axes have, with every order and a snap bound without a jerk bound among them.
 pub fn limits(random: &mut Random, order: Order) -> Limits {

@@ -1,0 +1,469 @@
+//! The law of an electronic gear: where a slave is for a place of its master.
+//!
+//! What stands here: a ratio of integers, places with whole turns, and the law as a pure function of the master's place. So
+//! nothing adds up from scan to scan: a master that comes back to a place brings the slave back to its bits, and after any
+//! number of turns the slave is where the exact ratio says. What does not: how a slave comes onto the law.
+
+use crate::turns::{two_product, two_sum};
+
+/// Bits of the significand of an f64.
+const BITS: u32 = 53;
+
+/// Whole turns must stay below this, so that their products fit into 128 bits.
+const WHOLE_MOST: u128 = 1 << 63;
+
+/// Where an axis is: whole turns, and the position (u), in the first turn on an axis that has turns. An axis without turns has 0
+/// of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Place {
+    /// Whole turns.
+    pub turns: i64,
+    /// Position (u).
+    pub position: f64,
+    /// How far ahead of that it is seen (u): a shift, which is no part of where it is.
+    pub phase: f64,
+}
+
+/// A master's place and where the slave is when the master is there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Anchor {
+    /// Of the master.
+    pub master: Place,
+    /// Of the slave.
+    pub slave: Place,
+}
+
+/// How many turns a slave makes for one turn of its master: two integers without a common divisor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Turns {
+    slave: i64,
+    master: i64,
+}
+
+/// A gear between two axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gear {
+    numerator: i16,
+    denominator: u16,
+    /// Length of a turn (u), of an axis that has turns.
+    master_turn: Option<f64>,
+    slave_turn: Option<f64>,
+    /// Where both have turns.
+    turns: Option<Turns>,
+}
+
+/// A number of about 106 bits: the rounded value, and what rounding took away.
+type Double = (f64, f64);
+
+impl Gear {
+    /// The slave moves `numerator` / `denominator` times as far as the master. The turns (u) are those of modulo axes, above 0
+    /// and finite.
+    ///
+    /// `None` if the denominator is 0, or if both axes have turns and the ratio of their turns is no ratio of integers below
+    /// 2^63.
+    pub fn new(
+        numerator: i16,
+        denominator: u16,
+        master_turn: Option<f64>,
+        slave_turn: Option<f64>,
+    ) -> Option<Self> {
+        if denominator == 0 {
+            return None;
+        }
+        let turns = match (master_turn, slave_turn) {
+            (Some(master), Some(slave)) => Some(ratio_of_turns(numerator, denominator, master, slave)?),
+            _ => None,
+        };
+        Some(Self {
+            numerator,
+            denominator,
+            master_turn,
+            slave_turn,
+            turns,
+        })
+    }
+
+    /// Numerator and denominator, as given.
+    pub const fn ratio(&self) -> (i16, u16) {
+        (self.numerator, self.denominator)
+    }
+
+    /// The slave's derivative for one of the master: the exact quotient but for two roundings.
+    #[inline]
+    pub fn derivative(&self, of_master: f64) -> f64 {
+        // Adding 0 takes the sign from -0.
+        f64::from(self.numerator) * of_master / f64::from(self.denominator) + 0.0
+    }
+
+    /// Where the slave is for a `master` that is there: the exact value of the law rounded once, but where it lies so near the
+    /// middle of two numbers that 106 bits do not tell.
+    ///
+    /// Cost: about 100 operations.
+    #[inline(never)]
+    pub fn slave(&self, anchor: &Anchor, master: Place) -> Place {
+        let whole = master.turns.wrapping_sub(anchor.master.turns);
+        let within = two_sum(master.position, -anchor.master.position);
+        // As many turns of the master as are whole turns of the slave are taken off first: no number grows with them. The rest
+        // has the sign of all, so that it is never the larger one of two.
+        let (turns, whole) = match &self.turns {
+            Some(ratio) => (
+                // It is above 0, which nothing here shows.
+                whole
+                    .checked_div(ratio.master)
+                    .map_or(0, |turns| turns.wrapping_mul(ratio.slave)),
+                whole.checked_rem(ratio.master).unwrap_or(whole),
+            ),
+            None => (0, whole),
+        };
+        let way = match self.master_turn {
+            Some(length) => add(two_product(whole as f64, length), within),
+            None => within,
+        };
+        let phase = two_sum(master.phase, -anchor.master.phase);
+        let way = if phase.0 == 0.0 { way } else { add(way, phase) };
+        let position = self.geared(anchor.slave.position, way);
+        match self.slave_turn {
+            None => Place {
+                turns: 0,
+                position: position.0 + 0.0,
+                ..Place::default()
+            },
+            Some(length) => {
+                let (further, position) = in_first_turn(position, length);
+                Place {
+                    turns: anchor.slave.turns.wrapping_add(turns).wrapping_add(further),
+                    position,
+                    ..Place::default()
+                }
+            }
+        }
+    }
+
+    /// `start` and `way` times numerator by denominator: divided once, after what is exact has been added, so that nothing is
+    /// lost where the one takes away most of the other.
+    fn geared(&self, start: f64, way: Double) -> Double {
+        let (numerator, denominator) = (f64::from(self.numerator), f64::from(self.denominator));
+        let coarse = add(two_product(denominator, start), two_product(numerator, way.0));
+        divided(add(coarse, two_product(numerator, way.1)), denominator)
+    }
+}
+
+fn add(a: Double, b: Double) -> Double {
+    let (sum, error) = two_sum(a.0, b.0);
+    let (low, low_error) = two_sum(a.1, b.1);
+    let (sum, error) = two_sum(sum, error + low);
+    two_sum(sum, error + low_error)
+}
+
+fn divided(value: Double, by: f64) -> Double {
+    let rest = |quotient: f64, of: Double| {
+        let (product, error) = two_product(quotient, by);
+        add(of, (-product, -error))
+    };
+    let first = value.0 / by;
+    let left = rest(first, value);
+    let second = left.0 / by;
+    let left = rest(second, left);
+    add((first, second), (left.0 / by, 0.0))
+}
+
+/// Whole turns, and the rest in [0, `length`).
+fn in_first_turn(position: Double, length: f64) -> (i64, f64) {
+    let rest = |turns: i64| {
+        let (whole, error) = two_product(turns as f64, length);
+        add(position, (-whole, -error))
+    };
+    let mut turns = (position.0 / length) as i64;
+    let mut left = rest(turns);
+    // The quotient is cut towards 0, and off by one at most.
+    for _ in 0..2 {
+        if left.0 < 0.0 {
+            turns = turns.wrapping_sub(1);
+            left = rest(turns);
+        } else if left.0 >= length {
+            turns = turns.wrapping_add(1);
+            left = rest(turns);
+        }
+    }
+    if left.0 >= length {
+        (turns.wrapping_add(1), 0.0)
+    } else {
+        (turns, left.0.max(0.0) + 0.0)
+    }
+}
+
+/// `numerator` / `denominator` times the quotient of two lengths above 0, in lowest terms.
+fn ratio_of_turns(numerator: i16, denominator: u16, master: f64, slave: f64) -> Option<Turns> {
+    let (master, master_power) = odd(master)?;
+    let (slave, slave_power) = odd(slave)?;
+    let shift = master_power - slave_power;
+    let up = u128::from(numerator.unsigned_abs()) * u128::from(master);
+    let down = u128::from(denominator) * u128::from(slave);
+    // 69 bits at most; more than 58 of shift do not fit, whatever divides both.
+    let shifted = |value: u128, by: i32| (by <= 58).then(|| value << by.max(0));
+    let (up, down) = (shifted(up, shift)?, shifted(down, -shift)?);
+    let divisor = common_divisor(up, down);
+    let (up, down) = (up / divisor, down / divisor);
+    if up >= WHOLE_MOST || down >= WHOLE_MOST {
+        return None;
+    }
+    let up = up as i64;
+    Some(Turns {
+        slave: if numerator < 0 { -up } else { up },
+        master: down as i64,
+    })
+}
+
+/// A number above 0 as an odd integer times a power of two.
+fn odd(value: f64) -> Option<(u64, i32)> {
+    if !(value.is_normal() && value > 0.0) {
+        return None;
+    }
+    let bits = value.to_bits();
+    let significand = (bits & ((1 << (BITS - 1)) - 1)) | (1 << (BITS - 1));
+    let power = (bits >> (BITS - 1)) as i32 - 1075;
+    let zeros = significand.trailing_zeros();
+    Some((significand >> zeros, power + zeros as i32))
+}
+
+/// Euclid's algorithm; `b` is above 0. Numbers of 128 bits take at most 186 steps.
+fn common_divisor(mut a: u128, mut b: u128) -> u128 {
+    for _ in 0..186 {
+        if b == 0 {
+            break;
+        }
+        (a, b) = (b, a % b);
+    }
+    a.max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(turns: i64, position: f64) -> Place {
+        Place {
+            turns,
+            ..at(position)
+        }
+    }
+
+    fn at(position: f64) -> Place {
+        Place {
+            position,
+            ..Place::default()
+        }
+    }
+
+    fn gear(numerator: i16, denominator: u16) -> Gear {
+        Gear::new(numerator, denominator, None, None).unwrap()
+    }
+
+    /// Covers: G22, G26
+    #[test]
+    fn powers_of_two_from_zero_are_exact_and_signs_mirror() {
+        let anchor = Anchor::default();
+        for position in [0.1, 27.000_000_000_000_004, -1e290, 5e-324, 0.0] {
+            for (numerator, denominator, factor) in [(1, 2, 0.5), (2, 1, 2.0), (1, 4, 0.25)] {
+                let gear = gear(numerator, denominator);
+                let mirrored = Gear::new(-numerator, denominator, None, None).unwrap();
+                assert_eq!(gear.slave(&anchor, at(position)).position, position * factor);
+                assert_eq!(
+                    mirrored.slave(&anchor, at(position)).position,
+                    -(position * factor) + 0.0
+                );
+            }
+        }
+    }
+
+    /// The exact law in integers, rounded once: positions are multiples of 2^-20.
+    fn exact(numerator: i128, denominator: i128, anchor: (i128, i128), master: i128) -> f64 {
+        let up = anchor.1 * denominator + numerator * (master - anchor.0);
+        let (sign, up) = (up.signum(), up.unsigned_abs());
+        let down = denominator.unsigned_abs();
+        // 104 bits of the quotient and whether anything is left decide the rounding.
+        let shift = up.leading_zeros().saturating_sub(8);
+        let (quotient, left) = ((up << shift) / down, (up << shift) % down);
+        let odd = quotient | u128::from(left != 0);
+        sign as f64 * (odd as f64) / (1_u128 << shift) as f64 / (1_u64 << 20) as f64
+    }
+
+    /// Covers: G21, G25, G34
+    #[test]
+    fn the_law_is_the_exact_value_rounded_once() {
+        let mut random = standstill_testkit::Random(1);
+        let mut next = |below: u64| i128::from(random.below(below));
+        for _ in 0..200_000 {
+            let numerator = next(65_535) - 32_767;
+            let denominator = 1 + next(65_535);
+            let (m0, x0) = (next(1 << 30) - (1 << 29), next(1 << 30) - (1 << 29));
+            let m = next(1 << 31) - (1 << 30);
+            let unit = 1.0 / (1_u64 << 20) as f64;
+            let anchor = Anchor {
+                master: at(m0 as f64 * unit),
+                slave: at(x0 as f64 * unit),
+            };
+            let gear = gear(numerator as i16, denominator as u16);
+            let slave = gear.slave(&anchor, at(m as f64 * unit)).position;
+            let expected = exact(numerator, denominator, (m0, x0), m);
+            assert_eq!(slave, expected, "{numerator}/{denominator} {m0} {x0} {m}");
+        }
+    }
+
+    /// A slave that comes back to 0: what is left is far smaller than what it is made of.
+    ///
+    /// Covers: G25
+    #[test]
+    fn next_to_zero_it_is_still_the_exact_value_rounded_once() {
+        let mut random = standstill_testkit::Random(2);
+        let unit = 1.0 / (1_u64 << 20) as f64;
+        let in_units = |value: i128| value as f64 * unit;
+        for _ in 0..200_000 {
+            let numerator = (1 + i128::from(random.below(32_767))) * random.sign() as i128;
+            let denominator = 1 + i128::from(random.below(65_535));
+            let x0 = i128::from(random.below(1 << 53));
+            let m0 = i128::from(random.below(1 << 40)) * i128::from(random.below(2));
+            // As near to the master's place for 0 as a number is.
+            let m = (m0 - x0 * denominator / numerator) as f64 as i128;
+            let anchor = Anchor {
+                master: at(in_units(m0)),
+                slave: at(in_units(x0)),
+            };
+            let gear = gear(numerator as i16, denominator as u16);
+            let slave = gear.slave(&anchor, at(in_units(m))).position;
+            let expected = exact(numerator, denominator, (m0, x0), m);
+            assert_eq!(slave, expected, "{numerator}/{denominator} {m0} {x0} {m}");
+        }
+    }
+
+    /// Covers: G31, GS16
+    #[test]
+    fn turns_are_integers_however_many() {
+        let gear = Gear::new(3, 7, Some(360.0), Some(360.0)).unwrap();
+        let anchor = Anchor {
+            master: at(0.1),
+            slave: at(0.2),
+        };
+        // After 7 turns of the master the slave has the bits it started with; in between a seventh of 3 turns more for each.
+        for whole in [0_i64, 1, 6, 7, 1_000_000, 5_000_000, -1, -8, 1 << 60] {
+            let slave = gear.slave(&anchor, place(whole, 0.1));
+            let sevenths = (i128::from(whole) * 3).rem_euclid(7);
+            let expected = 0.2 + 360.0 * sevenths as f64 / 7.0;
+            assert!((slave.position - expected).abs() <= 6e-14, "{whole}: {slave:?}");
+            assert_eq!(
+                i128::from(slave.turns),
+                (i128::from(whole) * 3).div_euclid(7),
+                "{whole}"
+            );
+            if whole % 7 == 0 {
+                assert_eq!(slave.position, 0.2, "{whole}");
+            }
+        }
+    }
+
+    /// Covers: G31
+    #[test]
+    fn ten_million_scans_at_three_sevenths_are_exact() {
+        // 1.8 in a scan, 200 scans a turn, as tenths: all in integers beside.
+        let gear = Gear::new(3, 7, Some(360.0), Some(360.0)).unwrap();
+        let anchor = Anchor::default();
+        for scan in (0..10_000_000_u64).step_by(997) {
+            let master = place((scan / 200) as i64, (scan % 200) as f64 * 18.0 / 10.0);
+            let slave = gear.slave(&anchor, master);
+            // 3 * 18 * scan / 70 in units, taken modulo 360 in seventieths.
+            let seventieths = (u128::from(scan) * 54) % (360 * 70);
+            let expected = seventieths as f64 / 70.0;
+            // The master's own position is rounded, which is geared to less than an ulp of the slave's.
+            assert!(
+                (slave.position - expected).abs() <= 6e-14,
+                "{scan}: {slave:?} {expected}"
+            );
+        }
+    }
+
+    /// Covers: G60, G64
+    #[test]
+    fn a_shift_of_the_master_counts_as_its_way_does() {
+        let gear = gear(-2, 1);
+        let shifted = Place {
+            phase: 0.1,
+            ..at(0.2)
+        };
+        let anchor = Anchor {
+            master: at(0.0),
+            slave: at(1.0),
+        };
+        // The exact sum of both numbers, rounded once.
+        assert_eq!(gear.slave(&anchor, shifted).position, 0.399_999_999_999_999_97);
+        let anchor = Anchor {
+            master: shifted,
+            slave: at(1.0),
+        };
+        assert_eq!(gear.slave(&anchor, shifted).position, 1.0);
+    }
+
+    /// Covers: G33
+    #[test]
+    fn a_slave_without_turns_unwinds_those_of_its_master() {
+        let gear = Gear::new(3, 7, Some(360.0), None).unwrap();
+        let slave = gear.slave(&Anchor::default(), place(1_000_000, 180.0));
+        // 3 * 360000180 / 7 to the last bit: numerator and denominator are exact.
+        assert_eq!(slave, at(1_080_000_540.0 / 7.0));
+    }
+
+    #[test]
+    fn turns_without_a_short_common_measure_are_exact_both_ways() {
+        let gear = Gear::new(-1, 2, Some(0.05), Some(2.0)).unwrap();
+        for (turns, position, expected) in [(-1, 0.04975, 0.000_125), (1, 0.00025, 1.974_875)] {
+            let slave = gear.slave(&Anchor::default(), place(turns, position));
+            assert!((slave.position - expected).abs() < 1e-15, "{slave:?}");
+        }
+    }
+
+    #[test]
+    fn a_slave_with_turns_stays_in_the_first() {
+        let gear = Gear::new(1, 1, None, Some(360.0)).unwrap();
+        for (master, turns, position) in [
+            (359.0, 0, 359.0),
+            (360.0, 1, 0.0),
+            (-0.5, -1, 359.5),
+            (-360.0, -1, 0.0),
+            (725.5, 2, 5.5),
+            (-1e-300, 0, 0.0),
+        ] {
+            assert_eq!(
+                gear.slave(&Anchor::default(), at(master)),
+                place(turns, position),
+                "{master}"
+            );
+        }
+    }
+
+    #[test]
+    fn ratios_that_do_not_fit_and_a_denominator_of_0_are_told() {
+        assert_eq!(Gear::new(1, 0, None, None), None);
+        assert!(Gear::new(1, 32, Some(core::f64::consts::TAU), Some(360.0)).is_some());
+        assert_eq!(
+            Gear::new(1, 32_767, Some(core::f64::consts::TAU), Some(0.1)),
+            None
+        );
+        assert_eq!(Gear::new(1, 1, Some(1e300), Some(1e-300)), None);
+        assert!(Gear::new(0, 5, Some(360.0), Some(100.0)).is_some());
+    }
+
+    #[test]
+    fn a_numerator_of_0_stands() {
+        let gear = gear(0, 5);
+        assert_eq!(
+            gear.slave(
+                &Anchor {
+                    master: at(3.0),
+                    slave: at(7.25)
+                },
+                at(1e9)
+            ),
+            at(7.25)
+        );
+        assert_eq!(gear.derivative(12.0), 0.0);
+    }
+}

@@ -1,0 +1,70 @@
+//! Random numbers for tests: all follow from a seed, the same on every machine.
+
+#![no_std]
+
+/// splitmix64 (Steele, Lea, Flood 2014): a counter and a mixing function. It begins at the counter it is made with.
+#[derive(Clone, Copy, Debug)]
+pub struct Random(pub u64);
+
+impl Random {
+    /// 64 random bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// One of the whole numbers from 0 to `count` - 1; 0 if there is none.
+    pub fn below(&mut self, count: u64) -> u64 {
+        self.bits().checked_rem(count).unwrap_or(0)
+    }
+
+    /// A place in a list of `len` entries; 0 if it is empty.
+    pub fn place(&mut self, len: usize) -> usize {
+        self.below(len as u64) as usize
+    }
+
+    /// An entry of a list.
+    ///
+    /// # Panics
+    /// If the list is empty.
+    pub fn one_of<T: Copy>(&mut self, list: &[T]) -> T {
+        list[self.place(list.len())]
+    }
+
+    /// True once in `count` times.
+    pub fn one_in(&mut self, count: u64) -> bool {
+        self.below(count) == 0
+    }
+
+    /// -1 or 1.
+    pub fn sign(&mut self) -> f64 {
+        if self.bits() & 1 == 1 { 1.0 } else { -1.0 }
+    }
+
+    /// Evenly from 0 to below 1.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Evenly from `low` to below `high`.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// From `low` to `high`, both above 0, with every power as likely.
+    ///
+    /// Each of ever smaller roots of `high / low` is in or out: a logarithm would not give the same bits everywhere.
+    pub fn log(&mut self, low: f64, high: f64) -> f64 {
+        let (mut value, mut root) = (low, high / low);
+        for _ in 0..40 {
+            root = libm::sqrt(root);
+            if self.bits() & 1 == 1 {
+                value *= root;
+            }
+        }
+        value
+    }
+}
