@@ -12,6 +12,7 @@ extern crate std;
 
 pub mod administrative;
 pub mod homing;
+pub mod multi_axis;
 pub mod registry;
 pub mod single_axis;
 pub mod standard;

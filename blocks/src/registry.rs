@@ -47,6 +47,11 @@ macro_rules! for_every_block {
             single_axis::mc_move_superimposed::McMoveSuperimposed
             single_axis::mc_halt_superimposed::McHaltSuperimposed
             single_axis::mc_jog::McJog
+            multi_axis::mc_gear_in::McGearIn
+            multi_axis::mc_gear_out::McGearOut
+            multi_axis::mc_gear_in_pos::McGearInPos
+            multi_axis::mc_phasing_absolute::McPhasingAbsolute
+            multi_axis::mc_phasing_relative::McPhasingRelative
             standard::r_trig::RTrig
             standard::f_trig::FTrig
             standard::sr::Sr
@@ -166,14 +171,19 @@ mod tests {
             let expected = match info.name {
                 "MC_ReadDigitalInput" => ("Input", "MC_INPUT_REF"),
                 "MC_ReadDigitalOutput" | "MC_WriteDigitalOutput" => ("Output", "MC_OUTPUT_REF"),
+                "MC_GearIn" | "MC_GearInPos" | "MC_PhasingAbsolute" | "MC_PhasingRelative" => {
+                    ("Master", "AXIS_REF")
+                }
+                "MC_GearOut" => ("Slave", "AXIS_REF"),
                 _ => ("Axis", "AXIS_REF"),
             };
             assert_eq!(first, Some(expected), "{}", info.name);
-            assert!(
-                in_outs.all(|pin| pin.ty.iec_name() != "AXIS_REF"),
-                "{}",
-                info.name
-            );
+            let others: Vec<_> = in_outs
+                .filter(|pin| pin.ty.iec_name() == "AXIS_REF")
+                .map(|pin| pin.name)
+                .collect();
+            let slave: &[&str] = if expected.0 == "Master" { &["Slave"] } else { &[] };
+            assert_eq!(others, slave, "{}", info.name);
             for pin in info.pins().filter(|pin| !pin.unit.is_empty()) {
                 assert_eq!(pin.ty.iec_name(), "LREAL", "{}.{}", info.name, pin.name);
             }
@@ -187,7 +197,7 @@ mod tests {
             match name {
                 "MC_BUFFER_MODE" => (0..=5).collect(),
                 "MC_DIRECTION" => (0..=4).collect(),
-                "MC_SOURCE" => (0..=2).collect(),
+                "MC_SOURCE" | "MC_SYNC_MODE" => (0..=2).collect(),
                 "MC_EXECUTION_MODE" => (0..=1).collect(),
                 "MC_TRIGGER_REF" => (0..=3).collect(),
                 _ => panic!("state the numbers of {name} here"),

@@ -11,6 +11,7 @@ use standstill_blocks::administrative::mc_digital_cam_switch::{
     CamSwitch, Inputs, McDigitalCamSwitch, TrackOption,
 };
 use standstill_fb::{Context, Instance, OutputRef, Pins, TableOf, TableRef, Time};
+use standstill_testkit::Random;
 use std::slice;
 
 const CYCLE_NS: i64 = 1_000_000;
@@ -25,31 +26,9 @@ const LIMITS: Limits = Limits {
     snap: f64::INFINITY,
 };
 
-/// splitmix64.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    /// From 0 to 1.
-    fn part(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn coin(&mut self) -> bool {
-        self.bits().is_multiple_of(2)
-    }
-
-    /// Up to 20 scans, either sign, to the microsecond.
-    fn compensation(&mut self) -> Time {
-        Time((self.bits() % 40_000) as i64 * 1000 - 20 * CYCLE_NS)
-    }
+/// Up to 20 scans, either sign, to the microsecond.
+fn compensation(random: &mut Random) -> Time {
+    Time((random.bits() % 40_000) as i64 * 1000 - 20 * CYCLE_NS)
 }
 
 /// Records as numbers of a table.
@@ -181,10 +160,10 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
     let (mut judged, mut ons, mut open) = (0_u32, 0_u32, 0_u32);
     for case in 0..600 {
         // From a creep to 150 degrees a scan.
-        let part = random.part();
+        let part = random.unit();
         let speed = 1.5e5 * (part * part) * (part * part) + 1.0;
-        let velocity = if random.coin() { speed } else { -speed };
-        let modulo = random.coin();
+        let velocity = if random.one_in(2) { speed } else { -speed };
+        let modulo = random.one_in(2);
         let config = AxisConfig {
             start: StartState::Standstill,
             modulo: modulo.then_some(TURN),
@@ -193,12 +172,12 @@ fn cams_switch_in_the_right_scan_at_every_speed() {
         let id = AxisId::new(0);
         let mut axes = [Axis::new(id, config, Standard::new(CYCLE)).expect("a good configuration")];
         let mut log = Log::default();
-        let (on, off) = (random.compensation(), random.compensation());
+        let (on, off) = (compensation(&mut random), compensation(&mut random));
         let (first, last) = if modulo {
-            (TURN * random.part(), TURN * random.part())
+            (TURN * random.unit(), TURN * random.unit())
         } else {
             // Somewhere on the way of the run.
-            let (one, other) = (random.part() * 100.0, random.part() * 100.0);
+            let (one, other) = (random.unit() * 100.0, random.unit() * 100.0);
             let way = velocity * CYCLE;
             ((one * way).min(other * way), (one * way).max(other * way))
         };

@@ -32,6 +32,20 @@ impl Bench {
         Self::started(StartState::Standstill)
     }
 
+    /// Two axes at rest in the state the block is for: a phasing block needs its slave in gear.
+    pub fn ready_for(name: &str) -> Self {
+        let mut bench = Self::new();
+        if name.starts_with("MC_Phasing") {
+            let mut gear = bench.block("MC_GearIn");
+            bench.set(&mut gear, "Execute", Value::Bool(true));
+            for _ in 0..2 {
+                bench.scan(&mut [&mut gear]);
+            }
+            assert!(bench.flag(&gear, "InGear"));
+        }
+        bench
+    }
+
     pub fn started(start: StartState) -> Self {
         let limits = Limits {
             velocity: 10.0,
@@ -74,6 +88,8 @@ impl Bench {
             ("VelocityDiff", Value::Lreal(1.0)),
             ("Torque", Value::Lreal(1.0)),
             ("WindowOnly", Value::Bool(true)),
+            ("RatioNumerator", Value::Int(1)),
+            ("RatioDenominator", Value::Word(1)),
             ("LastPosition", Value::Lreal(f64::MAX)),
         ];
         let parameter = if name.contains("Bool") { 6 } else { 9 };
@@ -93,10 +109,14 @@ impl Bench {
         block
     }
 
-    /// Wires every reference of the block to this axis.
+    /// Wires every reference of the block to this axis, but that to a master to the other one.
     pub fn wire(&self, block: &mut BlockInstance, axis: AxisId) {
         for (index, pin) in block.info().pins().enumerate() {
             if let PinType::Axis(_) = pin.ty {
+                let axis = match axis.index() {
+                    at @ (0 | 1) if pin.name == "Master" => AxisId::new(1 - at as u16),
+                    _ => axis,
+                };
                 block.set(index, Value::Axis(axis)).unwrap();
             }
         }

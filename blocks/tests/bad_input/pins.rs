@@ -19,6 +19,7 @@ fn values(ty: PinType) -> Vec<Vec<Value>> {
             let beyond = info.elements.iter().map(|(_, number)| number + 1).max();
             vec![[i32::MIN, -1, beyond.unwrap(), i32::MAX].map(Value::Enum).into()]
         }
+        PinType::Uint => [0, 1, u16::MAX].map(|value| one(Value::Word(value))).into(),
         PinType::Bool | PinType::Word | PinType::Dword | PinType::Axis(_) | PinType::Table(_) => Vec::new(),
     }
 }
@@ -72,7 +73,7 @@ fn each_value_gives_what_its_cell_says() {
         let (_, entry) = info.pin(pin).unwrap();
         for (cell, values) in cells.into_iter().zip(values(entry.ty)) {
             for value in values {
-                let mut bench = Bench::new();
+                let mut bench = Bench::ready_for(name);
                 let mut block = bench.block(name);
                 let good = bench.get(&block, pin).unwrap();
                 bench.set(&mut block, pin, value);

@@ -83,6 +83,7 @@ pub fn truth(polled: &[Shown], axis: &Outlook, kinds: [Kind; 4]) -> Result<(), S
         // MC_Stop has no Active output: it is Busy while it owns the axis.
         stopping: owned && axis.state == AxisState::Stopping,
         waiting: axis.waiting.iter().flatten().count(),
+        awaited: false,
         shift_due: first.is_some_and(|(_, kind, _)| kind == WorkKind::SetPosition),
         // What is superimposed, and whether it waits for room.
         added: axis

@@ -16,6 +16,11 @@ impl AxisId {
         Self(index)
     }
 
+    /// Its number for people and hosts in other languages: from 1; 0 for no axis.
+    pub const fn number(self) -> u16 {
+        self.0.wrapping_add(1)
+    }
+
     /// Its place in the slice of axes.
     pub const fn index(self) -> usize {
         self.0 as usize
@@ -179,6 +184,19 @@ iec_enum! {
 }
 
 iec_enum! {
+    /// Which of the places that mean the same on a modulo slave MC_GearInPos leads to (MC_SYNC_MODE, numbers in the standard's
+    /// order).
+    SyncMode = "MC_SYNC_MODE" {
+        /// The nearest to where the slave would be without it.
+        Shortest = "mcShortest", 0;
+        /// The nearest ahead: the slave speeds up.
+        CatchUp = "mcCatchUp", 1;
+        /// The nearest behind: the slave slows down. It is never faster than in sync.
+        SlowDown = "mcSlowDown", 2;
+    }
+}
+
+iec_enum! {
     /// What triggers a touch probe (MC_TRIGGER_REF, vendor specific): an edge at one of the probe inputs of the
     /// axis's drive.
     Trigger = "MC_TRIGGER_REF" {
@@ -313,6 +331,45 @@ pub enum Command {
         /// New name of the present position (u).
         position: f64,
     },
+    /// MC_GearIn and MC_GearInPos: behind a master. Give it by [`couple`](crate::couple), which sees both axes.
+    GearIn {
+        /// The master.
+        master: Master,
+        /// Way of the slave for one of the master, as a ratio: numerator, signed, 0 allowed.
+        numerator: i16,
+        /// Denominator, above 0.
+        denominator: u16,
+        /// Which values of the master are followed.
+        source: Raw<ValueSource>,
+        /// MC_GearInPos: the places that belong together; none for MC_GearIn, where they are those in which it comes into gear.
+        sync: Option<SyncPoint>,
+        /// Dynamic values until the slave is in gear. The velocity is read with a sync point only; 0 takes the axis limit.
+        dynamics: Dynamics,
+    },
+    /// MC_GearOut: no longer behind a master; the velocity is kept.
+    GearOut,
+}
+
+/// A master, as a command names it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Master {
+    /// The axis.
+    pub axis: AxisId,
+    /// The length of its turn (u), if it has turns.
+    pub turn: Option<f64>,
+}
+
+/// Places of a master and its slave that belong together, and how the slave comes there: pins of MC_GearInPos.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SyncPoint {
+    /// Of the master (u).
+    pub master: f64,
+    /// Of the slave (u).
+    pub slave: f64,
+    /// Which of the places that mean the same on a modulo slave.
+    pub mode: Raw<SyncMode>,
+    /// How far before its place the master is where the slave sets off (u), with the sign of its direction; 0 for at once.
+    pub start_distance: f64,
 }
 
 impl Dynamics {
@@ -331,7 +388,13 @@ impl Dynamics {
 impl Command {
     /// Whether `other` has the same values, to the bit.
     pub fn is_same(&self, other: &Self) -> bool {
-        core::mem::discriminant(self) == core::mem::discriminant(other) && self.bits() == other.bits()
+        let sync = |command: &Self| match command {
+            Self::GearIn { sync, .. } => *sync,
+            _ => None,
+        };
+        core::mem::discriminant(self) == core::mem::discriminant(other)
+            && self.bits() == other.bits()
+            && sync(self) == sync(other)
     }
 
     /// All its values: two numbers, the direction, the dynamic values.
@@ -371,6 +434,19 @@ impl Command {
             } => (*distance, 0.0, i32::from(*forward), dynamics),
             Self::Halt { dynamics } | Self::Stop { dynamics } => (0.0, 0.0, 0, dynamics),
             Self::Home { position } => (*position, 0.0, 0, &none),
+            Self::GearIn {
+                numerator,
+                denominator,
+                source,
+                dynamics,
+                ..
+            } => (
+                f64::from(*numerator),
+                f64::from(*denominator),
+                source.number(),
+                dynamics,
+            ),
+            Self::GearOut => (0.0, 0.0, 0, &none),
         };
         ([first.to_bits(), second.to_bits()], direction, dynamics.bits())
     }
@@ -396,6 +472,21 @@ impl Request {
             replaces: None,
         }
     }
+}
+
+/// MC_PhasingAbsolute, MC_PhasingRelative: values as they stand at the pins, unchecked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhaseShift {
+    /// The master whose place is to be seen elsewhere.
+    pub master: AxisId,
+    /// The shift (u of the master), signed: ahead of where it is if positive.
+    pub shift: f64,
+    /// It is added to the shift there is.
+    pub is_relative: bool,
+    /// Dynamic values of the shift (u of the master); 0 takes what the limits of the slave leave.
+    pub dynamics: Dynamics,
+    /// How it follows the phasing before it; blending modes are as mcBuffered.
+    pub buffer_mode: Raw<BufferMode>,
 }
 
 /// MC_MoveSuperimposed: values as they stand at the pins, unchecked.

@@ -26,6 +26,46 @@ pub enum PowerOff {
     Drive,
 }
 
+/// What a slave in gear does when its master asks for more than its limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OnLimit {
+    /// It lags, and catches up onto the same law as soon as it can.
+    #[default]
+    Lag,
+    /// It is an axis error (420), while a stop still keeps the limits.
+    Error,
+}
+
+/// What a slave does when the set-point of its master is no longer the result of a plan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OnMasterLost {
+    /// It is an axis error (421).
+    #[default]
+    Error,
+    /// It comes to rest with the stop dynamics and stays, coupled, until a block couples it anew.
+    Hold,
+}
+
+/// How an axis follows another one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Following {
+    /// What it does when it cannot keep up.
+    pub on_limit: OnLimit,
+    /// How far it may be off the law once it was in gear (u), then it is an axis error (420); `None` for any distance.
+    pub max_deviation: Option<f64>,
+    /// What it does when its master goes out of operation.
+    pub on_master_lost: OnMasterLost,
+}
+
+impl Following {
+    /// It lags as far as it must; a lost master is an error.
+    pub const DEFAULT: Self = Self {
+        on_limit: OnLimit::Lag,
+        max_deviation: None,
+        on_master_lost: OnMasterLost::Error,
+    };
+}
+
 /// The state an axis starts in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StartState {
@@ -103,6 +143,8 @@ pub struct AxisConfig {
     /// A move to rest is done when the actual position has been in this window (V12d); `None` if the set position
     /// decides alone.
     pub in_position: Option<InPosition>,
+    /// How it follows another axis.
+    pub following: Following,
 }
 
 impl AxisConfig {
@@ -134,6 +176,7 @@ impl AxisConfig {
             power_timeout: None,
             max_following_error: None,
             in_position: None,
+            following: Following::DEFAULT,
         }
     }
 
@@ -156,6 +199,7 @@ impl AxisConfig {
             ("stop_jerk", self.stop_jerk, true),
             ("max_following_error", self.max_following_error, true),
             ("in_position.window", self.in_position.map(|it| it.window), true),
+            ("coupling.max_deviation", self.following.max_deviation, true),
         ];
         for (key, value, finite) in positive {
             if let Some(value) = value

@@ -61,7 +61,7 @@ macro_rules! error_ids {
 error_ids! {
     None = 0, "No error.", "Nothing to do.";
 
-    AxisUnknown = 100, "The Axis, Input or Output pin names no axis of this runtime.",
+    AxisUnknown = 100, "The Axis, Master, Slave, Input or Output pin names no axis of this runtime.",
         "Wire it to a configured axis.";
     PositionInvalid = 101, "Position or Distance is NaN or infinite, or the target is not representable.",
         "Give a finite number.";
@@ -141,6 +141,18 @@ error_ids! {
         "Move the other limit first, or switch one of them off.";
     ParameterOnModulo = 147, "Software limits do not exist on a modulo axis: its positions come round.",
         "Leave the parameters 2 to 5 alone on this axis.";
+    RatioInvalid = 150, "RatioDenominator is 0.",
+        "Give a denominator from 1; a RatioNumerator of 0 brings the slave to rest.";
+    CouplingRing = 151, "Master is the slave itself, or an axis that follows it.",
+        "Wire another axis to Master, or end the coupling that closes the ring first.";
+    SyncModeInvalid = 152, "SyncMode is a number that is not defined.",
+        "Use mcShortest (0), mcCatchUp (1) or mcSlowDown (2).";
+    SyncPositionInvalid = 156, "MasterSyncPosition, SlaveSyncPosition or MasterStartDistance is NaN or infinite, or on a modulo axis not in its first turn.",
+        "Give finite positions; on a modulo axis at least 0 and less than the length of a turn, and a distance shorter than a turn.";
+    CouplingRatioTooFine = 158, "Master and slave both have turns, and a turn of the one is no ratio of integers below 2^63 turns of the other.",
+        "Give lengths of turns that have a common measure, such as 360 and 400, or a simpler ratio.";
+    MasterSourceInvalid = 159, "MasterValueSource is mcCommandedValue, which is no motion that could be followed.",
+        "Use mcSetValue (1).";
     ProfileTableInvalid = 160, "A profile's table has no point after the start, more than 40, a DeltaTime that is not above 0 (the first may be 0) or that TimeScale makes less than 1e-9 of a cycle, or a value that is NaN or infinite.",
         "Give 1 to 40 points, each later than the one before; the record in the log names the point.";
     ProfileStartMismatch = 161, "The first point of a profile is for the start (DeltaTime 0), and the axis has another value there.",
@@ -181,6 +193,16 @@ error_ids! {
     TriggerTaken = 215, "Another instance waits for this probe.",
         "Wait for it, or abort it with MC_AbortTrigger; each probe serves one instance at a time.";
 
+    NotCoupled = 216, "MC_GearOut finds no slave of MC_GearIn or MC_GearInPos, or MC_PhasingAbsolute or MC_PhasingRelative none of its Master.",
+        "Call it while MC_GearIn or MC_GearInPos is Active; what moves an axis by itself is ended by MC_Halt or MC_Stop.";
+
+    MasterTooFast = 218, "The slave of MC_GearInPos is behind a master that is at least as fast as its Velocity, so it can't catch up.",
+        "Raise Velocity, or slow the master down until InSync.";
+    SyncNotReachable = 219, "The slave can't be in sync when its master, on its present plan, comes to MasterSyncPosition.",
+        "Give a longer MasterStartDistance or higher dynamics, or bring the slave nearer to its place before.";
+    BufferModeNotHere = 221, "MC_GearInPos with a MasterStartDistance has a BufferMode other than mcAborting: where its start point is when the motion before it ends is not known.",
+        "Use mcAborting, or a MasterStartDistance of 0.";
+
     BufferFull = 301, "All places of the command buffer are taken.",
         "Wait for a buffered command to become active, or enlarge the queue of the axis.";
 
@@ -203,6 +225,10 @@ error_ids! {
         "Look why the reference was not found; raise the distance_limit of the homing if it only lies further away.";
     HomingSwitchNotFound = 413, "Between both limit switches the home switch did not show the edge that is the reference.",
         "Check the home switch, its wiring and the edge in the homing of the axis.";
+    DeviationTooLarge = 420, "The slave could not stay within its limits on the law of its master, or was further from it than the max_deviation of its coupling.",
+        "Slow the master down or raise the limits of the slave; coupling.on_limit \"lag\" lets it catch up. Then call MC_Reset.";
+    MasterLost = 421, "The set-point of the master is not the result of a plan: it is switched off, has a fault of its power or drive, or is under a torque.",
+        "Bring the master into operation before the slave is coupled, and stop the slave before the master is switched off; then call MC_Reset.";
 
     DriveFault = 501, "The drive reported a fault.",
         "Read the drive's own code, parameter 1000, remove the cause, then call MC_Reset.";
@@ -223,6 +249,11 @@ error_ids! {
         "Restore it, then call MC_Reset.";
     FeedbackInvalid = 602, "The drive told a position or torque that is NaN or infinite, or a position that means an infinite velocity.",
         "Mend what makes such numbers, an encoder or a scaling in the drive's own code, then call MC_Reset.";
+
+    ActualMasterNotSupported = 704, "MasterValueSource is mcActualValue; this version follows set values.",
+        "Use mcSetValue (1).";
+    SlaveNotSuperimposed = 705, "The axis is the slave of a gear, and this version superimposes no motion on one.",
+        "Superimpose the motion on the master, or end the coupling with MC_GearOut first.";
 
     SetpointBroken = 901, "A plan gave a set-point that is not finite.",
         "This is a defect of standstill: please report the trace.";

@@ -30,7 +30,6 @@ pub(crate) struct Fates {
     ended: [Option<(CommandId, Fate)>; FATES_KEPT],
     next: usize,
     newest: CommandId,
-    changes: u64,
 }
 
 impl Default for Fates {
@@ -39,7 +38,6 @@ impl Default for Fates {
             ended: [None; FATES_KEPT],
             next: 0,
             newest: CommandId(0),
-            changes: 0,
         }
     }
 }
@@ -56,21 +54,8 @@ impl Fates {
         self.newest
     }
 
-    /// The fate of a command has changed, or may have.
-    #[inline]
-    pub(crate) fn touch(&mut self) {
-        self.changes = self.changes.wrapping_add(1);
-    }
-
-    /// While this number stays, so does every fate.
-    #[inline]
-    pub(crate) fn changes(&self) -> u64 {
-        self.changes
-    }
-
     /// Command `id` has ended with `fate`.
     pub(crate) fn record(&mut self, id: CommandId, fate: Fate) {
-        self.touch();
         if let Some(slot) = self.ended.get_mut(self.next) {
             *slot = Some((id, fate));
         }

@@ -13,6 +13,7 @@ extern crate std;
 mod axis;
 mod command;
 mod config;
+mod couple;
 mod drive;
 mod error_id;
 mod fate;
@@ -26,16 +27,18 @@ mod state;
 pub mod steps;
 
 pub use axis::{
-    Axis, Beside, CamTrack, Factors, MotionState, Outlook, Pace, Permission, Profile, ProfileRow, TouchProbe,
-    Way, WorkKind,
+    Axis, Beside, CamTrack, Coupled, Factors, MotionState, Outlook, Pace, Permission, Profile, ProfileRow,
+    TouchProbe, Way, WorkKind,
 };
 pub use command::{
-    AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId,
-    QUEUE_MAX, Raw, Request, Superimpose, Trigger, ValueSource,
+    AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId, Master,
+    PhaseShift, QUEUE_MAX, Raw, Request, Superimpose, SyncMode, SyncPoint, Trigger, ValueSource,
 };
 pub use config::{
-    AboveLimit, AxisConfig, ConfigError, Defaults, InPosition, MODULO_MAX, PowerOff, StartState,
+    AboveLimit, AxisConfig, ConfigError, Defaults, Following, InPosition, MODULO_MAX, OnLimit, OnMasterLost,
+    PowerOff, StartState,
 };
+pub use couple::couple;
 pub use drive::{
     Comms, DIGITAL, Drive, DriveCommand, DriveFeedback, DriveHoming, DriveOrder, DrivePosition, DriveReport,
     DriveRequest, DriveSignals, Edge, Equipment, Fault, PROBES, ProbeReport, TorqueOrder, TorqueReport,
@@ -44,13 +47,13 @@ pub use error_id::{ErrorClass, ErrorId, RETIRED};
 pub use fate::{FATES_KEPT, Fate};
 pub use homing::{BlockDetection, HomeDirection, Homing, Procedure, SwitchEdge};
 pub use ideal_drive::{DELAY_MAX, IdealDrive, Powered};
-pub use log::{Event, Goal, LOG_KEPT, Log, Record};
+pub use log::{Approach, Event, Goal, LOG_KEPT, Log, Record};
 pub use parameter::{Parameter, ParameterValue};
 pub use scaling::{Scaling, Turn};
 pub use scope::Scope;
 pub use standstill_planner::turns::split;
 pub use standstill_planner::{
-    Excess, Limits, MoveProfile, Order, PROFILE_POINTS, Passage, Plan, PlanError, Planner, ProfileFault,
-    ProfileKind, ProfilePoint, Setpoint, Standard, StandardPlan,
+    Anchor, Excess, Gear, Limits, MoveProfile, Order, PROFILE_POINTS, Passage, Place, Plan, PlanError,
+    Planner, ProfileFault, ProfileKind, ProfilePoint, Setpoint, Standard, StandardPlan,
 };
 pub use state::{ARROWS, Arrow, AxisEvent, AxisState, Refused, next};

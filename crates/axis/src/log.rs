@@ -22,6 +22,28 @@ pub enum Goal {
     },
 }
 
+/// How a slave comes onto the law of its gear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Approach {
+    /// Beside the law, until the difference is 0.
+    Difference,
+    /// To the velocity of the law in its next stretch of constant velocity.
+    Stretch,
+    /// As fast as it may.
+    Pace,
+}
+
+impl Approach {
+    /// Its name in text.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Difference => "difference",
+            Self::Stretch => "stretch",
+            Self::Pace => "pace",
+        }
+    }
+}
+
 /// What is worth recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
@@ -98,6 +120,47 @@ pub enum Event {
     /// The instance was triggered anew and its new command refused, or given to another axis: the motion it gave before goes
     /// on to its end with no block that follows it.
     Orphaned,
+    /// The axis is behind a master.
+    Coupled {
+        /// Which.
+        master: AxisId,
+        /// Way of the slave for one of the master: numerator.
+        numerator: i16,
+        /// Denominator.
+        denominator: u16,
+    },
+    /// The slave goes onto the law of its gear.
+    Approaching {
+        /// How.
+        way: Approach,
+        /// The velocity (u/s) it leads to; that to be taken off, beside the law.
+        velocity: f64,
+        /// Its scans.
+        scans: u32,
+    },
+    /// From this scan on the slave is on the law of its gear.
+    InGear,
+    /// The shift between a master and what the slave sees of it begins to move.
+    Phasing {
+        /// To this (u of the master).
+        to: f64,
+        /// Its scans.
+        scans: u32,
+    },
+    /// The slave is in sync after its master has come by the sync point.
+    SyncLate {
+        /// How far the master is past it (u).
+        by: f64,
+    },
+    /// The slave can't stay on the law of its gear: that asks for more than a limit.
+    GearLost {
+        /// Of what.
+        what: &'static str,
+        /// What it asks for.
+        value: f64,
+        /// The limit.
+        limit: f64,
+    },
     /// The axis entered ErrorStop.
     Fault {
         /// Why.

@@ -3,7 +3,7 @@
 //! Which step follows which belongs to the host's scan. What happens in each of them, and in which order axes have their
 //! turn, stands here once: for the executor, the C library and a loop of one's own.
 
-use crate::{Axis, AxisId, AxisState, Drive, DriveFeedback, Planner, Scope};
+use crate::{Axis, AxisId, AxisState, Drive, DriveFeedback, Planner, Scope, couple};
 
 /// After every drive was read: takes what drives tell beside their motion, then lets the states follow, in axis order.
 #[inline]
@@ -23,12 +23,16 @@ pub fn follow<P: Planner, D: Drive>(
 }
 
 /// After all blocks were called: the set-point of every axis for the end of this scan, each advanced by one nominal tick in
-/// the order of their numbers. A late scan does not stretch a motion.
+/// the order of their numbers, but masters before those that follow them. A late scan does not stretch a motion.
 ///
 /// Cost: for each axis one evaluation of its plan; where a command completes, at most one plan for each that waits; with
-/// software limits a ramp plan in each scan of an endless motion or a stop.
+/// software limits a ramp plan in each scan of an endless motion or a stop. For a slave one evaluation of its law, and where
+/// the master got another plan at most seven plans.
 #[inline]
 pub fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
+    if axes.iter().any(Axis::is_bound) {
+        return couple::advance(axes, scope);
+    }
     for axis in axes {
         axis.advance(scope);
     }

@@ -1,10 +1,13 @@
 //! Directions barred at random, under moves at random: in a barred direction an axis does nothing but brake, and
 //! what was paused comes to its end when it may.
 
+mod draw;
+
 use standstill_axis::{
     Axis, AxisConfig, AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Factors, Fate,
     Limits, Log, Permission, Plan, Planner, Raw, Request, Scope, Standard, StartState, Superimpose, steps,
 };
+use standstill_testkit::Random;
 use std::slice;
 
 const CYCLE: f64 = 0.01;
@@ -14,76 +17,40 @@ const RESTLESS: u64 = 400;
 /// A case that takes longer is a motion that never ends.
 const MOST_SCANS: u64 = 20_000;
 
-/// Random numbers: a linear congruential generator, whose high bits suffice here.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, count: u64) -> u64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % count
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.below(1 << 20) as f64 / f64::from(1 << 20))
-    }
-
-    fn limits(&mut self) -> Limits {
-        let order = self.below(3);
-        Limits {
-            velocity: self.between(20.0, 200.0),
-            acceleration: self.between(200.0, 2000.0),
-            deceleration: self.between(200.0, 2000.0),
-            jerk: if order > 0 {
-                self.between(5e3, 5e4)
-            } else {
-                f64::INFINITY
+fn command(random: &mut Random, limits: &Limits) -> Command {
+    let dynamics = Dynamics {
+        velocity: limits.velocity * random.between(0.1, 1.0),
+        ..Dynamics::default()
+    };
+    let way = random.between(-60.0, 60.0);
+    let direction = Raw::from(Direction::Unset);
+    match random.below(7) {
+        0 | 1 => Command::MoveAbsolute {
+            position: way,
+            dynamics,
+            direction,
+        },
+        2 => Command::MoveRelative {
+            distance: way,
+            dynamics,
+        },
+        3 => Command::MoveAdditive {
+            distance: way,
+            dynamics,
+        },
+        4 => Command::MoveContinuousRelative {
+            distance: way,
+            end_velocity: dynamics.velocity * random.between(-1.0, 1.0),
+            dynamics,
+        },
+        5 => Command::MoveVelocity {
+            dynamics: Dynamics {
+                velocity: dynamics.velocity * random.between(-1.0, 1.0),
+                ..dynamics
             },
-            snap: if order > 1 {
-                self.between(2e5, 2e6)
-            } else {
-                f64::INFINITY
-            },
-        }
-    }
-
-    fn command(&mut self, limits: &Limits) -> Command {
-        let dynamics = Dynamics {
-            velocity: limits.velocity * self.between(0.1, 1.0),
-            ..Dynamics::default()
-        };
-        let way = self.between(-60.0, 60.0);
-        let direction = Raw::from(Direction::Unset);
-        match self.below(7) {
-            0 | 1 => Command::MoveAbsolute {
-                position: way,
-                dynamics,
-                direction,
-            },
-            2 => Command::MoveRelative {
-                distance: way,
-                dynamics,
-            },
-            3 => Command::MoveAdditive {
-                distance: way,
-                dynamics,
-            },
-            4 => Command::MoveContinuousRelative {
-                distance: way,
-                end_velocity: dynamics.velocity * self.between(-1.0, 1.0),
-                dynamics,
-            },
-            5 => Command::MoveVelocity {
-                dynamics: Dynamics {
-                    velocity: dynamics.velocity * self.between(-1.0, 1.0),
-                    ..dynamics
-                },
-                direction,
-            },
-            _ => Command::Halt { dynamics },
-        }
+            direction,
+        },
+        _ => Command::Halt { dynamics },
     }
 }
 
@@ -99,7 +66,7 @@ struct Case {
 impl Case {
     fn new(seed: u64) -> Self {
         let mut random = Random(seed);
-        let limits = random.limits();
+        let limits = draw::limits(&mut random);
         let config = AxisConfig {
             start: StartState::Standstill,
             stop_deceleration: (random.below(2) == 0).then_some(limits.deceleration * 0.4),
@@ -177,7 +144,7 @@ impl Case {
             };
             let request = Request {
                 buffer_mode: mode.into(),
-                ..Request::aborting(self.random.command(&limits))
+                ..Request::aborting(command(&mut self.random, &limits))
             };
             match self
                 .axis

@@ -4,87 +4,19 @@
 //! Every case runs two axes with the same commands; one of them is also given superimposed ones, at random
 //! times, in both directions, halted or given again on the way.
 
+mod draw;
+
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Fate, Limits,
     Log, Plan, Raw, Request, Scope, Setpoint, Standard, StartState, Superimpose, steps,
 };
+use standstill_testkit::Random;
 use std::slice;
 
 const CYCLE: f64 = 0.01;
 const CASES: u64 = 10_000;
 /// A case that takes longer is a motion that never ends.
 const MOST_SCANS: u64 = 40_000;
-
-/// Random numbers: a linear congruential generator, whose high bits suffice here.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, count: u64) -> u64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % count
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.below(1 << 20) as f64 / f64::from(1 << 20))
-    }
-
-    /// One of the axis limits: all of it, most of it, or some of it.
-    fn share(&mut self, limit: f64) -> f64 {
-        match self.below(3) {
-            0 => 0.0,
-            1 => limit * 0.8,
-            _ => limit * self.between(0.05, 1.0),
-        }
-    }
-
-    fn dynamics(&mut self, limits: &Limits) -> Dynamics {
-        let velocity = match self.below(3) {
-            0 => limits.velocity,
-            _ => limits.velocity * self.between(0.05, 1.0),
-        };
-        let bounded = |share: f64| if share.is_finite() { share } else { 0.0 };
-        let acceleration = self.share(limits.acceleration);
-        Dynamics {
-            velocity,
-            acceleration,
-            deceleration: if self.below(2) == 0 {
-                acceleration
-            } else {
-                self.share(limits.deceleration)
-            },
-            jerk: bounded(self.share(limits.jerk)),
-            snap: bounded(self.share(limits.snap)),
-        }
-    }
-
-    fn limits(&mut self) -> Limits {
-        let order = self.below(3);
-        let acceleration = self.between(200.0, 2000.0);
-        let deceleration = if self.below(3) == 0 {
-            self.between(200.0, 2000.0)
-        } else {
-            acceleration
-        };
-        Limits {
-            velocity: self.between(20.0, 200.0),
-            acceleration,
-            deceleration,
-            jerk: if order > 0 {
-                self.between(5e3, 5e4)
-            } else {
-                f64::INFINITY
-            },
-            snap: if order > 1 {
-                self.between(2e5, 2e6)
-            } else {
-                f64::INFINITY
-            },
-        }
-    }
-}
 
 fn axis(limits: Limits) -> Axis {
     let config = AxisConfig {
@@ -148,8 +80,8 @@ struct Case {
 
 impl Case {
     fn new(seed: u64) -> Self {
-        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
-        let limits = random.limits();
+        let mut random = Random(seed);
+        let limits = draw::limits(&mut random);
         Self {
             limits,
             random,
@@ -174,7 +106,7 @@ impl Case {
     }
 
     fn base(&mut self) -> (Command, Option<f64>) {
-        let dynamics = self.random.dynamics(&self.limits);
+        let dynamics = draw::dynamics(&mut self.random, &self.limits);
         if self.random.below(4) == 0 {
             let direction: Raw<Direction> = Direction::Positive.into();
             let signed = if self.random.below(2) == 0 { 1.0 } else { -1.0 };
@@ -200,7 +132,7 @@ impl Case {
         let distance = self.random.between(-60.0, 60.0);
         let request = Superimpose {
             distance,
-            dynamics: self.random.dynamics(&self.limits),
+            dynamics: draw::dynamics(&mut self.random, &self.limits),
         };
         let id = self
             .with
@@ -283,7 +215,7 @@ fn many_on_many(seed: u64) {
             match case.random.below(5) {
                 0 | 1 => last = Some(case.superimpose().0),
                 2 => {
-                    let dynamics = case.random.dynamics(&case.limits);
+                    let dynamics = draw::dynamics(&mut case.random, &case.limits);
                     last = Some(
                         case.with
                             .halt_superimposed(&dynamics, &mut Scope::new(case.scan, &mut case.log))

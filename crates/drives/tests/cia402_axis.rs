@@ -5,6 +5,7 @@ use standstill_axis::{
     Limits, Log, Permission, Request, Scaling, Scope, Standard, steps,
 };
 use standstill_drives::cia402::{Cia402Drive, Reaction, Settings, State};
+use standstill_testkit::Random;
 use std::slice;
 
 const CYCLE: f64 = 0.001;
@@ -22,23 +23,6 @@ const LIMITS: Limits = Limits {
 
 /// Most increments between two set-points.
 const STEP: i64 = (100.0 * CYCLE * SCALE as f64) as i64 + 1;
-
-/// splitmix64.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    fn below(&mut self, count: u64) -> u64 {
-        self.bits() % count
-    }
-}
 
 struct Rig {
     axis: Axis,

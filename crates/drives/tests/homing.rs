@@ -5,6 +5,7 @@ use standstill_axis::{
     IdealDrive, InstanceId, Limits, Log, Procedure, Request, Scope, Standard, StartState, SwitchEdge, steps,
 };
 use standstill_drives::switches::{Marker, Switches, Travel};
+use standstill_testkit::Random;
 use std::slice;
 
 const CYCLE: f64 = 0.001;
@@ -26,28 +27,6 @@ const SWITCHES: Switches = Switches {
     }),
     turn: None,
 };
-
-/// splitmix64.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    /// From 0 to 1.
-    fn part(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn of<T: Copy>(&mut self, choices: &[T]) -> T {
-        choices[self.bits() as usize % choices.len()]
-    }
-}
 
 /// Homes from `start` and returns the place that is called 0 afterwards.
 fn place_of_zero(homing: Homing, start: f64, delay: usize) -> f64 {
@@ -112,22 +91,22 @@ fn place_of_zero(homing: Homing, start: f64, delay: usize) -> f64 {
 fn the_reference_of_a_switch_is_the_same_from_everywhere() {
     let mut random = Random(5);
     for _ in 0..600 {
-        let creep = 5.0 + 20.0 * random.part();
+        let creep = 5.0 + 20.0 * random.unit();
         let homing = Homing {
             procedure: Procedure::AbsoluteSwitch,
-            direction: random.of(&[
+            direction: random.one_of(&[
                 HomeDirection::Positive,
                 HomeDirection::Negative,
                 HomeDirection::SwitchPositive,
                 HomeDirection::SwitchNegative,
             ]),
-            edge: random.of(&[
+            edge: random.one_of(&[
                 SwitchEdge::Rising,
                 SwitchEdge::Falling,
                 SwitchEdge::SwitchPositive,
                 SwitchEdge::SwitchNegative,
             ]),
-            velocity: 30.0 + 300.0 * random.part(),
+            velocity: 30.0 + 300.0 * random.unit(),
             creep: Some(creep),
             ..Homing::DIRECT
         };
@@ -142,8 +121,8 @@ fn the_reference_of_a_switch_is_the_same_from_everywhere() {
             SwitchEdge::SwitchNegative => false,
         };
         let edge = if is_lower { 3.0 } else { 9.0 };
-        let start = -60.0 + 120.0 * random.part();
-        let found = place_of_zero(homing, start, random.of(&[0, 1, 4]));
+        let start = -60.0 + 120.0 * random.unit();
+        let found = place_of_zero(homing, start, random.one_of(&[0, 1, 4]));
         // Behind the edge in the direction of the last approach, by no more than a scan's way.
         let behind = if is_up { found - edge } else { edge - found };
         assert!(
@@ -157,14 +136,14 @@ fn the_reference_of_a_switch_is_the_same_from_everywhere() {
 fn the_reference_of_a_pulse_is_its_place() {
     let mut random = Random(6);
     for _ in 0..300 {
-        let direction = random.of(&[HomeDirection::Positive, HomeDirection::Negative]);
+        let direction = random.one_of(&[HomeDirection::Positive, HomeDirection::Negative]);
         let homing = Homing {
             procedure: Procedure::ReferencePulse,
             direction,
-            velocity: 5.0 + 400.0 * random.part(),
+            velocity: 5.0 + 400.0 * random.unit(),
             ..Homing::DIRECT
         };
-        let found = place_of_zero(homing, -20.0 + 40.0 * random.part(), random.of(&[0, 3]));
+        let found = place_of_zero(homing, -20.0 + 40.0 * random.unit(), random.one_of(&[0, 3]));
         let pulse = (found - 0.25).round() + 0.25;
         assert!((found - pulse).abs() <= 1e-9, "{homing:?}: {found}");
     }
@@ -174,16 +153,16 @@ fn the_reference_of_a_pulse_is_its_place() {
 fn a_limit_switch_is_the_reference_where_it_goes_off() {
     let mut random = Random(7);
     for _ in 0..300 {
-        let direction = random.of(&[HomeDirection::Positive, HomeDirection::Negative]);
-        let creep = 5.0 + 20.0 * random.part();
+        let direction = random.one_of(&[HomeDirection::Positive, HomeDirection::Negative]);
+        let creep = 5.0 + 20.0 * random.unit();
         let homing = Homing {
             procedure: Procedure::LimitSwitch,
             direction,
-            velocity: 30.0 + 300.0 * random.part(),
+            velocity: 30.0 + 300.0 * random.unit(),
             creep: Some(creep),
             ..Homing::DIRECT
         };
-        let found = place_of_zero(homing, -60.0 + 120.0 * random.part(), random.of(&[0, 2]));
+        let found = place_of_zero(homing, -60.0 + 120.0 * random.unit(), random.one_of(&[0, 2]));
         let inside = if direction == HomeDirection::Positive {
             50.0 - found
         } else {

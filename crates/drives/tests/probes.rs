@@ -5,6 +5,7 @@ use standstill_axis::{
     Log, Request, Scope, Standard, StartState, TouchProbe, Trigger, steps,
 };
 use standstill_drives::peripherals::Peripherals;
+use standstill_testkit::Random;
 use std::slice;
 
 const CYCLE: f64 = 0.001;
@@ -16,24 +17,6 @@ const LIMITS: Limits = Limits {
     jerk: 1e9,
     snap: f64::INFINITY,
 };
-
-/// splitmix64.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    /// From 0 to 1.
-    fn part(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
 
 struct Rig {
     axis: Axis,
@@ -94,7 +77,7 @@ fn an_edge_between_scans_is_recorded_to_a_millionth_of_the_way() {
         let modulo = (case % 2 == 1).then_some(360.0);
         let mut rig = Rig::new(modulo, case % 3);
         // From a creep to ten units a scan, either way.
-        let speed = 1e4 * random.part() * random.part() * random.part() + 0.1;
+        let speed = 1e4 * random.unit() * random.unit() * random.unit() + 0.1;
         let velocity = if random.bits().is_multiple_of(2) {
             speed
         } else {
@@ -130,7 +113,7 @@ fn an_edge_between_scans_is_recorded_to_a_millionth_of_the_way() {
             rig.scan(|_| ());
             assert_eq!(rig.axis.fate(probing), Fate::Waiting);
         }
-        let at = random.part();
+        let at = random.unit();
         let before = rig.axis.actual_position();
         rig.device.set_probe(0, at, true);
         rig.scan(|_| ());

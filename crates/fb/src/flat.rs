@@ -7,7 +7,7 @@
 //! | pin | bytes |
 //! | --- | --- |
 //! | BOOL | `u8`; anything but 0 is TRUE, 0 or 1 is written |
-//! | INT, WORD, DWORD | `i16`, `u16`, `u32` |
+//! | INT, UINT, WORD, DWORD | `i16`, `u16`, `u16`, `u32` |
 //! | LREAL | `f64` |
 //! | TIME | `i64`, nanoseconds |
 //! | enumerations | `i32`, the number |
@@ -91,7 +91,7 @@ impl PinType {
         Some(match self {
             Self::Bool => Scalar::U8,
             Self::Int => Scalar::I16,
-            Self::Word => Scalar::U16,
+            Self::Uint | Self::Word => Scalar::U16,
             Self::Dword => Scalar::U32,
             Self::Lreal => Scalar::F64,
             Self::Time => Scalar::I64,

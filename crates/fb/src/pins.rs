@@ -52,6 +52,8 @@ pub enum PinType {
     Int,
     /// LREAL.
     Lreal,
+    /// UINT, 16 bits; its value is that of a WORD.
+    Uint,
     /// WORD, shown as a decimal number; ErrorID pins.
     Word,
     /// DWORD, a bit field.
@@ -73,6 +75,7 @@ impl PinType {
             Self::Bool => "BOOL",
             Self::Int => "INT",
             Self::Lreal => "LREAL",
+            Self::Uint => "UINT",
             Self::Word => "WORD",
             Self::Dword => "DWORD",
             Self::Time => "TIME",
@@ -92,7 +95,7 @@ pub enum Value {
     Int(i16),
     /// LREAL.
     Lreal(f64),
-    /// WORD.
+    /// UINT or WORD.
     Word(u16),
     /// DWORD.
     Dword(u32),
@@ -163,6 +166,7 @@ macro_rules! pin_value {
 
 pin_value!(bool, Bool, Bool, u8, value => u8::from(value), flat => flat != 0);
 pin_value!(i16, Int, Int, i16, value => value, flat => flat);
+pin_value!(u16, Uint, Word, u16, value => value, flat => flat);
 pin_value!(u32, Dword, Dword, u32, value => value, flat => flat);
 pin_value!(f64, Lreal, Lreal, f64, value => value, flat => flat);
 

@@ -26,33 +26,34 @@ pub const FIELDS: [(&str, &str, &str, usize); 11] = [
         "event",
         "i32",
         "1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position, 8 planned \
-         to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault, 14 orphaned.",
+         to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault, 14 orphaned, 15 coupled, 16 approaching \
+         the law of a gear, 17 in gear, 18 no longer in gear.",
         24,
     ),
     ("error_id", "u32", "ErrorID, 0 without one.", 28),
     (
         "count",
         "u64",
-        "Scans of a plan, number of a point, or code of a drive.",
+        "Scans of a plan, number of a point or of a master, or code of a drive.",
         32,
     ),
     (
         "value",
         "f64",
-        "What was asked for; the excess of velocity; where to; the velocity.",
+        "What was asked for; the excess of velocity; where to; the velocity; the numerator of a ratio.",
         40,
     ),
     (
         "limit",
         "f64",
-        "What was used instead, or the limit; the excess of acceleration; the velocity when passing.",
+        "What was used instead, or the limit; the excess of acceleration; the velocity when passing; the denominator.",
         48,
     ),
     ("third", "f64", "The excess of jerk.", 56),
     (
         "name",
         "char[32]",
-        "Name of the pin or field, ending in 0; empty: the axis state decided.",
+        "Name of the pin, field, quantity or way, ending in 0; empty: the axis state decided.",
         64,
     ),
 ];
@@ -155,6 +156,36 @@ impl FlatRecord {
                 record.count = code.into();
             }
             Event::Orphaned => record.event = 14,
+            Event::Coupled {
+                master,
+                numerator,
+                denominator,
+            } => {
+                record.event = 15;
+                record.count = master.number().into();
+                (record.value, record.limit) = (numerator.into(), denominator.into());
+            }
+            Event::Approaching { way, velocity, scans } => {
+                record.event = 16;
+                record.count = scans.into();
+                record.value = velocity;
+                record.name = way.name();
+            }
+            Event::InGear => record.event = 17,
+            Event::GearLost { what, value, limit } => {
+                record.event = 18;
+                (record.value, record.limit) = (value, limit);
+                record.name = what;
+            }
+            Event::Phasing { to, scans } => {
+                record.event = 20;
+                record.count = scans.into();
+                record.value = to;
+            }
+            Event::SyncLate { by } => {
+                record.event = 19;
+                record.value = by;
+            }
         }
         record
     }

@@ -140,7 +140,7 @@ impl PinType {
             Self::Bool => Value::Bool(cell != 0.0),
             // Casts saturate, and NaN becomes 0.
             Self::Int => Value::Int(cell as i16),
-            Self::Word => Value::Word(cell as u16),
+            Self::Uint | Self::Word => Value::Word(cell as u16),
             Self::Dword => Value::Dword(cell as u32),
             Self::Time => Value::Time(cell as i64),
             Self::Enum(_) => Value::Enum(cell as i32),

@@ -74,14 +74,28 @@ impl<V: Values> UpdateCore<V> {
         values: impl Fn() -> V,
         issue: impl FnOnce(&mut Axis<P>, V, Option<CommandId>, &mut Scope<'_>) -> Result<CommandId, ErrorId>,
     ) -> Phase {
+        self.scan_among(pins, context, values, |context, given, replaces| {
+            let (axis, scope) = context.axis(pins.axis)?;
+            issue(axis, given, replaces, scope)
+        })
+    }
+
+    /// The same for a command that takes a look at other axes.
+    #[inline]
+    pub fn scan_among<P: Planner>(
+        &mut self,
+        pins: Move,
+        context: &mut Context<'_, P>,
+        values: impl Fn() -> V,
+        issue: impl FnOnce(&mut Context<'_, P>, V, Option<CommandId>) -> Result<CommandId, ErrorId>,
+    ) -> Phase {
         if self.seen.is_some() {
             self.update(pins, context, &values);
         }
         let seen = &mut self.seen;
         self.execute.scan(pins.execute, context, |context, replaces| {
-            let (axis, scope) = context.axis(pins.axis)?;
             let given = values();
-            let id = issue(axis, given, replaces, scope)?;
+            let id = issue(context, given, replaces)?;
             *seen = pins.continuous_update.then_some(given);
             Ok((pins.axis, id))
         })

@@ -22,6 +22,11 @@ impl<P: Planner> Axis<P> {
     pub fn command(&mut self, request: &Request, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
         let (mode, start) = self.admit_recorded(request, scope)?;
         let (work, limits) = self.check(&request.command, start, scope)?;
+        if let Work::Gear(gearing) = work
+            && gearing.waits_for_start()
+        {
+            return self.await_start(gearing, limits, mode, scope);
+        }
         let mut entry = Entry::new(self.new_id(), scope.instance, work, limits, mode);
         entry.direction = direction_of(&request.command);
         self.override_entry(&mut entry);
@@ -30,6 +35,7 @@ impl<P: Planner> Axis<P> {
         }
         match start {
             Start::Wait => {
+                self.note_bound(&entry);
                 self.queue.push(entry);
                 self.arm(mode, scope);
                 self.start_beside(scope);
@@ -41,7 +47,14 @@ impl<P: Planner> Axis<P> {
                     .plan_for(&mut entry)
                     .map_err(|error| self.refuse_plan(&entry, error, scope))?;
                 let before = self.limits_before(&entry.limits);
+                let kept = self.coupling_kept(&entry);
+                let phasing = self.lend_phasing(&entry);
+                // What is not to interrupt anything starts beside what waits for a start point.
+                let awaited = self.awaited.take_if(|_| mode != BufferMode::Aborting);
                 self.end_all(Fate::Aborted, Fate::Aborted);
+                self.coupling = kept;
+                self.phasing = phasing;
+                self.awaited = awaited;
                 self.begin(entry, motion, before, scope);
                 self.record_raised(&asked, &entry.limits, scope);
             }
@@ -88,6 +101,10 @@ impl<P: Planner> Axis<P> {
     }
 
     fn start(&self, request: &Request, buffered: bool) -> Result<Start, (&'static str, ErrorId)> {
+        if matches!(request.command, Command::GearOut) {
+            let start = self.is_coupled().then_some(Start::Now);
+            return start.ok_or(("Slave", ErrorId::NotCoupled));
+        }
         if self.power.is_going_off() {
             return Err(("", ErrorId::PoweringOff));
         }
@@ -239,6 +256,22 @@ impl<P: Planner> Axis<P> {
                 };
                 Ok((Work::Home(position), limits))
             }
+            Command::GearIn {
+                master,
+                numerator,
+                denominator,
+                source,
+                sync,
+                ref dynamics,
+            } => {
+                let gearing = self.check_gear(master, (numerator, denominator), source, sync, scope)?;
+                let limits = match sync {
+                    Some(_) if dynamics.velocity != 0.0 => self.positioning(dynamics, scope)?,
+                    _ => self.resolve(dynamics, scope)?,
+                };
+                Ok((Work::Gear(gearing), limits))
+            }
+            Command::GearOut => Ok(self.release()),
         }
     }
 
@@ -393,6 +426,8 @@ impl<P: Planner> Axis<P> {
                 self.not_outward(start.position, velocity)?;
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
+            Work::Gear(_) => return self.gear_motion(entry, start),
+            Work::Release(velocity) => self.planner.ramp_to(start, velocity, &entry.limits, before),
             Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
             Work::Torque { .. } => {
                 let velocity = self.torque_goal(entry) * entry.limits.velocity;
@@ -430,6 +465,8 @@ impl<P: Planner> Axis<P> {
                 ..
             } => ("Distance", distance),
             Work::Velocity { velocity, .. } => ("Velocity", velocity),
+            Work::Gear(gearing) => ("Master", f64::from(gearing.master.number())),
+            Work::Release(velocity) => ("Slave", velocity),
             Work::Torque { torque, .. } => ("Torque", torque),
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),
             Work::Home(position) | Work::SetPosition { position, .. } => ("Position", position),

@@ -138,7 +138,11 @@ impl<P: Planner> Axis<P> {
     pub(super) fn limits_of(limits: &Limits, motion: &Motion<P::Plan>) -> Limits {
         match motion {
             Motion::Run { plan, .. } => raised(limits, plan),
-            Motion::Follow | Motion::Hold | Motion::Torque { .. } => *limits,
+            Motion::Follow
+            | Motion::Hold
+            | Motion::Torque { .. }
+            | Motion::Geared
+            | Motion::Closing { .. } => *limits,
         }
     }
 

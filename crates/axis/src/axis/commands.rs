@@ -1,9 +1,10 @@
 //! Commands as the axis keeps them: what each does, when it starts, and how it ends. Values only; nothing here knows an axis.
 
 use crate::{
-    AxisEvent, BufferMode, Command, CommandId, Direction, ErrorId, InstanceId, Parameter, ParameterValue,
+    AxisEvent, AxisId, BufferMode, Command, CommandId, Direction, ErrorId, InstanceId, Parameter,
+    ParameterValue, SyncMode,
 };
-use standstill_planner::{Field, Limits, Passage, PlanError, ProfileKind};
+use standstill_planner::{Field, Gear, Limits, Passage, PlanError, ProfileKind};
 
 /// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
 pub(super) const ROUNDING: f64 = 1e-9;
@@ -66,6 +67,10 @@ pub(super) enum Work {
     /// A torque, changed by so much a second (0: at once); with `along` its sign is relative to the motion when it becomes
     /// active.
     Torque { torque: f64, ramp: f64, along: bool },
+    /// Behind a master.
+    Gear(Gearing),
+    /// On with a velocity (u/s), no longer behind a master.
+    Release(f64),
     /// To velocity zero.
     Halt,
     /// To velocity zero, locked.
@@ -76,6 +81,33 @@ pub(super) enum Work {
     SetPosition { position: f64, relative: bool },
     /// Something beside the motion is written.
     Write(Write),
+}
+
+/// How a slave follows which master.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gearing {
+    pub master: AxisId,
+    pub gear: Gear,
+    /// The places that belong together, if they are given; else those in which it comes into gear.
+    pub sync: Option<Sync>,
+}
+
+/// A sync point, checked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sync {
+    /// Place of the master (u), and of the slave (u).
+    pub master: f64,
+    pub slave: f64,
+    pub mode: SyncMode,
+    /// How far before its place the master is where the slave sets off (u), with the sign of its direction; 0 for at once.
+    pub start_distance: f64,
+}
+
+impl Gearing {
+    /// The slave sets off where its master is at a place, not at once.
+    pub fn waits_for_start(&self) -> bool {
+        self.sync.is_some_and(|sync| sync.start_distance != 0.0)
+    }
 }
 
 /// What a kind of work is: said here once for all who ask. What only one of them asks stands there.
@@ -119,6 +151,8 @@ pub(super) enum Ending {
     Holds,
     /// It is done, and the motion goes on.
     RunsOn,
+    /// It goes on behind its master, and gives way to what waits once it is in gear.
+    Follows,
     /// Nothing: its block has yet to give its points.
     Due,
     /// It locks the axis while its Execute is TRUE.
@@ -163,6 +197,10 @@ pub enum WorkKind {
     Profile,
     /// A torque.
     Torque,
+    /// Behind a master.
+    Gear,
+    /// On with a velocity, no longer behind a master.
+    Release,
     /// To velocity zero.
     Halt,
     /// To velocity zero, locked.
@@ -302,6 +340,21 @@ impl Work {
                 overridden: false,
                 ..Manner::ENDLESS
             },
+            Self::Gear(_) => Manner {
+                kind: WorkKind::Gear,
+                start: AxisEvent::StartSynchronized,
+                ending: Ending::Follows,
+                overridden: false,
+                ..Manner::ENDLESS
+            },
+            Self::Release(velocity) => Manner {
+                kind: WorkKind::Release,
+                velocity,
+                ending: Ending::RunsOn,
+                overridden: false,
+                updated: false,
+                ..Manner::ENDLESS
+            },
             Self::Halt => Manner::RAMP,
             Self::Stop => Manner {
                 kind: WorkKind::Stop,
@@ -394,6 +447,8 @@ pub(super) struct Entry {
     pub orphaned: bool,
     /// What its instance gave after it, and follows now (B19).
     pub heir: Option<CommandId>,
+    /// Why it can't go behind its master now; looked at before each motion step.
+    pub barred: Option<ErrorId>,
 }
 
 /// Values of a command before the override.
@@ -429,6 +484,7 @@ impl Entry {
             paused: false,
             orphaned: false,
             heir: None,
+            barred: None,
         }
     }
 
@@ -458,7 +514,9 @@ pub(super) fn direction_of(command: &Command) -> Option<Direction> {
         | Command::Jog { .. }
         | Command::Halt { .. }
         | Command::Stop { .. }
-        | Command::Home { .. } => None,
+        | Command::Home { .. }
+        | Command::GearIn { .. }
+        | Command::GearOut => None,
     }
 }
 

@@ -23,8 +23,9 @@ impl<P: Planner> Axis<P> {
     /// Cost: at most one plan.
     ///
     /// # Errors
-    /// The [`ErrorId`] the block shows: a position that is not finite or outside the first turn of a modulo
-    /// axis, an undefined mode, a full buffer, or a move that could not be planned anew. Nothing changes then.
+    /// The [`ErrorId`] the block shows: a position that is not finite or outside the first turn of a modulo axis, in
+    /// motion one so large that numbers do not tell a set-point from the next, an undefined mode, a full buffer, or a
+    /// move that could not be planned anew. Nothing changes then.
     pub fn set_position(
         &mut self,
         position: f64,
@@ -102,13 +103,23 @@ impl<P: Planner> Axis<P> {
             Some(modulo) if by.abs() >= modulo.length => split(by, modulo.length).1,
             _ => by,
         };
-        let at = self.setpoint.position + by;
-        if !(at.is_finite()
+        // Where no turns are counted, an axis without lag is at the very number asked for, however far it was.
+        let at = if !relative && self.modulo.is_none() && self.setpoint.position == self.feedback.position() {
+            position
+        } else {
+            self.setpoint.position + by
+        };
+        let is_finite = at.is_finite()
             && (self.feedback.position() + by).is_finite()
-            && (self.frame.shift() + by).is_finite())
-        {
+            && (self.frame.shift() + by).is_finite();
+        // A motion among numbers that do not tell its set-points apart is not found again among others.
+        let is_resolved =
+            self.setpoint.is_at_rest() || (self.is_resolved(at) && self.is_resolved(self.setpoint.position));
+        if !(is_finite && is_resolved) {
             return Err(ErrorId::PositionInvalid);
         }
+        // What rounding there takes from the plan in progress does not come back.
+        self.coarsest = self.coarsest.max(self.setpoint.position.abs()).max(at.abs());
         let before = (self.setpoint, self.layer);
         self.setpoint.position = at;
         if let Some(layer) = &mut self.layer {
@@ -144,6 +155,11 @@ impl<P: Planner> Axis<P> {
         self.tell_moved(by, scope);
         self.pass_at_rest(scope);
         Ok(())
+    }
+
+    /// Whether a number of 64 bits tells `position` (u) from where the axis is a scan later at its velocity limit.
+    fn is_resolved(&self, position: f64) -> bool {
+        position.abs() * f64::EPSILON <= self.config.limits.velocity * self.planner.cycle()
     }
 
     /// The motion in progress in coordinates moved by `by` (u): an absolute move is planned anew to the same

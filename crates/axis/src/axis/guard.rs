@@ -10,7 +10,7 @@ use standstill_planner::{Excess, Limits, Planner, Setpoint};
 const RELATIVE: f64 = 1e-9;
 
 /// The same at the end of a plan, whose last scan may be longer by this part.
-const LAST_SCAN: f64 = 1.0 / 2048.0;
+pub(super) const LAST_SCAN: f64 = 1.0 / 2048.0;
 
 /// What a position is off by at most, relative to the largest one that enters it.
 const RESOLVED: f64 = 8.0 * f64::EPSILON;
@@ -27,7 +27,7 @@ impl<P: Planner> Axis<P> {
     /// The same within the limits in force, which all but a few set-points are.
     #[inline(always)]
     pub(super) fn is_usual_step(&self, next: &Setpoint) -> bool {
-        self.steps_within(next, &self.in_force, 1.0 + RELATIVE)
+        self.steps_within(next, &self.in_force, 1.0 + RELATIVE, 0.0)
     }
 
     fn is_wider_step(&self, next: &Setpoint) -> bool {
@@ -54,15 +54,16 @@ impl<P: Planner> Axis<P> {
         };
         let is_last = matches!(&self.motion, Motion::Run { elapsed, scans, .. } if elapsed >= scans);
         let slack = if is_last { LAST_SCAN } else { RELATIVE };
-        self.steps_within(next, &widest, 1.0 + slack)
+        self.steps_within(next, &widest, 1.0 + slack, self.coarsest)
     }
 
-    /// Whether position, velocity and acceleration change by no more than `limits` times `factor` allow in a scan.
+    /// Whether position, velocity and acceleration change by no more than `limits` times `factor` allow in a scan, and what
+    /// rounding takes, also at a position of magnitude `coarsest` (u) the plan was at.
     #[inline(always)]
-    fn steps_within(&self, next: &Setpoint, limits: &Limits, factor: f64) -> bool {
+    pub(super) fn steps_within(&self, next: &Setpoint, limits: &Limits, factor: f64, coarsest: f64) -> bool {
         let last = &self.setpoint;
         let scan = factor * self.planner.cycle();
-        let resolved = RESOLVED * (last.position.abs() + next.position.abs());
+        let resolved = RESOLVED * (last.position.abs() + next.position.abs() + coarsest);
         let steepest = limits.acceleration.max(limits.deceleration);
         (next.position - last.position).abs() <= limits.velocity * scan + resolved
             && (next.velocity - last.velocity).abs() <= steepest * scan

@@ -23,7 +23,11 @@ impl<P: Planner> Axis<P> {
     pub(super) fn excess_of(&self, motion: &Motion<P::Plan>) -> Option<Excess> {
         match motion {
             Motion::Run { plan, .. } => self.beyond_axis(plan),
-            Motion::Hold | Motion::Follow | Motion::Torque { .. } => None,
+            Motion::Hold
+            | Motion::Follow
+            | Motion::Torque { .. }
+            | Motion::Geared
+            | Motion::Closing { .. } => None,
         }
     }
 
@@ -101,7 +105,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Jerk and snap as they were before, then those of the axis with its accelerations, too.
-    fn higher(&self, limits: &Limits, before: &Limits) -> [Limits; 2] {
+    pub(super) fn higher(&self, limits: &Limits, before: &Limits) -> [Limits; 2] {
         let axis = &self.config.limits;
         [
             Limits {

@@ -19,6 +19,7 @@
 //! | [`dynamics`], [`factors`], [`parameters`] | limits from pins, the override, what can be written by number |
 //! | [`step`], [`replan`], [`blend`], [`inside`], [`guard`] | the motion step and hand-over, the owner's motion changed while it runs, how fast it passes its end, take-overs within the limits, no jump |
 //! | [`superimposed`] | a second motion on top |
+//! | [`coupling`] | behind a master |
 //! | [`profile`], [`torque`], [`jog`], [`homing`] | curves through points, torques, MC_Jog, the search for the reference |
 //! | [`power`], [`permission`], [`limit_switches`], [`software_limits`], [`supervision`] | feedback, power, faults and resets; directions, switches, limits, following error |
 //! | [`coordinates`], [`reading`], [`outputs`], [`probe`] | moved coordinates, what reading blocks ask, inputs and outputs, positions at edges |
@@ -27,6 +28,7 @@ mod accept;
 mod blend;
 mod commands;
 mod coordinates;
+mod coupling;
 mod dynamics;
 mod factors;
 mod feedback;
@@ -64,6 +66,8 @@ use crate::{
 };
 pub use commands::WorkKind;
 use commands::{Ending, Entry, Work};
+pub use coupling::Coupled;
+pub(crate) use coupling::{Future, View};
 pub use factors::Factors;
 use feedback::Feedback;
 use frame::Frame;
@@ -89,6 +93,10 @@ enum Motion<Plan> {
     /// The actual position under a torque: the last one ordered, and the ramp of its velocity limit, so many scans after its
     /// start.
     Torque { plan: Plan, elapsed: u64, torque: f64 },
+    /// Where its coupling says.
+    Geared,
+    /// The same, and what a plan says beside it.
+    Closing { plan: Plan, elapsed: u64, scans: u64 },
 }
 
 impl<P: Plan> Motion<P> {
@@ -105,8 +113,8 @@ impl<P: Plan> Motion<P> {
     fn scans_left(&self) -> Option<u32> {
         match self {
             Self::Follow => None,
-            Self::Hold | Self::Torque { .. } => Some(0),
-            Self::Run { elapsed, scans, .. } => {
+            Self::Hold | Self::Torque { .. } | Self::Geared => Some(0),
+            Self::Run { elapsed, scans, .. } | Self::Closing { elapsed, scans, .. } => {
                 // At least 1, to tell a plan at its goal from holding.
                 let left = scans.saturating_sub(*elapsed);
                 Some(u32::try_from(left).unwrap_or(u32::MAX).saturating_add(1))
@@ -260,11 +268,25 @@ pub struct Axis<P: Planner = Standard> {
     covered: Option<(CommandId, f64)>,
     /// Limits of the present motion, for whoever takes over from it.
     in_force: Limits,
+    /// The largest magnitude (u) that coordinates moved under the plan in progress gave its positions; see [`guard`].
+    coarsest: f64,
     /// Limits of the motion the owner took over from, for planning the owner anew.
     before: Limits,
     /// The last velocity that was not zero (u/s): its sign is mcCurrentDirection.
     last_velocity: f64,
     owner: Option<Entry>,
+    /// How the owner follows a master.
+    coupling: Option<coupling::Coupling>,
+    /// The shift between its master and what it sees of that.
+    phasing: coupling::Phasing<P::Plan>,
+    /// What follows a master from a place of it on, and waits for that.
+    awaited: Option<coupling::Awaited>,
+    /// The owner or a command that waits may follow a master; never FALSE where one does.
+    is_bound: bool,
+    /// Where its set-point comes from in this scan, where some axis may follow another.
+    source: coupling::Source,
+    /// How many masters stand above it.
+    rank: u16,
     /// The owner is MC_Stop, stands, and is held by its Execute.
     stop_held: bool,
     queue: Queue,
@@ -323,9 +345,16 @@ impl<P: Planner> Axis<P> {
             layer: None,
             covered: None,
             in_force: config.limits,
+            coarsest: 0.0,
             before: config.limits,
             last_velocity: 1.0,
             owner: None,
+            coupling: None,
+            phasing: coupling::Phasing::default(),
+            awaited: None,
+            is_bound: false,
+            source: coupling::Source::default(),
+            rank: 0,
             stop_held: false,
             queue: Queue::default(),
             fates: Fates::default(),
@@ -417,13 +446,22 @@ impl<P: Planner> Axis<P> {
     pub fn plan(&self) -> Option<(&P::Plan, u64)> {
         match &self.motion {
             Motion::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
-            Motion::Follow | Motion::Hold | Motion::Torque { .. } => None,
+            Motion::Follow
+            | Motion::Hold
+            | Motion::Torque { .. }
+            | Motion::Geared
+            | Motion::Closing { .. } => None,
         }
     }
 
     /// The command that owns the axis; a superimposed one does not.
     pub fn active_command(&self) -> Option<CommandId> {
         self.owner.as_ref().map(|owner| owner.id)
+    }
+
+    /// The command that waits for a place of its master, beside whatever owns the axis (MC_GearInPos before its start point).
+    pub fn awaited_command(&self) -> Option<CommandId> {
+        self.awaited.as_ref().map(|awaited| awaited.entry.id)
     }
 
     /// The command accepted last: its number, for whoever follows what becomes of it.
@@ -436,12 +474,6 @@ impl<P: Planner> Axis<P> {
         self.queue.len()
     }
 
-    /// While this number stays, so does the fate of every command: a block need not ask again.
-    #[inline]
-    pub fn changes(&self) -> u64 {
-        self.fates.changes()
-    }
-
     /// What became of command `id`. Bounded by the queue and the fates kept.
     #[inline]
     pub fn fate(&self, id: CommandId) -> Fate {
@@ -452,11 +484,21 @@ impl<P: Planner> Axis<P> {
             if self.stop_held {
                 return Fate::Done;
             }
+            if let Work::Release(_) = owner.work {
+                return if self.is_released(owner) {
+                    Fate::Done
+                } else {
+                    Fate::Active { reached: false }
+                };
+            }
             if !self.goal_reached() {
                 return Fate::Active { reached: false };
             }
             return match owner.work.manner().ending {
                 Ending::RunsOn if !owner.paused => Fate::Done,
+                Ending::Follows => Fate::Active {
+                    reached: self.is_in_gear(),
+                },
                 ending => Fate::Active {
                     reached: ending == Ending::Holds && !self.is_held_up(),
                 },
@@ -469,12 +511,13 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     fn fate_of_other(&self, id: CommandId) -> Fate {
         if self.queue.contains(id)
+            || self.awaits_start(id)
             || self.probes.is_waiting(id)
             || self.reset.as_ref().is_some_and(|reset| reset.id == id)
         {
             return Fate::Waiting;
         }
-        if let Some(fate) = self.superimposed_fate(id) {
+        if let Some(fate) = self.superimposed_fate(id).or_else(|| self.phasing_fate(id)) {
             return fate;
         }
         self.fates.find(id).unwrap_or(Fate::Failed(ErrorId::FateLost))
@@ -567,8 +610,8 @@ impl<P: Planner> Axis<P> {
     fn goal_reached(&self) -> bool {
         match &self.motion {
             Motion::Run { elapsed, scans, .. } => elapsed >= scans,
-            Motion::Hold => true,
-            Motion::Follow => false,
+            Motion::Hold | Motion::Geared => true,
+            Motion::Follow | Motion::Closing { .. } => false,
             Motion::Torque { torque, .. } => self.torque_is_held(*torque),
         }
     }
@@ -591,11 +634,6 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The fate of a command has changed, or may have.
-    fn touch(&mut self) {
-        self.fates.touch();
-    }
-
     /// Command `id` has ended with `fate`.
     fn decide(&mut self, id: CommandId, fate: Fate) {
         self.fates.record(id, fate);
@@ -613,19 +651,23 @@ impl<P: Planner> Axis<P> {
         while let Some(entry) = self.queue.pop() {
             self.decide(entry.id, waiting);
         }
+        self.end_awaited(waiting);
     }
 
     /// `entry` is the owner, or its values are.
     fn own(&mut self, entry: Entry) {
         self.owner = Some(entry);
-        self.touch();
     }
 
     fn end_owner(&mut self, fate: Fate) {
         let is_over = self.profile_is_over();
         if let Some(owner) = self.owner.take() {
             // A stop that stands has completed, whatever ends its hold, and a profile at its end.
-            let over = self.stop_held || is_over;
+            let over = match owner.work {
+                // Whatever comes next, the coupling has ended.
+                Work::Release(_) => self.is_released(&owner) || fate == Fate::Aborted,
+                _ => self.stop_held || is_over,
+            };
             self.decide(owner.id, if over { Fate::Done } else { fate });
             if matches!(owner.work, Work::Home(_)) {
                 self.end_homing();
@@ -633,6 +675,9 @@ impl<P: Planner> Axis<P> {
         }
         self.stop_held = false;
         self.replan_due = false;
+        if self.coupling.take().is_some() {
+            self.end_phasing();
+        }
     }
 
     fn record(&self, event: Event, scope: &mut Scope<'_>) {

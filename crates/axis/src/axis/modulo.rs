@@ -48,6 +48,17 @@ impl Modulo {
         })
     }
 
+    /// Whole turns at the frame's 0.
+    pub fn turns(&self) -> i64 {
+        self.turns
+    }
+
+    /// The axis is in this turn, at a position of the first one.
+    pub fn put(&mut self, turns: i64) {
+        self.turns = turns;
+        self.stood = None;
+    }
+
     /// As programs see it.
     #[inline(never)]
     pub fn shown(&self, setpoint: &Setpoint) -> Setpoint {

@@ -116,6 +116,9 @@ impl<P: Planner> Axis<P> {
             {
                 self.barred((plan, *elapsed), &limits, &self.in_force)
             }
+            (Motion::Geared | Motion::Closing { .. }, Some(owner)) if !owner.paused => {
+                self.way_barred(self.setpoint.velocity)
+            }
             _ => None,
         };
         owner.or_else(|| self.barred_behind_the_end()).or_else(|| {
@@ -139,7 +142,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn pause(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
         let scope = &mut self.owner_scope(scope);
         self.record(Event::Paused { error }, scope);
-        if !matches!(self.motion, Motion::Run { .. } | Motion::Torque { .. }) {
+        if matches!(self.motion, Motion::Hold | Motion::Follow) {
             return self.brake_superimposed();
         }
         if let Some(mut owner) = self.owner.filter(|owner| owner.work.manner().barred) {
@@ -149,7 +152,7 @@ impl<P: Planner> Axis<P> {
             self.own(owner);
         }
         self.replan_due = false;
-        self.touch();
+        self.leave_law();
         self.in_force = self.limits_before(&self.in_force);
         if let Some(layer) = &mut self.layer {
             layer.pass_velocity(Setpoint {
@@ -178,6 +181,9 @@ impl<P: Planner> Axis<P> {
         let Some(mut owner) = self.owner.filter(|owner| owner.paused) else {
             return;
         };
+        if self.has_lost_master() {
+            return;
+        }
         if owner.turns == 0 {
             self.stay_in_direction(&mut owner, &self.base());
         }

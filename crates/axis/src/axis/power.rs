@@ -7,7 +7,7 @@ use super::stage::Wish;
 use super::{Axis, Calm, Motion, Permission};
 use crate::{
     AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
-    InstanceId, PowerOff, Scope,
+    PowerOff, Scope,
 };
 use standstill_planner::Planner;
 
@@ -110,7 +110,6 @@ impl<P: Planner> Axis<P> {
     /// Something is pending, or may be.
     pub(super) fn stir(&mut self) {
         self.calm = Calm::No;
-        self.touch();
     }
 
     /// The actual position (u), of a number.
@@ -246,13 +245,6 @@ impl<P: Planner> Axis<P> {
         } else {
             self.stir();
         }
-    }
-
-    /// Whether the axis is in operation and [`Axis::set_power`] by `instance`, wanting that and permitting so much,
-    /// would change nothing. FALSE where that takes more than a glance to tell.
-    #[inline]
-    pub fn is_on_for(&self, instance: InstanceId, permitted: Permission) -> bool {
-        self.calm.is_any() && self.power.is_decided(instance, permitted)
     }
 
     /// Switches the axis off whatever MC_Power says: the runtime stops.

@@ -297,6 +297,8 @@ impl<P: Planner> Axis<P> {
         let starts_at_rest = self.setpoint.is_at_rest();
         if starts_at_rest {
             self.motion = Motion::Hold;
+        } else {
+            self.go_on_alone(&before);
         }
         next.limits = self.parameters.limits;
         self.in_force = before;

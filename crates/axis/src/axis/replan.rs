@@ -18,7 +18,7 @@ impl<P: Planner> Axis<P> {
     /// Plans `owner`, the present one with other values, from the present state. With something superimposed it
     /// may find no room just now: then it is tried again in every scan.
     ///
-    /// Cost: at most two plans and two checks of a sum; on a modulo axis a ramp more; for each command that waits
+    /// Cost: at most two plans, four more where those exceed the limits of the axis, and two checks of a sum; on a modulo axis a ramp more; for each command that waits
     /// blended a ramp, at most a root of ramps.
     ///
     /// # Errors
@@ -61,7 +61,7 @@ impl<P: Planner> Axis<P> {
                 let motion = self.plan_from(&owner, &here, &before)?;
                 Some(self.kept_inside(&mut owner, motion, &here, &before)?)
             }
-            Some(layer) => self.plan_beside(layer, &owner, &before)?,
+            Some(layer) => self.plan_beside(layer, &mut owner, &before)?,
         };
         match motion {
             Some(motion) => {
@@ -77,15 +77,18 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// Plans `owner` with something superimposed, which goes on if there is room for it; `None` if it must wait.
+    /// Plans `owner` with something superimposed, which goes on if there is room for it; `None` if it must wait. Its limits are
+    /// raised where the axis could not be kept inside its own with them.
     #[inline(never)]
     fn plan_beside(
         &mut self,
         mut layer: Layer<P::Plan>,
-        owner: &Entry,
+        owner: &mut Entry,
         before: &Limits,
     ) -> Result<Option<Motion<P::Plan>>, ErrorId> {
-        let mut motion = self.plan_from(owner, &layer.base, before)?;
+        let asked = *owner;
+        let motion = self.plan_from(owner, &layer.base, before)?;
+        let mut motion = self.kept_inside(owner, motion, &layer.base, before)?;
         if let (Motion::Run { plan, .. }, false) = (&motion, owner.is_endless() || owner.halted) {
             self.allowed(layer.end_above(plan.at(u64::from(plan.scans())).position))?;
         }
@@ -95,8 +98,11 @@ impl<P: Planner> Axis<P> {
                 ..self.setpoint
             };
             let both = self.limits_before(&owner.limits).or_larger(before);
+            *owner = asked;
             motion = self.plan_from(owner, &sum, &both)?;
+            motion = self.kept_inside(owner, motion, &sum, &both)?;
             if self.exceeds(&motion) {
+                *owner = asked;
                 return Ok(None);
             }
             layer.pass_velocity(sum);
@@ -111,7 +117,6 @@ impl<P: Planner> Axis<P> {
     #[cold]
     pub(super) fn replan_late(&mut self, scope: &mut Scope<'_>) {
         self.replan_due = false;
-        self.touch();
         let Some(owner) = self.owner else { return };
         if let Err(error) = self.replan(owner, scope) {
             self.refuse_plan(&owner, error, &mut self.owner_scope(scope));
@@ -140,7 +145,10 @@ impl<P: Planner> Axis<P> {
     /// The limits that hold for the owner's motion in its present state: its own, and until it is inside them
     /// those it took over from, too. None if it has no motion. Cost: at most one ramp.
     pub(super) fn limits_of_owner(&self) -> Option<Limits> {
-        if !matches!(self.motion, Motion::Run { .. }) {
+        if !matches!(
+            self.motion,
+            Motion::Run { .. } | Motion::Geared | Motion::Closing { .. }
+        ) {
             return None;
         }
         Some(self.limits_in_state(&self.base(), &self.in_force, &self.before))
@@ -175,6 +183,7 @@ impl<P: Planner> Axis<P> {
             self.stir();
         }
         self.motion = motion;
+        self.coarsest = 0.0;
         self.arrival = Arrival::default();
         if self.modulo.is_some() {
             self.start_of_plan();
@@ -186,6 +195,9 @@ impl<P: Planner> Axis<P> {
         self.watched = self.needs_watching(&entry);
         self.own(entry);
         self.replan_due = false;
+        if matches!(self.motion, Motion::Geared) {
+            self.await_master(&entry, scope);
+        }
     }
 
     fn record_plan(&self, entry: &Entry, plan: &P::Plan, scope: &mut Scope<'_>) {

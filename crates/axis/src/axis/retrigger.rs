@@ -21,7 +21,11 @@ impl<P: Planner> Axis<P> {
             self.decide(id, Fate::Aborted);
             return true;
         }
-        self.withdraw_superimposed(id)
+        if self.awaits_start(id) {
+            self.end_awaited(Fate::Aborted);
+            return true;
+        }
+        self.withdraw_superimposed(id) || self.withdraw_shift(id)
     }
 
     /// The instance that held command `id`, which [`Axis::withdraw`] said `waited` or not, follows the command `new` now:
@@ -113,7 +117,7 @@ impl<P: Planner> Axis<P> {
         let id = self.new_id();
         let halt = Entry {
             // Of what stands there is nothing to record.
-            orphaned: ended.orphaned || self.setpoint.is_at_rest(),
+            orphaned: self.setpoint.is_at_rest(),
             ..Entry::new(id, ended.instance, Work::Halt, ended.limits, ended.mode)
         };
         self.halt_alone(halt, scope);

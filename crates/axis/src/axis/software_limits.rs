@@ -73,7 +73,11 @@ impl<P: Planner> Axis<P> {
     pub(super) fn plan_would_leave(&self) -> bool {
         match &self.motion {
             Motion::Run { plan, elapsed, .. } => self.would_leave(&plan.at(*elapsed)),
-            Motion::Follow | Motion::Hold | Motion::Torque { .. } => false,
+            Motion::Follow
+            | Motion::Hold
+            | Motion::Torque { .. }
+            | Motion::Geared
+            | Motion::Closing { .. } => false,
         }
     }
 
@@ -90,11 +94,14 @@ impl<P: Planner> Axis<P> {
         let outside = |position: f64| position < min || position > max;
         let comes_out = outside(next.position) && !outside(self.setpoint.position);
         let work = match (&self.motion, &self.owner) {
-            (Motion::Run { .. }, Some(owner)) => Some(owner.work.manner()),
+            (Motion::Run { .. } | Motion::Geared | Motion::Closing { .. }, Some(owner)) => {
+                Some(owner.work.manner())
+            }
             // Over an owner that stands, or none, a superimposed motion goes on alone: it was checked when it was
             // planned, but then its end may have had another name, or none.
             (Motion::Hold, _) => None,
-            (Motion::Run { .. }, None) | (Motion::Follow | Motion::Torque { .. }, _) => return false,
+            (Motion::Run { .. } | Motion::Geared | Motion::Closing { .. }, None)
+            | (Motion::Follow | Motion::Torque { .. }, _) => return false,
         };
         let leaving = match work {
             None => leaves(next.position + self.superimposed_left()),
@@ -178,7 +185,11 @@ impl<P: Planner> Axis<P> {
     pub(super) fn end_of_plan(&self) -> f64 {
         match &self.motion {
             Motion::Run { plan, .. } => plan.at(u64::from(plan.scans())).position,
-            Motion::Follow | Motion::Hold | Motion::Torque { .. } => self.setpoint.position,
+            Motion::Follow
+            | Motion::Hold
+            | Motion::Torque { .. }
+            | Motion::Geared
+            | Motion::Closing { .. } => self.setpoint.position,
         }
     }
 }

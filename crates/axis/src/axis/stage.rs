@@ -115,11 +115,6 @@ impl Power {
         is_as_wanted && is_well
     }
 
-    /// Whether `instance` decides, and permits so much already.
-    pub fn is_decided(&self, instance: InstanceId, permitted: Permission) -> bool {
-        self.decider == Some(instance) && self.permitted == permitted
-    }
-
     /// Takes over what a drive without a fault told.
     #[inline]
     pub fn latch_voltage(&mut self, voltage: bool) {

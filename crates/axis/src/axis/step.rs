@@ -83,12 +83,9 @@ impl<P: Planner> Axis<P> {
     /// The plan goes on by a scan, to `next`.
     #[inline(always)]
     fn step_to(&mut self, next: Setpoint, scope: &mut Scope<'_>) {
-        if let Motion::Run { elapsed, scans, .. } = &mut self.motion {
+        if let Motion::Run { elapsed, .. } = &mut self.motion {
             // Scans of 1 ms wrap after 10^8 years.
             *elapsed = elapsed.wrapping_add(1);
-            if elapsed == scans {
-                self.touch();
-            }
         }
         if !next.is_finite() {
             self.fail(ErrorId::SetpointBroken, scope);
@@ -137,7 +134,10 @@ impl<P: Planner> Axis<P> {
                 self.publish(Setpoint::at_rest(self.feedback.position()));
                 self.count_actual_turns();
             }
-            Motion::Hold => self.publish(Setpoint::at_rest(self.setpoint.position)),
+            // What is behind a master has its own step; without its master it stays.
+            Motion::Hold | Motion::Geared | Motion::Closing { .. } => {
+                self.publish(Setpoint::at_rest(self.setpoint.position));
+            }
             Motion::Run { .. } => self.step_along_plan(scope),
             Motion::Torque { .. } => self.step_torque(),
         }
@@ -172,7 +172,11 @@ impl<P: Planner> Axis<P> {
                 *elapsed = 1;
                 Some(plan.at(1))
             }
-            Motion::Follow | Motion::Hold | Motion::Torque { .. } => None,
+            Motion::Follow
+            | Motion::Hold
+            | Motion::Torque { .. }
+            | Motion::Geared
+            | Motion::Closing { .. } => None,
         };
         let next = ramp.filter(|next| next.is_finite() && self.is_step(next));
         if next.is_none() && ramp.is_some() {
@@ -202,7 +206,6 @@ impl<P: Planner> Axis<P> {
             Ending::Locks if owner.held => {
                 self.motion = Motion::Hold;
                 self.stop_held = true;
-                self.touch();
             }
             Ending::Locks => {
                 self.motion = Motion::Hold;
@@ -213,7 +216,8 @@ impl<P: Planner> Axis<P> {
             // An endless motion gives way when it has reached its velocity.
             Ending::Holds => self.hand_over(self.passed_end(), scope),
             Ending::RunsOn => self.hand_over(self.setpoint.position, scope),
-            Ending::Due | Ending::Never => {}
+            // Decided with its master.
+            Ending::Follows | Ending::Due | Ending::Never => {}
         }
     }
 
@@ -272,7 +276,9 @@ impl<P: Planner> Axis<P> {
                 Ok(None) => {}
                 Ok(Some(motion)) => {
                     let blended = self.passes_its_end();
+                    let phasing = self.lend_phasing(&next);
                     self.end_owner(self.fate_at_hand_over());
+                    self.phasing = phasing;
                     let before = if blended { next.limits } else { before };
                     self.begin(next, motion, before, scope);
                     self.record_raised(&asked, &next.limits, &mut self.owner_scope(scope));

@@ -137,7 +137,7 @@ impl<P: Plan> Layer<P> {
                 _,
             ) => *target,
             (_, Motion::Run { plan, .. }) => plan.at(u64::from(plan.scans())).position,
-            (_, Motion::Hold | Motion::Follow | Motion::Torque { .. }) => self.added.position,
+            (_, _) => self.added.position,
         };
         end - self.added.position
     }
@@ -189,14 +189,11 @@ impl<P: Plan> Layer<P> {
     }
 
     fn sum(&self) -> Setpoint {
-        let (base, added) = (&self.base, &self.added);
-        Setpoint {
-            position: base.position + (added.position - self.taken),
-            velocity: base.velocity + added.velocity,
-            acceleration: base.acceleration + added.acceleration,
-            jerk: base.jerk + added.jerk,
-            snap: base.snap + added.snap,
-        }
+        let position = self.added.position - self.taken;
+        self.base.plus(&Setpoint {
+            position,
+            ..self.added
+        })
     }
 }
 
@@ -341,6 +338,7 @@ impl<P: Planner> Axis<P> {
             AxisState::Stopping => Err(ErrorId::InStopping),
             AxisState::Homing => Err(ErrorId::InHoming),
             _ if matches!(self.motion, Motion::Torque { .. }) => Err(ErrorId::TorqueControls),
+            _ if self.is_coupled() => Err(ErrorId::SlaveNotSuperimposed),
             AxisState::Standstill
             | AxisState::DiscreteMotion
             | AxisState::ContinuousMotion
@@ -359,7 +357,7 @@ impl<P: Planner> Axis<P> {
                 .and_then(|owner| owner.end)
                 .unwrap_or(f64::NAN),
             (Motion::Run { plan, .. }, _) => plan.at(u64::from(plan.scans())).position,
-            (Motion::Hold | Motion::Follow | Motion::Torque { .. }, _) => layer.base.position,
+            (_, _) => layer.base.position,
         }
     }
 
@@ -435,12 +433,12 @@ impl<P: Planner> Axis<P> {
         let Some(layer) = &mut self.layer else { return };
         layer.base = match &mut self.motion {
             Motion::Follow => Setpoint::at_rest(self.feedback.position()),
-            Motion::Hold | Motion::Torque { .. } => Setpoint::at_rest(layer.base.position),
-            Motion::Run { plan, elapsed, scans } => {
+            // Nothing is superimposed on what is behind a master.
+            Motion::Hold | Motion::Torque { .. } | Motion::Geared | Motion::Closing { .. } => {
+                Setpoint::at_rest(layer.base.position)
+            }
+            Motion::Run { plan, elapsed, .. } => {
                 *elapsed = elapsed.saturating_add(1);
-                if elapsed == scans {
-                    self.fates.touch();
-                }
                 plan.next(*elapsed)
             }
         };
@@ -476,7 +474,7 @@ impl<P: Planner> Axis<P> {
         let Some(layer) = &mut self.layer else { return };
         let reached = match &layer.motion {
             Motion::Run { elapsed, scans, .. } => elapsed >= scans,
-            Motion::Hold | Motion::Follow | Motion::Torque { .. } => true,
+            _ => true,
         };
         if reached {
             layer.added = Setpoint::at_rest(layer.added.position);
@@ -514,7 +512,6 @@ impl<P: Planner> Axis<P> {
     /// What is superimposed comes to rest with the stop dynamics; what is left of its distance waits.
     #[cold]
     pub(super) fn brake_superimposed(&mut self) {
-        self.touch();
         let limits = self.stop_limits();
         let Some(layer) = &mut self.layer else { return };
         let planned = self.planner.ramp_to(&layer.added, 0.0, &limits, &layer.in_force);

@@ -149,8 +149,6 @@ impl<P: Planner> Axis<P> {
             torque: *torque,
             velocity,
         });
-        // Whether the torque is held may change in every scan.
-        self.touch();
         self.publish(self.setpoint);
     }
 

@@ -96,7 +96,11 @@ impl<P: Planner> Axis<P> {
             }
             _ => self.check(command, Start::Wait, scope)?,
         };
-        let is_same_kind = mem::discriminant(&work) == mem::discriminant(&entry.work);
+        let is_same_kind = match (work, entry.work) {
+            // Another master is another coupling.
+            (Work::Gear(new), Work::Gear(old)) => new.master == old.master,
+            (new, old) => mem::discriminant(&new) == mem::discriminant(&old),
+        };
         Ok((is_same_kind && work.manner().updated).then_some((work, limits)))
     }
 

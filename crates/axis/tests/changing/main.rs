@@ -8,14 +8,15 @@
 //! Set-points are held against the limits of the axis by the rules of `standstill-soak`. A take-over that cannot stay
 //! inside a limit says so in a record; that may happen in one case of a thousand. Without a record it never happens.
 
-mod random;
+#[path = "../draw/mod.rs"]
+mod draw;
 
-use random::Random;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Event, Factors, Fate,
     Log, MoveProfile, Plan, Raw, Request, Scope, Standard, StartState, Superimpose, steps,
 };
 use standstill_soak::rules::limits::Track;
+use standstill_testkit::Random;
 use std::slice;
 
 const CYCLE: f64 = 0.01;
@@ -44,8 +45,8 @@ struct Case {
 
 impl Case {
     fn new(seed: u64) -> Self {
-        let mut random = Random::new(seed);
-        let limits = random.limits();
+        let mut random = Random(seed);
+        let limits = draw::limits(&mut random);
         let profile = match random.below(3) {
             0 => MoveProfile::Overlapped,
             1 => MoveProfile::Online,
@@ -126,7 +127,7 @@ impl Case {
 
     /// Values for a command of kind `kind`.
     fn values(&mut self, kind: u64) -> Command {
-        let dynamics = self.random.dynamics(&self.axis.config().limits);
+        let dynamics = draw::dynamics(&mut self.random, &self.axis.config().limits);
         let distance = self.random.between(-120.0, 120.0);
         let end_velocity = dynamics.velocity * self.random.between(-1.0, 1.0);
         match kind {
@@ -267,7 +268,7 @@ impl Case {
     fn superimpose(&mut self) {
         let request = Superimpose {
             distance: self.random.between(-20.0, 20.0),
-            dynamics: self.random.dynamics(&self.axis.config().limits),
+            dynamics: draw::dynamics(&mut self.random, &self.axis.config().limits),
         };
         match self.added {
             Some(id) if self.random.below(2) == 0 => {

@@ -4,34 +4,10 @@ use standstill_axis::{
     Axis, AxisConfig, AxisId, Command, CommandId, Drive, DrivePosition, Fate, IdealDrive, InstanceId, Log,
     Request, Scope, Standard, steps,
 };
+pub use standstill_testkit::Random;
 use std::slice;
 
 pub const CYCLE: f64 = 0.001;
-
-/// splitmix64.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    pub fn below(&mut self, count: u64) -> u64 {
-        self.bits() % count
-    }
-
-    pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-}
 
 /// An axis over its drive.
 #[derive(Clone)]

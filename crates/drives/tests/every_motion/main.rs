@@ -30,7 +30,7 @@ const MOTIONS: [&str; 15] = [
 
 fn dynamics(random: &mut Random) -> Dynamics {
     Dynamics {
-        velocity: 1.0 + 99.0 * random.part(),
+        velocity: 1.0 + 99.0 * random.unit(),
         acceleration: if random.below(3) == 0 { 500.0 } else { 0.0 },
         ..Dynamics::default()
     }
@@ -40,7 +40,7 @@ fn dynamics(random: &mut Random) -> Dynamics {
 fn begin(name: &str, random: &mut Random, axis: &mut Axis, scope: &mut Scope<'_>) -> bool {
     let dynamics = dynamics(random);
     let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
-    let distance = sign * 15.0 * random.part() * random.part();
+    let distance = sign * 15.0 * random.unit() * random.unit();
     let direction = if sign > 0.0 {
         Direction::Positive
     } else {
@@ -72,7 +72,7 @@ fn begin(name: &str, random: &mut Random, axis: &mut Axis, scope: &mut Scope<'_>
         "halt" => Command::Halt { dynamics },
         "stop" => Command::Stop { dynamics },
         "torque" => Command::Torque {
-            torque: sign * 10.0 * random.part(),
+            torque: sign * 10.0 * random.unit(),
             ramp: if random.below(2) == 0 { 0.0 } else { 100.0 },
             dynamics,
             direction: Direction::Unset.into(),
@@ -105,7 +105,7 @@ fn begin(name: &str, random: &mut Random, axis: &mut Axis, scope: &mut Scope<'_>
         "override" => {
             let factors = Factors {
                 velocity: random.below(5) as f64 / 4.0,
-                acceleration: 0.5 + 0.5 * random.part(),
+                acceleration: 0.5 + 0.5 * random.unit(),
                 jerk: 1.0,
             };
             return axis.set_override(factors, scope).is_ok();

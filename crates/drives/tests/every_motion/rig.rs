@@ -8,6 +8,7 @@ use standstill_axis::{
 use standstill_drives::cia402::{Cia402Drive, MotorLoad, NodeHoming, Reaction, Settings, TorqueScale};
 use standstill_drives::mechanism::{Gains, Mechanism, Plant, PlantDrive, Servo, Stops};
 use standstill_drives::switches::{Marker, Switches, Travel};
+pub use standstill_testkit::Random;
 use std::slice;
 
 const CYCLE: f64 = 0.001;
@@ -25,28 +26,6 @@ pub const LIMITS: Limits = Limits {
 
 /// Farthest from one set-point to the next (u): a scan at the velocity limit, and an increment.
 pub const STEP: f64 = LIMITS.velocity * CYCLE + 1.0 / SCALE;
-
-/// splitmix64.
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ (mixed >> 31)
-    }
-
-    pub fn below(&mut self, count: u64) -> u64 {
-        self.bits() % count
-    }
-
-    /// From 0 to 1.
-    pub fn part(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
 
 /// What turns.
 enum Kind {
@@ -222,7 +201,7 @@ impl Rig {
             start: StartState::Standstill,
             scaling: (!is_plant).then(|| Scaling::new(SCALE as u32, 1, false, 0.0).expect("a scaling")),
             software_limits: random.below(3).eq(&0).then_some((-30.0, 30.0)),
-            max_following_error: random.below(4).eq(&0).then(|| 0.01 + random.part()),
+            max_following_error: random.below(4).eq(&0).then(|| 0.01 + random.unit()),
             homing: Homing {
                 procedure,
                 velocity: if matches!(procedure, Procedure::Direct | Procedure::Drive) {

@@ -93,7 +93,7 @@ impl<P: Planner> Axis<P> {
     fn rest_of_base(&self) -> Option<(&P::Plan, u64)> {
         match &self.motion {
             Motion::Run { plan, elapsed, .. } => Some((plan, *elapsed)),
-            Motion::Hold | Motion::Follow | Motion::Torque { .. } => None,
+            _ => None,
         }
     }
 
@@ -202,7 +202,7 @@ impl<P: Planner> Axis<P> {
         };
         let left = match &layer.motion {
             Motion::Run { elapsed, scans, .. } if command.runs() => scans.saturating_sub(*elapsed),
-            Motion::Run { .. } | Motion::Hold | Motion::Follow | Motion::Torque { .. } => u64::MAX,
+            _ => u64::MAX,
         };
         match proposed.filter(|proposal| u64::from(proposal.plan.scans()) < left) {
             Some(Proposal {
@@ -226,7 +226,6 @@ impl<P: Planner> Axis<P> {
                     Adds::Distance { .. } | Adds::Halt => None,
                 };
                 self.record_as(&command, Event::Superimposed { distance, scans }, scope);
-                self.touch();
             }
             None if first && !command.runs() && (!command.halting || moves) => {
                 let command = *command;
@@ -282,7 +281,7 @@ impl<P: Planner> Axis<P> {
         let Some(command) = &layer.command else { return };
         let due = match &self.motion {
             Motion::Run { elapsed, .. } => *elapsed >= layer.retry,
-            Motion::Hold | Motion::Follow | Motion::Torque { .. } => true,
+            _ => true,
         };
         if !command.lacks_room() || !due {
             return;
@@ -331,11 +330,14 @@ impl<P: Planner> Axis<P> {
                 return Err(ErrorId::InMotion);
             }
         }
-        if matches!(entry.work, Work::Torque { .. }) && self.layer.is_some() {
+        if matches!(entry.work, Work::Torque { .. } | Work::Gear(_)) && self.layer.is_some() {
             if self.layer.as_ref().is_some_and(Layer::moves) {
                 return Ok(None);
             }
+            // Only now: where this command is refused, what was added stays with the owner.
+            let motion = self.plan_for(entry)?;
             self.end_superimposed(Fate::Aborted);
+            return Ok(Some(motion));
         }
         match self.layer {
             None => self.plan_for(entry).map(Some),

@@ -1,0 +1,126 @@
+//! `MC_GearIn`: a slave follows a master by a ratio.
+//!
+//! Source: PLCopen Motion Control Part 1, section of that name.
+
+use standstill_axis::{
+    AxisId, BufferMode, Command, Dynamics, ErrorId, Master, Planner, Raw, Request, ValueSource, couple,
+};
+use standstill_fb::{Block, Context, Group, Move, UpdateCore, pins};
+
+pins! {
+    in_outs {
+        /// The axis to follow.
+        Master => master: AxisId;
+        /// The axis that follows.
+        Slave => slave: AxisId;
+    }
+    inputs {
+        /// A rising edge couples the axes with the values of that call.
+        Execute => execute: bool = false, "";
+        /// Changed inputs hold for the coupling in progress while TRUE, if it was TRUE at the rising edge.
+        ContinuousUpdate => continuous_update: bool = false, "";
+        /// Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest.
+        RatioNumerator => ratio_numerator: i16 = 0, "";
+        /// Denominator of the ratio, above 0.
+        RatioDenominator => ratio_denominator: u16 = 0, "";
+        /// mcSetValue; other values of the master are not followed in this version.
+        MasterValueSource => master_value_source: Raw<ValueSource> = Raw::new(1), "";
+        /// Rate while the speed grows, until in gear; 0 takes the axis default.
+        Acceleration => acceleration: f64 = 0.0, "u/s^2";
+        /// Rate while the speed falls, until in gear; 0 takes the axis default.
+        Deceleration => deceleration: f64 = 0.0, "u/s^2";
+        /// Jerk until in gear; 0 takes the axis default, and no limit if there is none.
+        Jerk => jerk: f64 = 0.0, "u/s^3";
+        /// How the command follows the one before it.
+        BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
+    }
+    vendor_inputs {
+        /// Snap until in gear; 0 takes the axis default, and no limit if there is none.
+        Snap => snap: f64 = 0.0, "u/s^4";
+    }
+    outputs {
+        /// The set position of the slave is the one the ratio asks for.
+        InGear => in_gear: bool, "";
+        /// Not finished.
+        Busy => busy: bool, "";
+        /// The block controls the slave.
+        Active => active: bool, "";
+        /// Interrupted by another command.
+        CommandAborted => command_aborted: bool, "";
+        /// Refused, or ended by an error.
+        Error => error: bool, "";
+        /// Why; 0 without an error.
+        ErrorID => error_id: ErrorId, "";
+    }
+    vendor_outputs {
+        /// How far the slave is from where the ratio asks it to be, once it was in gear; 0 in gear.
+        Deviation => deviation: f64, "u";
+        /// The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost).
+        MasterLost => master_lost: bool, "";
+    }
+}
+
+/// State kept between calls.
+#[doc(alias = "MC_GearIn")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct McGearIn {
+    core: UpdateCore<Command>,
+}
+
+impl Block for McGearIn {
+    const NAME: &'static str = "MC_GearIn";
+    const GROUP: Group = Group::MultiAxis;
+    const DOC: &'static str = "Lets one axis follow another by a ratio.";
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+
+    fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
+        let pins = Move {
+            axis: inputs.slave,
+            execute: inputs.execute,
+            continuous_update: inputs.continuous_update,
+        };
+        let master = context.axes.get(inputs.master.index());
+        let turn = master.and_then(|master| master.config().modulo);
+        let values = || Command::GearIn {
+            master: Master {
+                axis: inputs.master,
+                turn,
+            },
+            numerator: inputs.ratio_numerator,
+            denominator: inputs.ratio_denominator,
+            source: inputs.master_value_source,
+            sync: None,
+            dynamics: Dynamics {
+                velocity: 0.0,
+                acceleration: inputs.acceleration,
+                deceleration: inputs.deceleration,
+                jerk: inputs.jerk,
+                snap: inputs.snap,
+            },
+        };
+        let phase = self
+            .core
+            .scan_among(pins, context, values, |context, command, replaces| {
+                let request = Request {
+                    command,
+                    buffer_mode: inputs.buffer_mode,
+                    replaces,
+                };
+                couple(context.axes, inputs.slave, &request, &mut context.scope)
+            });
+        let slave = context.axes.get(inputs.slave.index());
+        let slave = slave.filter(|_| phase.is_active());
+        let deviation = slave.map(|slave| slave.deviation());
+        Outputs {
+            in_gear: phase.is_reached(),
+            busy: phase.is_busy(),
+            active: phase.is_active(),
+            command_aborted: phase.is_aborted(),
+            error: phase.is_error(),
+            error_id: phase.error_id(),
+            deviation: deviation.unwrap_or_default(),
+            master_lost: slave.is_some_and(|slave| slave.has_lost_master()),
+        }
+    }
+}

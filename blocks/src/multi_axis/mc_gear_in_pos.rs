@@ -1,0 +1,137 @@
+//! `MC_GearInPos`: a slave follows a master by a ratio, through a given place of both.
+//!
+//! Source: PLCopen Motion Control Part 1, section of that name.
+
+use standstill_axis::{
+    AxisId, BufferMode, Command, Dynamics, ErrorId, Master, Planner, Raw, Request, SyncMode, SyncPoint,
+    ValueSource, couple,
+};
+use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
+
+pins! {
+    in_outs {
+        /// The axis to follow.
+        Master => master: AxisId;
+        /// The axis that follows.
+        Slave => slave: AxisId;
+    }
+    inputs {
+        /// A rising edge couples the axes with the values of that call.
+        Execute => execute: bool = false, "";
+        /// Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest.
+        RatioNumerator => ratio_numerator: i16 = 0, "";
+        /// Denominator of the ratio, above 0.
+        RatioDenominator => ratio_denominator: u16 = 0, "";
+        /// mcSetValue; other values of the master are not followed in this version.
+        MasterValueSource => master_value_source: Raw<ValueSource> = Raw::new(1), "";
+        /// Place of the master at the sync point.
+        MasterSyncPosition => master_sync_position: f64 = 0.0, "u";
+        /// Place of the slave at the sync point.
+        SlaveSyncPosition => slave_sync_position: f64 = 0.0, "u";
+        /// Which of the places that mean the same on a modulo slave; with mcSlowDown the slave is never faster than in sync.
+        SyncMode => sync_mode: Raw<SyncMode> = Raw::new(0), "";
+        /// How far before its sync point the master is where the slave sets off; above 0 for a master that moves forwards, below 0
+        /// for one that moves backwards. 0 sets off at once.
+        MasterStartDistance => master_start_distance: f64 = 0.0, "u";
+        /// Most speed from StartSync until InSync; 0 takes the axis limit.
+        Velocity => velocity: f64 = 0.0, "u/s";
+        /// Rate while the speed grows, until in sync; 0 takes the axis default.
+        Acceleration => acceleration: f64 = 0.0, "u/s^2";
+        /// Rate while the speed falls, until in sync; 0 takes the axis default.
+        Deceleration => deceleration: f64 = 0.0, "u/s^2";
+        /// Jerk until in sync; 0 takes the axis default, and no limit if there is none.
+        Jerk => jerk: f64 = 0.0, "u/s^3";
+        /// How the command follows the one before it; mcAborting with a MasterStartDistance.
+        BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
+    }
+    vendor_inputs {
+        /// Snap until in sync; 0 takes the axis default, and no limit if there is none.
+        Snap => snap: f64 = 0.0, "u/s^4";
+    }
+    outputs {
+        /// The slave is on its way to the sync point; FALSE from InSync on.
+        StartSync => start_sync: bool, "";
+        /// The set position of the slave is the one the ratio asks for.
+        InSync => in_sync: bool, "";
+        /// Not finished.
+        Busy => busy: bool, "";
+        /// The block controls the slave.
+        Active => active: bool, "";
+        /// Interrupted by another command.
+        CommandAborted => command_aborted: bool, "";
+        /// Refused, or ended by an error.
+        Error => error: bool, "";
+        /// Why; 0 without an error.
+        ErrorID => error_id: ErrorId, "";
+    }
+    vendor_outputs {
+        /// How far the slave is from where the ratio asks it to be; 0 in sync.
+        Deviation => deviation: f64, "u";
+        /// The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost).
+        MasterLost => master_lost: bool, "";
+    }
+}
+
+/// State kept between calls.
+#[doc(alias = "MC_GearInPos")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct McGearInPos {
+    core: ExecuteCore,
+}
+
+impl Block for McGearInPos {
+    const NAME: &'static str = "MC_GearInPos";
+    const GROUP: Group = Group::MultiAxis;
+    const DOC: &'static str = "Lets one axis follow another by a ratio, through a given place of both.";
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+
+    fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
+        let master = context.axes.get(inputs.master.index());
+        let turn = master.and_then(|master| master.config().modulo);
+        let phase = self.core.scan(inputs.execute, context, |context, replaces| {
+            let request = Request {
+                command: Command::GearIn {
+                    master: Master {
+                        axis: inputs.master,
+                        turn,
+                    },
+                    numerator: inputs.ratio_numerator,
+                    denominator: inputs.ratio_denominator,
+                    source: inputs.master_value_source,
+                    sync: Some(SyncPoint {
+                        master: inputs.master_sync_position,
+                        slave: inputs.slave_sync_position,
+                        mode: inputs.sync_mode,
+                        start_distance: inputs.master_start_distance,
+                    }),
+                    dynamics: Dynamics {
+                        velocity: inputs.velocity,
+                        acceleration: inputs.acceleration,
+                        deceleration: inputs.deceleration,
+                        jerk: inputs.jerk,
+                        snap: inputs.snap,
+                    },
+                },
+                buffer_mode: inputs.buffer_mode,
+                replaces,
+            };
+            let id = couple(context.axes, inputs.slave, &request, &mut context.scope)?;
+            Ok((inputs.slave, id))
+        });
+        let slave = context.axes.get(inputs.slave.index());
+        let slave = slave.filter(|_| phase.is_active());
+        let deviation = slave.map(|slave| slave.deviation());
+        Outputs {
+            start_sync: slave.is_some_and(|slave| slave.is_syncing()),
+            in_sync: phase.is_reached(),
+            busy: phase.is_busy(),
+            active: phase.is_active(),
+            command_aborted: phase.is_aborted(),
+            error: phase.is_error(),
+            error_id: phase.error_id(),
+            deviation: deviation.unwrap_or_default(),
+            master_lost: slave.is_some_and(|slave| slave.has_lost_master()),
+        }
+    }
+}

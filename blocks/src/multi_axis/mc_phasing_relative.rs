@@ -1,0 +1,108 @@
+//! `MC_PhasingRelative`: a slave sees its master ahead of where it is, or behind.
+//!
+//! Source: PLCopen Motion Control Part 1, section of that name.
+
+use standstill_axis::{AxisId, BufferMode, Dynamics, ErrorId, PhaseShift, Planner, Raw};
+use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
+
+pins! {
+    in_outs {
+        /// The axis that is followed.
+        Master => master: AxisId;
+        /// The axis that follows it.
+        Slave => slave: AxisId;
+    }
+    inputs {
+        /// A rising edge shifts the master as the slave sees it.
+        Execute => execute: bool = false, "";
+        /// By how much further ahead of its place the master is to be seen; below 0 further behind.
+        PhaseShift => phase_shift: f64 = 0.0, "u";
+        /// Most speed of the shift; 0 takes what the slave's limits leave.
+        Velocity => velocity: f64 = 0.0, "u/s";
+        /// Rate while that speed grows; 0 takes what the slave's limits leave.
+        Acceleration => acceleration: f64 = 0.0, "u/s^2";
+        /// Rate while it falls; the lower of both holds. 0 takes what the slave's limits leave.
+        Deceleration => deceleration: f64 = 0.0, "u/s^2";
+        /// Jerk of the shift; 0 takes what the slave's limits leave.
+        Jerk => jerk: f64 = 0.0, "u/s^3";
+        /// How the shift follows one in progress: mcAborting takes over, the other modes wait for its end.
+        BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
+    }
+    vendor_inputs {
+        /// Snap of the shift; 0 takes what the slave's limits leave.
+        Snap => snap: f64 = 0.0, "u/s^4";
+    }
+    outputs {
+        /// The shift is reached.
+        Done => done: bool, "";
+        /// Not finished.
+        Busy => busy: bool, "";
+        /// The shift moves; FALSE while it waits for room.
+        Active => active: bool, "";
+        /// Interrupted by another phasing, or the coupling has ended.
+        CommandAborted => command_aborted: bool, "";
+        /// Refused, or ended by an error.
+        Error => error: bool, "";
+        /// Why; 0 without an error.
+        ErrorID => error_id: ErrorId, "";
+        /// How far the shift has changed since the rising edge, updated while Busy.
+        CoveredPhaseShift => covered_phase_shift: f64, "u";
+    }
+    vendor_outputs {}
+}
+
+/// State kept between calls.
+#[doc(alias = "MC_PhasingRelative")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct McPhasingRelative {
+    core: ExecuteCore,
+    /// The shift at the rising edge.
+    start: f64,
+    /// How far it had come in the last call in which it changed.
+    covered: f64,
+    was_busy: bool,
+}
+
+impl Block for McPhasingRelative {
+    const NAME: &'static str = "MC_PhasingRelative";
+    const GROUP: Group = Group::MultiAxis;
+    const DOC: &'static str = "Shifts the place of a master, as its slave sees it, by a distance.";
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+
+    fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
+        let start = &mut self.start;
+        let phase = self.core.scan(inputs.execute, context, |context, _| {
+            let (slave, scope) = context.axis(inputs.slave)?;
+            *start = slave.phase();
+            let request = PhaseShift {
+                master: inputs.master,
+                shift: inputs.phase_shift,
+                is_relative: true,
+                dynamics: Dynamics {
+                    velocity: inputs.velocity,
+                    acceleration: inputs.acceleration,
+                    deceleration: inputs.deceleration,
+                    jerk: inputs.jerk,
+                    snap: inputs.snap,
+                },
+                buffer_mode: inputs.buffer_mode,
+            };
+            slave.shift_phase(&request, scope).map(|id| (inputs.slave, id))
+        });
+        let slave = context.axes.get(inputs.slave.index());
+        if let Some(slave) = slave.filter(|_| phase.is_busy() || self.was_busy) {
+            self.covered = slave.phase() - self.start;
+        }
+        self.was_busy = phase.is_busy();
+        Outputs {
+            done: phase.is_done(),
+            busy: phase.is_busy(),
+            active: phase.is_active(),
+            command_aborted: phase.is_aborted(),
+            error: phase.is_error(),
+            error_id: phase.error_id(),
+            covered_phase_shift: self.covered,
+        }
+    }
+}

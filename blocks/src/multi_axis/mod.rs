@@ -1,0 +1,7 @@
+//! Blocks that couple axes.
+
+pub mod mc_gear_in;
+pub mod mc_gear_in_pos;
+pub mod mc_gear_out;
+pub mod mc_phasing_absolute;
+pub mod mc_phasing_relative;

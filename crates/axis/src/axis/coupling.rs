@@ -1,0 +1,362 @@
+//! Behind a master: MC_GearIn and MC_GearOut on the slave's side.
+//!
+//! Once in gear the set-point *is* the law, a function of the master's place in the same scan
+//! ([`Gear`](standstill_planner::Gear)); InGear is that state and no comparison. Until then, and after the slave could not
+//! keep up, it moves on plans of its own within its limits, in one of three ways (rungs): beside the moving law, onto the next
+//! stretch of constant velocity of it, or as fast as it may. Nothing is planned when a command is taken: in the motion step the
+//! master has moved already, and whatever was commanded to it in this scan counts.
+//!
+//! | file | subject |
+//! | --- | --- |
+//! | [`view`] | what a slave may know of its master |
+//! | [`follow`] | the motion step of a slave |
+//! | [`needs`] | what a step from one set-point to the next needs of the limits |
+//! | [`approach`] | the rungs: how a slave comes onto the law |
+//! | [`phasing`] | a shift between the master and what the slave sees of it |
+//! | [`sync`] | MC_GearInPos: a law that is given, and a start that waits for a place of the master |
+//!
+//! Source: PLCopen Motion Control Part 1, MC_GearIn, MC_GearOut; V16, V18, V18b, V18d. What the standard leaves open is told in
+//! docs/coupling.md.
+
+mod approach;
+mod follow;
+mod needs;
+mod phasing;
+mod sync;
+mod view;
+
+use super::commands::{Entry, Gearing, Sync, Work};
+use super::{Axis, Motion};
+use crate::{
+    Approach, AxisId, ErrorId, Event, Master, QUEUE_MAX, Raw, Scope, SyncMode, SyncPoint, ValueSource,
+};
+pub(super) use phasing::Phasing;
+use standstill_planner::{Anchor, Gear, Limits, Place, Planner, Setpoint};
+pub(super) use sync::Awaited;
+pub(super) use view::Source;
+pub(crate) use view::{Future, Seen, View};
+
+/// How a slave that is not in gear comes there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Rung {
+    /// The next motion step decides.
+    Due,
+    /// It is in gear.
+    Locked,
+    /// A plan in the slave's own coordinates, to the velocity of the law or as fast as it may.
+    Own,
+    /// A plan beside the law through this anchor.
+    BesideLaw(Anchor),
+    /// The master went out of operation: the slave rests until a block couples it anew.
+    Lost,
+    /// A plan beside a straight line, onto which the law leads in so many scans from the start of the plan: its place then and
+    /// its velocity (u/s).
+    BesideLine { start: Place, velocity: f64, begin: u64 },
+}
+
+/// How an axis follows its master: what a trace shows of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coupled {
+    /// The master.
+    pub master: AxisId,
+    /// Set position less that of the law (u); 0 in gear, and before it was there.
+    pub deviation: f64,
+    /// By how much the master is seen further on than it is (u of the master).
+    pub phase: f64,
+}
+
+/// How the owner follows its master.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Coupling {
+    gearing: Gearing,
+    /// Where the law lies: where the slave was in gear first, or as given.
+    anchor: Option<Anchor>,
+    /// It has been in gear.
+    was_in_gear: bool,
+    rung: Rung,
+    /// The master at the end of the scan before, in its coordinates of now.
+    was: Seen,
+    /// What was known of its way ahead.
+    known: view::Known,
+    /// Scans until the way onto the law is looked for again; the largest number for never.
+    left: u64,
+    /// The way recorded last, and its velocity (u/s).
+    told: Option<(Approach, f64)>,
+    /// The limits it was last held against.
+    limits: Limits,
+    /// How often the slave's own coordinates had moved.
+    moves: u32,
+    /// By how much the slave is off the law (u); 0 in gear, and before it was there.
+    deviation: f64,
+}
+
+impl Coupling {
+    /// It is given a sync point, and not to be faster than there.
+    fn goes_slowly(&self) -> bool {
+        let slow = |sync: Sync| sync.mode == SyncMode::SlowDown;
+        self.gearing.sync.is_some_and(slow)
+    }
+
+    /// On the way to a sync point that was given.
+    fn is_syncing(&self) -> bool {
+        self.gearing.sync.is_some() && !self.was_in_gear
+    }
+
+    fn new(gearing: Gearing, limits: Limits, moves: u32) -> Self {
+        Self {
+            gearing,
+            anchor: None,
+            was_in_gear: false,
+            rung: Rung::Due,
+            was: Seen::default(),
+            known: view::Known::default(),
+            left: u64::MAX,
+            told: None,
+            limits,
+            moves,
+            deviation: 0.0,
+        }
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// The owner follows a master.
+    #[inline]
+    pub(super) fn is_coupled(&self) -> bool {
+        self.coupling.is_some()
+    }
+
+    /// The set-point published last is that of the law, and it stays so.
+    #[inline]
+    pub fn is_in_gear(&self) -> bool {
+        let is_locked = |coupling: &Coupling| coupling.rung == Rung::Locked;
+        self.coupling.as_ref().is_some_and(is_locked) && !self.is_paused()
+    }
+
+    /// How the owner follows its master; `None` while it follows none.
+    pub fn coupled(&self) -> Option<Coupled> {
+        self.coupling.as_ref().map(|coupling| Coupled {
+            master: coupling.gearing.master,
+            deviation: coupling.deviation,
+            phase: self.phase(),
+        })
+    }
+
+    /// The master the owner follows.
+    pub fn master(&self) -> Option<AxisId> {
+        self.coupling.as_ref().map(|coupling| coupling.gearing.master)
+    }
+
+    /// The master the owner follows, and the ratio: numerator and denominator.
+    pub fn gear(&self) -> Option<(AxisId, i16, u16)> {
+        let gearing = self.coupling.as_ref()?.gearing;
+        let (numerator, denominator) = gearing.gear.ratio();
+        Some((gearing.master, numerator, denominator))
+    }
+
+    /// The master went out of operation, and the slave rests until a block couples it anew.
+    pub fn has_lost_master(&self) -> bool {
+        matches!(self.rung(), Some(Rung::Lost))
+    }
+
+    /// On the way to the sync point it was given, and not there yet.
+    pub fn is_syncing(&self) -> bool {
+        self.coupling.as_ref().is_some_and(Coupling::is_syncing)
+    }
+
+    /// By how much a slave is off the law of its gear (u); 0 in gear, before it was there without a sync point, and for any
+    /// other axis.
+    pub fn deviation(&self) -> f64 {
+        self.coupling.as_ref().map_or(0.0, |coupling| coupling.deviation)
+    }
+
+    /// The values at the pins of MC_GearIn and MC_GearInPos that say which law holds.
+    pub(super) fn check_gear(
+        &self,
+        master: Master,
+        (numerator, denominator): (i16, u16),
+        source: Raw<ValueSource>,
+        sync: Option<SyncPoint>,
+        scope: &mut Scope<'_>,
+    ) -> Result<Gearing, ErrorId> {
+        let mut refuse = |pin, value: f64, limit, error| Err(self.refuse(pin, value, limit, error, scope));
+        let number = f64::from(master.axis.number());
+        if master.axis == self.id {
+            return refuse("Master", number, f64::NAN, ErrorId::CouplingRing);
+        }
+        if denominator == 0 {
+            return refuse("RatioDenominator", 0.0, 1.0, ErrorId::RatioInvalid);
+        }
+        let number = f64::from(source.number());
+        match source.get() {
+            Some(ValueSource::Set) => {}
+            Some(ValueSource::Commanded) => {
+                return refuse("MasterValueSource", number, 1.0, ErrorId::MasterSourceInvalid);
+            }
+            Some(ValueSource::Actual) => {
+                return refuse(
+                    "MasterValueSource",
+                    number,
+                    1.0,
+                    ErrorId::ActualMasterNotSupported,
+                );
+            }
+            None => return refuse("MasterValueSource", number, 2.0, ErrorId::SourceInvalid),
+        }
+        let turn = self.modulo.as_ref().map(|modulo| modulo.length);
+        let Some(gear) = Gear::new(numerator, denominator, master.turn, turn) else {
+            let numerator = f64::from(numerator);
+            return refuse(
+                "RatioNumerator",
+                numerator,
+                f64::NAN,
+                ErrorId::CouplingRatioTooFine,
+            );
+        };
+        let sync = match sync {
+            Some(point) => Some(self.check_sync(&point, master.turn, scope)?),
+            None => None,
+        };
+        Ok(Gearing {
+            master: master.axis,
+            gear,
+            sync,
+        })
+    }
+
+    /// MC_GearOut: on with the velocity that is left when acceleration and jerk are gone.
+    pub(super) fn release(&self) -> (Work, Limits) {
+        let limits = self.parameters.limits;
+        let velocity = if self.is_paused() {
+            0.0
+        } else {
+            self.planner.coasting(&self.setpoint, &limits)
+        };
+        (Work::Release(velocity), limits)
+    }
+
+    /// What moved behind its master until now goes on with the velocity that is left when acceleration and jerk are gone.
+    pub(super) fn go_on_alone(&mut self, before: &Limits) {
+        if !matches!(self.motion, Motion::Geared | Motion::Closing { .. }) {
+            return;
+        }
+        let limits = self.parameters.limits;
+        let velocity = self.planner.coasting(&self.setpoint, &limits);
+        let ramp = self.planner.ramp_to(&self.setpoint, velocity, &limits, before);
+        self.motion = ramp.map_or(Motion::Hold, Motion::along);
+    }
+
+    /// MC_GearOut is done: a motion step has gone by without the master.
+    #[inline]
+    pub(super) fn is_released(&self, owner: &Entry) -> bool {
+        matches!(owner.work, Work::Release(_)) && !matches!(self.motion, Motion::Run { elapsed: 0, .. })
+    }
+
+    /// The motion of `entry` until the next motion step finds one.
+    ///
+    /// # Errors
+    /// Why it can't go behind its master, or that the axis stands outside its software limits.
+    pub(super) fn gear_motion(&self, entry: &Entry, start: &Setpoint) -> Result<Motion<P::Plan>, ErrorId> {
+        if let Some(error) = entry.barred {
+            return Err(error);
+        }
+        self.allowed(start.position)?;
+        Ok(Motion::Geared)
+    }
+
+    /// The present coupling, if `entry` is to go on in it: the same gear to the same master, in gear.
+    pub(super) fn coupling_kept(&self, entry: &Entry) -> Option<Coupling> {
+        let kept = self.coupling.filter(|coupling| {
+            coupling.rung == Rung::Locked && Work::Gear(coupling.gearing) == entry.work && !self.is_paused()
+        });
+        kept.map(|coupling| Coupling {
+            rung: Rung::Due,
+            ..coupling
+        })
+    }
+
+    /// `entry` follows a master from the next motion step on, or has new values for it.
+    pub(super) fn await_master(&mut self, entry: &Entry, scope: &mut Scope<'_>) {
+        let Work::Gear(gearing) = entry.work else { return };
+        self.is_bound = true;
+        let known = self.coupling.as_ref().map(|coupling| coupling.gearing);
+        if known != Some(gearing) {
+            let (numerator, denominator) = gearing.gear.ratio();
+            let event = Event::Coupled {
+                master: gearing.master,
+                numerator,
+                denominator,
+            };
+            self.record(event, &mut scope.with(entry.instance));
+        }
+        let (limits, moves) = (self.parameters.limits, self.frame.moves());
+        let coupling = self
+            .coupling
+            .get_or_insert_with(|| Coupling::new(gearing, limits, moves));
+        let is_new = coupling.gearing != gearing;
+        if is_new {
+            coupling.gearing = gearing;
+            coupling.anchor = None;
+            coupling.was_in_gear = false;
+            coupling.deviation = 0.0;
+        }
+        // Where the master was lost another ratio is no wish to move again.
+        if coupling.rung != Rung::Lost && (is_new || coupling.rung != Rung::Locked) {
+            coupling.rung = Rung::Due;
+        }
+        self.stir();
+    }
+
+    /// The motion is not the law's for a while: the way onto it is looked for when it may go on.
+    pub(super) fn leave_law(&mut self) {
+        if let Some(coupling) = &mut self.coupling {
+            coupling.rung = Rung::Due;
+            coupling.told = None;
+        }
+    }
+
+    /// The owner, or a command that waits, may follow a master.
+    #[inline]
+    pub(crate) fn is_bound(&self) -> bool {
+        self.is_bound
+    }
+
+    /// How many masters stand above it, as told last.
+    pub(crate) fn rank(&self) -> u16 {
+        self.rank
+    }
+
+    /// So many masters stand above it.
+    pub(crate) fn set_rank(&mut self, rank: u16) {
+        self.rank = rank;
+    }
+
+    /// A command that follows a master waits.
+    pub(super) fn note_bound(&mut self, entry: &Entry) {
+        self.is_bound |= matches!(entry.work, Work::Gear(_));
+    }
+
+    /// The masters of commands that wait, in order.
+    pub(crate) fn masters_of_waiting(&mut self) -> [Option<AxisId>; QUEUE_MAX] {
+        let mut masters = [None; QUEUE_MAX];
+        for (master, entry) in masters.iter_mut().zip(self.queue.iter()) {
+            if let Work::Gear(gearing) = entry.work {
+                *master = Some(gearing.master);
+            }
+        }
+        self.is_bound = self.is_coupled() || self.awaited.is_some() || masters.iter().any(Option::is_some);
+        masters
+    }
+
+    /// Why each command that waits could not go behind its master now.
+    pub(crate) fn bar_waiting(&mut self, barred: &[Option<ErrorId>; QUEUE_MAX]) {
+        for (entry, error) in self.queue.iter_mut().zip(barred) {
+            entry.barred = *error;
+        }
+    }
+
+    /// Tells that the slave follows its master on a law, and from when on in gear.
+    fn record_in_gear(&self, scope: &mut Scope<'_>) {
+        self.record(Event::InGear, &mut self.owner_scope(scope));
+    }
+}

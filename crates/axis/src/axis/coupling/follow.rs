@@ -1,0 +1,520 @@
+//! The motion step of a slave: after that of its master.
+
+use super::super::guard::LAST_SCAN;
+use super::super::power::Reaction;
+use super::super::{Axis, Motion};
+use super::needs::{DERIVATIVES, RESOLVED, Step};
+use super::view::{Course, Future, Seen, View};
+use super::{Coupling, Rung};
+use crate::{ErrorId, Event, Fate, OnLimit, OnMasterLost, Scope};
+use standstill_planner::{Anchor, Limits, Place, Plan, Planner, Setpoint};
+
+/// How far a limit may be exceeded, relative to it: rounding (contract: limits hold to 1e-9).
+pub(super) const ROUNDING: f64 = 1e-9;
+
+/// What of a motion is beyond a limit: its name, its value and the limit.
+pub(super) type Beyond = (&'static str, f64, f64);
+
+impl Coupling {
+    /// Where the law is for a master that is there, and how it moves.
+    pub(super) fn law(&self, anchor: &Anchor, seen: &Seen) -> (Place, Setpoint) {
+        let gear = &self.gearing.gear;
+        let (slave, master) = (gear.slave(anchor, seen.place), &seen.at);
+        let state = Setpoint {
+            position: slave.position,
+            velocity: gear.derivative(master.velocity),
+            acceleration: gear.derivative(master.acceleration),
+            jerk: gear.derivative(master.jerk),
+            snap: gear.derivative(master.snap),
+        };
+        (slave, state)
+    }
+
+    /// What the derivatives of the plan ahead are multiplied by to be those of the law.
+    pub(super) fn factor<Q>(&self, future: &Future<'_, Q>) -> f64 {
+        self.gearing.gear.derivative(future.factor)
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// [`Axis::advance`] of an axis that may follow a master, with a look at it.
+    ///
+    /// Cost: in gear one evaluation of the law, and one ramp while what the master does next is not known or there are software
+    /// limits; where the master got another plan, at most seven plans and six looks along two of them.
+    #[inline(never)]
+    pub(crate) fn advance_behind(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        self.apply_power(scope);
+        self.follow_torque_order();
+        if !self.is_coupled() {
+            return self.advance(scope);
+        }
+        // A halt of what is superimposed finds nothing.
+        self.end_superimposed(Fate::Done);
+        if !view.now.is_operating && !self.has_lost_master() {
+            match self.config.following.on_master_lost {
+                OnMasterLost::Error => {
+                    self.fail(ErrorId::MasterLost, scope);
+                    return self.finish_reset();
+                }
+                OnMasterLost::Hold => self.hold_without_master(scope),
+            }
+        }
+        if self.has_lost_master() {
+            return self.advance(scope);
+        }
+        let view = &self.shifted_view(view, scope);
+        self.rebase(view, scope.scan);
+        let is_new = self.look_ahead(view);
+        if self.is_paused() {
+            if is_new {
+                self.resume(scope);
+            }
+            if self.is_paused() {
+                self.advance(scope);
+                return self.measure(view, scope);
+            }
+        }
+        // A slave that must not lag is in gear until it can't be.
+        let stays = self.rung() == Some(Rung::Locked) && self.config.following.on_limit == OnLimit::Error;
+        if (is_new && !stays) || self.rung() == Some(Rung::Due) {
+            self.lay_law(view);
+            self.approach(view, true, scope);
+            self.note_source();
+        }
+        if self.is_coupled() {
+            self.step_behind(view, scope);
+        }
+        if self.is_in_gear() && !self.queue.is_empty() {
+            self.hand_over(self.setpoint.position, scope);
+        }
+        self.finish_reset();
+    }
+
+    pub(super) fn rung(&self) -> Option<Rung> {
+        self.coupling.as_ref().map(|coupling| coupling.rung)
+    }
+
+    /// Coordinates of master or slave have moved: the law moves with them, and nobody else.
+    fn rebase(&mut self, view: &View<'_, P::Plan>, scan: u64) {
+        let (here, moves) = (self.place(), self.frame.moves());
+        let own = self.coordinates_moved(scan);
+        let Some(coupling) = &mut self.coupling else {
+            return;
+        };
+        // What moved in the motion step itself was not seen before it.
+        let late = view.now.moved - coupling.was.moved;
+        coupling.was.place.position += late;
+        coupling.was.at.position += late;
+        let master_moved = view.now.moved != 0.0;
+        let slave_moved = coupling.moves != moves;
+        coupling.moves = moves;
+        if !master_moved && !slave_moved {
+            return;
+        }
+        let own = if slave_moved { own } else { 0.0 };
+        let shift = |anchor: &mut Anchor| {
+            anchor.master.position += view.now.moved;
+            anchor.slave.position += own;
+        };
+        match &mut coupling.rung {
+            Rung::BesideLine { start, .. } => start.position += own,
+            Rung::BesideLaw(anchor) => shift(anchor),
+            Rung::Due | Rung::Locked | Rung::Own | Rung::Lost => {}
+        }
+        let Some(anchor) = &mut coupling.anchor else {
+            return;
+        };
+        if coupling.rung == Rung::Locked {
+            *anchor = Anchor {
+                master: coupling.was.place,
+                slave: here,
+            };
+        } else {
+            shift(anchor);
+        }
+    }
+
+    /// Notes what the master does next. Returns whether that, or a limit, is another one than in the scan before, or the way
+    /// onto the law is to be looked for again.
+    fn look_ahead(&mut self, view: &View<'_, P::Plan>) -> bool {
+        let limits = self.parameters.limits;
+        let Some(coupling) = &mut self.coupling else {
+            return false;
+        };
+        let (known, goes_on) = view.future.compare(&coupling.known);
+        coupling.known = known;
+        let is_over = coupling.left == 0;
+        coupling.left = match coupling.left {
+            u64::MAX => u64::MAX,
+            left => left.saturating_sub(1),
+        };
+        let lowered = coupling.limits != limits;
+        coupling.limits = limits;
+        !goes_on || lowered || (is_over && coupling.rung != Rung::Locked)
+    }
+
+    fn step_behind(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        match (&self.motion, self.rung()) {
+            (Motion::Geared, Some(Rung::Locked)) => self.step_in_gear(view, scope),
+            (Motion::Closing { .. }, Some(_)) => self.step_beside(view, scope),
+            _ => {
+                self.advance(scope);
+                self.lock_at_velocity(view, scope);
+            }
+        }
+        self.measure(view, scope);
+    }
+
+    /// In gear: the set-point is the law.
+    fn step_in_gear(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let Some(coupling) = &self.coupling else { return };
+        let Some(anchor) = coupling.anchor else { return };
+        let limits = coupling.limits;
+        let (place, next) = coupling.law(&anchor, &view.now);
+        if let Some(reason) = self.beyond(Some(place), &next, &limits, self.rough(view, &next)) {
+            self.lose_gear(reason, scope);
+            if self.config.following.on_limit == OnLimit::Error {
+                return self.fail(ErrorId::DeviationTooLarge, scope);
+            }
+            self.approach(view, false, scope);
+            if self.is_coupled() {
+                self.step_behind(view, scope);
+            }
+            return;
+        }
+        self.in_force = limits;
+        self.before = limits;
+        self.publish_behind(place, next, scope);
+    }
+
+    /// Beside the law, or beside the line that it leads onto.
+    fn step_beside(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let here = self.place();
+        let cycle = self.planner.cycle();
+        let Motion::Closing { plan, elapsed, scans } = &mut self.motion else {
+            return;
+        };
+        *elapsed = elapsed.wrapping_add(1);
+        let (elapsed, scans) = (*elapsed, *scans);
+        let is_over = elapsed >= scans;
+        let beside = plan.next(elapsed);
+        let goal = plan.at(scans).position;
+        let Some(coupling) = &self.coupling else { return };
+        let (rung, known) = (coupling.rung, coupling.anchor);
+        let anchor = match (rung, known) {
+            (Rung::BesideLaw(anchor), _) | (_, Some(anchor)) => anchor,
+            (_, None) => return self.publish_behind(here, self.setpoint, scope),
+        };
+        let (law_place, law) = coupling.law(&anchor, &view.now);
+        let (frame_place, frame, arrives) = match rung {
+            Rung::BesideLine {
+                start,
+                velocity,
+                begin,
+            } => {
+                let line = Setpoint {
+                    velocity,
+                    ..Setpoint::at_rest(start.position + velocity * (elapsed as f64 * cycle))
+                };
+                let is_even = law.acceleration == 0.0 && law.jerk == 0.0;
+                (start, line, is_over && is_even && elapsed >= begin)
+            }
+            _ => (law_place, law, is_over),
+        };
+        let end = Setpoint {
+            position: frame.position + goal,
+            ..frame
+        };
+        let arrives = arrives && self.law_fits(view, true);
+        let next = frame.plus(&beside);
+        if arrives && known.is_some() && self.is_on(&end, frame_place, &law, law_place) {
+            // The snap is that of the way here.
+            let snap = next.snap;
+            self.publish_behind(law_place, Setpoint { snap, ..law }, scope);
+            return self.lock_unless_stopped(anchor, view, scope);
+        }
+        self.publish_behind(frame_place, next, scope);
+        if arrives && known.is_none() {
+            let slave = self.place();
+            let master = view.now.place;
+            self.lock_unless_stopped(Anchor { master, slave }, view, scope);
+        }
+    }
+
+    /// In gear, if what was published last did not end that.
+    fn lock_unless_stopped(&mut self, anchor: Anchor, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        if self.is_coupled() && !self.is_paused() {
+            self.lock(anchor, view, scope);
+        }
+    }
+
+    /// Whether a frame at the end of a plan is the law but for rounding; else the way is looked for again.
+    fn is_on(&mut self, frame: &Setpoint, frame_place: Place, law: &Setpoint, law_place: Place) -> bool {
+        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let place = Place {
+            position: frame.position,
+            ..frame_place
+        };
+        let resolved = RESOLVED * 4.0 * (frame.position.abs() + law_place.position.abs() + length);
+        let is_on = off(place, law_place, length).abs() <= resolved && self.law_is_near(frame, law);
+        if let (false, Some(coupling)) = (is_on, &mut self.coupling) {
+            coupling.left = 0;
+        }
+        is_on
+    }
+
+    /// After a step of its own: in gear, if it has come to the velocity of the law, was not in gear before and can stay.
+    fn lock_at_velocity(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let Some(coupling) = &self.coupling else { return };
+        let is_at_goal = matches!(&self.motion, Motion::Run { elapsed, scans, .. } if elapsed >= scans);
+        if coupling.anchor.is_some() || coupling.rung != Rung::Own || !is_at_goal || self.is_paused() {
+            return;
+        }
+        let anchor = Anchor {
+            master: view.now.place,
+            slave: self.place(),
+        };
+        let (_, law) = coupling.law(&anchor, &view.now);
+        let is_even = law.acceleration == 0.0 && law.jerk == 0.0;
+        if is_even && self.law_is_near(&self.setpoint, &law) && self.law_fits(view, true) {
+            self.lock(anchor, view, scope);
+        }
+    }
+
+    /// Whether two velocities are one but for rounding.
+    fn law_is_near(&self, one: &Setpoint, law: &Setpoint) -> bool {
+        (one.velocity - law.velocity).abs() <= ROUNDING * self.parameters.limits.velocity
+    }
+
+    /// Whether the law keeps the limits of the slave as far as is known: from the end of this scan on, if it `is_over`, else
+    /// from the end of the one before.
+    pub(super) fn law_fits(&self, view: &View<'_, P::Plan>, is_over: bool) -> bool {
+        let Some(coupling) = &self.coupling else {
+            return false;
+        };
+        let factor = coupling.factor(&view.future);
+        let anchor = coupling.anchor.unwrap_or_default();
+        let (_, after) = coupling.law(&anchor, &view.now);
+        let (_, before) = coupling.law(&anchor, &coupling.was);
+        // A plan that began and ended within this scan was never looked at.
+        if view.future.is_late() && self.beyond_now(view).is_some() {
+            return false;
+        }
+        match view.future.plan() {
+            _ if factor == 0.0 => true,
+            Some((plan, from, late)) => {
+                let (from, now) = match (is_over, late) {
+                    (_, 1) => (from, &after),
+                    (true, _) => (from.saturating_add(1), &after),
+                    (false, _) => (from, &before),
+                };
+                self.planner
+                    .fits_behind((plan, from), factor, now, None, &coupling.limits)
+            }
+            None => self.beyond_now(view).is_none(),
+        }
+    }
+
+    /// What the law asks for beyond the limits in this scan, where nothing is known of what comes.
+    pub(super) fn beyond_now(&self, view: &View<'_, P::Plan>) -> Option<Beyond> {
+        let coupling = self.coupling.as_ref()?;
+        let anchor = coupling.anchor.unwrap_or_default();
+        let (place, law) = coupling.law(&anchor, &view.now);
+        let place = coupling.anchor.map(|_| place);
+        self.beyond(place, &law, &coupling.limits, self.rough(view, &law))
+    }
+
+    /// `Some` where this step was not held against the limits before: the slave stays in gear as long as it can, or nothing is known of what the master does next, or not until
+    /// now, or it stands, maybe since a plan of one scan. `Some(TRUE)` if it does that less smoothly than the slave may.
+    fn rough(&self, view: &View<'_, P::Plan>, law: &Setpoint) -> Option<bool> {
+        let degree = self.parameters.limits.order().degree();
+        let is_rough = view.now.degree < degree && law.acceleration != 0.0;
+        match view.future.course {
+            _ if self.config.following.on_limit == OnLimit::Error => Some(is_rough),
+            Course::Unknown | Course::Still => Some(is_rough),
+            Course::Plan(..) if view.future.is_late() => Some(false),
+            Course::Plan(..) => None,
+        }
+    }
+
+    /// In gear from now on, on the law through `anchor`.
+    pub(super) fn lock(&mut self, anchor: Anchor, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        if let Some(coupling) = &mut self.coupling {
+            coupling.anchor = Some(anchor);
+            coupling.rung = Rung::Locked;
+            coupling.left = u64::MAX;
+            coupling.told = None;
+            coupling.deviation = 0.0;
+            self.in_force = coupling.limits;
+            self.before = coupling.limits;
+        }
+        self.motion = Motion::Geared;
+        self.stir();
+        self.record_in_gear(scope);
+        self.note_sync(view, scope);
+    }
+
+    /// No longer in gear: the law asks for `value` of what may be at most `limit`.
+    pub(super) fn lose_gear(&mut self, (what, value, limit): Beyond, scope: &mut Scope<'_>) {
+        self.leave_law();
+        self.stir();
+        let event = Event::GearLost { what, value, limit };
+        self.record(event, &mut self.owner_scope(scope));
+    }
+
+    /// What of the state `next` at `place` is beyond `limits`. Where nothing is known of what
+    /// comes (`rough` says how the master moves), a step that no motion within them makes, and a state that can only lead beyond
+    /// them, are, too. Cost: then a ramp.
+    fn beyond(
+        &self,
+        place: Option<Place>,
+        next: &Setpoint,
+        limits: &Limits,
+        rough: Option<bool>,
+    ) -> Option<Beyond> {
+        let rate = if next.velocity * next.acceleration < 0.0 {
+            limits.deceleration
+        } else {
+            limits.acceleration
+        };
+        let told = [
+            ("velocity", next.velocity, limits.velocity),
+            ("acceleration", next.acceleration, rate),
+            ("jerk", next.jerk, limits.jerk),
+            ("snap", next.snap, limits.snap),
+        ];
+        let beyond = |(_, value, limit): &Beyond| !(value.abs() <= limit * (1.0 + ROUNDING));
+        let found = told.into_iter().find(beyond);
+        let Some(is_rough) = rough.filter(|_| found.is_none()) else {
+            return found;
+        };
+        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let master = self.coupling.as_ref().map_or(0.0, |coupling| {
+            coupling.gearing.gear.derivative(coupling.was.at.position)
+        });
+        let step = Step {
+            last: &self.setpoint,
+            next,
+            way: place.map(|place| off(place, self.place(), length)),
+            coarsest: length + master.abs(),
+            cycle: self.planner.cycle(),
+        };
+        let needed = step.needs();
+        if is_rough {
+            return Some(("jerk", needed[2], limits.jerk));
+        }
+        let steepest = limits.acceleration.max(limits.deceleration);
+        let most = [limits.velocity, steepest, limits.jerk, limits.snap];
+        let parts = DERIVATIVES.into_iter().zip(needed).zip(most);
+        let told = parts.map(|((what, value), limit)| (what, value, limit));
+        let found = told
+            .into_iter()
+            .find(|(_, value, limit)| !(*value <= limit * (1.0 + LAST_SCAN)));
+        if found.is_some() {
+            return found;
+        }
+        if next.is_at_rest() {
+            return None;
+        }
+        let ramp = self.planner.ramp_to(next, 0.0, limits, limits);
+        // The velocity that it can only come to. That a stop in the middle of a reversal turns back is within the limits.
+        let most = match &ramp {
+            Ok(ramp) => {
+                let excess = ramp.excess()?;
+                let most = self.planner.peaks((ramp, 0)).map(|peaks| peaks.velocity);
+                let turns_back = excess.acceleration == 0.0 && excess.jerk == 0.0;
+                if turns_back && most.is_some_and(|most| most <= limits.velocity * (1.0 + ROUNDING)) {
+                    return None;
+                }
+                most.unwrap_or(f64::INFINITY)
+            }
+            Err(_) => f64::INFINITY,
+        };
+        let most = most.max(limits.velocity);
+        Some(("velocity", most.copysign(next.velocity), limits.velocity))
+    }
+
+    /// Publishes `next`, whose whole turns are those of `place`, if it may follow the last set-point.
+    fn publish_behind(&mut self, place: Place, mut next: Setpoint, scope: &mut Scope<'_>) {
+        let before = self.setpoint.position;
+        let mut turns = place.turns;
+        if let Some(modulo) = &self.modulo {
+            let (further, position) = standstill_planner::turns::split(next.position, modulo.length);
+            next.position = position;
+            turns = turns.saturating_add(further);
+            let was = self.place();
+            // Where it was, as a position in the turn that it is in now.
+            self.setpoint.position = was.position + (was.turns.wrapping_sub(turns)) as f64 * modulo.length;
+        }
+        if !next.is_finite() {
+            self.setpoint.position = before;
+            return self.fail(ErrorId::SetpointBroken, scope);
+        }
+        let is_step = self.is_step_behind(&next);
+        let is_barred = self.bars_any() && self.way_barred(next.velocity).is_some();
+        self.setpoint.position = before;
+        if !is_step {
+            return self.fail(ErrorId::SetpointStep, scope);
+        }
+        if let (true, Some(error)) = (is_barred, self.way_barred(next.velocity)) {
+            self.pause(error, scope);
+            return self.advance(scope);
+        }
+        if self.parameters.software_limits.is_some() && self.would_leave(&next) {
+            return self.fail(ErrorId::SoftwareLimitReached, scope);
+        }
+        if let Some(modulo) = &mut self.modulo {
+            modulo.put(turns);
+        }
+        self.publish(next);
+    }
+
+    /// Whether `next` is no further from the last set-point than the axis may go in a scan.
+    fn is_step_behind(&self, next: &Setpoint) -> bool {
+        let limits = self
+            .config
+            .limits
+            .or_larger(&self.before)
+            .or_larger(&self.stop_limits());
+        // The last scan of the master's plan, or of one beside the law, may be longer.
+        self.steps_within(next, &limits, 1.0 + LAST_SCAN, 0.0)
+    }
+
+    /// The master went out of operation: to rest, and no way onto the law is looked for.
+    #[cold]
+    fn hold_without_master(&mut self, scope: &mut Scope<'_>) {
+        self.pause(ErrorId::MasterLost, scope);
+        self.end_phasing();
+        if let Some(coupling) = &mut self.coupling {
+            coupling.rung = Rung::Lost;
+            coupling.anchor = None;
+            coupling.deviation = 0.0;
+        }
+    }
+
+    /// By how much it is off the law now, and whether that is too much.
+    fn measure(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let here = self.place();
+        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let Some(coupling) = &mut self.coupling else {
+            return;
+        };
+        coupling.deviation = match (coupling.rung, &coupling.anchor) {
+            (Rung::Locked, _) | (_, None) => 0.0,
+            (_, Some(anchor)) => off(here, coupling.gearing.gear.slave(anchor, view.now.place), length),
+        };
+        let most = self
+            .config
+            .following
+            .max_deviation
+            .filter(|_| coupling.was_in_gear);
+        if most.is_some_and(|most| coupling.deviation.abs() > most) {
+            self.trip(ErrorId::DeviationTooLarge, 0, Reaction::Ramp, scope);
+        }
+    }
+}
+
+/// How far `one` is from `other` (u), turns of `length` (u) and all.
+pub(super) fn off(one: Place, other: Place, length: f64) -> f64 {
+    (one.turns.wrapping_sub(other.turns)) as f64 * length + (one.position - other.position)
+}

@@ -1,0 +1,431 @@
+//! MC_GearInPos: a law that is given before the slave is on it, and a start that waits for a place of the master.
+//!
+//! Until the start the command waits beside whatever owns the slave, and changes nothing of that. Whether the slave can be in
+//! sync in time is looked at when the start point is crossed, before the owner is interrupted.
+//!
+//! Source: PLCopen Motion Control Part 1, MC_GearInPos; V19, V19a. What the standard leaves open is told in docs/coupling.md.
+
+use super::super::commands::{Entry, Gearing, Sync, Work};
+use super::super::{Axis, Motion};
+use super::view::{Seen, View};
+use super::{Coupling, Rung};
+use crate::{AxisId, BufferMode, CommandId, ErrorId, Event, Fate, Scope, SyncMode, SyncPoint};
+use standstill_planner::turns::split;
+use standstill_planner::{Anchor, Limits, Place, Plan, Planner};
+
+/// What a place of the master may be off by for rounding, relative to the numbers it is made of.
+const ROUNDING: f64 = 1e-9;
+
+/// Most halvings of a span of scans, of which a plan has at most 2^31.
+const HALVINGS: u32 = 32;
+
+/// A command that waits for a place of its master.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::axis) struct Awaited {
+    pub(in crate::axis) entry: Entry,
+    gearing: Gearing,
+    sync: Sync,
+    /// The master at the end of the scan before, in its coordinates of now.
+    was: Seen,
+    /// The start point has not been looked for yet.
+    is_new: bool,
+    /// The master has been between start and sync point since the command was given, and has not gone back.
+    is_between: bool,
+}
+
+/// The remainder of `value` in [0, `length`).
+fn wrapped(value: f64, length: f64) -> f64 {
+    split(value, length).1
+}
+
+impl Awaited {
+    /// Whether the master, now at `now`, has come to the start point in this scan, or is on its way from there to the sync point.
+    fn starts(&mut self, now: &Seen, turn: Option<f64>) -> bool {
+        let Sync {
+            master: goal,
+            start_distance,
+            ..
+        } = self.sync;
+        let heading = 1.0_f64.copysign(start_distance);
+        let was = &self.was;
+        // What moved in the motion step itself was not seen before it.
+        let before = was.place.position + (now.moved - was.moved);
+        let here = now.place.position;
+        let point = goal - start_distance;
+        let turns = now.place.turns.wrapping_sub(was.place.turns) as f64;
+        let way = heading * (turns * turn.unwrap_or(0.0) + (here - before));
+        let has_crossed = match turn {
+            None => heading * (before - point) < 0.0 && heading * (here - point) >= 0.0,
+            // How far it is behind the start point is less than it came in this scan.
+            Some(length) => wrapped(heading * (here - point), length) < way,
+        };
+        if core::mem::take(&mut self.is_new) {
+            self.is_between = match turn {
+                None => heading * (here - point) >= 0.0 && heading * (goal - here) >= 0.0,
+                Some(length) => wrapped(heading * (goal - here), length) <= start_distance.abs(),
+            };
+        } else if way < 0.0 {
+            self.is_between = false;
+        }
+        let moves_on = heading * now.at.velocity > 0.0;
+        has_crossed || (self.is_between && moves_on)
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// The pins that only MC_GearInPos has; `turn` is the length of the master's turn (u).
+    pub(super) fn check_sync(
+        &self,
+        point: &SyncPoint,
+        turn: Option<f64>,
+        scope: &mut Scope<'_>,
+    ) -> Result<Sync, ErrorId> {
+        let own_turn = self.modulo.as_ref().map(|modulo| modulo.length);
+        let places = [
+            ("MasterSyncPosition", point.master, turn),
+            ("SlaveSyncPosition", point.slave, own_turn),
+        ];
+        for (pin, value, turn) in places {
+            let is_in_turn = turn.is_none_or(|length| value >= 0.0 && value < length);
+            if !(value.is_finite() && is_in_turn) {
+                let limit = turn.unwrap_or(f64::NAN);
+                return Err(self.refuse(pin, value, limit, ErrorId::SyncPositionInvalid, scope));
+            }
+        }
+        let distance = point.start_distance;
+        if !(distance.is_finite() && turn.is_none_or(|length| distance.abs() < length)) {
+            let limit = turn.unwrap_or(f64::NAN);
+            let error = ErrorId::SyncPositionInvalid;
+            return Err(self.refuse("MasterStartDistance", distance, limit, error, scope));
+        }
+        let Some(mode) = point.mode.get() else {
+            let number = f64::from(point.mode.number());
+            return Err(self.refuse("SyncMode", number, 2.0, ErrorId::SyncModeInvalid, scope));
+        };
+        Ok(Sync {
+            master: point.master,
+            slave: point.slave,
+            mode,
+            start_distance: distance,
+        })
+    }
+
+    /// A command waits for its start point, in place of one that did before.
+    pub(in crate::axis) fn await_start(
+        &mut self,
+        gearing: Gearing,
+        limits: Limits,
+        mode: BufferMode,
+        scope: &mut Scope<'_>,
+    ) -> Result<CommandId, ErrorId> {
+        let Some(sync) = gearing.sync else {
+            return Err(ErrorId::SyncPositionInvalid);
+        };
+        if mode != BufferMode::Aborting {
+            let number = f64::from(mode as i32);
+            return Err(self.refuse("BufferMode", number, 0.0, ErrorId::BufferModeNotHere, scope));
+        }
+        self.end_awaited(Fate::Aborted);
+        let entry = Entry::new(self.new_id(), scope.instance, Work::Gear(gearing), limits, mode);
+        self.is_bound = true;
+        self.awaited = Some(Awaited {
+            entry,
+            gearing,
+            sync,
+            was: Seen::default(),
+            is_new: true,
+            is_between: false,
+        });
+        Ok(entry.id)
+    }
+
+    /// Command `id` waits for its start point.
+    pub(in crate::axis) fn awaits_start(&self, id: CommandId) -> bool {
+        self.awaited
+            .as_ref()
+            .is_some_and(|awaited| awaited.entry.id == id)
+    }
+
+    /// What waits for its start point does so no longer.
+    pub(in crate::axis) fn end_awaited(&mut self, fate: Fate) {
+        if let Some(awaited) = self.awaited.take() {
+            self.decide(awaited.entry.id, fate);
+        }
+    }
+
+    /// The master whose place a command waits for.
+    pub(crate) fn awaited_master(&self) -> Option<AxisId> {
+        self.awaited.as_ref().map(|awaited| awaited.gearing.master)
+    }
+
+    /// Before any axis has moved in this scan: the master whose place a command waits for is there.
+    pub(crate) fn note_awaited_master(&mut self, seen: Seen) {
+        if let Some(awaited) = &mut self.awaited {
+            awaited.was = seen;
+        }
+    }
+
+    /// Whether the command that waits for a place of its master, now seen there, starts in this scan; `turn` is the length of the
+    /// master's turn (u). To be asked once in a motion step.
+    pub(crate) fn reaches_start(&mut self, now: &Seen, turn: Option<f64>) -> bool {
+        self.awaited
+            .as_mut()
+            .is_some_and(|awaited| awaited.starts(now, turn))
+    }
+
+    /// The master is at the start point of the command that waits for it: that takes over, or it fails and what owns the axis goes
+    /// on.
+    ///
+    /// Cost: that of the plans looked at where the way onto a law is looked for.
+    pub(crate) fn start_at_point(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let Some(Awaited {
+            entry, gearing, was, ..
+        }) = self.awaited
+        else {
+            return;
+        };
+        let is_same_master = self.master() == Some(gearing.master);
+        let seen = if is_same_master {
+            was.shifted(self.phase_now())
+        } else {
+            was
+        };
+        let coupling = Coupling {
+            was: seen,
+            ..Coupling::new(gearing, self.parameters.limits, self.frame.moves())
+        };
+        let own = self.coupling.replace(coupling);
+        let found = self.way_at_start(&entry, view);
+        self.coupling = own;
+        if let Err((pin, value, limit, error)) = found {
+            return self.fail_awaited((pin, value, limit), error, scope);
+        }
+        self.awaited = None;
+        let before = self.limits_before(&entry.limits);
+        let phasing = self.lend_phasing(&entry);
+        self.end_all(Fate::Aborted, Fate::Aborted);
+        self.phasing = phasing;
+        self.begin(entry, Motion::Geared, before, scope);
+        self.note_master(was);
+    }
+
+    /// What waits for a place of its master can't follow it: it fails, and what owns the axis goes on.
+    pub(crate) fn bar_awaited(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
+        let master = self.awaited_master().unwrap_or_default();
+        self.fail_awaited(("Master", f64::from(master.number()), f64::NAN), error, scope);
+    }
+
+    fn fail_awaited(&mut self, at: (&'static str, f64, f64), error: ErrorId, scope: &mut Scope<'_>) {
+        let Some(Awaited { entry, .. }) = self.awaited.take() else {
+            return;
+        };
+        let (pin, value, limit) = at;
+        let scope = &mut scope.with(entry.instance);
+        self.refuse(pin, value, limit, error, scope);
+        self.decide(entry.id, Fate::Failed(error));
+        self.lose_heir(entry.id, scope);
+    }
+
+    /// Whether `entry`, whose coupling is lent for the time of the question, is in sync in time: else the pin, its value and limit,
+    /// and why.
+    fn way_at_start(
+        &mut self,
+        entry: &Entry,
+        view: &View<'_, P::Plan>,
+    ) -> Result<(), (&'static str, f64, f64, ErrorId)> {
+        self.lay_law(view);
+        let Some(coupling) = &self.coupling else {
+            return Ok(());
+        };
+        let (Some(anchor), Some(sync)) = (coupling.anchor, coupling.gearing.sync) else {
+            return Ok(());
+        };
+        let master = f64::from(coupling.gearing.master.number());
+        let not_at_all = |error| ("Master", master, f64::NAN, error);
+        self.gear_motion(entry, &self.setpoint).map_err(not_at_all)?;
+        let difference = self.difference(coupling, &anchor);
+        if difference.is_at_rest() && difference.position == 0.0 {
+            return Ok(());
+        }
+        let speed = self.law_speed(view);
+        let asked = self.limits_of_approach(entry).velocity;
+        let found = self.way_onto(entry, view, anchor, &difference);
+        let way = found.map_err(|error| match error {
+            ErrorId::MasterTooFast if sync.mode == SyncMode::SlowDown && asked > speed => {
+                let number = f64::from(sync.mode as i32);
+                ("SyncMode", number, f64::NAN, ErrorId::SyncNotReachable)
+            }
+            ErrorId::MasterTooFast => ("Velocity", asked, speed, error),
+            other => not_at_all(other),
+        })?;
+        let distance = sync.start_distance;
+        let too_short = |least| ("MasterStartDistance", distance, least, ErrorId::SyncNotReachable);
+        let lock = way.scans_to_lock().ok_or(too_short(f64::NAN))?;
+        let heading = 1.0_f64.copysign(distance);
+        let late = heading * (self.way_of_master(view, lock) - self.way_to_sync(view, &anchor));
+        if late > ROUNDING * (distance.abs() + anchor.master.position.abs()) {
+            return Err(too_short(distance + heading * late));
+        }
+        Ok(())
+    }
+
+    /// How far (u) the master is from its sync point at the end of the scan before.
+    fn way_to_sync(&self, view: &View<'_, P::Plan>, anchor: &Anchor) -> f64 {
+        let Some(coupling) = &self.coupling else {
+            return 0.0;
+        };
+        let was = coupling.was.place;
+        let turns = anchor.master.turns.wrapping_sub(was.turns) as f64;
+        turns * view.turn.unwrap_or(0.0) + (anchor.master.position - was.position) - was.phase
+    }
+
+    /// How far (u) the master comes in so many scans from the end of the scan before, as far as is known.
+    fn way_of_master(&self, view: &View<'_, P::Plan>, scans: u64) -> f64 {
+        let cycle = self.planner.cycle();
+        match view.future.plan() {
+            Some((plan, from, late)) => {
+                let to = from.saturating_add(scans.saturating_sub(late));
+                let way = view.future.factor * (plan.at(to).position - plan.at(from).position);
+                let first = self.coupling.as_ref().map_or(0.0, |coupling| {
+                    let turns = view.now.place.turns.wrapping_sub(coupling.was.place.turns) as f64;
+                    turns * view.turn.unwrap_or(0.0) + (view.now.place.position - coupling.was.place.position)
+                });
+                if late > 0 { way + first } else { way }
+            }
+            None => view.now.at.velocity * cycle * scans as f64,
+        }
+    }
+
+    /// Scans from the end of the scan before until the master has come `way` (u) in the direction of its motion, as far as is
+    /// known; none if never.
+    fn scans_of_master(&self, view: &View<'_, P::Plan>, way: f64) -> Option<u64> {
+        let heading = 1.0_f64.copysign(view.now.at.velocity);
+        let left = heading * way;
+        let is_there = |scans: u64| heading * self.way_of_master(view, scans) >= left;
+        let (mut low, mut high) = (0, 1_u64 << HALVINGS);
+        if !is_there(high) {
+            return None;
+        }
+        for _ in 0..HALVINGS {
+            let middle = low + (high - low) / 2;
+            if is_there(middle) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        Some(high)
+    }
+
+    /// Where a law that was given lies is settled: in which turn of the master, and in which of the slave. Nothing for any other,
+    /// and for one that is settled.
+    pub(super) fn lay_law(&mut self, view: &View<'_, P::Plan>) {
+        let Some(coupling) = &self.coupling else { return };
+        let (Some(sync), None) = (coupling.gearing.sync, coupling.anchor) else {
+            return;
+        };
+        if coupling.rung == Rung::Lost {
+            return;
+        }
+        let place = |turns, position| Place {
+            turns,
+            position,
+            ..Place::default()
+        };
+        let mut anchor = Anchor {
+            master: place(master_turn(&sync, &coupling.was, view), sync.master),
+            slave: place(0, sync.slave),
+        };
+        if let Some(length) = self.modulo.as_ref().map(|modulo| modulo.length) {
+            anchor.slave.turns = self.slave_turn(&sync, &anchor, length, view);
+        }
+        if let Some(coupling) = &mut self.coupling {
+            coupling.anchor = Some(anchor);
+        }
+    }
+
+    /// In which turn of `length` (u) the slave has its place when the master is at the sync point.
+    fn slave_turn(&self, sync: &Sync, anchor: &Anchor, length: f64, view: &View<'_, P::Plan>) -> i64 {
+        let Some(coupling) = &self.coupling else { return 0 };
+        let here = self.place();
+        let cycle = self.planner.cycle();
+        // Where the slave would be without the command when the master is there, and where it is to be; what is not known to come
+        // is looked at now.
+        let scans = self.scans_of_master(view, self.way_to_sync(view, anchor));
+        let (kept, wanted) = match scans {
+            Some(scans) => {
+                let way = self.setpoint.velocity * (scans as f64 * cycle);
+                (here.position + way, anchor.slave)
+            }
+            None => {
+                let (place, _) = coupling.law(anchor, &coupling.was);
+                (here.position, place)
+            }
+        };
+        // The turn of the law that lies at or before `kept`, counted from that of the slave.
+        let (before, rest) = split(kept - wanted.position, length);
+        let line = coupling.gearing.gear.derivative(view.now.at.velocity);
+        let is_forward = line >= 0.0;
+        let further = match sync.mode {
+            _ if rest == 0.0 => 0,
+            SyncMode::CatchUp => i64::from(is_forward),
+            SyncMode::SlowDown => i64::from(!is_forward),
+            SyncMode::Shortest => {
+                let left = length - rest;
+                i64::from(if is_forward { left <= rest } else { left < rest })
+            }
+        };
+        let turns = here.turns.wrapping_add(before).wrapping_add(further);
+        // The law is laid by its place at the sync point.
+        turns.wrapping_sub(wanted.turns).wrapping_add(anchor.slave.turns)
+    }
+
+    /// In sync for the first time: told if the master is past the sync point.
+    pub(super) fn note_sync(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let Some(coupling) = &mut self.coupling else {
+            return;
+        };
+        if coupling.was_in_gear {
+            return;
+        }
+        coupling.was_in_gear = true;
+        let Some((anchor, _)) = coupling.anchor.zip(coupling.gearing.sync) else {
+            return;
+        };
+        let turns = view.now.place.turns.wrapping_sub(anchor.master.turns) as f64;
+        let here = view.now.place.position + view.now.place.phase;
+        let past = turns * view.turn.unwrap_or(0.0) + (here - anchor.master.position);
+        let numbers = anchor.master.position.abs() + view.now.place.position.abs() + view.turn.unwrap_or(0.0);
+        if past * view.now.at.velocity > 0.0 && past.abs() > ROUNDING * numbers {
+            self.record(Event::SyncLate { by: past.abs() }, &mut self.owner_scope(scope));
+        }
+    }
+}
+
+/// In which turn the master's sync point lies: on its way from the start point, else the next it comes by, or that of this turn
+/// while it stands.
+fn master_turn<Q>(sync: &Sync, was: &Seen, view: &View<'_, Q>) -> i64 {
+    let Some(length) = view.turn else { return 0 };
+    let (from, heading) = if sync.start_distance == 0.0 {
+        (was.place, view.now.at.velocity)
+    } else {
+        let heading = 1.0_f64.copysign(sync.start_distance);
+        let point = wrapped(sync.master - sync.start_distance, length);
+        let here = view.now.place;
+        let is_behind = heading * (here.position - point) < 0.0;
+        let back = if is_behind { heading as i64 } else { 0 };
+        let start = Place {
+            turns: here.turns.wrapping_sub(back),
+            position: point,
+            ..here
+        };
+        (start, sync.start_distance)
+    };
+    if heading > 0.0 && sync.master < from.position {
+        from.turns.wrapping_add(1)
+    } else if heading < 0.0 && sync.master > from.position {
+        from.turns.wrapping_sub(1)
+    } else {
+        from.turns
+    }
+}
