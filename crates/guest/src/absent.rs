@@ -13,6 +13,15 @@ pub struct Program(Infallible);
 #[derive(Debug)]
 pub struct Guest(Infallible);
 
+/// A function of a guest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry(());
+
+impl Entry {
+    /// `plc_scan`.
+    pub const SCAN: Self = Self(());
+}
+
 impl Program {
     /// Refuses every module.
     ///
@@ -35,6 +44,27 @@ impl Program {
 impl Guest {
     /// Never called, like all that follow.
     pub fn scan<P: Planner>(&mut self, _: &mut Context<'_, P>) -> Result<u64, Fault> {
+        match self.0 {}
+    }
+
+    /// No function.
+    pub fn entry(&mut self, _: &str) -> Option<Entry> {
+        match self.0 {}
+    }
+
+    /// Never called.
+    pub fn scan_entry<P: Planner>(&mut self, _: Entry, _: &mut Context<'_, P>) -> Result<u64, Fault> {
+        match self.0 {}
+    }
+
+    /// Never called.
+    pub fn evaluate(&mut self, _: Entry, _: u64, _: i64) -> Result<(), Fault> {
+        match self.0 {}
+    }
+
+    /// No number.
+    #[must_use]
+    pub fn bits(&self, _: u32, _: usize) -> Option<u64> {
         match self.0 {}
     }
 

@@ -183,7 +183,8 @@ pub(crate) struct Machine {
     store: Store<Own>,
     instance: wasmi::Instance,
     memory: Memory,
-    scan: TypedFunc<(i32, i64), ()>,
+    /// `plc_scan`, then the others that the host asked for.
+    entries: Vec<TypedFunc<(i32, i64), ()>>,
 }
 
 impl fmt::Debug for Machine {
@@ -239,7 +240,7 @@ impl Machine {
             store,
             instance,
             memory,
-            scan,
+            entries: vec![scan],
         })
     }
 
@@ -319,12 +320,28 @@ impl Machine {
             .map_err(|error| fault(&error, fuel))
     }
 
-    /// Calls `plc_scan` with a budget of `fuel`. Gives the fuel that was used.
+    /// Makes an exported function of the type of `plc_scan` one that can be called; gives its number.
+    pub(crate) fn entry(&mut self, name: &str) -> Option<usize> {
+        let function = self.instance.get_typed_func(&self.store, name).ok()?;
+        self.entries.push(function);
+        Some(self.entries.len() - 1)
+    }
+
+    /// Calls a function, `plc_scan` is number 0, with a budget of `fuel`. Gives the fuel that was used.
     #[inline]
-    pub(crate) fn scan(&mut self, tick: i32, now_ns: i64, fuel: u64) -> Result<u64, Box<Fault>> {
+    pub(crate) fn scan(
+        &mut self,
+        entry: usize,
+        tick: i32,
+        now_ns: i64,
+        fuel: u64,
+    ) -> Result<u64, Box<Fault>> {
+        let Some(function) = self.entries.get(entry) else {
+            return Err(Box::new(Fault::Other("there is no such function".to_owned())));
+        };
         let mut run = || {
             self.store.set_fuel(fuel)?;
-            self.scan.call(&mut self.store, (tick, now_ns))?;
+            function.call(&mut self.store, (tick, now_ns))?;
             self.store.get_fuel()
         };
         match run() {

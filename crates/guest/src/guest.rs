@@ -14,6 +14,15 @@ pub struct Program {
     pub(crate) settings: Settings,
 }
 
+/// A function of one guest that does a scan, see [`Guest::entry`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry(usize);
+
+impl Entry {
+    /// `plc_scan`.
+    pub const SCAN: Self = Self(0);
+}
+
 /// A guest between two scans.
 #[derive(Debug)]
 pub struct Guest {
@@ -102,11 +111,28 @@ impl Guest {
     /// # Errors
     /// [`Fault`]: what it did wrong. What it told axes before stays told; the caller stops the resource.
     pub fn scan<P: Planner>(&mut self, context: &mut Context<'_, P>) -> Result<u64, Fault> {
+        self.scan_entry(Entry::SCAN, context)
+    }
+
+    /// A function that the guest exports beside `plc_scan`, of the same type; `None` if there is none.
+    pub fn entry(&mut self, name: &str) -> Option<Entry> {
+        self.machine.entry(name).map(Entry)
+    }
+
+    /// As [`Guest::scan`], by another function.
+    ///
+    /// # Errors
+    /// As [`Guest::scan`].
+    pub fn scan_entry<P: Planner>(
+        &mut self,
+        entry: Entry,
+        context: &mut Context<'_, P>,
+    ) -> Result<u64, Fault> {
         if self.faulted {
             return Err(Fault::Over);
         }
         let fuel = self.program.settings.fuel;
-        match tick::scan(&mut self.machine, context, fuel) {
+        match tick::scan(&mut self.machine, entry.0, context, fuel) {
             Ok(used) => {
                 self.fuel_used = used;
                 Ok(used)
@@ -116,6 +142,26 @@ impl Guest {
                 Err(*fault)
             }
         }
+    }
+
+    /// One execution outside a scan, in which blocks answer [`Code::NotInTick`](crate::Code::NotInTick): for a function that only
+    /// computes. Cost: at most the fuel.
+    ///
+    /// # Errors
+    /// [`Fault`]: what it did wrong. It may be called again.
+    pub fn evaluate(&mut self, entry: Entry, scan: u64, now_ns: i64) -> Result<(), Fault> {
+        let (machine, fuel) = (&mut self.machine, self.program.settings.fuel);
+        // A tick is the number of the scan, as far as 32 bits go.
+        let outcome = tick::before(|| machine.scan(entry.0, scan as i32, now_ns, fuel));
+        outcome.map(|_fuel| ()).map_err(|fault| *fault)
+    }
+
+    /// The number of so many bytes, 8 at most, at an address, least significant first; `None` outside the memory.
+    #[must_use]
+    pub fn bits(&self, address: u32, bytes: usize) -> Option<u64> {
+        let place = self.machine.memory().get(address as usize..)?.get(..bytes)?;
+        let fold = |bits: u64, byte: &u8| bits << 8 | u64::from(*byte);
+        Some(place.iter().rev().fold(0, fold))
     }
 
     /// The fuel that the last scan used.

@@ -294,7 +294,7 @@ impl Host {
         place("out", outputs, shape.outputs.size).of(memory)?;
         let mut number = u64::read(place("key", key, 8).of(memory)?, 0);
         if number == 0 {
-            match self.make(block, shape) {
+            match self.make(block, shape, key) {
                 Ok(made) => number = made,
                 Err(code) => return Ok(Err(code)),
             }
@@ -347,7 +347,7 @@ impl Host {
     }
 
     /// A new instance; gives its key.
-    fn make(&mut self, block: usize, shape: &Shape) -> Result<u64, Code> {
+    fn make(&mut self, block: usize, shape: &Shape, key: u32) -> Result<u64, Code> {
         if self.slots.len() >= INSTANCES_MOST {
             return Err(Code::NoRoom);
         }
@@ -356,6 +356,7 @@ impl Host {
             id: InstanceId(self.first.saturating_add(self.slots.len() as u16)),
             number: self.slots.len() + 1,
             block: shape.info.name,
+            key,
         });
         self.slots.push((block, instance));
         Ok(self.slots.len() as u64)

@@ -31,10 +31,10 @@ mod terms;
 mod tick;
 
 #[cfg(not(feature = "engine"))]
-pub use absent::{Guest, Program};
+pub use absent::{Entry, Guest, Program};
 pub use error::{Fault, LoadError};
 #[cfg(feature = "engine")]
-pub use guest::{Guest, Program, Snapshot};
+pub use guest::{Entry, Guest, Program, Snapshot};
 #[cfg(feature = "engine")]
 pub use host::Code;
 pub use symbol::{Symbol, SymbolError, SymbolType};

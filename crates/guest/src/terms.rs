@@ -45,5 +45,7 @@ pub enum Told {
         number: usize,
         /// Its block.
         block: &'static str,
+        /// The address of its key.
+        key: u32,
     },
 }

@@ -31,23 +31,30 @@ pub(crate) fn before<R>(work: impl FnOnce() -> R) -> R {
 #[inline]
 pub(crate) fn scan<P: Planner>(
     machine: &mut Machine,
+    entry: usize,
     context: &mut Context<'_, P>,
     fuel: u64,
 ) -> Result<u64, Box<Fault>> {
     // A tick is the number of the scan, as far as 32 bits go.
     let (tick, now_ns) = (context.scope.scan as i32, context.now_ns);
-    during(&Lent(Cell::new(Some(context))), machine, tick, now_ns, fuel)
+    during(
+        &Lent(Cell::new(Some(context))),
+        machine,
+        entry,
+        (tick, now_ns),
+        fuel,
+    )
 }
 
 /// The same for every planner, so that it stands beside the variable and reaches it without a detour.
 fn during(
     lent: &dyn Tick,
     machine: &mut Machine,
-    tick: i32,
-    now_ns: i64,
+    entry: usize,
+    (tick, now_ns): (i32, i64),
     fuel: u64,
 ) -> Result<u64, Box<Fault>> {
-    TICK.set(lent, || machine.scan(tick, now_ns, fuel))
+    TICK.set(lent, || machine.scan(entry, tick, now_ns, fuel))
 }
 
 /// A code, of 64 bits so that it comes back in a register; or a fault that ends the guest.

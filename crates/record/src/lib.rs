@@ -25,4 +25,4 @@ mod word;
 
 #[cfg(feature = "alloc")]
 pub use recorder::{Pins, Recorder, Signals};
-pub use ring::{AXIS_WORDS, Ring, Setup, State, Trigger, write_axis, write_pins};
+pub use ring::{AXIS_WORDS, Ring, Setup, State, Trigger, moved, write_axis, write_pins};

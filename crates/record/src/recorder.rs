@@ -125,7 +125,7 @@ impl Recorder {
             return;
         };
         for ((words, state), axis) in own.chunks_exact_mut(AXIS_WORDS).zip(&self.states).zip(axes) {
-            write_axis(words, *state, axis);
+            write_axis(words, scan, *state, axis);
         }
         pins(&mut Pins { row: rest });
         for record in log.since(self.ring.taken()) {
@@ -181,8 +181,8 @@ impl Recorder {
     }
 
     /// The words of the scans that are there, oldest first, for a host without `std` to send elsewhere. Of every axis:
-    /// the place of its state in [`AxisState::ALL`], then the bits of position, velocity, acceleration, jerk, snap and
-    /// actual position. Then the pins of every instance: numbers as their bits, whatever is signed extended with its
+    /// the place of its state in [`AxisState::ALL`], then the bits of position, velocity, acceleration, jerk, snap, actual
+    /// position, and by how much its coordinates moved in that scan. Then the pins of every instance: numbers as their bits, whatever is signed extended with its
     /// sign.
     pub fn rows(&self) -> impl Iterator<Item = &[u64]> {
         let (_, kept) = self.scans();

@@ -4,8 +4,11 @@ use crate::word;
 use standstill_axis::{Axis, AxisState, Log, Planner};
 use standstill_fb::AnyInstance;
 
-/// Words of an axis in a row: its state, and the numbers of a trace.
-pub const AXIS_WORDS: usize = 7;
+/// Words of an axis in a row: its state, the numbers of a trace, and by how much its coordinates moved.
+///
+/// Records of moved coordinates may be lost, or give way to later ones while their scan is still there. A trace without
+/// one of them shows a jump, so they stand in the rows.
+pub const AXIS_WORDS: usize = 8;
 
 /// How much a recorder keeps, and when it stops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -217,9 +220,14 @@ impl Ring {
     }
 }
 
-/// Writes an axis into its words of a row: the place of its state in [`AxisState::ALL`], then the bits of its numbers.
-/// `state` is that before the motion step, set-points are those the drive was given.
-pub fn write_axis<P: Planner>(words: &mut [u64], state: AxisState, axis: &Axis<P>) {
+/// By how much the words of an axis say that its coordinates moved in their scan (u); 0 if they did not.
+pub fn moved(words: &[u64]) -> f64 {
+    words.last().map_or(0.0, |word| f64::from_bits(*word))
+}
+
+/// Writes an axis into its words of the row of `scan`: the place of its state in [`AxisState::ALL`], then the bits of its
+/// numbers. `state` is that before the motion step, set-points are those the drive was given.
+pub fn write_axis<P: Planner>(words: &mut [u64], scan: u64, state: AxisState, axis: &Axis<P>) {
     let setpoint = axis.setpoint();
     let numbers = [
         setpoint.position,
@@ -228,6 +236,7 @@ pub fn write_axis<P: Planner>(words: &mut [u64], state: AxisState, axis: &Axis<P
         setpoint.jerk,
         setpoint.snap,
         axis.actual_position(),
+        axis.coordinates_moved(scan),
     ];
     let all = core::iter::once(state as u64).chain(numbers.map(f64::to_bits));
     for (word, value) in words.iter_mut().zip(all) {

@@ -24,7 +24,7 @@ pub(crate) fn value(ty: PinType, word: u64) -> Value {
         PinType::Bool => Value::Bool(word != 0),
         PinType::Int => Value::Int(word as i16),
         PinType::Lreal => Value::Lreal(f64::from_bits(word)),
-        PinType::Word => Value::Word(word as u16),
+        PinType::Uint | PinType::Word => Value::Word(word as u16),
         PinType::Dword => Value::Dword(word as u32),
         PinType::Time => Value::Time(word.cast_signed()),
         PinType::Axis(_) => Value::Axis(AxisId::new(word as u16)),
@@ -50,6 +50,7 @@ mod tests {
                 &[Value::Lreal(-0.0), Value::Lreal(f64::INFINITY), Value::Lreal(0.1)],
             ),
             (PinType::Word, &[Value::Word(u16::MAX)]),
+            (PinType::Uint, &[Value::Word(7)]),
             (PinType::Dword, &[Value::Dword(u32::MAX)]),
             (PinType::Time, &[Value::Time(-1), Value::Time(i64::MAX)]),
             (

@@ -1,8 +1,8 @@
 //! What a recorder keeps, when it stops, and that its trace is what happened.
 
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, Drive, DrivePosition, ErrorId, Event, IdealDrive, InstanceId, Limits, Log,
-    Record, Scope, Standard, StartState, steps,
+    Axis, AxisConfig, AxisId, Drive, DrivePosition, ErrorId, Event, ExecutionMode, IdealDrive, InstanceId,
+    Limits, Log, Record, Scope, Standard, StartState, steps,
 };
 use standstill_record::{Recorder, Setup, Signals, State, Trigger};
 use standstill_trace::Cell;
@@ -184,4 +184,29 @@ fn a_setup_that_makes_no_sense_is_the_nearest_that_does() {
         (State::Frozen, (0, 1))
     );
     assert_eq!(bench.recorder.trace("t", 1).expect("a trace").scans(), 1);
+}
+
+/// A trace without one of them would show a jump, which claims about limits take for a fault.
+#[test]
+fn every_move_of_coordinates_is_told_however_few_records_are_kept() {
+    let mut bench = Bench::new(SETUP);
+    bench.scans(12, |bench| {
+        let log = &mut bench.log;
+        for by in [1.0, 2.0] {
+            let mode = ExecutionMode::Immediately.into();
+            let scope = &mut Scope::new(bench.scan, log);
+            bench.axes[0]
+                .set_position(by, true, mode, scope)
+                .expect("at rest");
+        }
+    });
+    let trace = bench.recorder.trace("t", 1_000_000).expect("a trace");
+    let moves: Vec<_> = trace
+        .notes()
+        .iter()
+        .filter(|note| note.subject == "X")
+        .map(|note| (note.scan, note.text.as_str()))
+        .collect();
+    let expected: Vec<_> = (0..10).map(|row| (row, "coordinates moved by 3.0")).collect();
+    assert_eq!(moves, expected);
 }

@@ -199,6 +199,23 @@ async function overlaid() {
   await page.close();
 }
 
+// A slave shows its master and how far it is off the law; the axis it follows shows neither.
+async function coupled() {
+  standstill('run', '-q', 'scan-tests/coupling/a_slave_that_cannot_follow_lags.scan.json',
+    '--report', file('coupled.html'), '--trace', file('coupled.csv'));
+  const { page, complaints } = await open('coupled.html');
+  await point(page, 900);
+  const scan = Number((await page.textContent('#scan')).replace('scan ', ''));
+  const [found, row] = [await gutters(page), csv('coupled.csv')[scan]];
+  const differs = wrong(found, row);
+  check('the cursor reads master and deviation of a slave', differs === '' && found['S.Master'] === 'M' && Number(found['S.Deviation']) < -50,
+    differs || `${found['S.Master']}, ${found['S.Deviation']}`);
+  check('the deviation has a panel of curves', await page.locator('.curve[aria-label="S.Deviation"]').count() === 1);
+  check('the master has none', !('M.Deviation' in found) && !('M.Master' in found));
+  check('no error, no request over a coupling', complaints.length === 0, complaints.join('; '));
+  await page.close();
+}
+
 // The page of a failing test: golden and run over each other, the first difference marked.
 async function marked() {
   const script = JSON.parse(nastyScript());
@@ -315,7 +332,7 @@ async function longRun() {
   await page.close();
 }
 
-for (const part of [cursorAndZoom, overlaid, marked, texts, hardNumbers, longRun]) await part();
+for (const part of [cursorAndZoom, overlaid, coupled, marked, texts, hardNumbers, longRun]) await part();
 await browser.close();
 console.log(`${passed} passed, ${failed} failed`);
 process.exit(failed === 0 ? 0 : 1);

@@ -33,7 +33,13 @@ const SCRIPT: &str = concat!(
 
 /// The whole page.
 pub fn page(sources: &[Source<'_>], marks: &[Mark]) -> String {
-    let scans: Vec<usize> = marks.iter().filter_map(|mark| mark.scan).collect();
+    // One line a scan, also where two marks name it; the page begins at the first.
+    let mut scans: Vec<usize> = Vec::new();
+    for scan in marks.iter().filter_map(|mark| mark.scan) {
+        if !scans.contains(&scan) {
+            scans.push(scan);
+        }
+    }
     let about = json!({"traces": sources.iter().map(about).collect::<Vec<_>>(), "marks": scans}).to_string();
     filled(|place| match place {
         "style_hash" => hash(STYLE),

@@ -204,4 +204,11 @@ fn marks_are_texts_and_places_to_go_to() {
     let about = scripts(&page, "<script type=\"application/json\" id=\"about\">");
     let about: Value = serde_json::from_str(about[0]).unwrap();
     assert_eq!(about["marks"], serde_json::json!([3]));
+    // Two marks of one scan are two texts and one line; the page begins at the first mark.
+    let marks = [mark(Some(4)), mark(Some(1)), mark(Some(4))];
+    let page = html_marked(&[source("a", &trace)], &marks).unwrap();
+    assert_eq!(page.matches("data-scan=\"4\"").count(), 2);
+    let about = scripts(&page, "<script type=\"application/json\" id=\"about\">");
+    let about: Value = serde_json::from_str(about[0]).unwrap();
+    assert_eq!(about["marks"], serde_json::json!([4, 1]));
 }

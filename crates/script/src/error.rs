@@ -86,6 +86,8 @@ codes! {
     BadOverride = "bad_override",
     /// A guest program that cannot be had or is not usable.
     BadProgram = "bad_program",
+    /// An expression that cannot be read or has no such value.
+    BadExpression = "bad_expression",
     /// A script whose trace would be larger than the runtime records.
     TooLarge = "too_large",
 }
@@ -169,6 +171,11 @@ impl File {
         }
     }
 
+    /// As given, with `/`.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
@@ -196,6 +203,8 @@ pub struct ScriptError {
     /// The script, then what it includes; never empty.
     files: Vec<File>,
     diagnostics: Vec<Diagnostic>,
+    /// What is wrong with sources in Structured Text; a diagnostic says whose they are.
+    reports: Vec<standstill_st::Report>,
 }
 
 /// Most diagnostics that are rendered in full; the rest is only counted.
@@ -213,13 +222,27 @@ impl ScriptError {
     /// `files` in the order of their places, the script first.
     pub(crate) fn of(files: Vec<File>, mut diagnostics: Vec<Diagnostic>) -> Self {
         diagnostics.sort_by_key(|diagnostic| diagnostic.span.unwrap_or_default().start);
-        Self { files, diagnostics }
+        Self {
+            files,
+            diagnostics,
+            reports: Vec::new(),
+        }
+    }
+
+    /// The same with what is wrong in sources of programs.
+    pub(crate) fn with_reports(self, reports: Vec<standstill_st::Report>) -> Self {
+        Self { reports, ..self }
+    }
+
+    /// What is wrong with sources in Structured Text.
+    #[must_use]
+    pub fn reports(&self) -> &[standstill_st::Report] {
+        &self.reports
     }
 
     /// The file a place is in.
     fn file(&self, place: Span) -> &File {
-        let later = self.files.partition_point(|file| file.start <= place.start);
-        &self.files[later.saturating_sub(1)]
+        file(&self.files, place)
     }
 
     /// Name of the file a place is in, with `/`.
@@ -239,65 +262,76 @@ impl ScriptError {
 
     /// Line and column of a span's first character, both from 1; the column counts characters.
     pub fn line_column(&self, span: Span) -> (usize, usize) {
-        let file = self.file(span);
-        line_column(&file.text, file.inner(span).start)
+        place_of(&self.files, span)
     }
 
     /// The message for people: per diagnostic what is wrong, file, line and column, the excerpt, a remedy.
     /// Without colours, so it is the same everywhere. [`fmt::Display`] writes the same.
     pub fn render(&self) -> String {
-        // A fixed width, so that long lines are cut in the same way everywhere.
-        let renderer = Renderer::plain().term_width(140);
         let mut out: Vec<String> = self
             .diagnostics
             .iter()
             .take(DIAGNOSTICS_SHOWN)
-            .map(|diagnostic| renderer.render(&[self.group(diagnostic)]))
+            .map(|diagnostic| rendered(&self.files, &Level::ERROR, diagnostic.code.name(), diagnostic))
             .collect();
         let hidden = self.diagnostics.len().saturating_sub(DIAGNOSTICS_SHOWN);
         if hidden > 0 {
             out.push(format!("error: {hidden} more errors in {}", self.file_name()));
         }
+        out.extend(self.reports.iter().map(standstill_st::Report::render));
         out.join("\n\n")
     }
+}
 
-    fn group<'a>(&'a self, diagnostic: &Diagnostic) -> Group<'a> {
-        // Pieces of the script stand in these; they must not reach a terminal as control characters.
-        let visible = normalize_untrusted_str;
-        let title = Level::ERROR
-            .primary_title(visible(&diagnostic.message))
-            .id(diagnostic.code.name());
-        let mut group = match diagnostic.span {
-            None => Group::with_title(title).element(Origin::path(self.file_name())),
-            Some(span) => {
-                let file = self.file(span);
-                let mut primary = AnnotationKind::Primary.span(file.inner(span));
-                if !diagnostic.label.is_empty() {
-                    primary = primary.label(visible(&diagnostic.label));
-                }
-                let snippet = |file: &'a File| Snippet::source(file.text.as_str()).path(file.name.as_str());
-                let own = snippet(file).annotation(primary);
-                match diagnostic.related.as_deref() {
-                    None => title.element(own),
-                    Some((span, label)) => {
-                        let other = self.file(*span);
-                        let context = AnnotationKind::Context
-                            .span(other.inner(*span))
-                            .label(visible(label));
-                        if other.start == file.start {
-                            title.element(own.annotation(context))
-                        } else {
-                            title.element(own).element(snippet(other).annotation(context))
-                        }
+/// A message for people about a place in a text, of a level and with a name for its kind.
+pub(crate) fn rendered(
+    files: &[File],
+    level: &Level<'static>,
+    kind: &str,
+    diagnostic: &Diagnostic,
+) -> String {
+    // Pieces of the script stand in these; they must not reach a terminal as control characters.
+    let visible = normalize_untrusted_str;
+    let title = level.clone().primary_title(visible(&diagnostic.message)).id(kind);
+    let mut group = match diagnostic.span {
+        None => Group::with_title(title).element(Origin::path(file(files, Span::default()).name.as_str())),
+        Some(span) => {
+            let found = file(files, span);
+            let mut primary = AnnotationKind::Primary.span(found.inner(span));
+            if !diagnostic.label.is_empty() {
+                primary = primary.label(visible(&diagnostic.label));
+            }
+            let own = Snippet::source(found.text.as_str())
+                .path(found.name.as_str())
+                .annotation(primary);
+            match diagnostic.related.as_deref() {
+                None => title.element(own),
+                Some((span, label)) => {
+                    let other = file(files, *span);
+                    let context = AnnotationKind::Context
+                        .span(other.inner(*span))
+                        .label(visible(label));
+                    if other.start == found.start {
+                        title.element(own.annotation(context))
+                    } else {
+                        let other = Snippet::source(other.text.as_str()).path(other.name.as_str());
+                        title.element(own).element(other.annotation(context))
                     }
                 }
             }
-        };
-        if let Some(help) = &diagnostic.help {
-            group = group.element(Level::HELP.message(visible(help)));
         }
-        group
+    };
+    if let Some(help) = &diagnostic.help {
+        group = group.element(Level::HELP.message(visible(help)));
     }
+    // A fixed width, so that long lines are cut in the same way everywhere.
+    Renderer::plain().term_width(140).render(&[group])
+}
+
+/// The file a place is in.
+pub(crate) fn file(files: &[File], place: Span) -> &File {
+    let later = files.partition_point(|file| file.start <= place.start);
+    &files[later.saturating_sub(1)]
 }
 
 impl fmt::Display for ScriptError {
@@ -307,6 +341,12 @@ impl fmt::Display for ScriptError {
 }
 
 impl std::error::Error for ScriptError {}
+
+/// Line and column of a place in its file.
+pub(crate) fn place_of(files: &[File], span: Span) -> (usize, usize) {
+    let file = file(files, span);
+    line_column(&file.text, file.inner(span).start)
+}
 
 /// Line and column of byte `offset`, both from 1; the column counts characters.
 pub(crate) fn line_column(text: &str, offset: usize) -> (usize, usize) {

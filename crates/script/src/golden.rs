@@ -4,10 +4,11 @@
 //! A golden is a record of what a reviewed version did, never a claim; a script whose claims fail gets none.
 
 use crate::run::Outcome;
-use standstill_trace::Trace;
+use crate::why::Reason;
 use standstill_trace::compare::{Closeness, Yardstick};
 use standstill_trace::golden::{self, GoldenError, Verdict};
-use standstill_trace::story::story;
+use standstill_trace::story::{Cause, story};
+use standstill_trace::{Role, Trace};
 use std::path::{Path, PathBuf};
 
 /// What may be done to goldens.
@@ -58,6 +59,8 @@ pub enum Standing {
     Close(Option<Closeness>),
     /// Every bit that the golden knows is as reviewed, but it is of version 1: what to do about it.
     Old(String),
+    /// None is asked for: the claims decide alone.
+    Unasked,
     /// It was written in this run.
     Accepted,
     /// It is not as reviewed: what differs, and what can be done.
@@ -138,10 +141,7 @@ pub fn judge(
         }
         Verdict::Companion(why) => format!("{why}; run the test once outside CI to write it"),
         Verdict::Missing => "there is no golden yet".to_owned(),
-        Verdict::Different(mismatch) => {
-            let cause = likely_cause(&snap, trace)?;
-            format!("the run differs from its golden\n{mismatch}{cause}")
-        }
+        Verdict::Different(mismatch) => format!("the run differs from its golden\n{mismatch}"),
     };
     if !proposing || !outcome.passed() {
         return Ok(Standing::Failed(what));
@@ -152,13 +152,48 @@ pub fn judge(
     Ok(Standing::Failed(format!("{}\n{hint}", what.trim_end())))
 }
 
-/// What may be behind a difference, where the golden's exact trace can tell.
-fn likely_cause(snap: &Path, trace: &Trace) -> Result<String, GoldenError> {
-    let story = golden::expected(snap, trace)?.and_then(|expected| story(&expected, trace));
+/// What may be behind a difference from the golden of a script, where the golden's exact trace can tell; whether it is
+/// something that was given otherwise, which explains all that follows.
+///
+/// # Errors
+/// As [`judge`].
+pub fn why(script: &Path, run: &Trace) -> Result<Option<(Reason, bool)>, GoldenError> {
+    let Some(expected) = expected(script, run)? else {
+        return Ok(None);
+    };
+    let story = story(&expected, run);
     let cause = story.and_then(|story| story.causes.into_iter().next());
-    Ok(cause.map_or_else(String::new, |cause| {
-        format!("likely cause\n  {cause}\n  look at: {}\n", cause.look_at())
+    Ok(cause.map(|cause| {
+        let is_given = matches!(
+            cause,
+            Cause::Limits(..)
+                | Cause::Subjects(..)
+                | Cause::Order { .. }
+                | Cause::Variable { .. }
+                | Cause::Parameter(_)
+        );
+        let reason = Reason {
+            scan: first_output(&expected, run),
+            text: format!("{cause}; look at: {}", cause.look_at()),
+            claims: Vec::new(),
+        };
+        (reason, is_given)
     }))
+}
+
+/// The first scan in which an output or an axis is otherwise: where the difference begins to show.
+fn first_output(expected: &Trace, run: &Trace) -> Option<u64> {
+    let shown = expected.columns().iter().enumerate().filter_map(|(at, column)| {
+        let is_shown = !matches!(column.role, Role::Variable | Role::Input | Role::InOut);
+        Some((at, run.column(&column.name).filter(|_| is_shown)?))
+    });
+    let shown: Vec<_> = shown.collect();
+    let differs = |scan: usize| {
+        let mut shown = shown.iter();
+        shown.any(|(at, other)| expected.cell(scan, *at) != run.cell(scan, *other))
+    };
+    let scans = expected.scans().min(run.scans());
+    (0..scans).find(|&scan| differs(scan)).map(|scan| scan as u64)
 }
 
 #[cfg(test)]

@@ -5,12 +5,15 @@
 //! not: arguments and printing (the command line), motion, block behaviour.
 #![forbid(unsafe_code)]
 
+mod advice;
+pub mod bare;
 mod changes;
 pub mod claims;
 mod error;
 mod format;
 pub mod golden;
 pub mod model;
+pub mod mutate;
 mod read;
 pub mod run;
 mod schema;
@@ -19,6 +22,9 @@ mod schema_map;
 mod schema_sweep;
 pub mod suite;
 pub mod sweep;
+mod variable;
+mod warn;
+mod why;
 
 pub use changes::with_changes;
 pub use claims::{Failure, Standing, Verdict};
@@ -36,3 +42,5 @@ pub use schema::schema;
 pub use schema_machine::machine_schema;
 pub use schema_map::map_schema;
 pub use schema_sweep::sweep_schema;
+pub use warn::{Warning, WarningKind, Warnings, warnings};
+pub use why::Reason;

@@ -1,9 +1,12 @@
 //! A scan script as values: checked, names resolved to indices, parameters filled in.
 
+use crate::error::File;
 use standstill_axis::{AxisConfig, AxisState};
-use standstill_fb::{BlockInfo, PinType, Value};
+use standstill_fb::{BlockInfo, Group, PinType, Value};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
+pub use crate::variable::Variable;
 pub use standstill_drives::simulated::{
     Cia402Setup, DriveChange, DriveSetup, IdealDriveSetup, MotorSetup, PlantSetup,
 };
@@ -29,6 +32,8 @@ pub struct Script {
     pub blocks: Vec<Instance>,
     /// Guest programs; each runs in its task after the task's instances.
     pub programs: Vec<Program>,
+    /// Expressions, in the order of reading.
+    pub formulas: Vec<Formula>,
     /// Tasks; at least `main`.
     pub tasks: Vec<Task>,
     /// Steps in file order.
@@ -39,8 +44,23 @@ pub struct Script {
     pub stop_when: Option<(Conditions, u64)>,
     /// Values of the script's parameters, overrides applied.
     pub parameters: BTreeMap<String, f64>,
+    /// A golden counts beside the claims.
+    pub golden: bool,
+    /// Values above the limits are meant.
+    pub clamps_expected: bool,
+    /// The texts that places point into.
+    pub(crate) files: Arc<[File]>,
     /// FNV-1a 64 of the script's bytes.
     pub hash: u64,
+}
+
+/// Where something stands in a script, and whether it may test nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// Where.
+    pub span: Span,
+    /// `"vacuous": "allowed"`
+    pub may_be_vacuous: bool,
 }
 
 /// An axis of the script.
@@ -54,6 +74,10 @@ pub struct Axis {
     pub config: AxisConfig,
     /// Its drive.
     pub drive: DriveSetup,
+    /// It stands at a `Slave` pin.
+    pub slave: bool,
+    /// Where it stands.
+    pub place: Place,
 }
 
 /// A script variable.
@@ -63,6 +87,8 @@ pub struct Input {
     pub name: String,
     /// Value before any step: `Bool` or `Lreal`.
     pub initial: Value,
+    /// Where it stands.
+    pub place: Place,
 }
 
 /// A block instance.
@@ -78,6 +104,29 @@ pub struct Instance {
     pub constants: Vec<(usize, Value)>,
     /// Wires, by pin index.
     pub wires: Vec<(usize, Wire)>,
+    /// It is never called: of a mutant only.
+    pub(crate) left_out: bool,
+    /// Where it stands.
+    pub place: Place,
+}
+
+impl Instance {
+    /// The inputs that set it to work: index and name.
+    pub(crate) fn triggers(&self) -> impl Iterator<Item = (usize, &'static str)> {
+        let is_standard = self.block.group == Group::Standard;
+        let is_trigger =
+            move |name| is_standard || matches!(name, "Execute" | "Enable" | "JogForward" | "JogBackward");
+        let inputs = self.block.inputs().iter().enumerate();
+        inputs
+            .filter(move |(_, pin)| pin.ty == PinType::Bool && is_trigger(pin.name))
+            .map(|(index, pin)| (index, pin.name))
+    }
+
+    /// Whether the axis stands at one of its pins.
+    pub(crate) fn has_axis(&self, axis: usize) -> bool {
+        let mut constants = self.constants.iter();
+        constants.any(|(_, value)| matches!(value, Value::Axis(id) if id.index() == axis))
+    }
 }
 
 /// A guest program.
@@ -85,12 +134,47 @@ pub struct Instance {
 pub struct Program {
     /// Name as written.
     pub name: String,
-    /// Index of its task in [`Script::tasks`].
-    pub task: usize,
+    /// When it runs; at least one task.
+    pub calls: Vec<Call>,
     /// What was compiled.
     pub guest: standstill_guest::Program,
     /// Its variables that are signals; before them stands `Fault`, which the runtime writes.
     pub symbols: Vec<Symbol>,
+    /// Where it stands.
+    pub place: Place,
+    /// What is known of it where it is Structured Text.
+    pub text: Option<Arc<ProgramText>>,
+}
+
+/// A task that runs a program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Call {
+    /// Index of the task in [`Script::tasks`].
+    pub task: usize,
+    /// The function that does it; `plc_scan` if absent.
+    pub entry: Option<String>,
+}
+
+/// What is doubtful in a program in Structured Text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Doubt {
+    /// `cell.st:12:5: ` and what it is, in one line.
+    pub message: String,
+    /// What to do about it.
+    pub help: String,
+}
+
+/// A program in Structured Text.
+#[derive(Clone, Debug)]
+pub struct ProgramText {
+    /// Its variables and places.
+    pub symbols: standstill_st::Symbols,
+    /// Its instances of blocks by the address of their key, with the names that records show.
+    pub blocks: BTreeMap<u32, String>,
+    /// What the compiler finds doubtful: place in the sources, what it is, and what to do about it.
+    pub doubtful: Vec<Doubt>,
+    /// The script's folder, which the names of its files begin with.
+    pub folder: String,
 }
 
 /// A variable of a guest.
@@ -106,6 +190,42 @@ pub struct Symbol {
     pub address: Option<u32>,
     /// What the guest exports it as; by its name if absent.
     pub export: Option<String>,
+    /// What it is in Structured Text.
+    pub variable: Option<Variable>,
+}
+
+/// An expression in Structured Text.
+#[derive(Clone, Debug)]
+pub struct Formula {
+    /// As written, with its `=`.
+    pub text: String,
+    /// Where it stands.
+    pub span: Span,
+    /// Whether it is one of a condition, which reads rows; else it is one of a wire.
+    pub in_rows: bool,
+    /// What was compiled of it.
+    pub guest: standstill_guest::Program,
+    /// The signals it reads.
+    pub inputs: Vec<FormulaInput>,
+    /// Where its value stands.
+    pub result: standstill_guest::Symbol,
+    /// The type of its value.
+    pub ty: PinType,
+    /// What can go wrong in it, by the number of the place.
+    pub places: Vec<standstill_st::FaultKind>,
+}
+
+/// A signal that an expression reads.
+#[derive(Clone, Debug)]
+pub struct FormulaInput {
+    /// Which.
+    pub signal: Signal,
+    /// The variable that holds it.
+    pub symbol: standstill_guest::Symbol,
+    /// What the variable is.
+    pub variable: Variable,
+    /// Names and numbers of the elements, where it has some.
+    pub names: Vec<(String, i128)>,
 }
 
 /// Where a value comes from.
@@ -117,6 +237,8 @@ pub enum Point {
     Pin(usize, usize),
     /// Variable of a guest program, both by index; 0 is `Fault`.
     Symbol(usize, usize),
+    /// An expression of a wire by index.
+    Formula(usize),
 }
 
 /// What feeds an input pin.
@@ -130,6 +252,17 @@ pub enum Wire {
     Any(Vec<Point>),
     /// All are TRUE.
     All(Vec<Point>),
+}
+
+impl Wire {
+    /// What it reads.
+    #[must_use]
+    pub fn points(&self) -> &[Point] {
+        match self {
+            Self::From(point) | Self::Not(point) => std::slice::from_ref(point),
+            Self::Any(points) | Self::All(points) => points,
+        }
+    }
 }
 
 /// A task.
@@ -199,6 +332,8 @@ pub struct Step {
     pub when: When,
     /// What, in file order.
     pub actions: Vec<Action>,
+    /// Where it stands.
+    pub place: Place,
 }
 
 /// What a step does.
@@ -251,8 +386,12 @@ pub enum Signal {
     State(usize),
     /// A number of an axis.
     Axis(usize, AxisNumber),
+    /// The master of an axis that stands at a `Slave` pin; empty while it follows none.
+    Master(usize),
     /// Backward difference of published positions of this order (1-4) over cycle^order.
     Difference(usize, u8),
+    /// An expression of a condition by index: a BOOL.
+    Formula(usize),
 }
 
 /// The numeric columns of an axis.
@@ -270,6 +409,17 @@ pub enum AxisNumber {
     Snap,
     /// Actual position.
     ActualPosition,
+    /// How far a slave is off the law.
+    Deviation,
+    /// By how much a slave sees its master further on.
+    Phase,
+}
+
+impl AxisNumber {
+    /// Only axes at a `Slave` pin have it.
+    pub(crate) const fn is_of_slaves(self) -> bool {
+        matches!(self, Self::Deviation | Self::Phase)
+    }
 }
 
 /// All must hold.
@@ -299,6 +449,8 @@ pub enum Test {
     State(AxisState),
     /// An enum element or axis, by number.
     Named(Value),
+    /// An element of an enumeration of Structured Text, as its cells have it.
+    Word(String),
     /// Comparisons, all must hold.
     Compare(Vec<Comparison>),
 }
@@ -310,6 +462,17 @@ pub enum Comparison {
     Near {
         /// The value.
         near: f64,
+        /// The tolerance.
+        within: f64,
+    },
+    /// Within `within` of another signal plus a number.
+    NearTo {
+        /// The other signal as written.
+        name: String,
+        /// The other signal.
+        of: Signal,
+        /// What is added to it.
+        plus: f64,
         /// The tolerance.
         within: f64,
     },
@@ -327,6 +490,35 @@ pub enum Comparison {
     AbsLe(f64),
     /// Equal to the bit to another signal.
     SameAs(String, Signal),
+    /// Of a variable with a whole number of 64 bits: exact, whatever an f64 makes of it.
+    Whole(Relation, i128),
+}
+
+/// How two whole numbers are to each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Relation {
+    Eq,
+    Le,
+    Ge,
+    Lt,
+    Gt,
+    AbsLe,
+}
+
+impl Relation {
+    /// Whether `value` is so to `bound`.
+    #[must_use]
+    pub const fn holds(self, value: i128, bound: i128) -> bool {
+        match self {
+            Self::Eq => value == bound,
+            Self::Le => value <= bound,
+            Self::Ge => value >= bound,
+            Self::Lt => value < bound,
+            Self::Gt => value > bound,
+            Self::AbsLe => value.abs() <= bound,
+        }
+    }
 }
 
 /// What the script's author says of the run.
@@ -336,8 +528,37 @@ pub struct Claim {
     pub path: String,
     /// Where it stands.
     pub span: Span,
+    /// `"vacuous": "allowed"`
+    pub may_be_vacuous: bool,
+    /// From and to what it speaks, where conditions say so.
+    pub window: Window,
     /// What it says.
     pub kind: ClaimKind,
+}
+
+/// Where the scans begin and end that a claim speaks of, instead of the range in it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Window {
+    /// The first row in which these hold.
+    pub from: Option<Conditions>,
+    /// The first row from there on in which these hold; the end of the run if none.
+    pub to: Option<Conditions>,
+}
+
+/// What a count or a duration must be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Bounds {
+    /// At least.
+    pub ge: Option<u64>,
+    /// At most.
+    pub le: Option<u64>,
+}
+
+impl Bounds {
+    /// Whether a number is inside.
+    pub fn admit(self, number: u64) -> bool {
+        self.ge.is_none_or(|ge| number >= ge) && self.le.is_none_or(|le| number <= le)
+    }
 }
 
 /// First and last scan a claim looks at; `None` is the run's end.
@@ -347,6 +568,21 @@ pub struct Range {
     pub from: u64,
     /// Last scan, inclusive.
     pub to: Option<u64>,
+}
+
+/// A slave, its master, and the law between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Follow {
+    /// Index of the slave.
+    pub slave: usize,
+    /// Index of the master.
+    pub master: usize,
+    /// The slave moves `num` / `den` times as far.
+    pub num: i16,
+    /// Above 0.
+    pub den: u16,
+    /// A position of the master (u), and where the slave is then (u).
+    pub anchor: Option<[f64; 2]>,
 }
 
 /// What a claim says.
@@ -387,9 +623,119 @@ pub enum ClaimKind {
         /// Factor on every limit.
         factor: f64,
     },
+    /// The slave is where the law puts it, to the bit.
+    Follows {
+        /// Scans.
+        range: Range,
+        /// `while`
+        during: Conditions,
+        /// The law.
+        follow: Follow,
+    },
+    /// After each rising (or the first) `that` holds in some row, not later than so many scans.
+    Answered {
+        /// Scans in which risings count.
+        range: Range,
+        /// `while`
+        during: Conditions,
+        /// What rises.
+        when: Conditions,
+        /// Scans until the answer at most.
+        within: u64,
+        /// The answer.
+        that: Conditions,
+        /// Only the first rising.
+        first: bool,
+    },
+    /// Holds in no so many rows in a row.
+    NeverFor {
+        /// Scans.
+        range: Range,
+        /// `while`
+        during: Conditions,
+        /// What does not hold.
+        that: Conditions,
+        /// So many rows.
+        scans: u64,
+    },
+    /// The scans from a rising of the first to the next one of the second are so many.
+    Duration {
+        /// Scans in which risings of the first count.
+        range: Range,
+        /// `while`
+        during: Conditions,
+        /// What begins and what ends it.
+        ends: [Conditions; 2],
+        /// Scans.
+        bounds: Bounds,
+        /// Every rising of the first, not only the first one.
+        each: bool,
+    },
+    /// Rises so many times.
+    Count {
+        /// Scans.
+        range: Range,
+        /// `while`
+        during: Conditions,
+        /// What rises.
+        that: Conditions,
+        /// Times.
+        bounds: Bounds,
+    },
+}
+
+impl Comparison {
+    /// The other signal that it compares with, if any.
+    pub fn other(&self) -> Option<&Signal> {
+        match self {
+            Self::SameAs(_, signal) | Self::NearTo { of: signal, .. } => Some(signal),
+            _ => None,
+        }
+    }
 }
 
 impl ClaimKind {
+    /// Every condition in it.
+    pub fn conditions(&self) -> Vec<&Condition> {
+        match self {
+            Self::At(_, that) | Self::By(_, that) | Self::Once(_, that) => that.iter().collect(),
+            Self::Always { during, that, .. } | Self::Never { during, that, .. } => {
+                during.iter().chain(that).collect()
+            }
+            Self::Answered {
+                during, when, that, ..
+            } => during.iter().chain(when).chain(that).collect(),
+            Self::NeverFor { during, that, .. } | Self::Count { during, that, .. } => {
+                during.iter().chain(that).collect()
+            }
+            Self::Duration {
+                during,
+                ends: [first, second],
+                ..
+            } => during.iter().chain(first).chain(second).collect(),
+            Self::Follows { during, .. } => during.iter().collect(),
+            Self::Exclusive(..) | Self::WithinLimits { .. } => Vec::new(),
+        }
+    }
+
+    /// The scans it speaks of.
+    pub fn range_mut(&mut self) -> Option<&mut Range> {
+        match self {
+            Self::At(..) => None,
+            Self::By(range, _)
+            | Self::Once(range, _)
+            | Self::Exclusive(range, _)
+            | Self::Always { range, .. }
+            | Self::Never { range, .. }
+            | Self::WithinLimits { range, .. }
+            | Self::Follows { range, .. }
+            | Self::Answered { range, .. }
+            | Self::NeverFor { range, .. }
+            | Self::Duration { range, .. }
+            | Self::Count { range, .. } => Some(range),
+        }
+    }
+
     /// Looks at the row of a scan that judging it takes at most.
     pub(crate) fn looks(&self) -> u64 {
         let looks = match self {
@@ -397,8 +743,21 @@ impl ClaimKind {
             Self::Always { during, that, .. } => that.len().saturating_mul(1 + during.len()),
             Self::Never { during, that, .. } => during.len() + that.len(),
             Self::Exclusive(_, points) => points.len(),
+            // The rows before tell whether something rises.
+            Self::Answered {
+                during, when, that, ..
+            } => during.len() + 2 * when.len() + that.len(),
+            Self::NeverFor { during, that, .. } => during.len() + that.len(),
+            Self::Count { during, that, .. } => during.len() + 2 * that.len(),
+            Self::Duration {
+                during,
+                ends: [first, second],
+                ..
+            } => during.len() + 2 * (first.len() + second.len()),
             // Positions of four differences.
             Self::WithinLimits { .. } => 14,
+            // Two positions and the phase, and the arithmetic of some more.
+            Self::Follows { during, .. } => during.len() + 14,
         };
         looks as u64
     }

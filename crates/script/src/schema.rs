@@ -3,7 +3,7 @@
 //! With it an editor completes and checks keys, block names, pins and enum elements. What a schema cannot say
 //! (which names exist, the types of wires, multiples of the cycle) only the reader checks.
 
-use crate::read::axis::{ABOVE_LIMIT, ON_POWER_OFF, PROFILES, START_STATES};
+use crate::read::axis::{ABOVE_LIMIT, ON_LIMIT, ON_MASTER_LOST, ON_POWER_OFF, PROFILES, START_STATES};
 use crate::read::block::is_needed;
 use crate::read::drive::{NODE_DIRECTIONS, REACTIONS};
 use crate::read::homing::{HOME_DIRECTIONS, PROCEDURES, SWITCH_EDGES};
@@ -12,7 +12,7 @@ use crate::read::program::{FUEL_MAX, MEMORY_MAX, SYMBOL_TYPES};
 use crate::read::shape::{self, Shape};
 use crate::read::step::FAULT_KINDS;
 use crate::read::value::NUMBER_WORDS;
-use crate::read::{SCANS_MAX, VERSION};
+use crate::read::{CLAMPS, SCANS_MAX, VERSION};
 use serde_json::{Map, Value, json};
 use standstill_axis::{DELAY_MAX, DIGITAL, PROBES, QUEUE_MAX};
 use standstill_blocks::REGISTRY;
@@ -64,10 +64,10 @@ pub(crate) fn definitions() -> Map<String, Value> {
 /// An object with the keys of `shape`; `schema_of` gives the schema of each.
 pub(crate) fn object(shape: &Shape, schema_of: impl Fn(&str) -> Value) -> Value {
     let property = |key: &&str| {
-        let schema = if *key == "note" {
-            json!({"type": "string"})
-        } else {
-            schema_of(key)
+        let schema = match *key {
+            "note" => json!({"type": "string"}),
+            "vacuous" => json!({"const": "allowed"}),
+            key => schema_of(key),
         };
         ((*key).to_owned(), schema)
     };
@@ -130,7 +130,9 @@ pub(crate) fn script_key(key: &str) -> Value {
         "after" => of("scans"),
         "parameters" => json!({"type": "object", "additionalProperties": of("plain_number")}),
         "axes" => names(of("axis")),
-        "inputs" => names(any(&[json!({"type": "boolean"}), of("number")])),
+        "inputs" => names(any(&[json!({"type": "boolean"}), of("number"), of("input")])),
+        "golden" => json!({"type": "boolean"}),
+        "clamps" => words(&CLAMPS),
         "tasks" => names(of("task")),
         "blocks" => list(of("block"), 0),
         "programs" => names(of("program")),
@@ -185,12 +187,25 @@ fn parts() -> Vec<(String, Value)> {
         ("block", block()),
         (
             "program",
-            required(&["wasm"], object(&shape::PROGRAM, program_key)),
+            json!({"oneOf": [
+                required(&["wasm"], object(&shape::PROGRAM_MODULE, program_key)),
+                required(&["st"], object(&shape::PROGRAM_TEXT, program_key)),
+            ]}),
         ),
         ("wire", wire()),
+        ("expression", expression()),
         ("step", step()),
         ("conditions", conditions()),
         ("comparison", comparison()),
+        (
+            "input",
+            required(
+                &["value"],
+                object(&shape::INPUT, |_| {
+                    any(&[json!({"type": "boolean"}), of("number")])
+                }),
+            ),
+        ),
         (
             "claim",
             json!({"oneOf": shape::CLAIMS.map(|shape| claim(&shape))}),
@@ -209,6 +224,9 @@ fn program_key(key: &str) -> Value {
         "fuel" => integer(1, FUEL_MAX),
         "memory" => integer(1, MEMORY_MAX),
         "may_fault" => json!({"type": "boolean"}),
+        "st" => any(&[text(), json!({"type": "array", "items": text(), "minItems": 1})]),
+        "trace" => json!({"type": "array", "items": text()}),
+        "axes" => json!({"type": "object", "additionalProperties": text()}),
         "symbols" => names(any(&[
             json!({"enum": SYMBOL_TYPES}),
             required(&["type"], object(&shape::SYMBOL, symbol)),
@@ -255,6 +273,11 @@ fn axis_key(key: &str) -> Value {
         "homing" => homing(),
         "power_timeout" => any(&[integer(1, SCANS_MAX as i64), of("time_literal")]),
         "override_max" => any(&[json!({"type": "number", "minimum": 1}), of("parameter")]),
+        "coupling" => object(&shape::COUPLING, |key| match key {
+            "on_limit" => words(&ON_LIMIT),
+            "on_master_lost" => words(&ON_MASTER_LOST),
+            _ => of("finite"),
+        }),
         "in_position" => required(
             &["window"],
             object(&shape::IN_POSITION, |key| match key {
@@ -434,7 +457,7 @@ fn constant(ty: PinType) -> Value {
         PinType::Bool => json!({"type": "boolean"}),
         PinType::Int => integer(i16::MIN.into(), i16::MAX.into()),
         PinType::Lreal => of("number"),
-        PinType::Word => integer(0, u16::MAX.into()),
+        PinType::Uint | PinType::Word => integer(0, u16::MAX.into()),
         PinType::Dword => integer(0, u32::MAX.into()),
         PinType::Table(info) => table(info),
         PinType::Time => of("scans"),
@@ -465,7 +488,16 @@ fn wire() -> Value {
     });
     let kinds = shape::WIRE_KINDS.iter().map(|kind| json!({"required": [kind]}));
     add(&mut wire, "oneOf", kinds.collect());
-    wire
+    any(&[wire, of("expression")])
+}
+
+/// Structured Text over signals and input variables.
+fn expression() -> Value {
+    json!({
+        "type": "string",
+        "pattern": "^=",
+        "description": "An expression in Structured Text over signals and input variables.",
+    })
 }
 
 fn step() -> Value {
@@ -535,11 +567,12 @@ fn step() -> Value {
 }
 
 fn conditions() -> Value {
-    json!({
+    let map = json!({
         "type": "object",
         "minProperties": 1,
         "additionalProperties": any(&[of("value"), of("comparison")]),
-    })
+    });
+    any(&[map, of("expression")])
 }
 
 fn comparison() -> Value {
@@ -557,17 +590,41 @@ fn comparison() -> Value {
     comparison
 }
 
+fn follows() -> Value {
+    let follows = object(&shape::FOLLOWS, |key| match key {
+        "slave" | "master" => text(),
+        "num" => integer(i16::MIN.into(), i16::MAX.into()),
+        "den" => integer(1, u16::MAX.into()),
+        "anchor" => required(&["master", "slave"], object(&shape::ANCHOR, |_| of("number"))),
+        _ => of("conditions"),
+    });
+    required(&["slave", "master", "num", "den"], follows)
+}
+
 fn claim(shape: &Shape) -> Value {
     let kind = shape.keys.first().copied().unwrap_or_default();
     let claim = object(shape, |key| match key {
-        "at" | "by" | "from" | "to" => of("scans"),
+        "at" | "by" | "within" => of("scans"),
+        "for" => any(&[integer(1, SCANS_MAX as i64), of("time_literal")]),
+        "from" | "to" => any(&[
+            of("scans"),
+            required(&["when"], object(&shape::WINDOW_EDGE, |_| of("conditions"))),
+        ]),
+        "duration" => json!({"type": "array", "items": of("conditions"), "minItems": 2, "maxItems": 2}),
+        "le" | "ge" | "eq" => of("scans"),
+        "each" => json!({"type": "boolean"}),
         "exclusive" => list(text(), 2),
         "within_limits" => text(),
         "factor" => of("positive"),
+        "follows" => follows(),
         _ => of("conditions"),
     });
     if shape.keys.contains(&"that") {
-        required(&[kind, "that"], claim)
+        let second = if kind == "when" { "within" } else { "by" };
+        match kind {
+            "when" | "after" => required(&[kind, second, "that"], claim),
+            _ => required(&[kind, "that"], claim),
+        }
     } else {
         required(&[kind], claim)
     }

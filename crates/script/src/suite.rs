@@ -6,7 +6,7 @@ use crate::golden::{self, Mode, Standing};
 use crate::model::Script;
 use crate::read::read_within;
 use crate::run::{Outcome, RunError, run_with};
-use crate::{GUEST_MEMORY, ScriptError, Verdict};
+use crate::{GUEST_MEMORY, Reason, ScriptError, Verdict, Warnings, warnings};
 use standstill_trace::compare::Yardstick;
 use standstill_trace::file::read_regular;
 pub use standstill_trace::file::shown;
@@ -33,6 +33,10 @@ pub struct Report {
     pub outcome: Outcome,
     /// How it stands to its golden.
     pub golden: Standing,
+    /// What is behind it where it failed, the likeliest first.
+    pub why: Vec<Reason>,
+    /// What tests nothing, and what was changed on its way.
+    pub warnings: Warnings,
 }
 
 impl Report {
@@ -42,16 +46,39 @@ impl Report {
     }
 }
 
-/// What failed, a paragraph each: claims first, in file order, then the golden.
+/// What failed, a paragraph each: claims first, in file order, and why, then the golden.
 impl fmt::Display for Report {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         for failure in self.outcome.verdicts.iter().flat_map(failures) {
             writeln!(out, "{failure}")?;
         }
-        match &self.golden {
-            Standing::Same | Standing::Close(_) | Standing::Old(_) | Standing::Accepted => Ok(()),
-            Standing::Failed(why) => writeln!(out, "golden: {}", why.trim_end()),
+        let why = Reasons(&self.why);
+        if !self.outcome.passed() {
+            write!(out, "{why}")?;
         }
+        if let Standing::Failed(what) = &self.golden {
+            writeln!(out, "golden: {}", what.trim_end())?;
+        }
+        if self.outcome.passed() {
+            write!(out, "{why}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Reasons as lines under a heading; nothing where there are none.
+#[derive(Clone, Copy, Debug)]
+pub struct Reasons<'a>(pub &'a [Reason]);
+
+impl fmt::Display for Reasons<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.0.is_empty() {
+            writeln!(out, "why")?;
+        }
+        for reason in self.0 {
+            writeln!(out, "  {}", reason.text)?;
+        }
+        Ok(())
     }
 }
 
@@ -71,12 +98,14 @@ pub enum SuiteError {
         source: io::Error,
     },
     /// The script is no UTF-8 text.
-    #[error("{}: not UTF-8 after {valid} bytes", shown(.path))]
+    #[error("{}: not UTF-8 after {valid} bytes: it looks like {like}; save it as UTF-8", shown(.path))]
     Encoding {
         /// The script.
         path: PathBuf,
         /// So many bytes are text.
         valid: usize,
+        /// What it looks like.
+        like: &'static str,
     },
     /// The script is not usable.
     #[error(transparent)]
@@ -121,7 +150,8 @@ impl Default for Allowed {
     }
 }
 
-/// Reads and runs the script at `path`, and holds it against its claims and, by this yardstick, its golden. `progress` is told
+/// Reads and runs the script at `path`, and holds it against its claims and, by this yardstick, its golden; without one, or
+/// where the script says `"golden": false`, the claims decide alone. `progress` is told
 /// from time to time how many scans are done. Files that it includes lie below its folder or where `allowed` says.
 ///
 /// # Errors
@@ -129,13 +159,31 @@ impl Default for Allowed {
 pub fn judge_file(
     path: &Path,
     mode: Mode,
-    yardstick: Yardstick,
+    yardstick: impl Into<Option<Yardstick>>,
     allowed: &Allowed,
     progress: impl FnMut(u64),
 ) -> Result<Report, SuiteError> {
-    let outcome = run_file(path, &[], allowed, progress)?;
-    let golden = golden::judge(path, &outcome, mode, yardstick)?;
-    Ok(Report { outcome, golden })
+    let (script, outcome) = run_script(path, &[], allowed, progress)?;
+    let yardstick = yardstick.into().filter(|_| script.golden);
+    let golden = match yardstick {
+        Some(yardstick) => golden::judge(path, &outcome, mode, yardstick)?,
+        None => Standing::Unasked,
+    };
+    let warnings = warnings(&script, &outcome, yardstick.is_some());
+    let mut why = outcome.why.clone();
+    if matches!(golden, Standing::Failed(_)) {
+        match golden::why(path, &outcome.trace)? {
+            Some((reason, true)) => why.insert(0, reason),
+            Some((reason, false)) => why.push(reason),
+            None => {}
+        }
+    }
+    Ok(Report {
+        outcome,
+        golden,
+        why,
+        warnings,
+    })
 }
 
 /// Reads and runs the script at `path`, with these values in place of its own parameters; `allowed` as for
@@ -149,11 +197,25 @@ pub fn run_file(
     allowed: &Allowed,
     progress: impl FnMut(u64),
 ) -> Result<Outcome, SuiteError> {
+    run_script(path, parameters, allowed, progress).map(|(_, outcome)| outcome)
+}
+
+/// As [`run_file`]; the script, too.
+///
+/// # Errors
+/// As [`run_file`].
+pub fn run_script(
+    path: &Path,
+    parameters: &[(String, f64)],
+    allowed: &Allowed,
+    progress: impl FnMut(u64),
+) -> Result<(Script, Outcome), SuiteError> {
     let (script, _) = read_file(path, parameters, allowed)?;
-    run_with(&script, progress).map_err(|source| SuiteError::Run {
+    let outcome = run_with(&script, progress).map_err(|source| SuiteError::Run {
         path: path.to_owned(),
         source,
-    })
+    })?;
+    Ok((script, outcome))
 }
 
 /// Reads the script at `path`; the script and its text. Arguments as for [`run_file`].
@@ -239,23 +301,47 @@ impl Texts {
 /// [`SuiteError::Io`], [`SuiteError::Encoding`].
 pub fn read_text(path: &Path) -> Result<String, SuiteError> {
     let bytes = fs::read(path).map_err(SuiteError::io(path))?;
-    String::from_utf8(bytes).map_err(|error| SuiteError::Encoding {
+    decoded(bytes).map_err(|(valid, like)| SuiteError::Encoding {
         path: path.to_owned(),
-        valid: error.utf8_error().valid_up_to(),
+        valid,
+        like,
     })
 }
 
-/// The text of a file that the script at `outer` includes.
-fn included(outer: &Path, inner: &str, allowed: &Allowed) -> Result<String, String> {
-    let bytes = read_regular(&beside(outer, inner, &allowed.folders, "script")?).map_err(why)?;
-    String::from_utf8(bytes).map_err(|_| "it is not UTF-8".to_owned())
+/// The text of a file in UTF-8; how many bytes of it are, and what it looks like instead.
+fn decoded(bytes: Vec<u8>) -> Result<String, (usize, &'static str)> {
+    // Every second byte of plain text in UTF-16 is 0, and a text in UTF-8 has none.
+    let zero = bytes.iter().take(4).position(|byte| *byte == 0);
+    let is_utf16 = matches!(bytes.as_slice(), [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..]) || zero.is_some();
+    String::from_utf8(bytes)
+        .map_err(|error| {
+            let like = if is_utf16 { UTF16 } else { LATIN1 };
+            (error.utf8_error().valid_up_to(), like)
+        })
+        .and_then(|text| match zero {
+            Some(zero) => Err((zero, UTF16)),
+            None => Ok(text),
+        })
 }
 
-/// The bytes of a guest that the script at `outer` names; of a file that is too large so many that it shows.
+const UTF16: &str = "UTF-16, as some editors write Unicode";
+const LATIN1: &str = "Latin-1 or Windows-1252";
+
+/// The text of a file that the script at `outer` includes.
+pub(crate) fn included(outer: &Path, inner: &str, allowed: &Allowed) -> Result<String, String> {
+    let bytes = read_regular(&beside(outer, inner, &allowed.folders, "script")?).map_err(why)?;
+    decoded(bytes).map_err(|(_, like)| format!("it is not UTF-8 but looks like {like}; save it as UTF-8"))
+}
+
+/// The bytes of a program that the script at `outer` names.
 fn module(outer: &Path, inner: &str, allowed: &Allowed) -> Result<Vec<u8>, String> {
-    let path = beside(outer, inner, &allowed.folders, "script")?;
+    program_file(&beside(outer, inner, &allowed.folders, "script")?)
+}
+
+/// The bytes of a program; of a file that is too large so many that it shows.
+pub(crate) fn program_file(path: &Path) -> Result<Vec<u8>, String> {
     // A pipe would be waited for.
-    if !fs::metadata(&path).map_err(why)?.is_file() {
+    if !fs::metadata(path).map_err(why)?.is_file() {
         return Err("it is no regular file".to_owned());
     }
     let file = fs::File::open(path).map_err(why)?;
@@ -348,6 +434,43 @@ pub fn orphans(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
     };
     Ok(files.iter().filter(|file| lonely(file)).cloned().collect())
 }
+
+/// Files in a folder that look like scan scripts, but for their names, sorted by path: they are not tested.
+///
+/// # Errors
+/// A folder that cannot be read.
+pub fn overlooked(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
+    let mut files = walk(folder)?;
+    files.retain(|file| {
+        let name = file.file_name().map(|name| name.to_string_lossy().to_lowercase());
+        let name = name.unwrap_or_default();
+        let is_near = name.ends_with(".json") || name.contains(".scan.");
+        let is_known = [
+            EXTENSION,
+            MACHINE_EXTENSION,
+            ".schema.json",
+            ".snap",
+            ".new",
+            ".exact",
+        ]
+        .iter()
+        .any(|ending| name.ends_with(ending));
+        is_near && !is_known && looks_like_a_script(file)
+    });
+    Ok(files)
+}
+
+/// Whether the begin of a file has the keys of a script.
+fn looks_like_a_script(file: &Path) -> bool {
+    let mut begin = Vec::new();
+    let read = fs::File::open(file).map(|file| file.take(LOOKED_AT).read_to_end(&mut begin));
+    let text = String::from_utf8_lossy(&begin);
+    let has = |key: &str| text.contains(&format!("\"{key}\""));
+    matches!(read, Ok(Ok(_))) && ["standstill", "cycle", "scans"].into_iter().all(has)
+}
+
+/// Bytes of a file that are looked at to tell whether it is a script.
+const LOOKED_AT: u64 = 1 << 16;
 
 /// The name of a script as a test: its path in `folder` without extension.
 pub fn name(folder: &Path, script: &Path) -> String {

@@ -127,7 +127,7 @@ fn comparisons() {
         (r#"{"le": 1.5}"#, true),
         (r#"{"le": 1.4}"#, false),
         (r#"{"ge": 1.5, "lt": 1.6}"#, true),
-        (r#"{"ge": 1.5, "lt": 1.5}"#, false),
+        (r#"{"ge": 1.4, "lt": 1.5}"#, false),
         (r#"{"gt": 1.5}"#, false),
         (r#"{"gt": 1.4}"#, true),
         (r#"{"ne": 1.5}"#, false),

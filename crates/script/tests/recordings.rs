@@ -10,6 +10,7 @@ use std::path::Path;
 fn a_recording_of_a_run_is_judged_as_the_run() {
     // Shifted and unwrapped positions, differences from the first scan on, variables of guests, names of enumerations.
     let folders = [
+        "coupling",
         "mc_set_position",
         "modulo",
         "limits",

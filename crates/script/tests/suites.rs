@@ -254,7 +254,20 @@ fn what_is_no_script_is_told_apart_from_what_cannot_be_read() {
     assert!(matches!(judge("broken.scan.json"), Err(SuiteError::Script(_))));
     fs::write(folder.0.join("bytes.scan.json"), [b'{', 0xff]).expect("the folder is ours");
     let error = judge("bytes.scan.json").map(|_| ()).unwrap_err();
-    assert!(error.to_string().ends_with("not UTF-8 after 1 bytes"), "{error}");
+    assert!(
+        error
+            .to_string()
+            .contains("not UTF-8 after 1 bytes: it looks like Latin-1"),
+        "{error}"
+    );
+    for (bytes, valid) in [(&b"\xff\xfe{\0}\0"[..], 0), (b"{\0}\0", 1)] {
+        fs::write(folder.0.join("bytes.scan.json"), bytes).expect("the folder is ours");
+        let error = judge("bytes.scan.json").map(|_| ()).unwrap_err().to_string();
+        assert!(
+            error.contains(&format!("after {valid} bytes: it looks like UTF-16")),
+            "{error}"
+        );
+    }
 }
 
 /// What `standstill fmt` makes of a script of the suite is the script.

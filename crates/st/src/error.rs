@@ -51,6 +51,8 @@ codes! {
     DuplicateName = "duplicate_name",
     /// A name that nothing has.
     UnknownName = "unknown_name",
+    /// A variable of type AXIS_REF that is to begin as an axis, and is not there.
+    UnknownBinding = "unknown_binding",
     /// A type that does not exist.
     UnknownType = "unknown_type",
     /// A member or pin that a variable does not have.
@@ -79,6 +81,22 @@ codes! {
     Doubtful = "doubtful",
     /// A warning: the text works here, and not with every other compiler.
     Portability = "portability",
+    /// A lint: a block of motion is called in a branch only.
+    St50 = "ST50",
+    /// A lint: Execute is given a constant TRUE.
+    St51 = "ST51",
+    /// A lint: the outputs of two instances write one variable.
+    St52 = "ST52",
+    /// A lint: an instance is never called, or nobody reads whether it refused.
+    St53 = "ST53",
+    /// A lint: an instance is called twice in one scan.
+    St54 = "ST54",
+    /// A lint: two numbers with a point are compared for being equal.
+    St55 = "ST55",
+    /// A lint: a conversion to a type that the value had before.
+    St56 = "ST56",
+    /// A lint: a branch that no value reaches, or a variable that is never used.
+    St57 = "ST57",
 }
 
 /// How bad it is.

@@ -12,9 +12,11 @@
 mod check;
 mod emit;
 mod error;
+mod formula;
 mod layout;
 mod lex;
 mod library;
+mod lint;
 mod parse;
 mod source;
 mod start;
@@ -25,10 +27,11 @@ mod types;
 
 pub use emit::FaultKind;
 pub use error::{Code, DIAGNOSTICS_MOST, Diagnostic, Report, Severity};
+pub use formula::{Reference, references};
 pub use layout::{FAULT_SITE, FAULT_VALUE, LOOP_SITE};
 pub use parse::NESTING_MOST;
 pub use source::{Position, SOURCES_MOST, Source, Sources, Span};
-pub use symbols::{Place, Section, Symbol, Symbols, Task, Value};
+pub use symbols::{BlockAt, Place, Section, Symbol, Symbols, Task, Value};
 pub use types::Elementary;
 
 use crate::error::Found;
@@ -40,6 +43,8 @@ pub struct Options {
     pub program: Option<String>,
     /// Whether it is a library: there need not be a PROGRAM.
     pub library: bool,
+    /// Whether lints are looked for, which are warnings.
+    pub lint: bool,
     /// Names of axes, the first one is number 1: a variable of type AXIS_REF of such a name begins as that axis.
     pub axes: Vec<String>,
     /// Which axis a variable of type AXIS_REF begins as: its path, and the number of the axis.
@@ -103,6 +108,9 @@ fn build(given: &[Source<'_>], options: &Options, module: bool) -> Result<Built,
     let Some(program) = program else {
         return Err(found.report(sources));
     };
+    if options.lint {
+        lint::lint(&program, &sources, &mut found);
+    }
     if !module || program.instances.is_empty() {
         return Ok((None, found.report(sources)));
     }

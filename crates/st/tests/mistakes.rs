@@ -4,6 +4,7 @@ mod common;
 
 use common::wrong;
 use standstill_st::{Code, Options, Severity, Source};
+use standstill_testkit::Random;
 use std::time::Instant;
 
 /// A mistake, its code, the piece of the text it is told at (empty: between two characters), and a word of the message or
@@ -615,18 +616,6 @@ fn long_rows_are_compiled() {
     run.scan().unwrap();
 }
 
-/// A stream of numbers that follow from a seed.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, most: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 % most as u64) as usize
-    }
-}
-
 const SOUP: &[&str] = &[
     "PROGRAM",
     "END_PROGRAM",
@@ -748,20 +737,20 @@ fn no_soup_of_tokens_and_no_cut_program_leads_to_a_panic() {
           REPEAT i := i - 1; UNTIL i < 0 END_REPEAT; END_PROGRAM";
     let words: Vec<&str> = whole.split_inclusive([' ', ';', '(', ')', '.', ':']).collect();
     for seed in 1..=3000_u64 {
-        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        let mut random = Random(seed);
         let text = if seed % 2 == 0 {
-            let count = random.below(120);
-            let soup: Vec<_> = (0..count).map(|_| SOUP[random.below(SOUP.len())]).collect();
+            let count = random.place(120);
+            let soup: Vec<_> = (0..count).map(|_| SOUP[random.place(SOUP.len())]).collect();
             soup.join(" ")
         } else {
             // The program with a few words left out, doubled, or replaced.
             let mut words = words.clone();
-            for _ in 0..=random.below(4) {
-                let at = random.below(words.len());
-                match random.below(3) {
+            for _ in 0..=random.place(4) {
+                let at = random.place(words.len());
+                match random.place(3) {
                     0 => drop(words.remove(at)),
                     1 => words.insert(at, words[at]),
-                    _ => words[at] = SOUP[random.below(SOUP.len())],
+                    _ => words[at] = SOUP[random.place(SOUP.len())],
                 }
             }
             words.concat()

@@ -19,6 +19,11 @@ pub const AXIS_SIGNALS: [&str; 7] = [
     "ActualPosition",
 ];
 
+/// The columns behind those, of every axis that stands at a `Slave` pin ([`Axis::slave`]): the master's name, how far the
+/// set-point is off the law (u), and by how much the master is seen further on (u of the master). Empty and 0 while it
+/// follows none.
+pub const SLAVE_SIGNALS: [&str; 3] = ["Master", "Deviation", "Phase"];
+
 /// A run in a few words: everything but its rows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Header {
@@ -67,6 +72,17 @@ pub struct Axis {
     /// How units become drive increments; absent if the drive speaks units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scaling: Option<Scaling>,
+    /// It stands at a `Slave` pin, and has the columns of [`SLAVE_SIGNALS`], too.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub slave: bool,
+}
+
+impl Axis {
+    /// Its columns after its name, in the order of the file.
+    pub fn signals(&self) -> impl Iterator<Item = &'static str> {
+        let of_slave = if self.slave { &SLAVE_SIGNALS[..] } else { &[] };
+        AXIS_SIGNALS.iter().chain(of_slave).copied()
+    }
 }
 
 /// Limits of an axis; absent means none.
@@ -255,7 +271,7 @@ impl Header {
         let axes = self
             .axes
             .iter()
-            .flat_map(|axis| AXIS_SIGNALS.iter().map(|signal| axis_column(&axis.name, signal)));
+            .flat_map(|axis| axis.signals().map(|signal| axis_column(&axis.name, signal)));
         let inputs = self.inputs.iter().map(|input| Column {
             name: input.name.clone(),
             kind: Kind::of_iec_type(&input.iec_type),
@@ -345,15 +361,15 @@ struct Probe {
 
 /// The column of an axis signal.
 pub(crate) fn axis_column(axis: &str, signal: &str) -> Column {
-    let is_state = signal == "State";
+    let (kind, role) = match signal {
+        "State" => (Kind::Name, Role::AxisState),
+        "Master" => (Kind::Name, Role::AxisValue),
+        _ => (Kind::Real, Role::AxisValue),
+    };
     Column {
         name: format!("{axis}.{signal}"),
-        kind: if is_state { Kind::Name } else { Kind::Real },
-        role: if is_state {
-            Role::AxisState
-        } else {
-            Role::AxisValue
-        },
+        kind,
+        role,
         is_time: false,
         default: None,
         named: false,

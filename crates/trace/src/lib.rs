@@ -56,7 +56,7 @@ pub use events::{Event, EventLog, events, events_text};
 pub use extremes::{Extreme, extremes, extremes_text};
 pub use header::{
     AXIS_SIGNALS, Axis, Claim, ClaimFailure, ClaimVerdict, Direction, Header, Input, Instance, Limits, Pin,
-    Scaling,
+    SLAVE_SIGNALS, Scaling,
 };
 pub use number::{cell_text, shortest, time_literal};
 pub use printable::{printable, printable_lines};

@@ -3,8 +3,8 @@
 //!
 //! A column is hashed by itself, over one word of 64 bits a scan: a number's bits, 0 or 1 for a BOOL, the hash of a name's
 //! text. A subject's digest is over the digests of its columns in the order of their names, so the order of columns and the
-//! numbers of pins do not count. A column that keeps its [default](crate::Column::default) in all rows, and that the script does not name, is left out: a pin that
-//! comes with a later version and that nobody uses is no part of any digest.
+//! numbers of pins do not count. A column that keeps its [default](crate::Column::default) in all rows, and that the script
+//! does not name, is left out: a pin that comes with a later version and that nobody uses is no part of any digest.
 //!
 //! Every step is a one-to-one map of the word and of what came before, so one changed word always changes the digest of its
 //! subject; several changes go unseen about once in 2^64 times. They find accidents, not attacks.

@@ -255,7 +255,7 @@ impl Trace {
         self.header.json_with_notes(&self.notes)
     }
 
-    /// Notes in the order they were made.
+    /// Notes in the order of their scans; those of one scan as they were made.
     #[must_use]
     pub fn notes(&self) -> &[Note] {
         &self.notes
@@ -265,7 +265,9 @@ impl Trace {
     pub fn push_note(&mut self, mut note: Note) {
         make_printable(&mut note.subject);
         make_printable(&mut note.text);
-        self.notes.push(note);
+        // Behind the last one of its scan; mostly that is the end.
+        let place = self.notes.partition_point(|known| known.scan <= note.scan);
+        self.notes.insert(place, note);
     }
 
     /// A trace of rows that are there already, one word a cell as [`Trace::decode`] reads it; words of names are places in

@@ -4,22 +4,14 @@
 mod common;
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use standstill_trace::golden::{GoldenError, Verdict, accept, exact_path, judge, text};
 use standstill_trace::{Cell, Trace};
 
-/// An empty folder for one test.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder for the test");
-    folder
-}
-
 #[test]
 fn what_is_accepted_is_the_same_until_it_is_not() {
-    let snap = folder("accepted").join("there_and_back.snap");
+    let snap = common::folder("accepted").join("there_and_back.snap");
     let trace = common::run(800, None);
     assert_eq!(judge(&snap, &trace).expect("readable"), Verdict::Missing);
     assert!(accept(&snap, &trace).expect("writable"));
@@ -46,7 +38,7 @@ fn what_is_accepted_is_the_same_until_it_is_not() {
 
 #[test]
 fn a_companion_that_does_not_fit_is_told_and_accepted_anew() {
-    let snap = folder("companion").join("x.snap");
+    let snap = common::folder("companion").join("x.snap");
     let trace = common::run(100, None);
     accept(&snap, &trace).expect("writable");
     let of_another_run = standstill_trace::exact::encode(&common::run(100, Some(50)));
@@ -76,7 +68,7 @@ fn a_companion_that_does_not_fit_is_told_and_accepted_anew() {
 
 #[test]
 fn a_file_that_is_no_snapshot_is_an_error_and_can_be_accepted_over() {
-    let snap = folder("foreign").join("x.snap");
+    let snap = common::folder("foreign").join("x.snap");
     let trace = common::run(10, None);
     for foreign in ["", "hello\n", "---\nsource: x\n"] {
         fs::write(&snap, foreign).expect("writable");
@@ -87,13 +79,13 @@ fn a_file_that_is_no_snapshot_is_an_error_and_can_be_accepted_over() {
         accept(&snap, &trace).expect("writable");
         assert_eq!(judge(&snap, &trace).expect("readable"), Verdict::Same);
     }
-    let no_folder = folder("foreign").join("missing").join("x.snap");
+    let no_folder = common::folder("foreign").join("missing").join("x.snap");
     assert!(matches!(accept(&no_folder, &trace), Err(GoldenError::Io { .. })));
 }
 
 #[test]
 fn line_ends_of_a_windows_checkout_do_not_count() {
-    let snap = folder("crlf").join("x.snap");
+    let snap = common::folder("crlf").join("x.snap");
     let trace = common::run(100, None);
     accept(&snap, &trace).expect("writable");
     let file = fs::read_to_string(&snap).expect("readable");
@@ -103,7 +95,7 @@ fn line_ends_of_a_windows_checkout_do_not_count() {
 
 #[test]
 fn insta_reads_the_file_and_its_macro_accepts_it() {
-    let folder = folder("insta");
+    let folder = common::folder("insta");
     let snap = folder.join("it's: a #test.snap");
     let trace = common::run(100, None);
     accept(&snap, &trace).expect("writable");
@@ -118,7 +110,7 @@ fn insta_reads_the_file_and_its_macro_accepts_it() {
 
 #[test]
 fn a_file_that_insta_wrote_is_judged() {
-    let folder = folder("insta-wrote");
+    let folder = common::folder("insta-wrote");
     let trace = common::run(100, None);
     let snap = folder.join("x.snap");
     let meta = "source: crates/x/tests/goldens.rs\nassertion_line: 12\nexpression: \"text(&trace)\"\ninfo:\n  a: 1\n";
@@ -129,7 +121,7 @@ fn a_file_that_insta_wrote_is_judged() {
 
 #[test]
 fn what_is_no_row_shows_in_the_text_alone() {
-    let snap = folder("limits").join("x.snap");
+    let snap = common::folder("limits").join("x.snap");
     let trace = common::run(100, None);
     accept(&snap, &trace).expect("writable");
     let mut header = common::header();
@@ -162,4 +154,24 @@ fn a_golden_that_cannot_be_written_is_an_error_with_its_path() {
         matches!(&refused, Err(GoldenError::Io { path, .. }) if *path == snap),
         "{refused:?}"
     );
+}
+
+#[test]
+fn no_control_character_of_a_golden_reaches_a_terminal() {
+    let snap = common::folder("control").join("x.snap");
+    let trace = common::run(100, None);
+    accept(&snap, &trace).expect("writable");
+    let reviewed = fs::read_to_string(&snap).expect("readable");
+    let digests = reviewed.find("\ndigests\n").expect("a section");
+    // In the events, and as the name of a subject.
+    let damaged = reviewed[..digests].replacen("events\n", "events\n\u{1b}[2J", 1)
+        + &reviewed[digests..].replacen("  X ", "  X\0\u{1b}[2J", 1);
+    fs::write(&snap, damaged).expect("writable");
+    let Verdict::Different(mismatch) = judge(&snap, &trace).expect("readable") else {
+        panic!("it is another text")
+    };
+    let told = mismatch.to_string();
+    assert!(told.contains("X\\u{0}\\u{1b}[2J"), "{told}");
+    let bad = told.chars().find(|letter| letter.is_control() && *letter != '\n');
+    assert_eq!(bad, None, "{told}");
 }

@@ -1,9 +1,11 @@
 //! Digests by subject: every bit that counts changes the digest of its subject and no other; what keeps its default, and the
 //! order of columns, change nothing: no digest, no event, no golden.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+mod common;
 
+use std::fs;
+
+use standstill_testkit::Random;
 use standstill_trace::golden::{Verdict, accept, exact_path, judge, text};
 use standstill_trace::subjects::{Subject, subjects, together};
 use standstill_trace::{Axis, Cell, Direction, Header, Input, Instance, Kind, Pin, Trace, cell_text};
@@ -47,35 +49,22 @@ impl Own {
     }
 }
 
-/// Numbers that follow each other with no pattern (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-
-    fn value(&mut self, kind: Kind) -> Own {
-        let word = self.next();
-        match kind {
-            Kind::Bool => Own::Bool(word & 1 == 1),
-            Kind::Real => {
-                let hard = [0.0, f64::NAN, f64::INFINITY, 5e-324, f64::MAX, 1.5];
-                match usize::try_from(word % 12) {
-                    Ok(at) if at < hard.len() => Own::Real(hard[at]),
-                    _ => Own::Real(f64::from_bits(self.next())),
-                }
+fn value(random: &mut Random, kind: Kind) -> Own {
+    let word = random.bits();
+    match kind {
+        Kind::Bool => Own::Bool(word & 1 == 1),
+        Kind::Real => {
+            let hard = [0.0, f64::NAN, f64::INFINITY, 5e-324, f64::MAX, 1.5];
+            match usize::try_from(word % 12) {
+                Ok(at) if at < hard.len() => Own::Real(hard[at]),
+                _ => Own::Real(f64::from_bits(random.bits())),
             }
-            Kind::Integer => Own::Integer(match word % 3 {
-                0 => 0,
-                _ => self.next().cast_signed(),
-            }),
-            Kind::Name => Own::Name(["mcAborting", "mcBuffered", "7", ""][(word % 4) as usize].into()),
         }
+        Kind::Integer => Own::Integer(match word % 3 {
+            0 => 0,
+            _ => random.bits().cast_signed(),
+        }),
+        Kind::Name => Own::Name(["mcAborting", "mcBuffered", "7", ""][(word % 4) as usize].into()),
     }
 }
 
@@ -141,10 +130,10 @@ fn default(trace: &Trace, at: usize) -> Option<Own> {
 /// Rows of `header`, in which about half the columns with defaults keep them.
 fn rows(header: &Header, scans: usize, random: &mut Random) -> Vec<Vec<Own>> {
     let empty = Trace::new(header.clone());
-    let keeps: Vec<bool> = empty.columns().iter().map(|_| random.next() & 1 == 1).collect();
+    let keeps: Vec<bool> = empty.columns().iter().map(|_| random.bits() & 1 == 1).collect();
     let value = |at: usize, random: &mut Random| match default(&empty, at) {
         Some(default) if keeps[at] => default,
-        _ => random.value(empty.columns()[at].kind),
+        _ => value(random, empty.columns()[at].kind),
     };
     (0..scans)
         .map(|_| (0..keeps.len()).map(|at| value(at, random)).collect())
@@ -203,19 +192,11 @@ fn every_bit_changes_the_digest_of_exactly_its_subject() {
     assert!(tried > 4000, "{tried}");
 }
 
-/// An empty folder for one test.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder for the test");
-    folder
-}
-
 /// Wherever a later version puts a pin, of whatever kind and default: nobody who does not use it sees it.
 #[test]
 fn a_column_at_its_default_changes_no_digest_no_event_and_no_golden() {
     let mut random = Random(2);
-    let snap = folder("subjects").join("x.snap");
+    let snap = common::folder("subjects").join("x.snap");
     let header = header();
     let rows = rows(&header, 40, &mut random);
     let trace = made(header.clone(), &rows);
@@ -262,12 +243,13 @@ fn a_column_at_its_default_changes_no_digest_no_event_and_no_golden() {
 
 #[test]
 fn a_column_that_leaves_its_default_once_is_seen_and_named() {
-    let snap = folder("subjects_seen").join("x.snap");
+    let snap = common::folder("subjects_seen").join("x.snap");
     let header = header();
     let kept = |trace: &Trace| -> Vec<Own> {
         let columns = 0..trace.columns().len();
-        let value =
-            |at| default(trace, at).unwrap_or_else(|| Random(at as u64).value(trace.columns()[at].kind));
+        let value = |at| {
+            default(trace, at).unwrap_or_else(|| value(&mut Random(at as u64), trace.columns()[at].kind))
+        };
         columns.map(value).collect()
     };
     let row = kept(&Trace::new(header.clone()));
@@ -304,11 +286,11 @@ fn a_column_that_leaves_its_default_once_is_seen_and_named() {
 /// A pin that the script names counts even where it has its default; a golden from before knows what it had.
 #[test]
 fn a_pin_that_is_named_counts_and_is_held_against_its_default() {
-    let snap = folder("subjects_named").join("x.snap");
+    let snap = common::folder("subjects_named").join("x.snap");
     let header = header();
     let empty = Trace::new(header.clone());
     let at = empty.column("a.BufferMode").expect("it is there");
-    let value = |at| default(&empty, at).unwrap_or_else(|| Random(7).value(empty.columns()[at].kind));
+    let value = |at| default(&empty, at).unwrap_or_else(|| value(&mut Random(7), empty.columns()[at].kind));
     let mut rows = vec![(0..empty.columns().len()).map(value).collect::<Vec<_>>(); 9];
     let unnamed = made(header.clone(), &rows);
     accept(&snap, &unnamed).expect("writable");

@@ -7,12 +7,12 @@ mod number;
 mod sentence;
 
 pub use number::{integer, real, whole};
-pub use sentence::{Called, happened, shift, standing, subject};
+pub use sentence::{Called, happened, shift, shifted, standing, subject};
 
-use crate::ring::{AXIS_WORDS, Ring};
+use crate::ring::{AXIS_WORDS, Ring, moved};
 use crate::word;
 use core::fmt::{self, Write};
-use standstill_axis::{AxisConfig, AxisState, Order, Record};
+use standstill_axis::{AxisConfig, AxisState, Event, Order, Record};
 use standstill_fb::{BlockInfo, Direction, PinType, TableRef, Value};
 
 /// A recorder: what it recorded, and where that stands.
@@ -80,8 +80,8 @@ pub fn line(
     out.write_str("\n")
 }
 
-/// The columns of every axis, in the order of its words.
-const SIGNALS: [&str; AXIS_WORDS] = [
+/// The columns of every axis, in the order of its words; the last word is told in a note.
+const SIGNALS: [&str; AXIS_WORDS - 1] = [
     "State",
     "Position",
     "Velocity",
@@ -152,6 +152,7 @@ fn row(out: &mut impl Write, form: Form, scan: u64, recorded: &impl Recorded, cy
             };
             cell(axis, signal, value)?;
         }
+        words.next();
     }
     for (instance, block) in instances(recorded) {
         for pin in block.pins() {
@@ -325,20 +326,43 @@ fn header<W: Write>(out: &mut W, recorded: &impl Recorded, title: &str, cycle_ns
         out.write_str("[")?;
         note(out, 0, "recorder", |out| standing(out, recorded.ring(), recorded))?;
         let (first, kept) = recorded.ring().scans();
-        for record in recorded
-            .ring()
-            .records()
-            .filter_map(|place| recorded.record(place))
-        {
-            let row = record.scan.checked_sub(first).filter(|row| *row < kept as u64);
-            if let Some(row) = row {
+        // In the order of their scans, moves of coordinates first.
+        let mut shifts = shifts(recorded);
+        let mut next = shifts.next();
+        let mut shifts_until = |out: &mut W, last: u64| {
+            while let Some((row, axis, by)) = next.filter(|(row, ..)| *row <= last) {
                 out.write_str(",")?;
-                note(out, row, subject(recorded, record), |out| {
-                    happened(out, recorded, record)
-                })?;
+                note(out, row, axis, |out| shifted(out, by))?;
+                next = shifts.next();
             }
+            Ok(())
+        };
+        let records = recorded.ring().records();
+        for record in records.filter_map(|place| recorded.record(place)) {
+            let row = record.scan.checked_sub(first).filter(|row| *row < kept as u64);
+            let Some(row) = row.filter(|_| !matches!(record.event, Event::Shifted { .. })) else {
+                continue;
+            };
+            shifts_until(out, row)?;
+            out.write_str(",")?;
+            note(out, row, subject(recorded, record), |out| {
+                happened(out, recorded, record)
+            })?;
         }
+        shifts_until(out, u64::MAX)?;
         out.write_str("]")
+    })
+}
+
+/// Where coordinates moved: the row, the axis, and by how much (u).
+fn shifts(recorded: &impl Recorded) -> impl Iterator<Item = (u64, &str, f64)> {
+    let (_, kept) = recorded.ring().scans();
+    (0..kept).flat_map(move |row| {
+        let place = recorded.ring().row(row);
+        let words = place.map_or(&[][..], |place| recorded.row(place));
+        let told = axes(recorded).zip(words.chunks_exact(AXIS_WORDS));
+        told.map(move |((axis, ..), words)| (row as u64, axis, moved(words)))
+            .filter(|(.., by)| *by != 0.0)
     })
 }
 

@@ -239,12 +239,10 @@ mod tests {
             assert_eq!(text(value), format!("{:?}", value + 0.0));
         }
         assert_eq!([text(f64::NAN), text(f64::NEG_INFINITY)], ["NaN", "-Infinity"]);
-        // Any bits, and numbers of everyday sizes; xorshift.
-        let mut bits = 0x2545_F491_4F6C_DD1D_u64;
+        // Any bits, and numbers of everyday sizes.
+        let mut random = standstill_testkit::Random(1);
         for round in 0..200_000 {
-            bits ^= bits << 13;
-            bits ^= bits >> 7;
-            bits ^= bits << 17;
+            let bits = random.bits();
             let everyday = (bits >> 40) as f64 / 1000.0 - 5000.0;
             // What binary fractions end in is in the middle of two texts more often.
             let dyadic = (bits >> (12 + round % 50)) as f64 / (1_u64 << (round % 53)) as f64;

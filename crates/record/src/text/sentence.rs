@@ -3,7 +3,7 @@
 use super::number::{integer, real, whole};
 use crate::ring::Ring;
 use core::fmt::{self, Write};
-use standstill_axis::{Event, Excess, Goal, Record};
+use standstill_axis::{Approach, Event, Excess, Goal, Record};
 
 /// What axes and block instances are called.
 pub trait Called {
@@ -29,12 +29,27 @@ pub fn subject<'n>(names: &'n impl Called, record: &Record) -> &'n str {
         | Event::Planned { .. }
         | Event::Paused { .. }
         | Event::Fault { .. }
+        | Event::Coupled { .. }
+        | Event::Approaching { .. }
+        | Event::InGear
+        | Event::GearLost { .. }
+        | Event::SyncLate { .. }
+        | Event::Phasing { .. }
         | Event::Shifted { .. } => axis,
     }
 }
 
 /// What the sentence of a shift begins with.
 const SHIFTED: &str = "coordinates moved by ";
+
+/// That coordinates moved by so much (u).
+///
+/// # Errors
+/// Those of `out`.
+pub fn shifted(out: &mut impl Write, by: f64) -> fmt::Result {
+    out.write_str(SHIFTED)?;
+    real(out, by)
+}
 
 /// By how much the coordinates of its subject moved (u), if this is what a sentence tells.
 #[must_use]
@@ -61,7 +76,13 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
                 out.write_str(" ")?;
                 match pin {
                     // Numbers of an enumeration.
-                    "BufferMode" | "Direction" | "ExecutionMode" => integer(out, value as i64)?,
+                    "BufferMode" | "Direction" | "ExecutionMode" | "MasterValueSource" => {
+                        integer(out, value as i64)?;
+                    }
+                    "Master" => out.write_str(match value as usize {
+                        0 => "no axis",
+                        number => names.axis(number - 1),
+                    })?,
                     _ => real(out, value)?,
                 }
             }
@@ -131,10 +152,56 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
             out.write_str(" ")?;
             out.write_str(error.name())
         }
-        Event::Shifted { by } => {
-            out.write_str(SHIFTED)?;
-            real(out, by)
+        Event::Coupled {
+            master,
+            numerator,
+            denominator,
+        } => {
+            out.write_str("coupled to ")?;
+            out.write_str(names.axis(master.index()))?;
+            out.write_str(", ")?;
+            integer(out, numerator.into())?;
+            out.write_str("/")?;
+            whole(out, denominator.into())
         }
+        Event::Approaching { way, velocity, scans } => {
+            out.write_str("plan")?;
+            if let Some(name) = names.instance(record.instance.0) {
+                out.write_str(" for ")?;
+                out.write_str(name)?;
+            }
+            out.write_str(": ")?;
+            out.write_str(way.name())?;
+            if way != Approach::Difference {
+                out.write_str(" at ")?;
+                real(out, velocity)?;
+            }
+            in_scans(out, scans)
+        }
+        Event::InGear => out.write_str("in gear"),
+        Event::Phasing { to, scans } => {
+            out.write_str("phase")?;
+            if let Some(name) = names.instance(record.instance.0) {
+                out.write_str(" of ")?;
+                out.write_str(name)?;
+            }
+            out.write_str(" to ")?;
+            real(out, to)?;
+            in_scans(out, scans)
+        }
+        Event::SyncLate { by } => {
+            out.write_str("sync late: the master is ")?;
+            real(out, by)?;
+            out.write_str(" past the sync point")
+        }
+        Event::GearLost { what, value, limit } => {
+            out.write_str("gear lost: ")?;
+            out.write_str(what)?;
+            out.write_str(" ")?;
+            real(out, value)?;
+            limited(out, limit)
+        }
+        Event::Shifted { by } => shifted(out, by),
         Event::Fault { error, code } => {
             out.write_str("fault ")?;
             whole(out, error.number().into())?;

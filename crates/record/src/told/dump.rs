@@ -1,13 +1,14 @@
 //! A recorder's rows as a trace.
 
 use crate::recorder::Recorder;
-use crate::ring::AXIS_WORDS;
-use crate::text::standing;
+use crate::ring::{AXIS_WORDS, moved};
+use crate::text::{shifted, standing};
 use crate::told::{self, Cells, Names, note};
 use crate::word;
-use standstill_axis::AxisState;
+use standstill_axis::{AxisState, Event, Record};
 use standstill_fb::PinType;
 use standstill_trace::{Cell, Header, Note, RowError, Trace};
+use std::fmt;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
@@ -64,7 +65,16 @@ impl Recorder {
                 .collect(),
         };
         trace.push_note(self.standing(&names));
-        for record in self.records() {
+        for (scan, row) in self.rows().enumerate() {
+            for ((name, ..), words) in signals.axes().zip(row.chunks_exact(AXIS_WORDS)) {
+                let by = moved(words);
+                if by != 0.0 {
+                    trace.push_note(said(scan, name, |text| shifted(text, by)));
+                }
+            }
+        }
+        let others = |record: &&Record| !matches!(record.event, Event::Shifted { .. });
+        for record in self.records().filter(others) {
             let row = record.scan.checked_sub(first).filter(|row| *row < kept as u64);
             if let Some(row) = row.and_then(|row| usize::try_from(row).ok()) {
                 trace.push_note(note(&names, record, row, None));
@@ -75,20 +85,25 @@ impl Recorder {
 
     /// Which scans these are, and why there are no more.
     fn standing(&self, names: &Names) -> Note {
-        let mut text = String::new();
-        // A string takes whatever is written to it.
-        standing(&mut text, self.ring(), names).unwrap_or_default();
-        Note {
-            scan: 0,
-            subject: "recorder".to_string(),
-            text,
-        }
+        said(0, "recorder", |text| standing(text, self.ring(), names))
     }
 }
 
-/// The cells of an axis: its state, then its numbers.
+fn said(scan: usize, subject: &str, write: impl FnOnce(&mut String) -> fmt::Result) -> Note {
+    let mut text = String::new();
+    // A string takes whatever is written to it.
+    write(&mut text).unwrap_or_default();
+    Note {
+        scan,
+        subject: subject.to_string(),
+        text,
+    }
+}
+
+/// The cells of an axis: its state, then its numbers; by how much its coordinates moved is told in a note.
 fn axis_cells<'c>(words: &[u64]) -> impl Iterator<Item = Cell<'c>> + use<'c> {
     let (state, numbers) = words.split_first().unwrap_or((&0, &[]));
+    let (_, numbers) = numbers.split_last().unwrap_or((&0, &[]));
     let name = AxisState::ALL
         .iter()
         .find(|known| **known as u64 == *state)

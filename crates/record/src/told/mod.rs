@@ -31,6 +31,7 @@ pub fn axis(name: &str, unit: &str, config: &AxisConfig) -> trace::Axis {
             invert: scaling.invert(),
             offset: scaling.offset(),
         }),
+        slave: false,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Claims and conditions as text.
 
-use crate::model::{ClaimKind, Comparison, Condition, Range, Signal, Test};
+use crate::model::{Bounds, ClaimKind, Comparison, Condition, Follow, Range, Relation, Signal, Test};
 use crate::run::Rows;
 use crate::run::cells::value_text;
 use standstill_trace::{cell_text, shortest};
@@ -36,13 +36,103 @@ pub(super) fn claim(rows: &Rows<'_>, kind: &ClaimKind) -> String {
             format!("at most one{}: {}", scans(*range), names.join(", "))
         }
         ClaimKind::WithinLimits { range, axis, factor } => {
-            let axis = rows.script.axes.get(*axis).map_or("", |axis| axis.name.as_str());
+            let axis = axis_name(rows, *axis);
             let factor = match factor {
                 1.0 => String::new(),
                 factor => format!(" times {}", shortest(*factor)),
             };
             format!("{axis} within its limits{factor}{}", scans(*range))
         }
+        ClaimKind::Follows {
+            range,
+            during,
+            follow,
+        } => format!("{}{}{}", law(rows, follow), scans(*range), whenever(rows, during)),
+        ClaimKind::Answered {
+            range,
+            during,
+            when,
+            within,
+            that,
+            first,
+        } => format!(
+            "{} {}{}{}: within {within} scans {}",
+            if *first {
+                "after the first rising of"
+            } else {
+                "after each rising of"
+            },
+            conditions(rows, when),
+            scans(*range),
+            whenever(rows, during),
+            conditions(rows, that)
+        ),
+        ClaimKind::NeverFor {
+            range,
+            during,
+            that,
+            scans: most,
+        } => format!(
+            "never for {most} scans on end{}{}: {}",
+            scans(*range),
+            whenever(rows, during),
+            conditions(rows, that)
+        ),
+        ClaimKind::Duration {
+            range,
+            during,
+            ends: [begin, end],
+            bounds,
+            each,
+        } => format!(
+            "{} from {} to {}{}{}: {} scans",
+            if *each { "each time" } else { "the first time" },
+            conditions(rows, begin),
+            conditions(rows, end),
+            scans(*range),
+            whenever(rows, during),
+            bounded(*bounds)
+        ),
+        ClaimKind::Count {
+            range,
+            during,
+            that,
+            bounds,
+        } => format!(
+            "{} risings{}{}: {}",
+            bounded(*bounds),
+            scans(*range),
+            whenever(rows, during),
+            conditions(rows, that)
+        ),
+    }
+}
+
+/// `S follows M at 3/7`
+pub(super) fn law(rows: &Rows<'_>, follow: &Follow) -> String {
+    let through = match follow.anchor {
+        Some([master, slave]) => format!(" through {} at {}", shortest(slave), shortest(master)),
+        None => String::new(),
+    };
+    let (slave, master) = (axis_name(rows, follow.slave), axis_name(rows, follow.master));
+    format!(
+        "{slave} follows {master} at {}/{}{through}",
+        follow.num, follow.den
+    )
+}
+
+pub(super) fn axis_name<'a>(rows: &Rows<'a>, axis: usize) -> &'a str {
+    rows.script.axes.get(axis).map_or("", |axis| &axis.name)
+}
+
+/// `3 to 5`, `at most 5`, as far as the bounds say so.
+pub(super) fn bounded(bounds: Bounds) -> String {
+    match (bounds.ge, bounds.le) {
+        (Some(ge), Some(le)) if ge == le => format!("exactly {ge}"),
+        (Some(ge), Some(le)) => format!("{ge} to {le}"),
+        (Some(ge), None) => format!("at least {ge}"),
+        (None, Some(le)) => format!("at most {le}"),
+        (None, None) => "any number of".to_owned(),
     }
 }
 
@@ -84,6 +174,7 @@ pub(super) fn test(rows: &Rows<'_>, signal: &Signal, test: &Test) -> String {
         Test::Exactly(value) => shortest(*value),
         Test::State(state) => state.name().to_owned(),
         Test::Named(value) => value_text(rows.script, rows.pin_type(signal), *value),
+        Test::Word(word) => word.clone(),
         Test::Compare(comparisons) => comparisons
             .iter()
             .map(|one| comparison(rows, signal, one))
@@ -97,6 +188,9 @@ fn comparison(rows: &Rows<'_>, signal: &Signal, comparison: &Comparison) -> Stri
         Comparison::Near { near, within } => {
             format!("within {} of {}", shortest(*within), shortest(*near))
         }
+        Comparison::NearTo {
+            name, plus, within, ..
+        } => format!("within {} of {name} plus {}", shortest(*within), shortest(*plus)),
         Comparison::Le(bound) => format!("<= {}", shortest(*bound)),
         Comparison::Ge(bound) => format!(">= {}", shortest(*bound)),
         Comparison::Lt(bound) => format!("< {}", shortest(*bound)),
@@ -104,6 +198,17 @@ fn comparison(rows: &Rows<'_>, signal: &Signal, comparison: &Comparison) -> Stri
         Comparison::AbsLe(bound) => format!("of magnitude <= {}", shortest(*bound)),
         Comparison::Ne(other) => format!("other than {}", test(rows, signal, other)),
         Comparison::SameAs(name, _) => format!("the same as {name}"),
+        Comparison::Whole(relation, bound) => {
+            let sign = match relation {
+                Relation::Eq => "",
+                Relation::Le => "<= ",
+                Relation::Ge => ">= ",
+                Relation::Lt => "< ",
+                Relation::Gt => "> ",
+                Relation::AbsLe => "of magnitude <= ",
+            };
+            format!("{sign}{bound}")
+        }
     }
 }
 
@@ -116,7 +221,7 @@ pub(super) fn values(rows: &Rows<'_>, condition: &Condition, scan: u64) -> Strin
     let mut text_of_all = text(&condition.signal);
     if let Test::Compare(comparisons) = &condition.test {
         for comparison in comparisons {
-            if let Comparison::SameAs(name, other) = comparison {
+            if let Comparison::SameAs(name, other) | Comparison::NearTo { name, of: other, .. } = comparison {
                 text_of_all.push_str(&format!(" ({name} {})", text(other)));
             }
         }

@@ -207,7 +207,7 @@ fn unmet(rows: &Rows<'_>, path: &str, key: &str, condition: &Condition, scan: u6
 }
 
 /// Where something holds nearest to `scan`; of two equally near scans the later one.
-fn nearest(rows: &Rows<'_>, scan: u64, holds: impl Fn(u64) -> bool) -> String {
+pub(super) fn nearest(rows: &Rows<'_>, scan: u64, holds: impl Fn(u64) -> bool) -> String {
     for away in 1..rows.count() {
         let later = scan + away;
         if later < rows.count() && holds(later) {
@@ -256,6 +256,14 @@ impl std::fmt::Display for Listed {
         } else {
             write!(out, "in {count} scans: {named}")
         }
+    }
+}
+
+/// The scans in which something rose, in a few words.
+pub(super) fn risen(scans: &[u64]) -> String {
+    match scans {
+        [] => "it never did".to_owned(),
+        scans => format!("it did {}", listed(scans.iter().copied())),
     }
 }
 

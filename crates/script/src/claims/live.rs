@@ -4,7 +4,7 @@
 //! [`judge`](super::judge) alone, at the end; this only says earlier what they will be.
 
 use super::judge::raised;
-use crate::model::{Claim, ClaimKind, Range, Script};
+use crate::model::{Claim, ClaimKind, Range, Script, Window};
 use crate::run::Rows;
 
 /// How a claim stands.
@@ -80,6 +80,10 @@ fn after(rows: &Rows<'_>, claim: &Claim, scan: u64, times: &mut u32) -> Standing
         (false, true) => Standing::Held(scan),
         (false, false) => Standing::Open,
     };
+    // Where its scans begin may be still to come.
+    if claim.window != Window::default() {
+        return Standing::Open;
+    }
     match &claim.kind {
         ClaimKind::At(at, that) if *at == scan => match rows.hold(that, scan) {
             true => Standing::Held(scan),
@@ -110,7 +114,13 @@ fn after(rows: &Rows<'_>, claim: &Claim, scan: u64, times: &mut u32) -> Standing
         ClaimKind::Exclusive(range, points) => {
             unless(range, inside(range) && raised(rows, points, scan).len() > 1)
         }
-        // What positions resolve depends on the largest one, which may be still to come.
-        ClaimKind::WithinLimits { .. } => Standing::Open,
+        // What positions resolve depends on the largest one, which may be still to come; a row is judged to follow when the next
+        // has come; the others are judged at the end.
+        ClaimKind::WithinLimits { .. }
+        | ClaimKind::Follows { .. }
+        | ClaimKind::Answered { .. }
+        | ClaimKind::NeverFor { .. }
+        | ClaimKind::Duration { .. }
+        | ClaimKind::Count { .. } => Standing::Open,
     }
 }

@@ -1,14 +1,17 @@
 //! Claims: what a script's author says of the run, judged on its trace.
 
 mod describe;
+mod exact;
+mod follows;
 mod judge;
 mod limits;
 mod live;
+pub(crate) mod relative;
 
 pub use live::Standing;
 pub(crate) use live::Standings;
 
-use crate::model::{ClaimKind, Span};
+use crate::model::{ClaimKind, Condition, Range, Span};
 use crate::run::Rows;
 
 /// A claim, judged.
@@ -56,12 +59,22 @@ impl std::fmt::Display for Failure {
 ///
 /// Cost: a claim looks at each scan a constant number of times.
 pub(crate) fn judge(rows: &Rows<'_>) -> Vec<Verdict> {
-    rows.script
+    let mut verdicts: Vec<Verdict> = rows
+        .script
         .claims
         .iter()
         .map(|claim| {
-            let failures = failures(rows, &claim.path, &claim.kind);
-            let scans = scans(rows, &claim.kind);
+            let kind = relative::placed(rows, claim);
+            let mut failures = match &kind {
+                Some(kind) => failures(rows, &claim.path, kind),
+                None => relative::without_scans(rows, claim),
+            };
+            if let Some(reason) = fault_reason(rows, &claim.path) {
+                failures
+                    .iter_mut()
+                    .for_each(|failure| failure.text.push_str(&reason));
+            }
+            let scans = kind.as_deref().and_then(|kind| scans(rows, kind));
             Verdict {
                 path: claim.path.clone(),
                 span: claim.span,
@@ -73,13 +86,75 @@ pub(crate) fn judge(rows: &Rows<'_>) -> Vec<Verdict> {
                 failures,
             }
         })
-        .collect()
+        .collect();
+    expression_faults(rows, &mut verdicts);
+    verdicts
+}
+
+/// An expression without a value is a failure of the claim it stands in; of a step or a wire it is one by itself.
+fn expression_faults(rows: &Rows<'_>, verdicts: &mut Vec<Verdict>) {
+    for (index, formula) in rows.script.formulas.iter().enumerate() {
+        let (from, to) = (formula.span.start, formula.span.end);
+        let claim = verdicts
+            .iter()
+            .position(|verdict| verdict.span.start <= from && to <= verdict.span.end && formula.in_rows);
+        let asked = |scan: u64| match claim.and_then(|place| verdicts.get(place)?.scans) {
+            Some([first, last]) => (first..=last).contains(&scan),
+            None => true,
+        };
+        let Some((scan, why)) = rows.truths.faults(index).find(|(scan, _)| asked(*scan)) else {
+            continue;
+        };
+        let text = format!("{} has no value at scan {scan}: {why}", formula.text);
+        let failure = |path: String| Failure {
+            path,
+            scan: Some(scan),
+            text,
+        };
+        match claim.and_then(|place| verdicts.get_mut(place)) {
+            Some(verdict) => {
+                verdict.held = None;
+                verdict.failures.push(failure(verdict.path.clone()));
+            }
+            None => {
+                let path = if formula.in_rows { "steps" } else { "blocks" };
+                verdicts.push(Verdict {
+                    path: path.to_owned(),
+                    span: formula.span,
+                    says: format!("{} has a value", formula.text),
+                    scans: rows.count().checked_sub(1).map(|last| [0, last]),
+                    held: None,
+                    failures: vec![failure(path.to_owned())],
+                });
+            }
+        }
+    }
+}
+
+/// Why a program faulted, which its claim that it does not has to tell.
+fn fault_reason(rows: &Rows<'_>, path: &str) -> Option<String> {
+    const FAULTS: &str = "faults: ";
+    let program = path.strip_prefix("programs.")?;
+    let mut notes = rows.trace.notes().iter();
+    let note = notes.find(|note| note.subject == program && note.text.starts_with(FAULTS))?;
+    Some(format!("; {}", note.text.strip_prefix(FAULTS)?))
 }
 
 /// What every claim says, in one line each.
 pub(crate) fn say(rows: &Rows<'_>) -> Vec<String> {
     let claims = rows.script.claims.iter();
     claims.map(|claim| describe::claim(rows, &claim.kind)).collect()
+}
+
+/// Conditions in words.
+pub(crate) fn conditions_text(rows: &Rows<'_>, conditions: &[Condition]) -> String {
+    describe::conditions(rows, conditions)
+}
+
+/// Whether a claim that a slave follows has a row to judge.
+pub(crate) fn judges_a_row(rows: &Rows<'_>, range: &Range, during: &[Condition]) -> bool {
+    let last = range.to.unwrap_or(u64::MAX).min(rows.count().saturating_sub(1));
+    follows::judged(rows, range.from..=last, during).next().is_some()
 }
 
 /// The scans of the run that a claim speaks of.
@@ -92,7 +167,12 @@ fn scans(rows: &Rows<'_>, kind: &ClaimKind) -> Option<[u64; 2]> {
         | ClaimKind::Exclusive(range, _)
         | ClaimKind::Always { range, .. }
         | ClaimKind::Never { range, .. }
-        | ClaimKind::WithinLimits { range, .. } => (range.from, range.to.unwrap_or(last).min(last)),
+        | ClaimKind::WithinLimits { range, .. }
+        | ClaimKind::Follows { range, .. }
+        | ClaimKind::Answered { range, .. }
+        | ClaimKind::NeverFor { range, .. }
+        | ClaimKind::Duration { range, .. }
+        | ClaimKind::Count { range, .. } => (range.from, range.to.unwrap_or(last).min(last)),
     };
     (from <= to && to <= last).then_some([from, to])
 }
@@ -106,7 +186,12 @@ fn held(rows: &Rows<'_>, kind: &ClaimKind, [from, to]: [u64; 2]) -> Option<u64> 
         ClaimKind::Exclusive(..)
         | ClaimKind::Always { .. }
         | ClaimKind::Never { .. }
-        | ClaimKind::WithinLimits { .. } => None,
+        | ClaimKind::Answered { .. }
+        | ClaimKind::NeverFor { .. }
+        | ClaimKind::Duration { .. }
+        | ClaimKind::Count { .. }
+        | ClaimKind::WithinLimits { .. }
+        | ClaimKind::Follows { .. } => None,
     }
 }
 
@@ -119,5 +204,14 @@ fn failures(rows: &Rows<'_>, path: &str, kind: &ClaimKind) -> Vec<Failure> {
         ClaimKind::Once(range, that) => judge::once(rows, path, *range, that),
         ClaimKind::Exclusive(range, points) => judge::exclusive(rows, path, *range, points),
         ClaimKind::WithinLimits { range, axis, factor } => limits::within(rows, path, *range, *axis, *factor),
+        ClaimKind::Follows {
+            range,
+            during,
+            follow,
+        } => follows::failures(rows, path, *range, during, follow),
+        ClaimKind::Answered { .. }
+        | ClaimKind::NeverFor { .. }
+        | ClaimKind::Duration { .. }
+        | ClaimKind::Count { .. } => relative::failures(rows, path, kind),
     }
 }

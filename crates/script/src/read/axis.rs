@@ -6,8 +6,8 @@ use super::{Reader, shape};
 use crate::error::{Code, Diagnostic};
 use crate::model::{Axis, Span};
 use standstill_axis::{
-    AboveLimit, AxisConfig, AxisState, Defaults, InPosition, Limits, MoveProfile, PowerOff, QUEUE_MAX,
-    Scaling, StartState,
+    AboveLimit, AxisConfig, AxisState, Defaults, Following, InPosition, Limits, MoveProfile, OnLimit,
+    OnMasterLost, PowerOff, QUEUE_MAX, Scaling, StartState,
 };
 
 pub(crate) const ABOVE_LIMIT: [(&str, AboveLimit); 2] =
@@ -27,6 +27,9 @@ pub(crate) const ON_POWER_OFF: [(&str, PowerOff); 3] = [
     ("coast", PowerOff::Coast),
     ("drive", PowerOff::Drive),
 ];
+pub(crate) const ON_LIMIT: [(&str, OnLimit); 2] = [("lag", OnLimit::Lag), ("error", OnLimit::Error)];
+pub(crate) const ON_MASTER_LOST: [(&str, OnMasterLost); 2] =
+    [("error", OnMasterLost::Error), ("hold", OnMasterLost::Hold)];
 pub(crate) const START_STATES: [(&str, StartState); 2] = [
     ("Disabled", StartState::Disabled),
     ("Standstill", StartState::Standstill),
@@ -37,11 +40,14 @@ impl Reader {
         let node = self.require(fields, "axes", "a script")?;
         let members = self.map(node, "`axes`")?;
         self.check_count(members.iter().count(), node, "axes");
-        let axes: Vec<Option<Axis>> = members.iter().map(|(key, node)| self.axis(key, node)).collect();
+        let axes: Vec<Option<Axis>> = (0..)
+            .zip(members.iter())
+            .map(|(index, (key, node))| self.axis(index, key, node))
+            .collect();
         axes.into_iter().collect()
     }
 
-    fn axis(&mut self, key: &Key, node: &Node) -> Option<Axis> {
+    fn axis(&mut self, index: usize, key: &Key, node: &Node) -> Option<Axis> {
         let fields = self.fields(node, &shape::AXIS)?;
         let limits = self.limits(&fields);
         // Without limits nothing below could be compared with them, but its own mistakes still show.
@@ -50,6 +56,7 @@ impl Reader {
         let unit = fields
             .get("unit")
             .map_or(Some(""), |node| self.text(node, "`unit`"));
+        let place = self.stands_at(key.span, &fields);
         let drive = self.drive(&fields, config.scaling.is_some());
         self.drives
             .push(drive.map(|drive| (drive, config.scaling.is_some())));
@@ -69,6 +76,8 @@ impl Reader {
             unit: unit?.to_owned(),
             config,
             drive: drive?,
+            slave: self.slaves.contains(&index),
+            place,
         })
     }
 
@@ -156,6 +165,7 @@ impl Reader {
         let override_max = self.optional(fields, "override_max", "`override_max`");
         let max_following_error = self.optional(fields, "max_following_error", "`max_following_error`");
         let in_position = self.in_position(fields);
+        let following = self.coupling(fields);
         let power_timeout = fields
             .get("power_timeout")
             .map_or(Some(None), |node| self.scans(node, "`power_timeout`").map(Some));
@@ -178,6 +188,7 @@ impl Reader {
         config.override_max = override_max?.unwrap_or(config.override_max);
         config.max_following_error = max_following_error?;
         config.in_position = in_position?;
+        config.following = following?;
         config.power_timeout = power_timeout?;
         config.scaling = scaling?;
         config.modulo = modulo?;
@@ -279,6 +290,27 @@ impl Reader {
             window: window?,
             scans: u32::try_from(scans?).unwrap_or(u32::MAX),
         }))
+    }
+
+    fn coupling(&mut self, axis: &Fields<'_>) -> Option<Following> {
+        let Some(node) = axis.get("coupling") else {
+            return Some(Following::default());
+        };
+        let fields = self.fields(node, &shape::COUPLING)?;
+        let on_limit = fields.get("on_limit").map_or(Some(OnLimit::default()), |node| {
+            self.choice(node, "`coupling.on_limit`", &ON_LIMIT)
+        });
+        let max_deviation = self.optional(&fields, "max_deviation", "`coupling.max_deviation`");
+        let on_master_lost = fields
+            .get("on_master_lost")
+            .map_or(Some(OnMasterLost::default()), |node| {
+                self.choice(node, "`coupling.on_master_lost`", &ON_MASTER_LOST)
+            });
+        Some(Following {
+            on_limit: on_limit?,
+            max_deviation: max_deviation?,
+            on_master_lost: on_master_lost?,
+        })
     }
 
     /// An axis that goes half a turn in a scan could have gone either way.

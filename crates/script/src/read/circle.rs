@@ -27,7 +27,8 @@ pub(super) fn sources(wire: &Wire) -> Vec<Point> {
 pub(super) fn dead(wires: &Wires) -> Option<Vec<Place>> {
     let wired = |point: &Point| match point {
         Point::Pin(instance, pin) => Some((*instance, *pin)).filter(|place| wires.contains_key(place)),
-        Point::Input(_) | Point::Symbol(..) => None,
+        // What an expression reads may feed it.
+        Point::Input(_) | Point::Symbol(..) | Point::Formula(_) => None,
     };
     let mut readers: BTreeMap<Place, Vec<Place>> = BTreeMap::new();
     let mut fed: BTreeSet<Place> = BTreeSet::new();

@@ -1,49 +1,86 @@
 //! Conditions: signals and what they must be.
 
+use super::formula::{Reads, expression};
 use super::json::{Json, Key, Node};
 use super::names::{Entity, suggestion};
-use super::{Reader, is_note, shape};
+use super::{Reader, hints, is_note, shape};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::format::number_text;
-use crate::model::{AxisNumber, Comparison, Condition, Conditions, Signal, Span, Test};
+use crate::model::{AxisNumber, Comparison, Condition, Conditions, Point, Signal, Span, Test, Variable};
 use standstill_axis::AxisState;
 use standstill_fb::{PinType, Value};
+use standstill_st::Elementary;
+use std::collections::BTreeSet;
 
 /// The numeric columns of an axis by name.
-pub(crate) const AXIS_NUMBERS: [(&str, AxisNumber); 6] = [
+pub(crate) const AXIS_NUMBERS: [(&str, AxisNumber); 8] = [
     ("Position", AxisNumber::Position),
     ("Velocity", AxisNumber::Velocity),
     ("Acceleration", AxisNumber::Acceleration),
     ("Jerk", AxisNumber::Jerk),
     ("Snap", AxisNumber::Snap),
     ("ActualPosition", AxisNumber::ActualPosition),
+    ("Deviation", AxisNumber::Deviation),
+    ("Phase", AxisNumber::Phase),
 ];
 
 /// What values a signal has.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+pub(super) enum Kind {
     Pin(PinType),
     State,
+    /// The master of a slave.
+    Master,
+    /// A variable of Structured Text: its program and its place there.
+    Variable(usize, usize),
 }
 
 impl Kind {
     fn is_numeric(self) -> bool {
         matches!(
             self,
-            Self::Pin(PinType::Lreal | PinType::Int | PinType::Word | PinType::Dword | PinType::Time)
+            Self::Pin(
+                PinType::Lreal
+                    | PinType::Int
+                    | PinType::Uint
+                    | PinType::Word
+                    | PinType::Dword
+                    | PinType::Time
+            )
         )
     }
 
-    fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::Pin(ty) => ty.iec_name(),
             Self::State => "the state of an axis",
+            Self::Master => "the master of an axis",
+            Self::Variable(..) => "a variable",
+        }
+    }
+
+    /// The point of a variable.
+    const fn point(self) -> Option<Point> {
+        match self {
+            Self::Variable(program, symbol) => Some(Point::Symbol(program, symbol)),
+            Self::Pin(_) | Self::State | Self::Master => None,
         }
     }
 }
 
 impl Reader {
     pub(super) fn conditions(&mut self, node: &Node, what: &str) -> Option<Conditions> {
+        if let Json::Text(text) = &node.json
+            && expression(text).is_some()
+        {
+            let formula = self.formula(node, text, PinType::Bool, Reads::Row)?;
+            return Some(vec![Condition {
+                text: text.clone(),
+                signal: Signal::Formula(formula),
+                test: Test::Bool(true),
+                span: node.span,
+            }]);
+        }
         let members = self.map(node, what)?;
         let has_note_variable = self.names.get("note").is_some();
         let conditions: Vec<Option<Condition>> = members
@@ -56,12 +93,23 @@ impl Reader {
             self.report(Diagnostic::new(Code::BadValue, node.span, message));
             return None;
         }
-        conditions.into_iter().collect()
+        let conditions: Vec<Condition> = conditions.into_iter().collect::<Option<_>>()?;
+        // Keys that are the same to the letter were told before; case makes no difference to a name.
+        let mut known = BTreeSet::new();
+        let twice = conditions
+            .iter()
+            .find(|condition| !known.insert(condition.text.to_ascii_lowercase()));
+        if let Some(twice) = twice {
+            let message = format!("{what} asks twice for {}", quoted(&twice.text));
+            self.report(Diagnostic::new(Code::DuplicateKey, twice.span, message));
+            return None;
+        }
+        Some(conditions)
     }
 
     fn condition(&mut self, key: &Key, node: &Node) -> Option<Condition> {
         let (signal, kind) = self.signal(&key.text, key.span)?;
-        let what = format!("{} ({})", quoted(&key.text), kind.name());
+        let what = format!("{} ({})", quoted(&key.text), self.kind_name(kind));
         let test = self.test(node, kind, &what)?;
         let span = Span {
             start: key.span.start,
@@ -73,6 +121,26 @@ impl Reader {
             test,
             span,
         })
+    }
+
+    fn kind_name(&self, kind: Kind) -> String {
+        let variable = kind.point().and_then(|point| self.variable_at(point));
+        variable.map_or_else(
+            || kind.name().to_owned(),
+            |variable| variable.type_name().to_owned(),
+        )
+    }
+
+    /// The variable that a kind stands for.
+    pub(super) fn variable_of(&self, kind: Kind) -> Option<Variable> {
+        self.variable_at(kind.point()?).cloned()
+    }
+
+    fn is_numeric(&self, kind: Kind) -> bool {
+        match self.variable_of(kind) {
+            Some(variable) => variable.elements().is_none() && variable.elementary() != Elementary::Bool,
+            None => kind.is_numeric(),
+        }
     }
 
     fn test(&mut self, node: &Node, kind: Kind, what: &str) -> Option<Test> {
@@ -95,16 +163,27 @@ impl Reader {
                     .find(|state| state.name() == name)
                     .map(|state| Test::State(*state))
             }
+            Kind::Master => match &node.json {
+                Json::Text(text) if text.is_empty() => Some(Test::Word(String::new())),
+                _ => self.value(node, PinType::Axis("AXIS_REF"), what).map(Test::Named),
+            },
             Kind::Pin(PinType::Bool) => self.boolean(node, what).map(Test::Bool),
             Kind::Pin(ty @ (PinType::Axis(_) | PinType::Enum(_) | PinType::Table(_))) => {
                 self.value(node, ty, what).map(Test::Named)
             }
             Kind::Pin(_) => self.scalar(node, kind, what).map(Test::Exactly),
+            Kind::Variable(..) => {
+                let variable = self.variable_of(kind)?;
+                self.variable_test(node, &variable, what)
+            }
         }
     }
 
     /// A number a numeric signal is compared with; TIME in nanoseconds.
     fn scalar(&mut self, node: &Node, kind: Kind, what: &str) -> Option<f64> {
+        if let Some(variable) = self.variable_of(kind) {
+            return self.variable_number(node, &variable, what);
+        }
         if kind == Kind::Pin(PinType::Time) {
             return match self.value(node, PinType::Time, what)? {
                 Value::Time(ns) => Some(ns as f64),
@@ -141,12 +220,16 @@ impl Reader {
                     .plain(value, kind, what)
                     .map(|test| Comparison::Ne(Box::new(test))),
                 "same_as" => self.same_as(value, kind, what),
-                _ if !kind.is_numeric() => {
+                _ if !self.is_numeric(kind) => {
                     let message = format!("{what} is no number: only `ne` and `same_as` compare it");
                     self.report(Diagnostic::new(Code::WrongType, key.span, message));
                     None
                 }
                 "within" if fields.get("near").is_some() => continue,
+                name if self.variable_of(kind).is_some_and(|variable| variable.is_wide()) => {
+                    let variable = self.variable_of(kind)?;
+                    self.wide_comparison((name, key.span), value, &variable, what)
+                }
                 "within" => {
                     let message = "`within` is the tolerance of `near`, which is not given";
                     self.report(Diagnostic::new(Code::MissingKey, key.span, message));
@@ -173,7 +256,9 @@ impl Reader {
             );
             return None;
         }
-        comparisons.into_iter().collect()
+        let comparisons: Vec<Comparison> = comparisons.into_iter().collect::<Option<_>>()?;
+        self.contradiction(&comparisons, node.span, what);
+        Some(comparisons)
     }
 
     fn near(
@@ -184,7 +269,16 @@ impl Reader {
         kind: Kind,
         what: &str,
     ) -> Option<Comparison> {
-        let near = self.scalar(near, kind, what);
+        let other = match &near.json {
+            Json::Map(members) if members.iter().all(|(key, _)| key.text != "param") => {
+                Some(self.near_to(near, kind))
+            }
+            _ => None,
+        };
+        let near = match other {
+            Some(_) => Some(0.0),
+            None => self.scalar(near, kind, what),
+        };
         let Some(tolerance) = within else {
             let message = "`near` needs a tolerance: `within`";
             self.report(Diagnostic::new(Code::MissingKey, key, message));
@@ -196,36 +290,115 @@ impl Reader {
             self.report(Diagnostic::new(Code::BadValue, tolerance.span, message));
             return None;
         }
-        Some(Comparison::Near { near: near?, within })
+        match other {
+            None => Some(Comparison::Near { near: near?, within }),
+            Some(other) => {
+                let (name, of, plus) = other?;
+                Some(Comparison::NearTo {
+                    name,
+                    of,
+                    plus,
+                    within,
+                })
+            }
+        }
+    }
+
+    /// The signal and the number that a `near` is of.
+    fn near_to(&mut self, node: &Node, kind: Kind) -> Option<(String, Signal, f64)> {
+        let fields = self.fields(node, &shape::NEAR_TO)?;
+        let plus = fields
+            .get("plus")
+            .map_or(Some(0.0), |node| self.scalar(node, kind, "`plus`"));
+        let of = self.require(&fields, "of", "`near`")?;
+        let text = self.text(of, "`of`")?;
+        let (signal, other) = self.signal(text, of.span)?;
+        if other.is_numeric() {
+            return Some((text.to_owned(), signal, plus?));
+        }
+        let message = format!("`of` takes a number, {} is {}", quoted(text), other.name());
+        self.report(Diagnostic::new(Code::WrongType, of.span, message));
+        None
+    }
+
+    /// Comparisons that no value meets.
+    fn contradiction(&mut self, comparisons: &[Comparison], span: Span, what: &str) {
+        let mut low = (f64::NEG_INFINITY, false);
+        let mut high = (f64::INFINITY, false);
+        for comparison in comparisons {
+            match comparison {
+                Comparison::Ge(bound) if *bound > low.0 => low = (*bound, false),
+                Comparison::Gt(bound) if *bound >= low.0 => low = (*bound, true),
+                Comparison::Le(bound) if *bound < high.0 => high = (*bound, false),
+                Comparison::Lt(bound) if *bound <= high.0 => high = (*bound, true),
+                _ => {}
+            }
+        }
+        let side = |(bound, is_open): (f64, bool), closed: &str, open: &str| {
+            format!("{} {}", if is_open { open } else { closed }, number_text(bound))
+        };
+        if low.0 > high.0 || (low.0 == high.0 && (low.1 || high.1)) {
+            let message = format!(
+                "{what} contradicts itself: no number is {} and {}",
+                side(low, "at least", "above"),
+                side(high, "at most", "below")
+            );
+            self.report(
+                Diagnostic::new(Code::BadValue, span, message).help("widen the bounds, or turn them"),
+            );
+        }
     }
 
     fn same_as(&mut self, node: &Node, kind: Kind, what: &str) -> Option<Comparison> {
         let text = self.text(node, "`same_as`")?;
         let (signal, other) = self.signal(text, node.span)?;
-        if other == kind {
+        if self.comparable(other, kind) {
             return Some(Comparison::SameAs(text.to_owned(), signal));
         }
         let message = format!(
             "{what} cannot be the same as {}, which is {}",
             quoted(text),
-            other.name()
+            self.kind_name(other)
         );
         self.report(Diagnostic::new(Code::WrongType, node.span, message));
         None
     }
 
+    /// Whether two signals can be equal to the bit: of one type, or numbers of Structured Text and others.
+    fn comparable(&self, one: Kind, other: Kind) -> bool {
+        let enumeration = |kind| {
+            self.variable_of(kind)
+                .and_then(|it| Some(it.elements()?.to_vec()))
+        };
+        match (one, other) {
+            (Kind::Variable(..), _) | (_, Kind::Variable(..)) => {
+                let is_bool = |kind| !self.is_numeric(kind) && enumeration(kind).is_none();
+                enumeration(one) == enumeration(other)
+                    && self.is_numeric(one) == self.is_numeric(other)
+                    && is_bool(one) == is_bool(other)
+                    && one != Kind::State
+                    && other != Kind::State
+            }
+            (one, other) => one == other,
+        }
+    }
+
     /// The signal called `text`.
-    fn signal(&mut self, text: &str, span: Span) -> Option<(Signal, Kind)> {
+    pub(super) fn signal(&mut self, text: &str, span: Span) -> Option<(Signal, Kind)> {
         let (name, rest) = text.split_once('.').unwrap_or((text, ""));
         let axis = match self.names.get(name) {
             Some(Entity::Axis(axis)) => axis,
             Some(_) => {
                 let (point, ty) = self.point(text, span)?;
-                return Some((Signal::Point(point), Kind::Pin(ty)));
+                return Some((Signal::Point(point), self.kind_of(point, ty)));
             }
             None => {
                 let message = format!("there is no axis, input variable or instance {}", quoted(name));
-                let help = self.name_help(name, |_| true);
+                let help = hints::logic(text).map(|_| {
+                    "a condition is a signal and its value: {\"there.Done\": false}; several are joined by commas"
+                        .to_owned()
+                });
+                let help = help.or_else(|| self.name_help(name, |_| true));
                 self.report(Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(help));
                 return None;
             }
@@ -233,6 +406,7 @@ impl Reader {
         if rest.eq_ignore_ascii_case("State") {
             return Some((Signal::State(axis), Kind::State));
         }
+        let is_master = rest.eq_ignore_ascii_case("Master");
         let (number, difference) = match rest.split_once('.') {
             Some((number, difference)) => (number, Some(difference)),
             None => (rest, None),
@@ -241,6 +415,20 @@ impl Reader {
             .iter()
             .find(|(known, _)| known.eq_ignore_ascii_case(number))
             .map(|(_, n)| *n);
+        let is_of_slaves = is_master || number.is_some_and(AxisNumber::is_of_slaves);
+        if is_of_slaves && difference.is_none() && !self.slaves.contains(&axis) {
+            let message = format!(
+                "{} stands at no `Slave` pin, and has no {}",
+                quoted(name),
+                quoted(rest)
+            );
+            let help = "Master, Deviation and Phase are signals of axes that a block of this script couples to a master";
+            self.report(Diagnostic::new(Code::UnknownSignal, span, message).help(help));
+            return None;
+        }
+        if is_master {
+            return Some((Signal::Master(axis), Kind::Master));
+        }
         let signal = match (number, difference) {
             (Some(number), None) => Some(Signal::Axis(axis, number)),
             (Some(AxisNumber::Position), Some(difference)) => match difference {
@@ -256,7 +444,7 @@ impl Reader {
             let message = format!("an axis has no signal {}", quoted(rest));
             let help = suggestion(
                 rest,
-                ["State"]
+                ["State", "Master"]
                     .into_iter()
                     .chain(AXIS_NUMBERS.iter().map(|(name, _)| *name))
                     .chain(["Position.d1", "Position.d2", "Position.d3", "Position.d4"]),

@@ -1,13 +1,13 @@
 //! Claims: what the author says of the run.
 
-use super::Reader;
-use super::json::Node;
+use super::json::{Json, Node};
 use super::names::nearest;
 use super::shape::{self, Shape};
 use super::value::Fields;
+use super::{Reader, hints};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::format::number_text;
-use crate::model::{Claim, ClaimKind, Conditions, Point, Range};
+use crate::model::{Claim, ClaimKind, Conditions, Follow, Point, Range};
 use standstill_fb::PinType;
 
 impl Reader {
@@ -19,11 +19,17 @@ impl Reader {
         let mut index = 0;
         self.each(items, |reader, node| {
             let kind = reader.claim(node);
+            let may_be_vacuous = match &node.json {
+                Json::Map(members) => members.iter().any(|(key, _)| key.text == "vacuous"),
+                _ => false,
+            };
             let path = format!("expect[{index}]");
             index += 1;
             Some(Claim {
                 path,
                 span: node.span,
+                may_be_vacuous,
+                window: reader.claim_window(node)?,
                 kind: kind?,
             })
         })
@@ -37,13 +43,16 @@ impl Reader {
             let slip = members
                 .iter()
                 .filter(|(key, _)| key.text != "note")
-                .find_map(|(key, _)| nearest(&key.text, kinds.clone()));
-            let message =
-                "a claim says one of `at`, `by`, `always`, `never`, `once`, `exclusive`, `within_limits`";
+                .find_map(|(key, _)| {
+                    hints::key(&key.text, kinds.clone()).or_else(|| nearest(&key.text, kinds.clone()))
+                });
+            let message = "a claim says one of `at`, `by`, `always`, `never`, `once`, `exclusive`, `within_limits`, `follows`, `when`, \
+                 `after`, `duration`, `count`";
             self.report(Diagnostic::new(Code::MissingKey, members.brace(), message).maybe_help(slip));
             return None;
         };
         let fields = self.fields(node, shape)?;
+        self.may_be_vacuous(&fields);
         let key = shape.keys[0];
         let value = fields.get(key)?;
         match key {
@@ -63,6 +72,7 @@ impl Reader {
                 self.check_range(range, value)?;
                 Some(ClaimKind::By(range, that?))
             }
+            "when" | "after" | "duration" | "count" => self.relative(key, value, &fields, shape.what),
             "exclusive" => {
                 let range = self.range(&fields);
                 let points = self.exclusive(value);
@@ -78,6 +88,15 @@ impl Reader {
                     factor: factor?,
                 })
             }
+            "follows" => {
+                let range = self.range(&fields);
+                let (follow, during) = self.follows(value)?;
+                Some(ClaimKind::Follows {
+                    range: range?,
+                    during,
+                    follow,
+                })
+            }
             _ => {
                 let range = self.range(&fields);
                 let that = self.conditions(value, &quoted(key));
@@ -85,6 +104,15 @@ impl Reader {
                     .get("while")
                     .map_or(Some(Vec::new()), |node| self.conditions(node, "`while`"));
                 let (range, that, during) = (range?, that?, during?);
+                if let (Some(node), "never") = (fields.get("for"), key) {
+                    let scans = self.at_least_one(node, "`for`")?;
+                    return Some(ClaimKind::NeverFor {
+                        range,
+                        during,
+                        that,
+                        scans,
+                    });
+                }
                 Some(match key {
                     "always" => ClaimKind::Always { range, during, that },
                     "never" => ClaimKind::Never { range, during, that },
@@ -102,12 +130,13 @@ impl Reader {
     fn from(&mut self, fields: &Fields<'_>) -> Option<u64> {
         fields
             .get("from")
+            .filter(|node| !is_edge(node))
             .map_or(Some(0), |node| self.scan_in_run(node, "`from`"))
     }
 
-    fn range(&mut self, fields: &Fields<'_>) -> Option<Range> {
+    pub(super) fn range(&mut self, fields: &Fields<'_>) -> Option<Range> {
         let from = self.from(fields);
-        let Some(node) = fields.get("to") else {
+        let Some(node) = fields.get("to").filter(|node| !is_edge(node)) else {
             return Some(Range {
                 from: from?,
                 to: None,
@@ -134,6 +163,51 @@ impl Reader {
             }
             _ => Some(()),
         }
+    }
+
+    /// What follows what, and while what holds.
+    fn follows(&mut self, node: &Node) -> Option<(Follow, Conditions)> {
+        let fields = self.fields(node, &shape::FOLLOWS)?;
+        let what = shape::FOLLOWS.what;
+        let slave = self.require(&fields, "slave", what);
+        let slave = slave.and_then(|node| self.axis_index(node, "`slave`"));
+        let leader = self.require(&fields, "master", what);
+        let master = leader.and_then(|node| self.axis_index(node, "`master`"));
+        let num = self.require(&fields, "num", what);
+        let num = num.and_then(|node| self.whole(node, "`num`", i16::MIN.into()..=i16::MAX.into()));
+        let den = self.require(&fields, "den", what);
+        let den = den.and_then(|node| self.whole(node, "`den`", 1..=u16::MAX.into()));
+        let during = fields
+            .get("while")
+            .map_or(Some(Vec::new()), |node| self.conditions(node, "`while`"));
+        let anchor = fields
+            .get("anchor")
+            .map_or(Some(None), |node| self.anchor(node).map(Some));
+        let (slave, master) = (slave?, master?);
+        if slave == master {
+            let message = "an axis does not follow itself";
+            let help = "`master` is the axis that leads, `slave` the one behind it";
+            self.report(Diagnostic::new(Code::BadValue, leader?.span, message).help(help));
+            return None;
+        }
+        let follow = Follow {
+            slave,
+            master,
+            num: num?.try_into().ok()?,
+            den: den?.try_into().ok()?,
+            anchor: anchor?,
+        };
+        Some((follow, during?))
+    }
+
+    /// A position of the master, and where the slave is then.
+    fn anchor(&mut self, node: &Node) -> Option<[f64; 2]> {
+        let fields = self.fields(node, &shape::ANCHOR)?;
+        let master = self.require(&fields, "master", shape::ANCHOR.what);
+        let master = master.and_then(|node| self.finite(node, "`master`"));
+        let slave = self.require(&fields, "slave", shape::ANCHOR.what);
+        let slave = slave.and_then(|node| self.finite(node, "`slave`"));
+        Some([master?, slave?])
     }
 
     fn factor(&mut self, node: &Node) -> Option<f64> {
@@ -164,4 +238,9 @@ impl Reader {
             None
         })
     }
+}
+
+/// Whether a window begins or ends here by conditions.
+pub(super) fn is_edge(node: &Node) -> bool {
+    matches!(&node.json, Json::Map(members) if members.iter().any(|(key, _)| key.text == "when"))
 }

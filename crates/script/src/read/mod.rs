@@ -10,30 +10,36 @@ mod circle;
 mod condition;
 pub(crate) mod drive;
 mod expect;
+mod formula;
+mod hints;
 pub(crate) mod homing;
 mod include;
 pub(crate) mod json;
 pub(crate) mod machine_map;
 pub(crate) mod names;
 pub(crate) mod program;
+mod relative;
 pub(crate) mod shape;
 pub(crate) mod step;
 pub(crate) mod sweep;
 mod table;
 mod task;
+mod text;
 pub(crate) mod time;
 pub(crate) mod value;
+mod variable;
 mod wire;
 
 use crate::error::{Code, Diagnostic, ScriptError, quoted};
 use crate::format::number_text;
-use crate::model::{Conditions, DriveSetup, Input, Program, Script, Span};
+use crate::model::{Conditions, DriveSetup, Formula, Input, Place, Program, Script, Span};
 use json::{Json, Key, Node};
 use names::{Entity, Names, identifier_error};
 pub use program::GUEST_MEMORY;
 use standstill_fb::{PinType, Value};
 use standstill_trace::digest::Fnv1a;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 use value::Fields;
 
 /// Most scans of one run; 10^7 are 2 h 46 min at 1 ms.
@@ -70,6 +76,18 @@ struct Reader {
     programs: Vec<Option<Program>>,
     /// Memory that all guests may have together (bytes).
     guest_memory: u64,
+    /// Names may be missing because of another mistake, so a name that is not known tells nothing.
+    lacks_names: bool,
+    /// The script's folder, with the `/` behind it; empty if none.
+    folder: String,
+    /// The axes as the script has them.
+    axis_names: Vec<String>,
+    /// Those at a `Slave` pin.
+    slaves: BTreeSet<usize>,
+    /// The expressions read so far.
+    formulas: Vec<Formula>,
+    /// What is wrong with sources in Structured Text.
+    reports: Vec<standstill_st::Report>,
     errors: Vec<Diagnostic>,
 }
 
@@ -144,12 +162,14 @@ pub(crate) fn read_within(
     };
     let mut files = include::Files::new(file_name, plain, load);
     let root = reader.with_includes(root, &mut files);
+    reader.folder = files.read.first().map_or("", |script| script.folder()).to_owned();
     // What is missing may stand in a file that could not be had.
     let script = if reader.errors.is_empty() {
         reader.script(&root, overrides, &mut keep)
     } else {
         None
     };
+    reader.leave_out_what_follows();
     match script {
         Some(script) if reader.errors.is_empty() => {
             let mut hash = Fnv1a::new();
@@ -162,12 +182,13 @@ pub(crate) fn read_within(
             }
             Ok(Script {
                 hash: hash.finish(),
+                files: files.read.into(),
                 ..script
             })
         }
         _ => {
             debug_assert!(!reader.errors.is_empty(), "refused without a reason");
-            Err(ScriptError::of(files.read, reader.errors))
+            Err(ScriptError::of(files.read, reader.errors).with_reports(reader.reports))
         }
     }
 }
@@ -185,7 +206,10 @@ impl Reader {
         guest: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     ) -> Option<Script> {
         let fields = self.fields(root, &shape::SCRIPT)?;
-        self.version(&fields, "a script")?;
+        // One that is missing is not the only key that is.
+        if self.version(&fields, "a script").is_none() && fields.get("standstill").is_some() {
+            return None;
+        }
         if let Some(node) = fields.get("$schema") {
             self.text(node, "`$schema`")?;
         }
@@ -202,8 +226,8 @@ impl Reader {
         let inputs = self.inputs(&fields);
         // Before whatever may name a variable of theirs.
         let programs = self.programs(&fields, guest);
-        let tasks = self.tasks(&fields);
-        let program_tasks = self.program_tasks(&fields, tasks.as_deref());
+        let mut tasks = self.tasks(&fields);
+        self.program_calls(&fields, &mut tasks);
         let blocks = self.blocks(&fields, tasks.as_deref());
         let steps = self.steps(&fields);
         let claims = self
@@ -214,6 +238,14 @@ impl Reader {
                 claims
             });
         let stop_when = self.stop_when(&fields);
+        let golden = fields
+            .get("golden")
+            .map_or(Some(true), |node| self.boolean(node, "`golden`"));
+        let clamps = fields
+            .get("clamps")
+            .map_or(Some(false), |node| self.choice(node, "`clamps`", &CLAMPS));
+        programs?;
+        let programs: Option<Vec<Program>> = std::mem::take(&mut self.programs).into_iter().collect();
         let script = Script {
             title: title?.to_owned(),
             covers: covers?,
@@ -222,13 +254,17 @@ impl Reader {
             axes: axes?,
             inputs: inputs?,
             blocks: blocks?,
-            programs: self.with_tasks(programs?, program_tasks?),
+            programs: programs?,
             tasks: tasks?,
             steps: steps?,
             claims: claims?,
             stop_when: stop_when?,
+            formulas: std::mem::take(&mut self.formulas),
             tables: std::mem::take(&mut self.tables),
             parameters: std::mem::take(&mut self.parameters),
+            golden: golden?,
+            clamps_expected: clamps?,
+            files: Arc::default(),
             hash: 0,
         };
         self.check_size(&script, fields.get("scans")?.span);
@@ -339,10 +375,24 @@ impl Reader {
         None
     }
 
+    /// Leaves out what other mistakes bring about: names that are not known where some could not be read.
+    fn leave_out_what_follows(&mut self) {
+        let follows = |error: &Diagnostic| matches!(error.code, Code::UnknownSignal | Code::UnknownAxis);
+        if self.lacks_names && !self.errors.iter().all(follows) {
+            self.errors.retain(|error| !follows(error));
+        }
+    }
+
     /// Declares every name, and checks it.
     fn declare(&mut self, fields: &Fields<'_>) {
+        let is_there = |key: &str| {
+            let node = fields.get(key).map(|node| &node.json);
+            matches!(node, Some(Json::Map(_) | Json::List(_)))
+        };
+        self.lacks_names = !is_there("axes") || !is_there("blocks");
         let mut places: BTreeMap<String, Span> = BTreeMap::new();
         if let Some(Json::Map(members)) = fields.get("axes").map(|node| &node.json) {
+            self.axis_names = members.iter().map(|(key, _)| key.text.clone()).collect();
             for (index, (key, _)) in members.iter().enumerate() {
                 self.declare_name(&mut places, &key.text, key.span, Entity::Axis(index));
             }
@@ -351,7 +401,11 @@ impl Reader {
             for (index, (key, node)) in members.iter().enumerate() {
                 let ty = match &node.json {
                     Json::Bool(_) => Some(PinType::Bool),
-                    Json::Number(_) | Json::Text(_) | Json::Map(_) => Some(PinType::Lreal),
+                    Json::Map(_) => match initial_of(node).map(|node| &node.json) {
+                        Some(Json::Bool(_)) => Some(PinType::Bool),
+                        _ => Some(PinType::Lreal),
+                    },
+                    Json::Number(_) | Json::Text(_) => Some(PinType::Lreal),
                     Json::Null | Json::List(_) => None,
                 };
                 self.declare_name(&mut places, &key.text, key.span, Entity::Input(index, ty));
@@ -367,6 +421,8 @@ impl Reader {
                         .map(|(_, node)| node),
                     _ => None,
                 };
+                self.slaves
+                    .extend(member("pins").and_then(|pins| self.slave_of(pins)));
                 let info = match member("type").map(|node| &node.json) {
                     Some(Json::Text(name)) => standstill_blocks::registry::find(name),
                     _ => None,
@@ -377,8 +433,27 @@ impl Reader {
                 }) = member("name")
                 {
                     self.declare_name(&mut places, name, *span, Entity::Block(index, info));
+                } else {
+                    self.lacks_names = true;
                 }
             }
+        }
+    }
+
+    /// The axis at the `Slave` pin, if there is one.
+    fn slave_of(&self, pins: &Node) -> Option<usize> {
+        let Json::Map(members) = &pins.json else {
+            return None;
+        };
+        let (_, axis) = members
+            .iter()
+            .find(|(key, _)| key.text.eq_ignore_ascii_case("Slave"))?;
+        match &axis.json {
+            Json::Text(name) => match self.names.get(name)? {
+                Entity::Axis(axis) => Some(axis),
+                _ => None,
+            },
+            _ => None,
         }
     }
 
@@ -427,6 +502,16 @@ impl Reader {
         let mut inputs = Vec::new();
         for (key, node) in members.iter() {
             let what = quoted(&key.text);
+            let mut place = Place {
+                span: key.span,
+                may_be_vacuous: false,
+            };
+            let mut node = node;
+            if let Some(inner) = initial_of(node) {
+                let fields = self.fields(node, &shape::INPUT);
+                place.may_be_vacuous = fields.is_some_and(|fields| self.may_be_vacuous(&fields));
+                node = inner;
+            }
             let initial = match &node.json {
                 Json::Bool(value) => Some(Value::Bool(*value)),
                 Json::Null | Json::List(_) => {
@@ -439,9 +524,25 @@ impl Reader {
             inputs.push(initial.map(|initial| Input {
                 name: key.text.clone(),
                 initial,
+                place,
             }));
         }
         inputs.into_iter().collect()
+    }
+
+    /// Whether the author says that this may test nothing.
+    fn may_be_vacuous(&mut self, fields: &Fields<'_>) -> bool {
+        fields
+            .get("vacuous")
+            .is_some_and(|node| self.choice(node, "`vacuous`", &[("allowed", true)]).is_some())
+    }
+
+    /// The place of something, with what the author says of it.
+    fn stands_at(&mut self, span: Span, fields: &Fields<'_>) -> Place {
+        Place {
+            span,
+            may_be_vacuous: self.may_be_vacuous(fields),
+        }
     }
 
     fn stop_when(&mut self, fields: &Fields<'_>) -> Option<Option<(Conditions, u64)>> {
@@ -511,6 +612,18 @@ impl Reader {
             self.report(Diagnostic::new(Code::TooLarge, span, message).help(help));
         }
     }
+}
+
+/// What `clamps` may say.
+pub(crate) const CLAMPS: [(&str, bool); 1] = [("expected", true)];
+
+/// The initial value of an input variable that says more than that.
+fn initial_of(node: &Node) -> Option<&Node> {
+    let Json::Map(members) = &node.json else {
+        return None;
+    };
+    let mut members = members.iter();
+    members.find(|(key, _)| key.text == "value").map(|(_, node)| node)
 }
 
 /// The note of a map of names, which is no name: see the contract's rule that any object may carry one.

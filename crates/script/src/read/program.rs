@@ -2,12 +2,12 @@
 
 use super::json::{Json, Node};
 use super::names::identifier_error;
-use super::task::MAIN;
+use super::text::fault_symbol;
 use super::value::Fields;
 use super::{Reader, is_note, shape};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::model::Point;
-use crate::model::{Claim, ClaimKind, Condition, Program, Range, Signal, Span, Symbol, Task, Test};
+use crate::model::{Claim, ClaimKind, Condition, Place, Program, Range, Signal, Span, Symbol, Test, Window};
 use standstill_fb::{PinType, Value};
 use standstill_guest::{INSTANCES_MOST, Settings, SymbolType};
 
@@ -41,12 +41,12 @@ pub(crate) const SYMBOL_TYPES: [&str; SymbolType::ALL.len()] = {
 pub(crate) const FAULT: &str = "Fault";
 
 /// Gives the bytes of a module, or says why not.
-type LoadGuest<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
+pub(super) type LoadGuest<'a> = &'a mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
 
 impl Reader {
-    pub(super) fn programs(&mut self, fields: &Fields<'_>, load: LoadGuest<'_>) -> Option<Vec<Program>> {
+    pub(super) fn programs(&mut self, fields: &Fields<'_>, load: LoadGuest<'_>) -> Option<()> {
         let Some(node) = fields.get("programs") else {
-            return Some(Vec::new());
+            return Some(());
         };
         let members = self.map(node, "`programs`")?;
         if members.iter().count() > PROGRAMS_MAX {
@@ -72,7 +72,7 @@ impl Reader {
             let program = self.program(&key.text, node, first, share, load);
             self.programs.push(program);
         }
-        self.programs.iter().cloned().collect()
+        self.programs.iter().all(Option::is_some).then_some(())
     }
 
     /// The memory of a program that does not say how much it needs (bytes): as usual, or what is left for each of them. All
@@ -130,24 +130,69 @@ impl Reader {
         if let Some(node) = fields.get("may_fault") {
             self.boolean(node, "`may_fault`");
         }
-        let symbols = self.symbols(&fields);
-        let wasm = self.require(&fields, "wasm", "a program")?;
-        let path = self.text(wasm, "`wasm`")?;
+        let place = self.stands_at(node.span, &fields);
         let settings = Settings {
             fuel: fuel?,
             memory: memory?,
             first_instance: first,
             ..defaults
         };
+        match (fields.entry("wasm"), fields.entry("st")) {
+            (Some((first, _)), Some((second, _))) => {
+                let message = "a program comes from `wasm` or from `st`, not from both";
+                self.report(
+                    Diagnostic::new(Code::UnknownKey, second.span, message)
+                        .related(first.span, "the other one"),
+                );
+                None
+            }
+            (None, None) => {
+                let message = "a program needs the key `wasm` or the key `st`";
+                self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
+                None
+            }
+            (Some(_), None) => {
+                self.refuse_keys(&fields, &["program", "axes", "trace"], "st");
+                self.module(name, &fields, place, settings, load)
+            }
+            (None, Some(_)) => {
+                self.refuse_keys(&fields, &["symbols"], "wasm");
+                self.text_program(name, &fields, place, settings, load)
+            }
+        }
+    }
+
+    /// Refuses keys that belong to programs of another kind.
+    fn refuse_keys(&mut self, fields: &Fields<'_>, keys: &[&str], other: &str) {
+        for (key, _) in keys.iter().filter_map(|key| fields.entry(key)) {
+            let message = format!("`{}` belongs to programs with `{other}`", key.text);
+            self.report(Diagnostic::new(Code::UnknownKey, key.span, message));
+        }
+    }
+
+    /// A program that is a module already.
+    fn module(
+        &mut self,
+        name: &str,
+        fields: &Fields<'_>,
+        place: Place,
+        settings: Settings,
+        load: LoadGuest<'_>,
+    ) -> Option<Program> {
+        let symbols = self.symbols(fields);
+        let wasm = fields.get("wasm")?;
+        let path = self.text(wasm, "`wasm`")?;
         let guest = load(path).and_then(|bytes| {
             standstill_guest::Program::compile(&bytes, settings).map_err(|error| error.to_string())
         });
         match guest {
             Ok(guest) => Some(Program {
                 name: name.to_owned(),
-                task: 0,
+                calls: Vec::new(),
                 guest,
                 symbols: symbols?,
+                place,
+                text: None,
             }),
             Err(why) => {
                 let message = format!("{} cannot be the program {}: {why}", quoted(path), quoted(name));
@@ -158,13 +203,7 @@ impl Reader {
     }
 
     fn symbols(&mut self, fields: &Fields<'_>) -> Option<Vec<Symbol>> {
-        let mut symbols = vec![Some(Symbol {
-            name: FAULT.to_owned(),
-            ty: PinType::Bool,
-            own: SymbolType::Bool,
-            address: None,
-            export: None,
-        })];
+        let mut symbols = vec![Some(fault_symbol())];
         let members = match fields.get("symbols") {
             None => None,
             Some(node) => Some((self.map(node, "`symbols`")?, node)),
@@ -238,6 +277,7 @@ impl Reader {
             own,
             address: address.and_then(|address| u32::try_from(address).ok()),
             export,
+            variable: None,
         })
     }
 
@@ -263,36 +303,6 @@ impl Reader {
         own.holds(value)
     }
 
-    /// The tasks of the programs, in their order.
-    pub(super) fn program_tasks(
-        &mut self,
-        fields: &Fields<'_>,
-        tasks: Option<&[Task]>,
-    ) -> Option<Vec<usize>> {
-        let Some(Json::Map(members)) = fields.get("programs").map(|node| &node.json) else {
-            return Some(Vec::new());
-        };
-        let of = |reader: &mut Self, node: &Node| match &node.json {
-            Json::Map(inner) => {
-                let task = inner.iter().find(|(key, _)| key.text == "task");
-                let (name, span) = match task {
-                    None => (MAIN, node.span),
-                    Some((_, node)) => (reader.text(node, "`task`")?, node.span),
-                };
-                reader.task_index(name, span, tasks)
-            }
-            // Already reported.
-            _ => None,
-        };
-        let found: Vec<_> = members.iter().map(|(_, node)| of(self, node)).collect();
-        found.into_iter().collect()
-    }
-
-    pub(super) fn with_tasks(&self, programs: Vec<Program>, tasks: Vec<usize>) -> Vec<Program> {
-        let both = programs.into_iter().zip(tasks);
-        both.map(|(program, task)| Program { task, ..program }).collect()
-    }
-
     /// A claim for each program that may not fault: that it does not.
     pub(super) fn fault_claims(&mut self, fields: &Fields<'_>) -> Option<Vec<Claim>> {
         let Some(Json::Map(members)) = fields.get("programs").map(|node| &node.json) else {
@@ -307,6 +317,8 @@ impl Reader {
         let claim = |index: usize, name: &str, span: Span| Claim {
             path: format!("programs.{name}"),
             span,
+            may_be_vacuous: false,
+            window: Window::default(),
             kind: ClaimKind::Never {
                 range: Range { from: 0, to: None },
                 during: Vec::new(),
@@ -338,6 +350,11 @@ impl Reader {
         // A program that was refused is already reported.
         let program_read = self.programs.get(program)?.as_ref()?;
         let symbols = &program_read.symbols;
+        if let Some(text) = program_read.text.clone()
+            && !name.eq_ignore_ascii_case(FAULT)
+        {
+            return self.variable_point(program, &text, name, span);
+        }
         let found = symbols
             .iter()
             .position(|symbol| symbol.name.eq_ignore_ascii_case(name));

@@ -40,6 +40,8 @@ pub(crate) const SCRIPT: Shape = shape(
         "expect",
         "stop_when",
         "after",
+        "golden",
+        "clamps",
     ],
 );
 /// What scripts include.
@@ -85,7 +87,9 @@ pub(crate) const AXIS: Shape = Shape {
         "power_timeout",
         "in_position",
         "max_following_error",
+        "coupling",
         "drive",
+        "vacuous",
         "note",
     ],
     later: &[],
@@ -101,6 +105,11 @@ pub(crate) const DEFAULTS: Shape = shape(
 pub(crate) const SCALING: Shape = shape("`scaling`", &["increments", "units", "invert", "offset", "note"]);
 pub(crate) const SOFTWARE_LIMITS: Shape = shape("`software_limits`", &["min", "max", "note"]);
 pub(crate) const IN_POSITION: Shape = shape("`in_position`", &["window", "time", "note"]);
+pub(crate) const COUPLING: Shape = Shape {
+    what: "`coupling`",
+    keys: &["on_limit", "max_deviation", "on_master_lost", "note"],
+    later: &["actual_filter", "actual_lead", "cam_continuity"],
+};
 pub(crate) const HOMING: Shape = shape(
     "`homing`",
     &[
@@ -203,7 +212,7 @@ pub(crate) const MOTOR: Shape = shape(
 );
 pub(crate) const MARKER: Shape = shape("`marker`", &["at", "every", "note"]);
 
-pub(crate) const BLOCK: Shape = shape("a block", &["name", "type", "task", "pins", "note"]);
+pub(crate) const BLOCK: Shape = shape("a block", &["name", "type", "task", "pins", "vacuous", "note"]);
 pub(crate) const WIRE: Shape = shape("a wire", &["from", "not", "any", "all", "note"]);
 /// The keys of a wire that say what it does; it has exactly one of them.
 pub(crate) const WIRE_KINDS: [&str; 4] = ["from", "not", "any", "all"];
@@ -211,14 +220,59 @@ pub(crate) const TASK: Shape = shape("a task", &["interval", "priority", "single
 
 pub(crate) const PROGRAM: Shape = shape(
     "a program",
-    &["wasm", "task", "fuel", "memory", "symbols", "may_fault", "note"],
+    &[
+        "wasm",
+        "st",
+        "program",
+        "task",
+        "axes",
+        "trace",
+        "fuel",
+        "memory",
+        "symbols",
+        "may_fault",
+        "vacuous",
+        "note",
+    ],
+);
+/// The keys of a program that is a module already.
+pub(crate) const PROGRAM_MODULE: Shape = shape(
+    "a program",
+    &[
+        "wasm",
+        "task",
+        "fuel",
+        "memory",
+        "symbols",
+        "may_fault",
+        "vacuous",
+        "note",
+    ],
+);
+/// The keys of a program in Structured Text.
+pub(crate) const PROGRAM_TEXT: Shape = shape(
+    "a program",
+    &[
+        "st",
+        "program",
+        "task",
+        "axes",
+        "trace",
+        "fuel",
+        "memory",
+        "may_fault",
+        "vacuous",
+        "note",
+    ],
 );
 pub(crate) const SYMBOL: Shape = shape("a symbol", &["type", "address", "export", "note"]);
+
+pub(crate) const INPUT: Shape = shape("an input variable", &["value", "vacuous", "note"]);
 
 pub(crate) const STEP: Shape = shape(
     "a step",
     &[
-        "at", "when", "after", "every", "set", "fault", "clear", "drive", "note",
+        "at", "when", "after", "every", "set", "fault", "clear", "drive", "vacuous", "note",
     ],
 );
 pub(crate) const FAULT: Shape = shape("`fault`", &["axis", "kind", "code", "note"]);
@@ -240,24 +294,65 @@ pub(crate) const COMPARISON: Shape = shape(
     ],
 );
 
-pub(crate) const CLAIM_AT: Shape = shape("a claim with `at`", &["at", "that", "note"]);
-pub(crate) const CLAIM_BY: Shape = shape("a claim with `by`", &["by", "from", "that", "note"]);
+pub(crate) const CLAIM_AT: Shape = shape("a claim with `at`", &["at", "that", "vacuous", "note"]);
+pub(crate) const CLAIM_BY: Shape = shape("a claim with `by`", &["by", "from", "that", "vacuous", "note"]);
 pub(crate) const CLAIM_ALWAYS: Shape = shape(
     "a claim with `always`",
-    &["always", "from", "to", "while", "note"],
+    &["always", "from", "to", "while", "vacuous", "note"],
 );
-pub(crate) const CLAIM_NEVER: Shape =
-    shape("a claim with `never`", &["never", "from", "to", "while", "note"]);
-pub(crate) const CLAIM_ONCE: Shape = shape("a claim with `once`", &["once", "from", "to", "note"]);
-pub(crate) const CLAIM_EXCLUSIVE: Shape =
-    shape("a claim with `exclusive`", &["exclusive", "from", "to", "note"]);
+pub(crate) const CLAIM_NEVER: Shape = shape(
+    "a claim with `never`",
+    &["never", "for", "from", "to", "while", "vacuous", "note"],
+);
+pub(crate) const CLAIM_ONCE: Shape = shape("a claim with `once`", &["once", "from", "to", "vacuous", "note"]);
+pub(crate) const CLAIM_EXCLUSIVE: Shape = shape(
+    "a claim with `exclusive`",
+    &["exclusive", "from", "to", "vacuous", "note"],
+);
 pub(crate) const CLAIM_WITHIN_LIMITS: Shape = shape(
     "a claim with `within_limits`",
-    &["within_limits", "factor", "from", "to", "note"],
+    &["within_limits", "factor", "from", "to", "vacuous", "note"],
 );
+pub(crate) const CLAIM_FOLLOWS: Shape = shape(
+    "a claim with `follows`",
+    &["follows", "from", "to", "vacuous", "note"],
+);
+pub(crate) const FOLLOWS: Shape = shape(
+    "`follows`",
+    &["slave", "master", "num", "den", "while", "anchor", "note"],
+);
+pub(crate) const ANCHOR: Shape = shape("`anchor`", &["master", "slave", "note"]);
 
-/// The kinds of claims; the first key of each names it.
-pub(crate) const CLAIMS: [Shape; 7] = [
+pub(crate) const CLAIM_WHEN: Shape = shape(
+    "a claim with `when`",
+    &["when", "within", "that", "from", "to", "while", "vacuous", "note"],
+);
+pub(crate) const CLAIM_AFTER: Shape = shape(
+    "a claim with `after`",
+    &["after", "by", "that", "from", "to", "while", "vacuous", "note"],
+);
+pub(crate) const CLAIM_DURATION: Shape = shape(
+    "a claim with `duration`",
+    &[
+        "duration", "le", "ge", "each", "from", "to", "while", "vacuous", "note",
+    ],
+);
+pub(crate) const CLAIM_COUNT: Shape = shape(
+    "a claim with `count`",
+    &[
+        "count", "eq", "le", "ge", "from", "to", "while", "vacuous", "note",
+    ],
+);
+/// Where a window begins or ends.
+pub(crate) const WINDOW_EDGE: Shape = shape("the begin or end of a window", &["when", "note"]);
+pub(crate) const NEAR_TO: Shape = shape("`near`", &["of", "plus", "note"]);
+
+/// The kinds of claims; the first key of each names it. One with `after` has a `by`, too.
+pub(crate) const CLAIMS: [Shape; 12] = [
+    CLAIM_AFTER,
+    CLAIM_WHEN,
+    CLAIM_DURATION,
+    CLAIM_COUNT,
     CLAIM_AT,
     CLAIM_BY,
     CLAIM_ALWAYS,
@@ -265,6 +360,7 @@ pub(crate) const CLAIMS: [Shape; 7] = [
     CLAIM_ONCE,
     CLAIM_EXCLUSIVE,
     CLAIM_WITHIN_LIMITS,
+    CLAIM_FOLLOWS,
 ];
 
 /// The objects of a map for `standstill compare`.

@@ -47,7 +47,12 @@ impl Reader {
             self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
             return None;
         }
-        Some(Step { when: when?, actions })
+        let place = self.stands_at(node.span, &fields);
+        Some(Step {
+            when: when?,
+            actions,
+            place,
+        })
     }
 
     fn when(&mut self, fields: &Fields<'_>) -> Option<When> {
@@ -157,6 +162,9 @@ impl Reader {
             let message = format!("{} is written by the runtime", quoted(name));
             self.report(Diagnostic::new(Code::NotWritable, span, message));
             return None;
+        }
+        if let Some(variable) = self.variable_at(point).cloned() {
+            return self.set_variable(point, &variable, (name, span), node);
         }
         let what = format!("{} ({})", quoted(name), ty.iec_name());
         let value = self.value(node, ty, &what)?;

@@ -3,7 +3,7 @@
 use super::json::{Json, Key, Node};
 use super::names::{Entity, suggestion};
 use super::shape::{self, Shape};
-use super::{Reader, time};
+use super::{Reader, hints, time};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::format::number_text;
 use crate::model::Span;
@@ -108,7 +108,10 @@ impl Reader {
                         key.span,
                         format!("unknown key {} in {}", quoted(&key.text), shape.what),
                     )
-                    .maybe_help(suggestion(&key.text, shape.keys.iter().copied())),
+                    .maybe_help(
+                        hints::key(&key.text, shape.keys.iter().copied())
+                            .or_else(|| suggestion(&key.text, shape.keys.iter().copied())),
+                    ),
                 );
             }
         }
@@ -139,16 +142,19 @@ impl Reader {
             return Some(value);
         }
         let mut diagnostic = self.wrong_type(node, what, "true or false");
-        if let Json::Text(text) = &node.json
-            && self
-                .names
-                .get(text.split('.').next().unwrap_or_default())
-                .is_some()
-        {
-            diagnostic = diagnostic.help(format!("a wire is written {{\"from\": \"{text}\"}}"));
+        if let Json::Text(text) = &node.json {
+            let help = hints::truth(text).map(str::to_owned);
+            diagnostic = diagnostic.maybe_help(help.or_else(|| self.wire_help(text)));
         }
         self.report(diagnostic);
         None
+    }
+
+    /// The remedy for a string that is meant as a wire.
+    fn wire_help(&self, text: &str) -> Option<String> {
+        let name = text.split('.').next().unwrap_or_default();
+        let known = self.names.get(name).is_some();
+        hints::logic(text).or_else(|| known.then(|| format!("a wire is written {{\"from\": \"{text}\"}}")))
     }
 
     /// A number: digits, one of the words, or a parameter.
@@ -167,11 +173,10 @@ impl Reader {
         }
         let mut diagnostic = self.wrong_type(node, what, "a number");
         if let Json::Text(text) = &node.json {
-            diagnostic = if text.parse::<f64>().is_ok_and(f64::is_finite) {
-                diagnostic.help(format!("write {text} without quotes"))
-            } else {
-                diagnostic.help("of strings only \"NaN\", \"Infinity\" and \"-Infinity\" are numbers")
-            };
+            let help = hints::number(text).or_else(|| self.wire_help(text));
+            diagnostic = diagnostic.help(help.unwrap_or_else(|| {
+                "of strings only \"NaN\", \"Infinity\" and \"-Infinity\" are numbers".to_owned()
+            }));
         }
         self.report(diagnostic);
         None
@@ -342,7 +347,7 @@ impl Reader {
                 let value = self.whole(node, what, i16::MIN.into()..=i16::MAX.into())?;
                 i16::try_from(value).ok().map(Value::Int)
             }
-            PinType::Word => {
+            PinType::Uint | PinType::Word => {
                 let value = self.whole(node, what, 0..=u16::MAX.into())?;
                 u16::try_from(value).ok().map(Value::Word)
             }

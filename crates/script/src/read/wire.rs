@@ -1,8 +1,9 @@
 //! Wires and what they read.
 
+use super::formula::{Reads, expression};
 use super::json::{Json, Node};
 use super::names::{Entity, suggestion};
-use super::{Reader, shape};
+use super::{Reader, hints, shape};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::model::{Point, Span, Wire};
 use standstill_fb::PinType;
@@ -10,6 +11,12 @@ use standstill_fb::PinType;
 impl Reader {
     /// A wire that gives a value of type `ty`.
     pub(super) fn wire(&mut self, node: &Node, ty: PinType, what: &str) -> Option<Wire> {
+        if let Json::Text(text) = &node.json
+            && expression(text).is_some()
+        {
+            let formula = self.formula(node, text, ty, Reads::Now)?;
+            return Some(Wire::From(Point::Formula(formula)));
+        }
         let fields = self.fields(node, &shape::WIRE)?;
         let mut kinds = fields
             .iter()
@@ -55,7 +62,21 @@ impl Reader {
     /// A variable or pin of type `ty`.
     fn source(&mut self, node: &Node, ty: PinType, what: &str) -> Option<Point> {
         let text = self.text(node, "the source of a wire")?;
+        if expression(text).is_some() {
+            return self.formula(node, text, ty, Reads::Now).map(Point::Formula);
+        }
         let (point, found) = self.point(text, node.span)?;
+        if let Some(variable) = self.variable_at(point)
+            && (variable.is_wide() || variable.elements().is_some())
+        {
+            let type_name = variable.type_name().to_owned();
+            let message = format!(
+                "{what} cannot be wired from {}, which is {type_name}",
+                quoted(text)
+            );
+            self.report(Diagnostic::new(Code::WrongType, node.span, message));
+            return None;
+        }
         if found == ty {
             return Some(point);
         }
@@ -111,6 +132,8 @@ impl Reader {
             (None, _) => format!("there is no input variable or instance {}", quoted(name)),
         };
         let help = match self.names.get(name) {
+            Some(Entity::Axis(_)) => pin_name.map(|signal| hints::axis_signal(signal).to_owned()),
+            None if hints::logic(text).is_some() => hints::logic(text),
             None => self.name_help(name, |entity| !matches!(entity, Entity::Axis(_))),
             Some(_) => None,
         };
@@ -119,7 +142,8 @@ impl Reader {
     }
 }
 
-/// Objects at a pin are wires, but for the use of a parameter.
+/// Objects at a pin are wires, but for the use of a parameter, and so are expressions.
 pub(super) fn is_wire(node: &Node) -> bool {
-    matches!(&node.json, Json::Map(members) if members.iter().all(|(key, _)| key.text != "param"))
+    matches!(&node.json, Json::Text(text) if expression(text).is_some())
+        || matches!(&node.json, Json::Map(members) if members.iter().all(|(key, _)| key.text != "param"))
 }

@@ -2,14 +2,15 @@
 
 use super::RunError;
 use super::cells;
+use super::formulas::{self, Formulas, Reading, Truths};
 use super::guests::Guests;
 use super::layout::Layout;
 use super::notes::Notes;
 use super::rows::{Rows, Shift};
 use super::schedule::Schedule;
 use super::values::Values;
-use crate::model::{Action, FaultKind, Point, Script, Wire};
-use standstill_axis::{AxisId, AxisState, ErrorId, InstanceId, Standard};
+use crate::model::{Action, FaultKind, FormulaInput, Point, Script, Signal, Variable, Wire};
+use standstill_axis::{Axis, AxisId, AxisState, ErrorId, InstanceId, Standard};
 use standstill_drives::simulated::SimulatedDrive;
 use standstill_fb::{AnyInstance, Context, PinType, Value};
 use standstill_record::told::Cells;
@@ -64,20 +65,53 @@ fn fail(axis: usize, kind: FaultKind, code: u16, time: ScanTime, machine: &mut S
     }
 }
 
-/// The instances and the guest programs of each task.
-fn by_task(script: &Script) -> Vec<(Vec<usize>, Vec<usize>)> {
+/// The instances of a task, and its calls of guest programs: the program, and which of its calls.
+type OfTask = (Vec<usize>, Vec<(usize, usize)>);
+
+/// What runs in each task.
+fn by_task(script: &Script) -> Vec<OfTask> {
     let mut tasks = vec![(Vec::new(), Vec::new()); script.tasks.len()];
-    for (index, instance) in script.blocks.iter().enumerate() {
+    let called = script.blocks.iter().enumerate();
+    for (index, instance) in called.filter(|(_, instance)| !instance.left_out) {
         if let Some((blocks, _)) = tasks.get_mut(instance.task) {
             blocks.push(index);
         }
     }
     for (index, program) in script.programs.iter().enumerate() {
-        if let Some((_, guests)) = tasks.get_mut(program.task) {
-            guests.push(index);
+        for (place, call) in program.calls.iter().enumerate() {
+            if let Some((_, guests)) = tasks.get_mut(call.task) {
+                guests.push((index, place));
+            }
         }
     }
     tasks
+}
+
+/// Why the resource stops where an expression fails.
+const WIRE_FAULT: &str = "an expression in a wire has no value";
+
+/// What expressions see of an axis.
+fn reading(axis: &Axis<Standard>) -> Reading {
+    Reading {
+        state: axis.state(),
+        setpoint: axis.setpoint(),
+        actual: axis.actual_position(),
+        coupled: axis.coupled(),
+    }
+}
+
+/// The variable of Structured Text at a point.
+fn variable(script: &Script, point: Point) -> Option<&Variable> {
+    let Point::Symbol(program, symbol) = point else {
+        return None;
+    };
+    script
+        .programs
+        .get(program)?
+        .symbols
+        .get(symbol)?
+        .variable
+        .as_ref()
 }
 
 /// A script at work.
@@ -85,8 +119,8 @@ pub(crate) struct Bench<'a> {
     script: &'a Script,
     layout: Layout,
     values: Values,
-    /// The instances and the guest programs of each task, in file order.
-    tasks: Vec<(Vec<usize>, Vec<usize>)>,
+    /// What runs in each task, in file order.
+    tasks: Vec<OfTask>,
     /// Pin types of all instances, in trace order.
     types: Vec<PinType>,
     cells: Cells,
@@ -95,6 +129,12 @@ pub(crate) struct Bench<'a> {
     states: Vec<AxisState>,
     notes: Notes,
     guests: Guests,
+    formulas: Formulas,
+    truths: Truths,
+    /// What expressions of a task's wire see of the axes: as they were latched.
+    readings: Vec<Reading>,
+    /// The scan that is being done.
+    time: ScanTime,
     trace: Trace,
     /// Where coordinates moved, for differences of positions.
     shifts: Vec<Shift>,
@@ -102,6 +142,8 @@ pub(crate) struct Bench<'a> {
     changes: Vec<(Point, Value)>,
     /// Last scan of the run, once `stop_when` has held.
     last_scan: Option<u64>,
+    /// An expression in a wire had no value.
+    wire_fault: bool,
     /// What ended the run early. The executor's hooks return nothing, so it waits here.
     error: Option<RunError>,
 }
@@ -116,6 +158,10 @@ impl<'a> Bench<'a> {
             script,
             layout,
             guests,
+            formulas: Formulas::new(script)?,
+            truths: Truths::new(script),
+            readings: Vec::with_capacity(script.axes.len()),
+            time: ScanTime { scan: 0, now_ns: 0 },
             values,
             tasks: by_task(script),
             types: script
@@ -131,6 +177,7 @@ impl<'a> Bench<'a> {
             shifts: Vec::new(),
             changes: Vec::new(),
             last_scan: None,
+            wire_fault: false,
             error: None,
         })
     }
@@ -140,9 +187,45 @@ impl<'a> Bench<'a> {
         self.error.take().map_or(Ok(()), Err)
     }
 
-    /// Whether a guest program has had a fault.
-    pub(crate) fn has_guest_fault(&self) -> bool {
-        self.guests.has_fault()
+    /// Whether a guest program has had a fault, or an expression in a wire.
+    pub(crate) fn has_fault(&self) -> bool {
+        self.guests.has_fault() || self.wire_fault
+    }
+
+    /// The values of the expressions that a wire reads now.
+    fn compute(
+        &mut self,
+        wire: &Wire,
+        time: ScanTime,
+        reading: &dyn Fn(usize) -> Option<Reading>,
+    ) -> Result<(), ProgramFault> {
+        for point in wire.points() {
+            let Point::Formula(index) = *point else { continue };
+            let (script, values) = (self.script, &self.values);
+            let source = |input: &FormulaInput| match input.signal {
+                Signal::Point(point) => {
+                    let value = values.read(point)?;
+                    let whole = variable(script, point).and_then(|variable| variable.whole(value));
+                    Some(formulas::of_value(input, value, whole))
+                }
+                Signal::State(axis) | Signal::Axis(axis, _) => formulas::of_reading(input, &reading(axis)?),
+                Signal::Master(_) | Signal::Difference(..) | Signal::Formula(_) => None,
+            };
+            let outcome = self
+                .formulas
+                .value(script, index, (time.scan, time.now_ns), source);
+            let place = self.values.formulas.get_mut(index);
+            match (outcome, place) {
+                (Ok(value), Some(place)) => *place = Some(value),
+                (outcome, _) => {
+                    let why = outcome.err().unwrap_or_default();
+                    self.truths.fault(index, time.scan, why);
+                    self.wire_fault = true;
+                    return Err(ProgramFault { reason: WIRE_FAULT });
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Whether `scan` is the last one.
@@ -157,6 +240,7 @@ impl<'a> Bench<'a> {
             layout: &self.layout,
             trace: &self.trace,
             shifts: &self.shifts,
+            truths: &self.truths,
         }
     }
 
@@ -170,8 +254,9 @@ impl<'a> Bench<'a> {
         self.changes.push((point, value));
     }
 
-    pub(crate) fn into_trace(self) -> (Trace, Vec<Shift>) {
-        (self.trace, self.shifts)
+    /// What claims are judged on.
+    pub(crate) fn into_rows(self) -> (Trace, Vec<Shift>, Truths) {
+        (self.trace, self.shifts, self.truths)
     }
 
     /// Makes room for so many more rows.
@@ -256,9 +341,20 @@ impl<'a> Bench<'a> {
         for (ty, value) in pins() {
             self.cells.prepare(ty, value);
         }
-        let axes = machine.axes().iter().zip(&self.states).flat_map(|(axis, state)| {
+        // Numbers without a name in their enumeration; a program in order has none.
+        let values = || {
+            let programs = self.script.programs.iter().zip(&self.values.symbols);
+            programs.flat_map(|(program, values)| program.symbols.iter().zip(values))
+        };
+        let numbers: Vec<String> = values()
+            .filter_map(|(symbol, value)| symbol.variable.as_ref()?.unnamed(*value))
+            .collect();
+        let mut numbers = numbers.iter();
+        let script = self.script;
+        let axes = machine.axes().iter().zip(&self.states).zip(&script.axes);
+        let axes = axes.flat_map(|((axis, state), configured)| {
             let setpoint = axis.setpoint();
-            [
+            let of_all = [
                 Cell::Name(state.name()),
                 Cell::Real(setpoint.position),
                 Cell::Real(setpoint.velocity),
@@ -266,7 +362,17 @@ impl<'a> Bench<'a> {
                 Cell::Real(setpoint.jerk),
                 Cell::Real(setpoint.snap),
                 Cell::Real(axis.actual_position()),
-            ]
+            ];
+            let of_slave = configured.slave.then(|| {
+                let coupled = axis.coupled();
+                let master = coupled.and_then(|coupled| script.axes.get(coupled.master.index()));
+                [
+                    Cell::Name(master.map_or("", |master| &master.name)),
+                    Cell::Real(coupled.map_or(0.0, |coupled| coupled.deviation)),
+                    Cell::Real(coupled.map_or(0.0, |coupled| coupled.phase)),
+                ]
+            });
+            of_all.into_iter().chain(of_slave.into_iter().flatten())
         });
         let named = &self.cells;
         let variables = self
@@ -275,8 +381,13 @@ impl<'a> Bench<'a> {
             .iter()
             .map(|value| named.cell(PinType::Lreal, *value));
         let pins = pins().map(|(ty, value)| named.cell(ty, value));
-        let symbols = self.values.symbols.iter().flatten();
-        let symbols = symbols.map(|value| named.cell(cells::type_of(*value), *value));
+        let symbols = values().map(|(symbol, value)| match &symbol.variable {
+            None => named.cell(cells::type_of(*value), *value),
+            Some(variable) => match variable.cell(*value) {
+                Some(cell) => cell,
+                None => Cell::Name(numbers.next().map_or("", String::as_str)),
+            },
+        });
         let row = axes.chain(variables).chain(pins).chain(symbols);
         if let Err(error) = self.trace.push_cells(row) {
             self.stop(RunError::Internal(error.to_string()));
@@ -297,17 +408,29 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
         for (point, value) in std::mem::take(&mut self.changes) {
             self.write(point, Some(value), time.scan);
         }
+        self.time = time;
+        self.readings.clear();
+        self.readings.extend(machine.axes().iter().map(reading));
     }
 
     fn single(&mut self, task: TaskId) -> bool {
-        let task = self.script.tasks.get(task.0);
-        task.and_then(|task| self.values.wire_bool(task.single.as_ref()?))
-            .unwrap_or(false)
+        let script = self.script;
+        let Some(single) = script.tasks.get(task.0).and_then(|task| task.single.as_ref()) else {
+            return false;
+        };
+        let readings = std::mem::take(&mut self.readings);
+        let computed = self.compute(single, self.time, &|axis| readings.get(axis).copied());
+        self.readings = readings;
+        // What faults here stops the resource with the next program that runs.
+        computed.is_ok() && self.values.wire_bool(single).unwrap_or(false)
     }
 
     fn run(&mut self, program: ProgramId, context: &mut Context<'_, Standard>) -> Result<u64, ProgramFault> {
         let script = self.script;
         let ProgramId(task) = program;
+        if self.wire_fault {
+            return Err(ProgramFault { reason: WIRE_FAULT });
+        }
         self.notes.collect(context.scope.log);
         for place in 0.. {
             let index = self.tasks.get(task).and_then(|(blocks, _)| blocks.get(place));
@@ -315,6 +438,14 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
             else {
                 break;
             };
+            let time = ScanTime {
+                scan: context.scope.scan,
+                now_ns: context.now_ns,
+            };
+            let axes = &*context.axes;
+            for (_, wire) in &declared.wires {
+                self.compute(wire, time, &|axis| Some(reading(axes.get(axis)?)))?;
+            }
             self.feed(index, &declared.wires, context.scope.scan);
             context.scope.instance = instance_id(index);
             if let Some(instance) = self.values.instances.get_mut(index) {
@@ -323,8 +454,8 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
             }
         }
         let guests = self.tasks.get(task).map(|(_, guests)| guests.as_slice());
-        for &index in guests.unwrap_or_default() {
-            let outcome = self.guests.scan(index, context);
+        for &(index, call) in guests.unwrap_or_default() {
+            let outcome = self.guests.scan(index, call, context);
             if let Some(values) = self.values.symbols.get_mut(index) {
                 self.guests.refresh(index, values);
             }
@@ -345,11 +476,19 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
         self.guests
             .take_told(self.script, &mut self.notes, &mut self.trace);
         self.notes.take(machine, &mut self.trace, &mut self.shifts);
+        let mut truths = std::mem::take(&mut self.truths);
         let rows = Rows {
             script: self.script,
             layout: &self.layout,
             trace: &self.trace,
             shifts: &self.shifts,
+            // Expressions do not read each other.
+            truths: &Truths::default(),
+        };
+        self.formulas.look(&rows, time.scan, &mut truths);
+        let rows = Rows {
+            truths: &truths,
+            ..rows
         };
         self.schedule.look(&rows, time.scan);
         if self.schedule.is_full() {
@@ -361,5 +500,6 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
         {
             self.last_scan = Some(time.scan.saturating_add(*after));
         }
+        self.truths = truths;
     }
 }

@@ -30,6 +30,7 @@ pub(crate) fn point_name(script: &Script, point: Point) -> String {
             let symbol = program.symbols.get(symbol)?;
             Some(format!("{}.{}", program.name, symbol.name))
         }),
+        Point::Formula(index) => script.formulas.get(index).map(|formula| formula.text.clone()),
     }
     .unwrap_or_default()
 }
@@ -53,7 +54,7 @@ pub(crate) fn convert(value: Value, ty: PinType) -> Option<Value> {
         (Value::Bool(_), PinType::Bool)
         | (Value::Int(_), PinType::Int)
         | (Value::Lreal(_), PinType::Lreal)
-        | (Value::Word(_), PinType::Word)
+        | (Value::Word(_), PinType::Word | PinType::Uint)
         | (Value::Dword(_), PinType::Dword)
         | (Value::Table(_), PinType::Table(_))
         | (Value::Time(_), PinType::Time)
@@ -64,7 +65,7 @@ pub(crate) fn convert(value: Value, ty: PinType) -> Option<Value> {
             _ => whole(value).map(|whole| Value::Lreal(whole as f64)),
         },
         (_, PinType::Int) => Some(Value::Int(whole(value)?.try_into().ok()?)),
-        (_, PinType::Word) => Some(Value::Word(whole(value)?.try_into().ok()?)),
+        (_, PinType::Word | PinType::Uint) => Some(Value::Word(whole(value)?.try_into().ok()?)),
         (_, PinType::Dword) => Some(Value::Dword(whole(value)?.try_into().ok()?)),
         (_, PinType::Time) => Some(Value::Time(whole(value)?)),
         (_, PinType::Enum(_)) => Some(Value::Enum(whole(value)?.try_into().ok()?)),

@@ -4,7 +4,8 @@ use super::RunError;
 use super::notes::Notes;
 use crate::model::{Program, Script};
 use standstill_fb::{Context, Value};
-use standstill_guest::{Guest, Symbol, Told};
+use standstill_guest::{Entry, Fault, Guest, Symbol, Told};
+use standstill_st::{FAULT_SITE, FAULT_VALUE, LOOP_SITE};
 use standstill_trace::{Note, Trace};
 
 /// Guests at work, in the order of the script.
@@ -18,7 +19,9 @@ struct Running {
     guest: Guest,
     /// Those behind `Fault`.
     symbols: Vec<Symbol>,
-    fault: Option<String>,
+    /// The functions of its calls.
+    entries: Vec<Entry>,
+    fault: Option<Fault>,
     /// Whether the fault stands in the trace.
     told: bool,
 }
@@ -50,15 +53,26 @@ impl Guests {
         self.all.iter().any(|running| running.fault.is_some())
     }
 
-    /// One execution of a program.
-    pub(crate) fn scan(&mut self, index: usize, context: &mut Context<'_>) -> Result<(), &'static str> {
+    /// One execution of a program, by one of its calls.
+    pub(crate) fn scan(
+        &mut self,
+        index: usize,
+        call: usize,
+        context: &mut Context<'_>,
+    ) -> Result<(), &'static str> {
         let Some(running) = self.all.get_mut(index) else {
             return Ok(());
         };
-        running.guest.scan(context).map(|_fuel| ()).map_err(|fault| {
-            running.fault = Some(fault.to_string());
-            fault.reason()
-        })
+        let entry = running.entries.get(call).copied().unwrap_or(Entry::SCAN);
+        running
+            .guest
+            .scan_entry(entry, context)
+            .map(|_fuel| ())
+            .map_err(|fault| {
+                let reason = fault.reason();
+                running.fault = Some(fault);
+                reason
+            })
     }
 
     /// Takes what stands in the symbols of a program now.
@@ -104,7 +118,13 @@ impl Guests {
                 match told {
                     Told::Line(line) => note(format!("says: {line}")),
                     Told::LinesLost(lost) => note(format!("{lost} lines more are lost")),
-                    Told::Made { id, number, block } => {
+                    Told::Made { id, key, .. } if instance(program, key).is_some() => {
+                        // It is there from the start; making it tells nothing.
+                        notes.name(id.0, instance(program, key).unwrap_or_default());
+                    }
+                    Told::Made {
+                        id, number, block, ..
+                    } => {
                         let name = format!("{}.{block}.{number}", program.name);
                         note(format!("makes the instance {name}"));
                         notes.name(id.0, name);
@@ -115,10 +135,38 @@ impl Guests {
                 && !running.told
             {
                 running.told = true;
+                let fault = place(program, &running.guest, fault).unwrap_or_else(|| fault.to_string());
                 note(format!("faults: {fault}; the resource stops, axes ramp down"));
             }
         }
     }
+}
+
+/// The name of a block instance of Structured Text, by the address of its key.
+fn instance(program: &Program, key: u32) -> Option<String> {
+    program.text.as_ref()?.blocks.get(&key).cloned()
+}
+
+/// Where in the sources a program faulted, and why.
+fn place(program: &Program, guest: &Guest, fault: &Fault) -> Option<String> {
+    let text = program.text.as_ref()?;
+    let site = match fault {
+        Fault::Trap(_) => FAULT_SITE,
+        Fault::Fuel { .. } => LOOP_SITE,
+        Fault::Pointer { .. } | Fault::Other(_) | Fault::Over => return None,
+    };
+    let number = u32::try_from(guest.bits(site, 4)?).ok()?;
+    let place = text.symbols.place(number)?;
+    // Notes are the same wherever the script is called from.
+    let file = place.file.strip_prefix(&text.folder).unwrap_or(&place.file);
+    let (line, column) = (place.position.line, place.position.column);
+    let mut says = format!("{file}:{line}:{column}: {}", place.kind.text());
+    if let Fault::Fuel { most } = fault {
+        says.push_str(&format!(", and the fuel of {most} is used up"));
+    } else if let Some(value) = place.kind.value(guest.bits(FAULT_VALUE, 8)?.cast_signed()) {
+        says.push_str(&format!(": {value}"));
+    }
+    Some(says)
 }
 
 fn start(program: &Program) -> Result<Running, RunError> {
@@ -126,7 +174,14 @@ fn start(program: &Program) -> Result<Running, RunError> {
         program: program.name.clone(),
         reason,
     };
-    let guest = program.guest.start().map_err(|error| wrong(error.to_string()))?;
+    let mut guest = program.guest.start().map_err(|error| wrong(error.to_string()))?;
+    let entries = program.calls.iter().map(|call| match &call.entry {
+        None => Ok(Entry::SCAN),
+        Some(name) => guest
+            .entry(name)
+            .ok_or_else(|| wrong(format!("it has no function `{name}`"))),
+    });
+    let entries = entries.collect::<Result<_, _>>()?;
     let symbol = |symbol: &crate::model::Symbol| {
         let address = match symbol.address {
             Some(address) => address,
@@ -142,6 +197,7 @@ fn start(program: &Program) -> Result<Running, RunError> {
     let symbols = program.symbols.iter().skip(1).map(symbol);
     Ok(Running {
         symbols: symbols.collect::<Result<_, RunError>>()?,
+        entries,
         guest,
         fault: None,
         told: false,

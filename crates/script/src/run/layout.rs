@@ -1,16 +1,19 @@
 //! Where the signals of a script stand in a row of a trace, and the header of its own one.
 
 use super::cells;
-use crate::model::{Action, AxisNumber, Point, Program, Script, Symbol};
+use crate::model::{Action, AxisNumber, Point, Program, Script, Symbol, Variable};
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Direction, PinType, Value};
 use standstill_record::told;
 use standstill_trace::{self as trace, Kind};
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 /// Column numbers of a script's signals: the axes, the input variables, the pins in call order.
 #[derive(Clone, Debug)]
 pub(crate) struct Layout {
+    /// Columns of each axis.
+    axes: Vec<Range<usize>>,
     /// First column of the input variables.
     variables: usize,
     /// First column of each instance.
@@ -23,8 +26,16 @@ pub(crate) struct Layout {
 
 impl Layout {
     pub(crate) fn new(script: &Script) -> Self {
-        let variables = script.axes.len() * trace::AXIS_SIGNALS.len();
-        let mut next = variables + script.inputs.len();
+        let mut next = 0;
+        let mut axes = Vec::with_capacity(script.axes.len());
+        for axis in &script.axes {
+            let first = next;
+            let of_slave = if axis.slave { trace::SLAVE_SIGNALS.len() } else { 0 };
+            next += trace::AXIS_SIGNALS.len() + of_slave;
+            axes.push(first..next);
+        }
+        let variables = next;
+        next += script.inputs.len();
         let mut instances = Vec::with_capacity(script.blocks.len());
         for instance in &script.blocks {
             instances.push(next);
@@ -36,6 +47,7 @@ impl Layout {
             next += program.symbols.len();
         }
         Self {
+            axes,
             variables,
             instances,
             programs,
@@ -75,15 +87,22 @@ impl Layout {
             Point::Input(index) => self.variables + index,
             Point::Pin(instance, pin) => self.instances.get(instance)? + pin,
             Point::Symbol(program, symbol) => self.programs.get(program)? + symbol,
+            Point::Formula(_) => return None,
         })
     }
 
     /// Column of an axis state.
     pub(crate) fn state(&self, axis: usize) -> Option<usize> {
-        self.place(axis * trace::AXIS_SIGNALS.len())
+        self.of_axis(axis, 0)
     }
 
-    /// Column of a number of an axis; the order is that of [`trace::AXIS_SIGNALS`].
+    /// Column of the name of a slave's master.
+    pub(crate) fn master(&self, axis: usize) -> Option<usize> {
+        self.of_axis(axis, 7)
+    }
+
+    /// Column of a number of an axis, if it has it; the order is that of [`trace::AXIS_SIGNALS`] and then
+    /// [`trace::SLAVE_SIGNALS`].
     pub(crate) fn number(&self, axis: usize, number: AxisNumber) -> Option<usize> {
         let place = match number {
             AxisNumber::Position => 1,
@@ -92,8 +111,14 @@ impl Layout {
             AxisNumber::Jerk => 4,
             AxisNumber::Snap => 5,
             AxisNumber::ActualPosition => 6,
+            AxisNumber::Deviation => 8,
+            AxisNumber::Phase => 9,
         };
-        self.place(axis * trace::AXIS_SIGNALS.len() + place)
+        self.of_axis(axis, place)
+    }
+
+    fn of_axis(&self, axis: usize, place: usize) -> Option<usize> {
+        self.place(self.axes.get(axis)?.clone().nth(place)?)
     }
 }
 
@@ -108,7 +133,10 @@ pub(crate) fn header(script: &Script) -> trace::Header {
         axes: script
             .axes
             .iter()
-            .map(|axis| told::axis(&axis.name, &axis.unit, &axis.config))
+            .map(|axis| trace::Axis {
+                slave: axis.slave,
+                ..told::axis(&axis.name, &axis.unit, &axis.config)
+            })
             .collect(),
         inputs: script
             .inputs
@@ -162,12 +190,16 @@ fn blocks(script: &Script) -> Vec<trace::Instance> {
 /// A guest program stands in a trace as an instance whose pins are its symbols. All are outputs, and zero before it writes
 /// them.
 fn program(program: &Program) -> trace::Instance {
-    let pin = |symbol: &Symbol| trace::Pin {
-        name: symbol.name.clone(),
-        iec_type: symbol.ty.iec_name().to_owned(),
-        direction: trace::Direction::Output,
-        default: zero(Kind::of_iec_type(symbol.ty.iec_name())),
-        named: false,
+    let pin = |symbol: &Symbol| {
+        let own = symbol.variable.as_ref().map(Variable::type_name);
+        let iec_type = own.unwrap_or_else(|| symbol.ty.iec_name());
+        trace::Pin {
+            name: symbol.name.clone(),
+            iec_type: iec_type.to_owned(),
+            direction: trace::Direction::Output,
+            default: zero(Kind::of_iec_type(iec_type)),
+            named: false,
+        }
     };
     trace::Instance {
         name: program.name.clone(),

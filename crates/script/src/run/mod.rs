@@ -2,6 +2,7 @@
 
 mod bench;
 pub(crate) mod cells;
+mod formulas;
 mod guests;
 mod layout;
 mod notes;
@@ -11,6 +12,7 @@ mod schedule;
 mod session;
 mod values;
 
+pub(crate) use formulas::turned;
 pub use recorded::{RecordingError, judge_recording};
 pub(crate) use rows::{Derivatives, Rows};
 use schedule::PENDING_MAX;
@@ -19,6 +21,7 @@ pub use session::{Change, Session};
 use crate::CELLS_MAX;
 use crate::claims::{Failure, Verdict};
 use crate::model::Script;
+use crate::why::Reason;
 use standstill_scan::{Executor, ProgramConfig, TaskConfig, Watchdog};
 use standstill_trace::{Claim, ClaimFailure, ClaimVerdict, Trace};
 
@@ -32,6 +35,10 @@ pub struct Outcome {
     pub trace: Trace,
     /// The script's claims in file order, judged.
     pub verdicts: Vec<Verdict>,
+    /// Why claims fail, the likeliest first; empty where all hold.
+    pub why: Vec<Reason>,
+    shifts: Vec<rows::Shift>,
+    truths: formulas::Truths,
 }
 
 impl Outcome {
@@ -128,6 +135,17 @@ pub fn run_with(script: &Script, mut progress: impl FnMut(u64)) -> Result<Outcom
         }
     }
     Ok(session.finish())
+}
+
+/// Calls `look` with the rows of a script's own run.
+pub(crate) fn rows_of(script: &Script, outcome: &Outcome, look: impl FnOnce(&Rows<'_>)) {
+    look(&Rows {
+        script,
+        layout: &layout::Layout::new(script),
+        trace: &outcome.trace,
+        shifts: &outcome.shifts,
+        truths: &outcome.truths,
+    });
 }
 
 fn told(verdict: &Verdict) -> Claim {

@@ -1,10 +1,12 @@
 //! Claims judged on a recording: a trace that was not made by the script.
 
+use super::formulas::{Formulas, Truths};
 use super::layout::{self, Layout};
 use super::rows::{Rows, Shift};
 use super::{Outcome, told};
 use crate::claims;
-use crate::model::{AxisNumber, ClaimKind, Comparison, Condition, Point, Script, Signal, Test};
+use crate::model::{AxisNumber, Claim, ClaimKind, Comparison, Point, Script, Signal, Test};
+use crate::why;
 use standstill_record::text::shift;
 use standstill_trace::Trace;
 use std::collections::{BTreeMap, BTreeSet};
@@ -55,17 +57,42 @@ pub fn judge_recording(script: &Script, mut recording: Trace) -> Result<Outcome,
     let layout = Layout::of(script, &recording);
     all_there(script, &layout)?;
     let shifts = shifts(script, &recording);
-    let verdicts = claims::judge(&Rows {
+    let truths = truths(script, &layout, &recording, &shifts);
+    let rows = Rows {
         script,
         layout: &layout,
         trace: &recording,
         shifts: &shifts,
-    });
+        truths: &truths,
+    };
+    let verdicts = claims::judge(&rows);
+    let why = why::why(&rows, &verdicts);
     recording.set_claims(verdicts.iter().map(told).collect());
     Ok(Outcome {
         trace: recording,
         verdicts,
+        why,
+        shifts,
+        truths,
     })
+}
+
+/// The values that the expressions of conditions have in each row.
+fn truths(script: &Script, layout: &Layout, trace: &Trace, shifts: &[Shift]) -> Truths {
+    let mut truths = Truths::new(script);
+    if let Ok(mut formulas) = Formulas::new(script) {
+        for scan in 0..trace.scans() as u64 {
+            let rows = Rows {
+                script,
+                layout,
+                trace,
+                shifts,
+                truths: &Truths::default(),
+            };
+            formulas.look(&rows, scan, &mut truths);
+        }
+    }
+    truths
 }
 
 /// Where coordinates moved, which a trace tells in its notes.
@@ -91,13 +118,19 @@ fn all_there(script: &Script, layout: &Layout) -> Result<(), RecordingError> {
     let columns = layout::header(script).columns();
     let own = Layout::new(script);
     let missing = |signal: &Signal| {
+        if let Signal::Formula(index) = signal {
+            let formula = script.formulas.get(*index)?;
+            let mut inputs = formula.inputs.iter().map(|input| &input.signal);
+            let lacks = inputs.find(|signal| column(layout, signal).is_none())?;
+            return Some(columns.get(column(&own, lacks)?)?.name.clone());
+        }
         if column(layout, signal).is_some() {
             return None;
         }
         Some(columns.get(column(&own, signal)?)?.name.clone())
     };
     let mut broken = script.claims.iter().filter_map(|claim| {
-        let lacks: BTreeSet<_> = signals(&claim.kind).iter().filter_map(missing).collect();
+        let lacks: BTreeSet<_> = signals(claim).iter().filter_map(missing).collect();
         (!lacks.is_empty()).then_some((claim, lacks))
     });
     let Some((claim, lacks)) = broken.next() else {
@@ -119,30 +152,30 @@ fn column(layout: &Layout, signal: &Signal) -> Option<usize> {
     match *signal {
         Signal::Point(point) => layout.point(point),
         Signal::State(axis) => layout.state(axis),
+        Signal::Master(axis) => layout.master(axis),
         Signal::Axis(axis, number) => layout.number(axis, number),
         Signal::Difference(axis, _) => layout.number(axis, AxisNumber::Position),
+        Signal::Formula(_) => None,
     }
 }
 
 /// Everything a claim looks at.
-fn signals(kind: &ClaimKind) -> Vec<Signal> {
+fn signals(claim: &Claim) -> Vec<Signal> {
     let mut found = Vec::new();
-    let mut add = |conditions: &[Condition]| {
-        for condition in conditions {
-            found.push(condition.signal.clone());
-            compared(&condition.test, &mut found);
-        }
-    };
-    match kind {
-        ClaimKind::At(_, that) | ClaimKind::By(_, that) | ClaimKind::Once(_, that) => add(that),
-        ClaimKind::Always { during, that, .. } | ClaimKind::Never { during, that, .. } => {
-            add(during);
-            add(that);
-        }
+    match &claim.kind {
         ClaimKind::Exclusive(_, points) => {
             found.extend(points.iter().map(|(_, point): &(_, Point)| Signal::Point(*point)));
         }
         ClaimKind::WithinLimits { axis, .. } => found.push(Signal::Axis(*axis, AxisNumber::Position)),
+        ClaimKind::Follows { follow, .. } => {
+            found.extend([follow.slave, follow.master].map(|axis| Signal::Axis(axis, AxisNumber::Position)));
+        }
+        _ => {}
+    }
+    let window = claim.window.from.iter().chain(&claim.window.to).flatten();
+    for condition in claim.kind.conditions().into_iter().chain(window) {
+        found.push(condition.signal.clone());
+        compared(&condition.test, &mut found);
     }
     found
 }
@@ -154,7 +187,7 @@ fn compared(test: &Test, found: &mut Vec<Signal>) {
     };
     for comparison in comparisons {
         match comparison {
-            Comparison::SameAs(_, other) => found.push(other.clone()),
+            Comparison::SameAs(_, other) | Comparison::NearTo { of: other, .. } => found.push(other.clone()),
             // A script's nesting is bounded by its reader.
             Comparison::Ne(inner) => compared(inner, found),
             Comparison::Near { .. }
@@ -162,7 +195,8 @@ fn compared(test: &Test, found: &mut Vec<Signal>) {
             | Comparison::Ge(_)
             | Comparison::Lt(_)
             | Comparison::Gt(_)
-            | Comparison::AbsLe(_) => {}
+            | Comparison::AbsLe(_)
+            | Comparison::Whole(..) => {}
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Conditions on the rows of a trace.
 
 use super::cells;
+use super::formulas::Truths;
 use super::layout::Layout;
-use crate::model::{AxisNumber, Comparison, Condition, Point, Script, Signal, Test};
+use crate::model::{AxisNumber, Comparison, Condition, Point, Script, Signal, Test, Variable};
 use standstill_fb::{PinType, Value};
 use standstill_record::told::enum_number;
 use standstill_trace::{Cell, Trace};
@@ -15,6 +16,8 @@ pub(crate) struct Rows<'a> {
     pub(crate) trace: &'a Trace,
     /// In order of scans.
     pub(crate) shifts: &'a [Shift],
+    /// What expressions were.
+    pub(crate) truths: &'a Truths,
 }
 
 /// The coordinates of an axis moved in a scan.
@@ -37,11 +40,13 @@ impl<'a> Rows<'a> {
         let column = match *signal {
             Signal::Point(point) => self.layout.point(point)?,
             Signal::State(axis) => self.layout.state(axis)?,
+            Signal::Master(axis) => self.layout.master(axis)?,
             Signal::Axis(axis, number) => self.layout.number(axis, number)?,
             Signal::Difference(axis, order) => {
                 let [.., last] = self.differences(axis, scan, order)?;
                 return Some(Cell::Real(last));
             }
+            Signal::Formula(formula) => return self.truths.get(formula, scan).map(Cell::Bool),
         };
         self.trace.cell(usize::try_from(scan).ok()?, column)
     }
@@ -50,7 +55,11 @@ impl<'a> Rows<'a> {
     pub(crate) fn too_early(&self, signal: &Signal, scan: u64) -> bool {
         match *signal {
             Signal::Difference(_, order) => self.layout.is_of_recording() && scan <= order.into(),
-            Signal::Point(_) | Signal::State(_) | Signal::Axis(..) => false,
+            Signal::Point(_)
+            | Signal::State(_)
+            | Signal::Axis(..)
+            | Signal::Master(_)
+            | Signal::Formula(_) => false,
         }
     }
 
@@ -178,6 +187,7 @@ impl<'a> Rows<'a> {
                     (wanted, ty) => name == cells::value_text(self.script, ty, wanted),
                 }
             }
+            Test::Word(wanted) => cell == Cell::Name(wanted),
             Test::Compare(comparisons) => comparisons
                 .iter()
                 .all(|comparison| self.compares(signal, comparison, cell, scan)),
@@ -190,6 +200,10 @@ impl<'a> Rows<'a> {
             // Equal infinities have no difference.
             Comparison::Near { near, within } => {
                 is(&|value| value == *near || (value - near).abs() <= *within)
+            }
+            Comparison::NearTo { of, plus, within, .. } => {
+                let other = self.cell(of, scan).and_then(number).map(|other| other + plus);
+                other.is_some_and(|near| is(&|value| value == near || (value - near).abs() <= *within))
             }
             Comparison::Le(bound) => is(&|value| value <= *bound),
             Comparison::Ge(bound) => is(&|value| value >= *bound),
@@ -204,7 +218,20 @@ impl<'a> Rows<'a> {
                 },
                 None => false,
             },
+            Comparison::Whole(relation, bound) => {
+                let whole = self.variable(signal).and_then(|variable| variable.whole_in(cell));
+                whole.is_some_and(|whole| relation.holds(whole, *bound))
+            }
         }
+    }
+
+    /// The variable of Structured Text that a signal stands for, if it is one.
+    fn variable(&self, signal: &Signal) -> Option<&'a Variable> {
+        let Signal::Point(Point::Symbol(program, symbol)) = *signal else {
+            return None;
+        };
+        let program = self.script.programs.get(program)?;
+        program.symbols.get(symbol)?.variable.as_ref()
     }
 
     /// Type of the pin a signal stands for, if it is one.
@@ -218,9 +245,12 @@ impl<'a> Rows<'a> {
                 let program = self.script.programs.get(program)?;
                 program.symbols.get(symbol).map(|symbol| symbol.ty)
             }
-            Signal::Point(Point::Input(_)) | Signal::State(_) | Signal::Axis(..) | Signal::Difference(..) => {
-                None
-            }
+            Signal::Point(Point::Input(_) | Point::Formula(_))
+            | Signal::State(_)
+            | Signal::Axis(..)
+            | Signal::Master(_)
+            | Signal::Difference(..)
+            | Signal::Formula(_) => None,
         }
     }
 }

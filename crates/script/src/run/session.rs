@@ -6,8 +6,9 @@ use super::layout::{self, Layout};
 use super::{Outcome, RunError, executor, told};
 use crate::CELLS_MAX;
 use crate::claims::{self, Standing, Standings};
-use crate::model::{Point, Script};
+use crate::model::{Point, Script, Variable};
 use crate::read::time;
+use crate::why;
 use standstill_fb::{Direction, PinType, Value};
 use standstill_scan::Executor;
 use standstill_trace::{Trace, shortest};
@@ -95,7 +96,7 @@ impl<'a> Session<'a> {
         self.bench.check()?;
         // A guest that faults has stopped the resource: the run goes on while its axes ramp down.
         if let Some(&fault) = report.mode.fault()
-            && !self.bench.has_guest_fault()
+            && !self.bench.has_fault()
         {
             return Err(RunError::Internal(self.executor.describe(fault).to_string()));
         }
@@ -177,8 +178,14 @@ impl<'a> Session<'a> {
     #[must_use]
     pub fn text(&self, point: Point) -> Option<String> {
         let value = self.value(point)?;
+        if let Some(variable) = self
+            .variable(point)
+            .filter(|_| !matches!(value, Value::Time(_)) || self.is_wide(point))
+        {
+            return Some(variable.text(value));
+        }
         let ty = match point {
-            Point::Input(_) | Point::Symbol(..) => None,
+            Point::Input(_) | Point::Symbol(..) | Point::Formula(_) => None,
             Point::Pin(instance, pin) => {
                 let instance = self.script.blocks.get(instance)?;
                 instance.block.pins().nth(pin).map(|pin| pin.ty)
@@ -212,6 +219,7 @@ impl<'a> Session<'a> {
         if let Point::Symbol(program, symbol) = point
             && let Some(symbol) =
                 (self.script.programs.get(program)).and_then(|program| program.symbols.get(symbol))
+            && symbol.variable.is_none()
             && !symbol.own.holds(value)
         {
             let ty = symbol.own.iec_name();
@@ -232,8 +240,12 @@ impl<'a> Session<'a> {
     pub fn obstacle(&self, point: Point) -> Option<&'static str> {
         let (instance, pin) = match point {
             Point::Input(_) => return None,
+            Point::Formula(_) => return Some("it is an expression"),
             Point::Symbol(_, 0) => return Some("the runtime writes it"),
-            Point::Symbol(..) => return None,
+            Point::Symbol(..) => {
+                let variable = self.variable(point).filter(|variable| !variable.is_settable());
+                return variable.map(|_| "only inputs, global variables and those AT an address are set");
+            }
             Point::Pin(instance, pin) => (instance, pin),
         };
         let instance = self.script.blocks.get(instance)?;
@@ -250,13 +262,29 @@ impl<'a> Session<'a> {
         }
     }
 
+    /// The variable of Structured Text at a point.
+    fn variable(&self, point: Point) -> Option<&'a Variable> {
+        let Point::Symbol(program, symbol) = point else {
+            return None;
+        };
+        let program = self.script.programs.get(program)?;
+        program.symbols.get(symbol)?.variable.as_ref()
+    }
+
+    fn is_wide(&self, point: Point) -> bool {
+        self.variable(point).is_some_and(Variable::is_wide)
+    }
+
     /// The value that a text stands for at a point, and as JSON.
     fn parse(&self, point: Point, text: &str) -> Result<(Value, String), String> {
         if let Some(obstacle) = self.obstacle(point) {
             return Err(obstacle.to_owned());
         }
+        if let Some(whole) = self.variable(point).and_then(|variable| variable.parse(text)) {
+            return whole;
+        }
         let ty = match point {
-            Point::Input(_) | Point::Symbol(..) => None,
+            Point::Input(_) | Point::Symbol(..) | Point::Formula(_) => None,
             Point::Pin(instance, pin) => self
                 .script
                 .blocks
@@ -332,15 +360,23 @@ impl<'a> Session<'a> {
     /// Judges the claims on the rows so far.
     #[must_use]
     pub fn finish(self) -> Outcome {
-        let verdicts = claims::judge(&self.bench.rows());
-        let (mut trace, _) = self.bench.into_trace();
+        let rows = self.bench.rows();
+        let verdicts = claims::judge(&rows);
+        let why = why::why(&rows, &verdicts);
+        let (mut trace, shifts, truths) = self.bench.into_rows();
         trace.set_claims(verdicts.iter().map(told).collect());
-        Outcome { trace, verdicts }
+        Outcome {
+            trace,
+            verdicts,
+            why,
+            shifts,
+            truths,
+        }
     }
 
     /// The rows so far without judging the claims: those of a run that was stopped speak of scans that never came.
     #[must_use]
     pub fn into_trace(self) -> Trace {
-        self.bench.into_trace().0
+        self.bench.into_rows().0
     }
 }

@@ -12,6 +12,8 @@ pub(crate) struct Values {
     pub(crate) instances: Vec<BlockInstance>,
     /// Of guest programs: as they were after their last call, and what was written since.
     pub(crate) symbols: Vec<Vec<Value>>,
+    /// Of the expressions of wires, as they were read last.
+    pub(crate) formulas: Vec<Option<Value>>,
 }
 
 impl Values {
@@ -30,6 +32,7 @@ impl Values {
             variables: script.inputs.iter().map(|input| input.initial).collect(),
             instances,
             symbols: Vec::new(),
+            formulas: vec![None; script.formulas.len()],
         })
     }
 
@@ -39,6 +42,7 @@ impl Values {
             Point::Input(index) => self.variables.get(index).copied(),
             Point::Pin(instance, pin) => self.instances.get(instance)?.get(pin),
             Point::Symbol(program, symbol) => self.symbols.get(program)?.get(symbol).copied(),
+            Point::Formula(index) => *self.formulas.get(index)?,
         }
     }
 
@@ -63,6 +67,8 @@ impl Values {
                 let place = self.symbols.get_mut(program)?.get_mut(symbol)?;
                 *place = convert(value, cells::type_of(*place))?;
             }
+            // Nobody writes it.
+            Point::Formula(_) => return None,
         }
         Some(())
     }

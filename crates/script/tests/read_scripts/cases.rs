@@ -230,6 +230,27 @@ pub fn cases() -> Vec<Case> {
             "\"power_timeout\": \"T#1500us\", \"state\"",
         ),
         case(
+            "bad_value",
+            Schema,
+            "a slave that slows its master",
+            "\"state\"",
+            "\"coupling\": {\"on_limit\": \"slow_master\"}, \"state\"",
+        ),
+        case(
+            "unsupported",
+            Schema,
+            "a filter of a master's actual values",
+            "\"state\"",
+            "\"coupling\": {\"actual_filter\": 16}, \"state\"",
+        ),
+        case(
+            "bad_value",
+            Reader,
+            "no deviation at all",
+            "\"state\"",
+            "\"coupling\": {\"max_deviation\": 0}, \"state\"",
+        ),
+        case(
             "missing_key",
             Schema,
             "a time without a window",
@@ -692,7 +713,7 @@ pub fn cases() -> Vec<Case> {
             Schema,
             "a block of the standard that is not built",
             "\"n\", \"type\": \"MC_MoveAbsolute\"",
-            "\"n\", \"type\": \"MC_GearIn\"",
+            "\"n\", \"type\": \"MC_CamIn\"",
         ),
         case(
             "unknown_pin",
@@ -1018,6 +1039,13 @@ pub fn cases() -> Vec<Case> {
             "a file where there are none",
             "\"scans\": 100,",
             "\"scans\": 100, \"include\": \"feeder.machine.json\",",
+        ),
+        case(
+            "bad_expression",
+            Reader,
+            "an expression that is no BOOL",
+            "{\"m.Busy\": true}",
+            "\"=speed\"",
         ),
         case(
             "bad_program",

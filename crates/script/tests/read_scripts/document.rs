@@ -7,9 +7,14 @@ use std::path::{Path, PathBuf};
 
 const DOCUMENT: &str = include_str!("../../../../docs/scan-scripts.md");
 
-/// Where the programs of the examples lie.
-fn guests() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests/guests")
+/// Where a program of the examples lies.
+fn program(name: &str) -> PathBuf {
+    let folder = match name.ends_with(".st") {
+        true => "structured_text",
+        false => "guests",
+    };
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests");
+    tests.join(folder).join(name)
 }
 
 /// The ```json blocks.
@@ -34,7 +39,7 @@ fn every_example_is_read() {
         let text = serde_json::to_string_pretty(&script).unwrap();
         let mut files = |_: &str| Err("there are no files here".to_owned());
         let mut guest = |path: &str| {
-            let found = std::fs::read(guests().join(path));
+            let found = std::fs::read(program(path));
             found.map_err(|error| error.to_string())
         };
         read_with_programs(&text, "docs/scan-scripts.md", &[], &mut files, &mut guest)

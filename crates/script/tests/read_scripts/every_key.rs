@@ -1,8 +1,8 @@
 //! A script with every key of the format, looked at where the example of the format says nothing.
 
 use standstill_axis::{
-    AboveLimit, AxisId, BlockDetection, DrivePosition, HomeDirection, Homing, Limits, MoveProfile, PowerOff,
-    Procedure, Scaling, SwitchEdge,
+    AboveLimit, AxisId, BlockDetection, DrivePosition, Following, HomeDirection, Homing, Limits, MoveProfile,
+    OnLimit, OnMasterLost, PowerOff, Procedure, Scaling, SwitchEdge,
 };
 use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
@@ -46,6 +46,12 @@ fn axes_take_their_configuration() {
     );
     assert_eq!(x.config.on_power_off, PowerOff::Coast);
     assert_eq!(x.config.power_timeout, Some(4));
+    let following = Following {
+        on_limit: OnLimit::Error,
+        max_deviation: Some(0.5),
+        on_master_lost: OnMasterLost::Hold,
+    };
+    assert_eq!(x.config.following, following);
     assert!(x.config.needs_homed);
     assert!(!x.config.hardware_limits);
     let homing = Homing {

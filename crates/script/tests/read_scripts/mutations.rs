@@ -3,6 +3,7 @@
 
 use crate::cases::GOOD;
 use standstill_script::{format, read};
+use standstill_testkit::Random;
 
 const TEXTS: [&str; 3] = [
     GOOD,
@@ -42,18 +43,6 @@ const PIECES: &[&str] = &[
     "\u{0}",
     "\n",
 ];
-
-/// xorshift64*: small, and the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33) as usize % bound.max(1)
-    }
-}
 
 fn check(text: &str) {
     match read(text, "mutated.scan.json", &[]) {
@@ -117,15 +106,15 @@ fn scripts_with_pieces_exchanged_never_panic() {
     let mut random = Random(0x5eed);
     for round in 0..1500 {
         let mut text = TEXTS[round % TEXTS.len()].to_owned();
-        for _ in 0..=random.below(2) {
+        for _ in 0..=random.place(2) {
             let places = tokens(&text);
-            let (start, end) = places[random.below(places.len())];
-            let piece = match random.below(3) {
+            let (start, end) = places[random.place(places.len())];
+            let piece = match random.place(3) {
                 0 => {
-                    let (from, to) = places[random.below(places.len())];
+                    let (from, to) = places[random.place(places.len())];
                     text[from..to].to_owned()
                 }
-                _ => PIECES[random.below(PIECES.len())].to_owned(),
+                _ => PIECES[random.place(PIECES.len())].to_owned(),
             };
             text.replace_range(start..end, &piece);
         }
@@ -138,14 +127,14 @@ fn scripts_with_bytes_changed_never_panic() {
     let mut random = Random(0xb17e);
     for round in 0..1500 {
         let mut bytes = TEXTS[round % TEXTS.len()].as_bytes().to_vec();
-        for _ in 0..=random.below(3) {
-            let at = random.below(bytes.len());
-            match random.below(3) {
-                0 => bytes[at] = random.below(256) as u8,
-                1 => drop(bytes.drain(at..(at + random.below(40)).min(bytes.len()))),
+        for _ in 0..=random.place(3) {
+            let at = random.place(bytes.len());
+            match random.place(3) {
+                0 => bytes[at] = random.place(256) as u8,
+                1 => drop(bytes.drain(at..(at + random.place(40)).min(bytes.len()))),
                 _ => {
-                    let copy: Vec<u8> = bytes[at..(at + random.below(40)).min(bytes.len())].to_vec();
-                    let to = random.below(bytes.len());
+                    let copy: Vec<u8> = bytes[at..(at + random.place(40)).min(bytes.len())].to_vec();
+                    let to = random.place(bytes.len());
                     bytes.splice(to..to, copy);
                 }
             }

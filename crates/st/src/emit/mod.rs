@@ -74,6 +74,19 @@ impl FaultKind {
             Self::Loop => "a loop that did not end",
         }
     }
+
+    /// What the value of such a fault says; nothing if there is none.
+    #[must_use]
+    pub fn value(self, value: i64) -> Option<String> {
+        let what = match self {
+            Self::DivisionByZero => "the dividend",
+            Self::Index => "the index",
+            Self::Subrange => "the value",
+            Self::Choice => "K",
+            Self::Step | Self::Unbound | Self::Loop => return None,
+        };
+        Some(format!("{what} is {value}"))
+    }
 }
 
 /// A place where a fault can happen.
@@ -237,13 +250,8 @@ fn module(context: &Context<'_, '_>, mut functions: Vec<(Target, Function)>, ima
 
     // Functions that no other calls.
     let mut exported = vec![("plc_scan".to_owned(), scan_function(&program.tasks, None))];
-    for (place, task) in program
-        .tasks
-        .iter()
-        .enumerate()
-        .filter(|(_, task)| !task.name.is_empty())
-    {
-        let name = format!("plc_task_{}", task.name.to_ascii_uppercase());
+    for (place, task) in program.tasks.iter().enumerate() {
+        let name = crate::symbols::entry(&task.name);
         exported.push((name, scan_function(&program.tasks, Some(place))));
     }
     let mut exports = ExportSection::new();

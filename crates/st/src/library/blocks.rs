@@ -75,6 +75,7 @@ fn pin_type(ty: PinType, types: &mut Types, named: &mut BTreeMap<String, TypeId>
         PinType::Bool => Elementary::Bool,
         PinType::Int => Elementary::Int,
         PinType::Lreal => Elementary::Lreal,
+        PinType::Uint => Elementary::Uint,
         PinType::Word => Elementary::Word,
         PinType::Dword => Elementary::Dword,
         PinType::Time => Elementary::Time,

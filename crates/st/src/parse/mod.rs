@@ -10,7 +10,7 @@ mod type_spec;
 use crate::error::{Code, Diagnostic, Found, quoted};
 use crate::lex::{Token, Word, lex};
 use crate::source::{Sources, Span};
-use crate::syntax::{Ident, Item};
+use crate::syntax::{Expression, Ident, Item};
 
 /// How deep expressions, statements, types and initial values may be nested.
 pub const NESTING_MOST: usize = 200;
@@ -19,21 +19,21 @@ pub const NESTING_MOST: usize = 200;
 pub(crate) fn parse(sources: &Sources, found: &mut Found) -> Vec<Item> {
     let mut items = Vec::new();
     for file in 0..sources.count() {
-        let (text, start) = sources.text_of(file);
-        let tokens = lex(text, start, found);
-        let mut parser = Parser {
-            text,
-            start,
-            tokens,
-            at: 0,
-            told_at: None,
-            depth: 0,
-            open: Vec::new(),
-            found,
-        };
-        parser.file(&mut items);
+        Parser::new(sources, file, found).file(&mut items);
     }
     items
+}
+
+/// Reads the first file, which is one expression.
+pub(crate) fn expression(sources: &Sources, found: &mut Found) -> Expression {
+    let mut parser = Parser::new(sources, 0, found);
+    let expression = parser.expression();
+    if parser.token() != Token::End {
+        let shown = parser.shown();
+        let message = format!("the expression is over before {shown}");
+        parser.tell_here(Code::Syntax, message, "");
+    }
+    expression
 }
 
 struct Parser<'a> {
@@ -51,7 +51,22 @@ struct Parser<'a> {
     found: &'a mut Found,
 }
 
-impl Parser<'_> {
+impl<'a> Parser<'a> {
+    /// At the beginning of a file.
+    fn new(sources: &'a Sources, file: usize, found: &'a mut Found) -> Self {
+        let (text, start) = sources.text_of(file);
+        Self {
+            text,
+            start,
+            tokens: lex(text, start, found),
+            at: 0,
+            told_at: None,
+            depth: 0,
+            open: Vec::new(),
+            found,
+        }
+    }
+
     fn token(&self) -> Token {
         self.ahead(0)
     }

@@ -153,7 +153,12 @@ pub fn judge_by(snap: &Path, trace: &Trace, yardstick: Yardstick) -> Result<Verd
         yardstick,
         difference,
         companion,
-        subjects: text::moved(&reviewed, &found).map(|names| names.into_iter().map(str::to_owned).collect()),
+        subjects: text::moved(&reviewed, &found).map(|names| {
+            names
+                .into_iter()
+                .map(|name| printable(name).into_owned())
+                .collect()
+        }),
         text,
     })))
 }

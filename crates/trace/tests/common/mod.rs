@@ -5,12 +5,23 @@
 
 #![allow(dead_code, reason = "each test target takes what it needs")]
 
+use std::fs;
+use std::path::{Path, PathBuf};
+
 use standstill_trace::{
     Axis, Cell, Claim, ClaimVerdict, Direction, Header, Input, Instance, Limits, Note, Pin, Trace,
 };
 
 /// Position, velocity, acceleration, jerk, snap.
 pub type State = [f64; 5];
+
+/// An empty folder for one test.
+pub fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder for the test");
+    folder
+}
 
 const CYCLE: f64 = 0.001;
 
@@ -80,6 +91,7 @@ pub fn header() -> Header {
             },
             modulo: None,
             scaling: None,
+            slave: false,
         }],
         inputs: vec![Input {
             name: "GO".into(),
@@ -274,14 +286,9 @@ pub fn hard_values() -> Trace {
         1e21,
         1e-7,
     ];
-    // xorshift64: any bit pattern may turn up, denormals and NaNs too.
-    let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
-    for _ in 0..2000 {
-        bits ^= bits << 13;
-        bits ^= bits >> 7;
-        bits ^= bits << 17;
-        reals.push(f64::from_bits(bits));
-    }
+    // Any bit pattern may turn up, denormals and NaNs too.
+    let mut random = standstill_testkit::Random(1);
+    reals.extend((0..2000).map(|_| f64::from_bits(random.bits())));
     let names = ["red", "with, comma", "with \"quotes\"", "7", "TRUE", "grün"];
     for (at, &real) in reals.iter().enumerate() {
         let integer = [i64::MIN, i64::MAX, 0, -1][at % 4];

@@ -7,6 +7,7 @@ mod string;
 
 use crate::error::{Code, Diagnostic, quoted};
 use crate::model::Span;
+use crate::read::hints;
 use std::collections::BTreeMap;
 
 /// Deepest nesting of objects and lists; scripts need about 8. It bounds the reader's own recursion.
@@ -135,7 +136,7 @@ impl<'a> Parser<'a> {
                     "infinity" | "inf" => Some("write \"Infinity\" or \"-Infinity\" with quotes".to_owned()),
                     _ if other.starts_with('.') => Some("a digit must stand before the point".to_owned()),
                     _ if other.starts_with('+') => Some("a number has no plus sign".to_owned()),
-                    _ => None,
+                    _ => hints::typed(other).map(|value| format!("write {value}: a number has no type here")),
                 };
                 return Err(self.unexpected("a value").maybe_help(help));
             }
@@ -158,7 +159,7 @@ impl<'a> Parser<'a> {
             self.skip_space();
             let start = self.at;
             if self.peek() != Some('"') {
-                return Err(self.unexpected("a key in double quotes"));
+                return Err(self.no_key(members.last()));
             }
             let text = self.string()?;
             let span = Span { start, end: self.at };
@@ -180,6 +181,22 @@ impl<'a> Parser<'a> {
             if self.next_or_close("}", open)? {
                 return Ok(Json::Map(members));
             }
+        }
+    }
+
+    /// What stands where a key is wanted; after a number it may be what follows a decimal comma.
+    fn no_key(&self, last: Option<&(Key, Node)>) -> Diagnostic {
+        let diagnostic = self.unexpected("a key in double quotes");
+        let digits = &self.rest()[..self
+            .rest()
+            .find(|c: char| !c.is_ascii_digit())
+            .unwrap_or(self.rest().len())];
+        match last.map(|(_, node)| (&node.json, node.span)) {
+            Some((Json::Number(_), span)) if !digits.is_empty() => {
+                let before = self.text.get(span.start..span.end).unwrap_or_default();
+                diagnostic.help(format!("numbers have a decimal point: {before}.{digits}"))
+            }
+            _ => diagnostic,
         }
     }
 
@@ -293,6 +310,8 @@ impl<'a> Parser<'a> {
             diagnostic.help("JSON has no comments; axes, blocks, steps and claims may carry \"note\": \"..\"")
         } else if found == "'" {
             diagnostic.help("strings stand in double quotes")
+        } else if CURLY.iter().any(|quote| found.starts_with(*quote)) {
+            diagnostic.help("a typographic quote, as word processors make them: write \" before and after")
         } else if rest.starts_with(char::is_alphabetic) && expected.contains("key") {
             diagnostic.help(format!("write \"{found}\""))
         } else {
@@ -311,6 +330,11 @@ impl<'a> Parser<'a> {
         diagnostic.related(here, format!("`{token}` may be missing here"))
     }
 }
+
+/// Quotation marks that JSON does not know.
+const CURLY: [char; 6] = [
+    '\u{201c}', '\u{201d}', '\u{201e}', '\u{2018}', '\u{2019}', '\u{ab}',
+];
 
 /// The number grammar of RFC 8259, which is narrower than what Rust parses.
 fn is_json_number(text: &str) -> bool {

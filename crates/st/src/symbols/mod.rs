@@ -1,12 +1,17 @@
 //! Where the variables of a module stand, and which place in the text a fault means.
 
-use crate::Options;
+mod bind;
+mod columns;
+
+pub(crate) use bind::bind;
+pub use columns::BlockAt;
+
 use crate::check::{Instance, Program, UnitKind};
 use crate::emit::{FaultKind, Site};
-use crate::error::{Code, Diagnostic};
 use crate::source::{Position, Sources, Span};
 use crate::start;
 use crate::types::{Elementary, Member, MemberKind, Members, Start, Type, TypeId, Types};
+use standstill_fb::BlockInfo;
 
 /// What a variable is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,6 +33,8 @@ pub enum Value {
     Plain,
     /// An element of an enumeration: names and numbers.
     Element(Vec<(String, i128)>),
+    /// Itself, from the first to the last of a subrange.
+    Range(i128, i128),
 }
 
 /// A variable, or a part of one, that has an elementary type.
@@ -62,11 +69,13 @@ pub struct Place {
     pub kind: FaultKind,
 }
 
-/// A task of a CONFIGURATION; the module exports `plc_task_` and its name in upper case, which runs it alone.
+/// A task of a CONFIGURATION, or the programs that have none.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Task {
-    /// Its name.
+    /// Its name; empty for the programs without a task.
     pub name: String,
+    /// The function that the module exports to run it alone: `plc_task_` and its name in upper case.
+    pub entry: String,
     /// Time from one run to the next (ns); in every scan if absent.
     pub interval_ns: Option<i64>,
     /// 0 comes first.
@@ -77,6 +86,8 @@ pub struct Task {
 struct Unit {
     name: String,
     members: Members,
+    /// The block, of one of the library.
+    library: Option<&'static BlockInfo>,
 }
 
 #[derive(Clone, Debug)]
@@ -131,16 +142,17 @@ impl Symbols {
             section: Section::Internal,
             instance: true,
         }));
-        let tasks = program
-            .tasks
-            .iter()
-            .filter(|task| !task.name.is_empty())
-            .map(|task| Task {
-                name: task.name.clone(),
-                interval_ns: task.interval_ns,
-                priority: task.priority,
-            });
+        let tasks = program.tasks.iter().map(|task| Task {
+            name: task.name.clone(),
+            entry: entry(&task.name),
+            interval_ns: task.interval_ns,
+            priority: task.priority,
+        });
         let units = program.units.into_iter().map(|unit| Unit {
+            library: match unit.kind {
+                UnitKind::Library(info) => Some(info),
+                _ => None,
+            },
             name: unit.name,
             members: unit.members,
         });
@@ -153,7 +165,7 @@ impl Symbols {
         }
     }
 
-    /// The tasks of the CONFIGURATION; none if there is none.
+    /// The tasks of the CONFIGURATION; without one a single task without a name.
     #[must_use]
     pub fn tasks(&self) -> &[Task] {
         &self.tasks
@@ -176,26 +188,26 @@ impl Symbols {
     /// is one instance of a program. A global variable hides a local one. `%IX0.0` finds the variable AT that address.
     #[must_use]
     pub fn find(&self, path: &str) -> Option<Symbol> {
-        let mut rest = path;
         if path.starts_with('%') {
-            return self.leaves(usize::MAX).into_iter().find(|symbol| {
+            let at = |symbol: &Symbol| {
                 symbol
                     .at
                     .as_deref()
                     .is_some_and(|at| at.eq_ignore_ascii_case(path))
-            });
+            };
+            return self.leaves(usize::MAX).into_iter().find(at);
         }
+        self.symbol(&self.part(path)?)
+    }
+
+    /// What stands at a path.
+    fn part(&self, path: &str) -> Option<Part> {
+        let mut rest = path;
         let name = next_name(&mut rest)?;
         let named = |root: &&Root| root.member.name.eq_ignore_ascii_case(name);
         let mut part = match self.roots.iter().find(named) {
             Some(root) => self.root(root),
-            None => {
-                let mut instances = self.roots.iter().filter(|root| root.instance);
-                let (only, None) = (instances.next()?, instances.next()) else {
-                    return None;
-                };
-                self.member(&self.root(only), name)?
-            }
+            None => self.member(&self.root(self.only_instance()?), name)?,
         };
         while !rest.is_empty() {
             part = if let Some(behind) = rest.strip_prefix('.') {
@@ -208,7 +220,16 @@ impl Symbols {
                 self.element(&part, inner)?
             };
         }
-        self.symbol(&part)
+        Some(part)
+    }
+
+    /// The instance of a program, where there is one.
+    fn only_instance(&self) -> Option<&Root> {
+        let mut instances = self.roots.iter().filter(|root| root.instance);
+        let (only, None) = (instances.next()?, instances.next()) else {
+            return None;
+        };
+        Some(only)
     }
 
     /// All variables of elementary types, at most so many, in the order of memory.
@@ -216,7 +237,7 @@ impl Symbols {
     pub fn leaves(&self, most: usize) -> Vec<Symbol> {
         let mut found = Vec::new();
         for root in &self.roots {
-            self.collect(&self.root(root), most, &mut found);
+            self.search(&self.root(root), columns::Wanted::All, most, &mut found);
         }
         found
     }
@@ -245,7 +266,7 @@ impl Symbols {
             MemberKind::InOut | MemberKind::External(_) => return None,
             MemberKind::Input => Section::Input,
             MemberKind::Output => Section::Output,
-            MemberKind::Field if of.section != Section::Global => of.section,
+            MemberKind::Field => of.section,
             _ => Section::Internal,
         };
         Some(Part {
@@ -296,7 +317,7 @@ impl Symbols {
         let ty = self.types.elementary(part.ty)?;
         let (type_name, value) = match self.types.get(part.ty) {
             Type::Enumeration(of) => (of.name.clone(), Value::Element(of.elements.clone())),
-            Type::Subrange { name, .. } => (name.clone(), Value::Plain),
+            Type::Subrange { name, low, high, .. } => (name.clone(), Value::Range(*low, *high)),
             _ => (ty.name().to_owned(), Value::Plain),
         };
         Some(Symbol {
@@ -310,78 +331,11 @@ impl Symbols {
             value,
         })
     }
+}
 
-    fn collect(&self, part: &Part, most: usize, found: &mut Vec<Symbol>) {
-        if found.len() >= most {
-            return;
-        }
-        if let Some(symbol) = self.symbol(part) {
-            found.push(symbol);
-            return;
-        }
-        if let Some(members) = self.members(part.ty) {
-            for part in members
-                .list
-                .iter()
-                .filter_map(|member| self.part_of(part, member))
-            {
-                self.collect(&part, most, found);
-            }
-        }
-        let Type::Array(array) = self.types.get(part.ty) else {
-            return;
-        };
-        let mut indices: Vec<i64> = array.bounds.iter().map(|(low, _)| *low).collect();
-        for number in 0..array.count {
-            if found.len() >= most {
-                return;
-            }
-            let shown: Vec<_> = indices.iter().map(ToString::to_string).collect();
-            let element = Part {
-                path: format!("{}[{}]", part.path, shown.join(", ")),
-                ty: array.of,
-                address: part.address + number * array.stride,
-                section: part.section,
-                retain: part.retain,
-                at: None,
-            };
-            self.collect(&element, most, found);
-            for (index, (low, high)) in indices.iter_mut().zip(&array.bounds).rev() {
-                if *index < *high {
-                    *index += 1;
-                    break;
-                }
-                *index = *low;
-            }
-        }
-    }
-
-    /// The name of the function block a variable is an instance of.
-    #[must_use]
-    pub fn block_of(&self, path: &str) -> Option<&str> {
-        let mut rest = path;
-        let name = next_name(&mut rest)?;
-        let root = self
-            .roots
-            .iter()
-            .find(|root| root.member.name.eq_ignore_ascii_case(name))?;
-        let mut part = self.root(root);
-        while !rest.is_empty() {
-            part = if let Some(behind) = rest.strip_prefix('.') {
-                rest = behind;
-                let name = next_name(&mut rest)?;
-                self.member(&part, name)?
-            } else {
-                let (inner, behind) = rest.strip_prefix('[')?.split_once(']')?;
-                rest = behind;
-                self.element(&part, inner)?
-            };
-        }
-        match self.types.get(part.ty) {
-            Type::Block(unit) => self.units.get(unit.0 as usize).map(|unit| unit.name.as_str()),
-            _ => None,
-        }
-    }
+/// The function that a module exports to run a task alone.
+pub(crate) fn entry(task: &str) -> String {
+    format!("plc_task_{}", task.to_ascii_uppercase())
 }
 
 /// Takes the name a path goes on with.
@@ -419,121 +373,6 @@ pub(crate) fn image(program: &Program<'_>, memory: &mut [u8]) {
     }
     for instance in &program.instances {
         start::members_of(program, instance.unit, memory, instance.address);
-    }
-}
-
-/// Writes which axis each variable of type AXIS_REF begins as.
-pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) -> Result<(), Diagnostic> {
-    let mut found = Vec::new();
-    for global in &program.globals {
-        references(
-            program,
-            global.member.ty,
-            &global.member.name,
-            global.member.offset,
-            &mut found,
-        );
-    }
-    for instance in &program.instances {
-        let members = &program.units[instance.unit.0 as usize].members;
-        let path = &instance.name;
-        member_references(program, &members.list, path, instance.address, &mut found);
-    }
-    for (path, _, address) in &found {
-        let name = path.rsplit('.').next().unwrap_or(path);
-        let axis = options
-            .axes
-            .iter()
-            .position(|axis| axis.eq_ignore_ascii_case(name));
-        if let Some(axis) = axis {
-            put(memory, *address, axis as u32 + 1);
-        }
-    }
-    let only = match program.instances.as_slice() {
-        [one] => Some(one.name.as_str()),
-        _ => None,
-    };
-    for (path, number) in &options.bindings {
-        let within = only.map(|name| format!("{name}.{path}"));
-        let same = |known: &str| {
-            known.eq_ignore_ascii_case(path)
-                || within.as_ref().is_some_and(|it| known.eq_ignore_ascii_case(it))
-        };
-        match found.iter().find(|(known, ..)| same(known)) {
-            Some((.., address)) => put(memory, *address, (*number).into()),
-            None => {
-                let known = found.iter().map(|(path, ..)| path.as_str());
-                let guess = crate::error::did_you_mean(path, known);
-                let message = format!("there is no variable `{path}` of type AXIS_REF to bind to an axis");
-                return Err(Diagnostic::error(Code::UnknownName, Span::default(), message).maybe_help(guess));
-            }
-        }
-    }
-    Ok(())
-}
-
-fn put(memory: &mut [u8], address: u32, number: u32) {
-    let at = address as usize;
-    if let Some(place) = memory.get_mut(at..at + 4) {
-        place.copy_from_slice(&number.to_le_bytes());
-    }
-}
-
-/// All variables of type AXIS_REF: path, type and address.
-type References = Vec<(String, TypeId, u32)>;
-
-fn references(program: &Program<'_>, ty: TypeId, path: &str, address: u32, found: &mut References) {
-    /// More axes than any script has.
-    const MOST: usize = 65_536;
-    if found.len() >= MOST {
-        return;
-    }
-    match program.types.get(ty) {
-        Type::Structure(structure) if structure.name == "AXIS_REF" => {
-            found.push((path.to_owned(), ty, address))
-        }
-        Type::Structure(structure) => {
-            member_references(program, &structure.members.list, path, address, found)
-        }
-        Type::Block(unit) => {
-            let unit = &program.units[unit.0 as usize];
-            if !matches!(unit.kind, UnitKind::Library(_)) {
-                member_references(program, &unit.members.list, path, address, found);
-            }
-        }
-        Type::Array(array) if program.types.elementary(array.of).is_none() && array.bounds.len() == 1 => {
-            let before = found.len();
-            for number in 0..array.count {
-                let index = array.bounds.first().map_or(0, |(low, _)| *low) + i64::from(number);
-                references(
-                    program,
-                    array.of,
-                    &format!("{path}[{index}]"),
-                    address + number * array.stride,
-                    found,
-                );
-                // What the first element does not have no other one has.
-                if found.len() == before {
-                    return;
-                }
-            }
-        }
-        _ => {}
-    }
-}
-
-fn member_references(
-    program: &Program<'_>,
-    members: &[Member],
-    path: &str,
-    address: u32,
-    found: &mut References,
-) {
-    for member in members {
-        if !matches!(member.kind, MemberKind::InOut | MemberKind::External(_)) {
-            let path = format!("{path}.{}", member.name);
-            references(program, member.ty, &path, address + member.offset, found);
-        }
     }
 }
 

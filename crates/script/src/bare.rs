@@ -1,0 +1,89 @@
+//! A program in Structured Text that runs without a script: for a first look at it.
+
+use crate::model::Script;
+use crate::read::names::identifier_error;
+use crate::read::read_within;
+use crate::read::time::literal;
+use crate::run::{Outcome, run_with};
+use crate::suite::{Allowed, SuiteError, included, program_file, shown};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// What runs, and for how long.
+#[derive(Clone, Copy, Debug)]
+pub struct Bare<'a> {
+    /// The files of the project; the last one names the program.
+    pub sources: &'a [PathBuf],
+    /// The machine file with its axes; none without one.
+    pub axes: Option<&'a Path>,
+    /// The PROGRAM, where there are several.
+    pub program: Option<&'a str>,
+    /// Length of a scan (ns), above 0.
+    pub cycle_ns: i64,
+    /// How many.
+    pub scans: u64,
+}
+
+/// Runs a program in Structured Text by itself: no steps, no claims.
+///
+/// # Errors
+/// [`SuiteError`], but for [`SuiteError::Golden`].
+pub fn run_bare(
+    bare: Bare<'_>,
+    parameters: &[(String, f64)],
+    allowed: &Allowed,
+    progress: impl FnMut(u64),
+) -> Result<(Script, Outcome), SuiteError> {
+    let names: Vec<String> = bare.sources.iter().map(|path| shown(path)).collect();
+    let path = bare.sources.last().cloned().unwrap_or_default();
+    let mut program = json!({ "st": names });
+    if let (Some(name), Some(members)) = (bare.program, program.as_object_mut()) {
+        members.insert("program".to_owned(), json!(name));
+    }
+    let key = path.file_stem().and_then(|stem| stem.to_str());
+    let key = key
+        .filter(|key| identifier_error(key).is_none())
+        .unwrap_or("cell");
+    let mut script = json!({
+        "standstill": 1,
+        "title": shown(&path),
+        "cycle": literal(bare.cycle_ns),
+        "scans": bare.scans,
+        "axes": {},
+        "blocks": [],
+        "programs": { key: program },
+        "expect": [],
+    });
+    let machine = bare
+        .axes
+        .and_then(|path| path.file_name())
+        .map(|name| name.to_string_lossy().into_owned());
+    if let (Some(machine), Some(members)) = (&machine, script.as_object_mut()) {
+        members.insert("include".to_owned(), json!(machine));
+    }
+    let mut load = |inner: &str| match bare.axes {
+        // Named by whoever runs it; what it includes in its turn is looked at as ever.
+        Some(path) if Some(inner) == machine.as_deref() => {
+            crate::suite::read_text(path).map_err(|error| error.to_string())
+        }
+        Some(path) => included(path, inner, allowed),
+        None => Err("there is no machine file".to_owned()),
+    };
+    let mut source = |inner: &str| {
+        let place = names.iter().position(|name| name == inner);
+        let path = place.and_then(|place| bare.sources.get(place));
+        path.map_or_else(|| Err("it was not given".to_owned()), |path| program_file(path))
+    };
+    let text = format!("{script:#}\n");
+    let most = allowed.guest_memory;
+    let script = read_within(
+        &text,
+        "(the script for it)",
+        parameters,
+        &mut load,
+        &mut source,
+        most,
+    )?;
+    let outcome = run_with(&script, progress).map_err(|source| SuiteError::Run { path, source })?;
+    Ok((script, outcome))
+}

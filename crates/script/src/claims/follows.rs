@@ -1,0 +1,237 @@
+//! The claim that a slave is where the law of a gear puts it, judged on published positions alone, to the bit.
+//!
+//! The law is y = c + (num/den)(m + phase), rounded once: x of a row is the f64 nearest to it, the even one of two that are
+//! equally near. c is a number of the anchor, where one is given. Otherwise the first judged row is the anchor, as far as
+//! its bits tell: its x has been rounded, too, so c lies within half a unit in the last place of it. Every row leaves less
+//! room for c; where none is left, a row is wrong. All of it is done in integers ([`Exact`]), everything times 2 den, so
+//! nothing here is rounded, and nothing is shared with the code that moves the axes.
+//!
+//! A master with turns is unwrapped from row to row by the shorter way round: no axis goes half a turn in a scan. A slave
+//! with turns may be any whole number of them from y; what rounds to a whole turn is 0 of the next one.
+
+use super::exact::Exact;
+use super::judge::{Listed, failure, within_run};
+use super::{Failure, describe};
+use crate::model::{AxisNumber, Condition, Follow, Range, Signal};
+use crate::run::Rows;
+use standstill_trace::{Cell, shortest};
+use std::ops::RangeInclusive;
+
+/// What is known of c: the least and the greatest it may be, both times 2 den.
+#[derive(Clone, Copy)]
+struct Room {
+    least: Exact,
+    greatest: Exact,
+}
+
+/// The law as far as the rows so far tell it.
+struct Law {
+    room: Room,
+    /// Whole turns of the master since it is known.
+    turns: i64,
+    /// Position of the master in the row before.
+    master: f64,
+}
+
+/// The positions of the judged rows are the law's to the bit.
+pub(super) fn failures(
+    rows: &Rows<'_>,
+    path: &str,
+    range: Range,
+    during: &[Condition],
+    follow: &Follow,
+) -> Vec<Failure> {
+    let scans = match within_run(rows, path, range) {
+        Ok(scans) => scans,
+        Err(failure) => return vec![failure],
+    };
+    let judge = Judge { rows, follow };
+    let mut judged = judged(rows, scans.clone(), during).peekable();
+    let mut anchor = follow.anchor;
+    let mut law: Option<Law> = None;
+    let mut first = None;
+    let mut broken = Listed::default();
+    for scan in scans {
+        if judge.is_renamed(scan) {
+            law = None;
+        }
+        let [Some(master), Some(slave)] =
+            [follow.master, follow.slave].map(|axis| rows.position(axis, scan, 0))
+        else {
+            continue;
+        };
+        if let Some(law) = &mut law {
+            law.turns += judge.turns_between(law.master, master);
+            law.master = master;
+        }
+        if judged.next_if_eq(&scan).is_none() {
+            continue;
+        }
+        if !is_usual(master) || !is_usual(slave) {
+            first.get_or_insert_with(|| (scan, slave, "a number below 1e300".to_owned()));
+            broken.add(scan);
+            continue;
+        }
+        let known = law.get_or_insert_with(|| judge.begin(anchor.take(), master, slave, scan));
+        match judge.narrowed(known, slave, scan) {
+            Ok(room) => known.room = room,
+            Err(expected) => {
+                first.get_or_insert_with(|| (scan, slave, shortest(expected)));
+                broken.add(scan);
+            }
+        }
+    }
+    let Some((scan, slave, expected)) = first else {
+        return Vec::new();
+    };
+    let name = describe::axis_name(rows, follow.slave);
+    let text = format!(
+        "{} at scan {scan}, expected {expected}: {}; broken {broken}",
+        shortest(slave),
+        describe::law(rows, follow)
+    );
+    vec![failure(
+        &format!("{path}.follows.{name}.Position"),
+        Some(scan),
+        text,
+    )]
+}
+
+/// The rows that are judged: `while` holds in them and in the next ones.
+pub(super) fn judged<'a>(
+    rows: &'a Rows<'_>,
+    scans: RangeInclusive<u64>,
+    during: &'a [Condition],
+) -> impl Iterator<Item = u64> + 'a {
+    let holds = |scan| scan < rows.count() && rows.hold(during, scan);
+    let mut held = None;
+    scans.filter(move |&scan| {
+        let now = held.unwrap_or_else(|| holds(scan));
+        let next = holds(scan + 1);
+        held = Some(next);
+        now && next
+    })
+}
+
+/// Its neighbours are numbers, too, and their products with turns are.
+fn is_usual(position: f64) -> bool {
+    position.abs() < 1e300
+}
+
+struct Judge<'a> {
+    rows: &'a Rows<'a>,
+    follow: &'a Follow,
+}
+
+impl Judge<'_> {
+    fn turn_of(&self, axis: usize) -> Option<f64> {
+        self.rows.script.axes.get(axis)?.config.modulo
+    }
+
+    /// The coordinates of either axis moved in this scan.
+    fn is_renamed(&self, scan: u64) -> bool {
+        let shifts = self.rows.shifts;
+        let first = shifts.partition_point(|shift| shift.scan < scan);
+        let mut there = shifts.iter().skip(first).take_while(|shift| shift.scan == scan);
+        there.any(|shift| [self.follow.master, self.follow.slave].contains(&shift.axis))
+    }
+
+    /// Whole turns that the master has gone on in the step from one row to the next.
+    fn turns_between(&self, before: f64, now: f64) -> i64 {
+        match self.turn_of(self.follow.master) {
+            Some(turn) if now - before > turn / 2.0 => -1,
+            Some(turn) if before - now > turn / 2.0 => 1,
+            _ => 0,
+        }
+    }
+
+    /// Where the slave sees its master, times 2 num.
+    fn seen(&self, law: &Law, scan: u64) -> Exact {
+        let phase = match self
+            .rows
+            .cell(&Signal::Axis(self.follow.slave, AxisNumber::Phase), scan)
+        {
+            Some(Cell::Real(phase)) if is_usual(phase) => phase,
+            _ => 0.0,
+        };
+        let turn = self.turn_of(self.follow.master).unwrap_or(0.0);
+        let seen = Exact::of(law.master) + Exact::of(phase) + Exact::of(turn).times(law.turns);
+        seen.times(2 * i64::from(self.follow.num))
+    }
+
+    /// The law from this row on: through the anchor, where the master was nearest to that, or through this row.
+    fn begin(&self, anchor: Option<[f64; 2]>, master: f64, slave: f64, scan: u64) -> Law {
+        let mut law = Law {
+            room: Room {
+                least: Exact::ZERO,
+                greatest: Exact::ZERO,
+            },
+            turns: 0,
+            master,
+        };
+        law.room = match anchor {
+            Some([at, is]) => {
+                if let Some(turn) = self.turn_of(self.follow.master) {
+                    law.turns = nearest_whole((at - master) / turn);
+                }
+                let c = self.widened(Exact::of(is)) - Exact::of(at).times(2 * i64::from(self.follow.num));
+                Room {
+                    least: c,
+                    greatest: c,
+                }
+            }
+            None => self.room(&law, slave, 0, scan),
+        };
+        law
+    }
+
+    /// A number of the slave, times 2 den.
+    fn widened(&self, value: Exact) -> Exact {
+        value.times(2 * i64::from(self.follow.den))
+    }
+
+    /// What c may be where the law is rounded to `slave`, so many turns of it further on.
+    fn room(&self, law: &Law, slave: f64, turns: i64, scan: u64) -> Room {
+        let turn = self.turn_of(self.follow.slave);
+        let den = i64::from(self.follow.den);
+        // Twice the middles between it and its neighbours. What rounds to a whole turn is 0 of the next.
+        let (below, even_below) = match turn {
+            Some(turn) if slave == 0.0 => (Exact::of(turn.next_down()) - Exact::of(turn), is_even(turn)),
+            _ => (Exact::of(slave.next_down()) + Exact::of(slave), is_even(slave)),
+        };
+        let above = Exact::of(slave) + Exact::of(slave.next_up());
+        let at = self.widened(Exact::of(turn.unwrap_or(0.0)).times(turns)) - self.seen(law, scan);
+        // Of two that are equally near it is the even one; c is a whole number here.
+        let open = |is_even: bool| if is_even { Exact::ZERO } else { Exact::LEAST };
+        Room {
+            least: below.times(den) + at + open(even_below),
+            greatest: above.times(den) + at - open(is_even(slave)),
+        }
+    }
+
+    /// What is left of the room when the law is rounded to `slave` in this row, or where the slave should be.
+    fn narrowed(&self, law: &Law, slave: f64, scan: u64) -> Result<Room, f64> {
+        let target = law.room.least + self.seen(law, scan);
+        let whole = 2 * u64::from(self.follow.den);
+        let turn = self.turn_of(self.follow.slave);
+        let turns = turn.map_or(0, |turn| nearest_whole((target.quotient(whole) - slave) / turn));
+        let room = self.room(law, slave, turns, scan);
+        let left = Room {
+            least: room.least.max(law.room.least),
+            greatest: room.greatest.min(law.room.greatest),
+        };
+        if left.least <= left.greatest {
+            return Ok(left);
+        }
+        let turns = Exact::of(turn.unwrap_or(0.0)).times(turns);
+        Err((target - self.widened(turns)).quotient(whole))
+    }
+}
+
+fn is_even(value: f64) -> bool {
+    value.to_bits() & 1 == 0
+}
+
+fn nearest_whole(turns: f64) -> i64 {
+    turns.round() as i64
+}

@@ -1,0 +1,167 @@
+//! Claims that speak of events: answers, durations, counts, and windows by condition.
+
+use super::expect::is_edge;
+use super::json::{Json, Node};
+use super::value::{Fields, WHOLE_MAX};
+use super::{Reader, shape};
+use crate::error::{Code, Diagnostic};
+use crate::model::{Bounds, ClaimKind, Conditions, Window};
+
+impl Reader {
+    /// A claim with `when`, `after`, `duration` or `count`; `value` is what stands there.
+    pub(super) fn relative(
+        &mut self,
+        key: &str,
+        value: &Node,
+        fields: &Fields<'_>,
+        what: &str,
+    ) -> Option<ClaimKind> {
+        let range = self.range(fields);
+        let during = fields
+            .get("while")
+            .map_or(Some(Vec::new()), |node| self.conditions(node, "`while`"));
+        match key {
+            "duration" => {
+                let ends = self.ends(value);
+                let bounds = self.bounds(fields, what, |reader, node, key| reader.scans(node, key));
+                let each = fields
+                    .get("each")
+                    .map_or(Some(false), |node| self.boolean(node, "`each`"));
+                Some(ClaimKind::Duration {
+                    range: range?,
+                    during: during?,
+                    ends: ends?,
+                    bounds: bounds?,
+                    each: each?,
+                })
+            }
+            "count" => {
+                let that = self.conditions(value, "`count`");
+                let bounds = self.bounds(fields, what, |reader, node, key| {
+                    let number = reader.whole(node, key, 0..=WHOLE_MAX as i64)?;
+                    Some(number.unsigned_abs())
+                });
+                Some(ClaimKind::Count {
+                    range: range?,
+                    during: during?,
+                    that: that?,
+                    bounds: bounds?,
+                })
+            }
+            _ => {
+                let first = key == "after";
+                let limit = if first { "by" } else { "within" };
+                let when = self.conditions(value, if first { "`after`" } else { "`when`" });
+                let within = self
+                    .require(fields, limit, what)
+                    .and_then(|node| self.scans(node, if first { "`by`" } else { "`within`" }));
+                let that = self
+                    .require(fields, "that", what)
+                    .and_then(|node| self.conditions(node, "`that`"));
+                Some(ClaimKind::Answered {
+                    range: range?,
+                    during: during?,
+                    when: when?,
+                    within: within?,
+                    that: that?,
+                    first,
+                })
+            }
+        }
+    }
+
+    /// The begin and the end of a duration.
+    fn ends(&mut self, node: &Node) -> Option<[Conditions; 2]> {
+        let items = self.list(node, "`duration`")?;
+        let [begin, end] = items else {
+            let message = format!(
+                "`duration` takes two conditions, its begin and its end; here are {}",
+                items.len()
+            );
+            self.report(
+                Diagnostic::new(Code::BadValue, node.span, message)
+                    .help("for example \"duration\": [{\"GO\": true}, {\"move.Done\": true}]"),
+            );
+            return None;
+        };
+        let begin = self.conditions(begin, "the begin of `duration`");
+        let end = self.conditions(end, "the end of `duration`");
+        Some([begin?, end?])
+    }
+
+    /// `eq`, `le` and `ge`, of which there is at least one.
+    fn bounds(
+        &mut self,
+        fields: &Fields<'_>,
+        what: &str,
+        mut read: impl FnMut(&mut Self, &Node, &str) -> Option<u64>,
+    ) -> Option<Bounds> {
+        let mut bounds = Bounds::default();
+        let mut good = true;
+        let mut last = None;
+        for key in ["eq", "le", "ge"] {
+            let Some(node) = fields.get(key) else { continue };
+            last = Some(node);
+            let Some(number) = read(self, node, &format!("`{key}`")) else {
+                good = false;
+                continue;
+            };
+            if key != "le" {
+                bounds.ge = Some(bounds.ge.map_or(number, |ge| ge.max(number)));
+            }
+            if key != "ge" {
+                bounds.le = Some(bounds.le.map_or(number, |le| le.min(number)));
+            }
+        }
+        let Some(last) = last else {
+            let message = format!("{what} says how much it may be: give `le` or `ge`");
+            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
+            return None;
+        };
+        match (bounds.ge, bounds.le) {
+            (Some(ge), Some(le)) if ge > le => {
+                let message =
+                    format!("{what} contradicts itself: no number is at least {ge} and at most {le}");
+                self.report(
+                    Diagnostic::new(Code::BadValue, last.span, message)
+                        .help("widen the bounds, or turn them"),
+                );
+                None
+            }
+            _ => good.then_some(bounds),
+        }
+    }
+
+    /// A count of scans from 1 on.
+    pub(super) fn at_least_one(&mut self, node: &Node, what: &str) -> Option<u64> {
+        let scans = self.scans(node, what)?;
+        if scans > 0 {
+            return Some(scans);
+        }
+        let message = format!("{what} is 0: it must be one scan at least");
+        self.report(Diagnostic::new(Code::BadValue, node.span, message));
+        None
+    }
+
+    /// Where the scans of a claim begin and end by conditions.
+    pub(super) fn claim_window(&mut self, claim: &Node) -> Option<Window> {
+        let Json::Map(members) = &claim.json else {
+            return Some(Window::default());
+        };
+        let mut edge = |name: &str| {
+            let found = members
+                .iter()
+                .find(|(key, node)| key.text == name && is_edge(node));
+            let Some((_, node)) = found else {
+                return Some(None);
+            };
+            let fields = self.fields(node, &shape::WINDOW_EDGE)?;
+            let when = fields.get("when")?;
+            self.conditions(when, "`when`").map(Some)
+        };
+        Some(Window {
+            from: edge("from")?,
+            to: edge("to")?,
+        })
+    }
+}

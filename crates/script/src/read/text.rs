@@ -1,0 +1,391 @@
+//! Programs in Structured Text: their sources, their axes, and which of their variables are columns.
+
+use super::json::{Json, Node};
+use super::names::{Entity, suggestion};
+use super::program::{FAULT, LoadGuest};
+use super::task::MAIN;
+use super::value::Fields;
+use super::{Reader, is_note};
+use crate::error::{Code, Diagnostic, quoted};
+use crate::model::{Call, Doubt, Place, Point, Program, ProgramText, Span, Symbol, Task, Variable};
+use standstill_fb::PinType;
+use standstill_guest::Settings;
+use standstill_st::{self as st, Compiled, Options, Source, Symbols};
+use std::sync::Arc;
+
+/// Most files of a program.
+const FILES_MAX: usize = 64;
+
+/// Most variables of a program that are columns.
+const COLUMNS_MAX: usize = 4096;
+
+/// Most instances of blocks whose names are known; a guest has fewer.
+const BLOCKS_MAX: usize = 4096;
+
+/// Most variables among which the one that was meant is looked for.
+const GUESSES_MAX: usize = 2000;
+
+/// The warnings of a report.
+fn doubtful(report: &st::Report) -> Vec<Doubt> {
+    let each = report.diagnostics().iter();
+    let doubts = each.map(|it| {
+        let (from, _) = report.positions(it.span);
+        let (file, line, column) = (report.file_name(it.span), from.line, from.column);
+        Doubt {
+            message: format!("{file}:{line}:{column}: {}", it.message),
+            help: it.help.clone().unwrap_or_default(),
+        }
+    });
+    doubts.collect()
+}
+
+impl Reader {
+    /// A program that `st` gives the sources of.
+    pub(super) fn text_program(
+        &mut self,
+        name: &str,
+        fields: &Fields<'_>,
+        place: Place,
+        settings: Settings,
+        load: LoadGuest<'_>,
+    ) -> Option<Program> {
+        let files = self.sources(fields.get("st")?, load);
+        let bindings = self.bindings(fields);
+        let program = match fields.get("program") {
+            None => Some(None),
+            Some(node) => self.text(node, "`program`").map(|text| Some(text.to_owned())),
+        };
+        let options = Options {
+            program: program?,
+            library: false,
+            lint: false,
+            axes: self.axis_names.clone(),
+            bindings: bindings?,
+        };
+        let compiled = self.compiled(&files?, &options, fields)?;
+        let guest = match standstill_guest::Program::compile(&compiled.wasm, settings) {
+            Ok(guest) => guest,
+            Err(why) => {
+                let message = format!("the program {} cannot run: {why}", quoted(name));
+                self.report(Diagnostic::new(Code::BadProgram, fields.get("st")?.span, message));
+                return None;
+            }
+        };
+        let symbols = self.columns(name, fields, &compiled.symbols)?;
+        let blocks = compiled.symbols.blocks(BLOCKS_MAX);
+        let named = |at: st::BlockAt| {
+            let path = compiled.symbols.short(&at.path);
+            (at.address, format!("{name}.{path}"))
+        };
+        let text = ProgramText {
+            blocks: blocks.into_iter().map(named).collect(),
+            doubtful: doubtful(&compiled.report),
+            folder: self.folder.clone(),
+            symbols: compiled.symbols,
+        };
+        Some(Program {
+            name: name.to_owned(),
+            calls: Vec::new(),
+            guest,
+            symbols,
+            place,
+            text: Some(Arc::new(text)),
+        })
+    }
+
+    /// The files of `st`: their names in messages, and what stands in them.
+    fn sources(&mut self, node: &Node, load: LoadGuest<'_>) -> Option<Vec<(String, Vec<u8>)>> {
+        let items = match &node.json {
+            Json::List(items) => items.as_slice(),
+            _ => std::slice::from_ref(node),
+        };
+        if items.is_empty() || items.len() > FILES_MAX {
+            let message = format!("`st` names 1 to {FILES_MAX} files");
+            self.report(Diagnostic::new(Code::BadValue, node.span, message));
+            return None;
+        }
+        let folder = self.folder.clone();
+        self.each(items, |reader, item| {
+            let Json::Text(path) = &item.json else {
+                let wrong = reader.wrong_type(item, "`st`", "a path or a list of paths");
+                reader.report(wrong);
+                return None;
+            };
+            match load(path) {
+                Ok(bytes) => Some((format!("{folder}{path}"), bytes)),
+                Err(why) => {
+                    let message = format!("{} cannot be read: {why}", quoted(path));
+                    reader.report(Diagnostic::new(Code::BadProgram, item.span, message));
+                    None
+                }
+            }
+        })
+    }
+
+    /// The variables of type AXIS_REF that `axes` binds, with the number of their axis.
+    fn bindings(&mut self, fields: &Fields<'_>) -> Option<Vec<(String, u16)>> {
+        let Some(node) = fields.get("axes") else {
+            return Some(Vec::new());
+        };
+        let members = self.map(node, "`axes` of a program")?;
+        let mut bindings = Vec::new();
+        for (key, node) in members.iter() {
+            if is_note(key, node) && !matches!(self.names.get("note"), Some(Entity::Axis(_))) {
+                continue;
+            }
+            let index = self.axis_index(node, &quoted(&key.text));
+            bindings.push(index.and_then(|index| Some((key.text.clone(), u16::try_from(index + 1).ok()?))));
+        }
+        bindings.into_iter().collect()
+    }
+
+    /// Compiles; what is wrong with the sources is told by the report, which names their places.
+    fn compiled(
+        &mut self,
+        files: &[(String, Vec<u8>)],
+        options: &Options,
+        fields: &Fields<'_>,
+    ) -> Option<Compiled> {
+        let sources: Vec<_> = files.iter().map(|(name, bytes)| Source { name, bytes }).collect();
+        let report = match st::compile(&sources, options) {
+            Ok(compiled) => return Some(compiled),
+            Err(report) => report,
+        };
+        let unbound = |it: &&st::Diagnostic| it.code == st::Code::UnknownBinding;
+        if let Some(wrong) = report.diagnostics().iter().find(unbound) {
+            let members = fields.get("axes").map(|node| &node.json);
+            let key = match members {
+                Some(Json::Map(members)) => members
+                    .iter()
+                    .find(|(key, _)| wrong.message.contains(&format!("`{}`", key.text))),
+                _ => None,
+            };
+            let span = key.map_or(fields.brace(), |(key, _)| key.span);
+            self.report(
+                Diagnostic::new(Code::UnknownSignal, span, wrong.message.clone())
+                    .maybe_help(wrong.help.clone()),
+            );
+            return None;
+        }
+        let count = report.diagnostics().iter();
+        let count = count.filter(|it| it.severity == st::Severity::Error).count() + report.hidden();
+        let mistakes = if count == 1 { "a mistake" } else { "mistakes" };
+        let message = format!("the sources of this program have {mistakes}, told below");
+        let span = fields.get("st").map_or(fields.brace(), |node| node.span);
+        self.report(Diagnostic::new(Code::BadProgram, span, message));
+        self.reports.push(*report);
+        None
+    }
+
+    /// The variables that are columns, behind `Fault`.
+    fn columns(&mut self, name: &str, fields: &Fields<'_>, symbols: &Symbols) -> Option<Vec<Symbol>> {
+        let found = match fields.get("trace") {
+            None => symbols.usual(COLUMNS_MAX + 1),
+            Some(node) => {
+                let items = self.list(node, "`trace`")?;
+                let lists = self.each(items, |reader, item| {
+                    let path = reader.text(item, "a path of `trace`")?;
+                    let found = symbols.below(path, COLUMNS_MAX + 1);
+                    if found.is_none() {
+                        reader.unknown_variable(name, path, symbols, item.span);
+                    }
+                    found
+                })?;
+                lists.into_iter().flatten().collect()
+            }
+        };
+        if found.len() > COLUMNS_MAX {
+            let message = format!(
+                "the program {} has more than {COLUMNS_MAX} variables to show",
+                quoted(name)
+            );
+            let help = "name those that matter: \"trace\": [\"State\", \"Mv\"]";
+            self.report(Diagnostic::new(Code::TooLarge, fields.brace(), message).help(help));
+            return None;
+        }
+        let mut columns = vec![fault_symbol()];
+        for symbol in &found {
+            let column = column(symbols, symbol);
+            if !columns.iter().any(|known| known.name == column.name) {
+                columns.push(column);
+            }
+        }
+        Some(columns)
+    }
+
+    /// The variable of a program in Structured Text at a path. One that is no column yet becomes one.
+    pub(super) fn variable_point(
+        &mut self,
+        index: usize,
+        text: &Arc<ProgramText>,
+        path: &str,
+        span: Span,
+    ) -> Option<(Point, PinType)> {
+        let found = text
+            .symbols
+            .find(path)
+            .map(|symbol| column(&text.symbols, &symbol));
+        let program = self.programs.get_mut(index)?.as_mut()?;
+        let Some(found) = found else {
+            let name = program.name.clone();
+            self.unknown_variable(&name, path, &text.symbols, span);
+            return None;
+        };
+        let ty = found.ty;
+        let known = program
+            .symbols
+            .iter()
+            .position(|symbol| symbol.name == found.name);
+        let place = known.unwrap_or(program.symbols.len());
+        if known.is_none() {
+            program.symbols.push(found);
+        }
+        Some((Point::Symbol(index, place), ty))
+    }
+
+    fn unknown_variable(&mut self, name: &str, path: &str, symbols: &Symbols, span: Span) {
+        let inner = symbols.below(path, 1).and_then(|inner| inner.into_iter().next());
+        let diagnostic = if let Some(first) = inner {
+            let message = format!("{} has members or elements: which of them?", quoted(path));
+            let help = format!("for example `{name}.{}`", symbols.short(&first.path));
+            Diagnostic::new(Code::UnknownSignal, span, message).help(help)
+        } else {
+            let message = format!("the program {} has no variable {}", quoted(name), quoted(path));
+            let known = symbols.leaves(GUESSES_MAX);
+            let known: Vec<&str> = known.iter().map(|symbol| symbols.short(&symbol.path)).collect();
+            Diagnostic::new(Code::UnknownSignal, span, message)
+                .maybe_help(suggestion(path, known.iter().copied()))
+        };
+        self.report(diagnostic);
+    }
+
+    /// The tasks that run the programs: those of a CONFIGURATION become the script's.
+    pub(super) fn program_calls(&mut self, fields: &Fields<'_>, tasks: &mut Option<Vec<Task>>) {
+        let Some(Json::Map(members)) = fields.get("programs").map(|node| &node.json) else {
+            return;
+        };
+        for (index, (key, node)) in members.iter().enumerate() {
+            let Json::Map(inner) = &node.json else { continue };
+            let task = inner.iter().find(|(key, _)| key.text == "task");
+            let text = self
+                .programs
+                .get(index)
+                .and_then(|program| program.as_ref()?.text.clone());
+            let listed = text.map_or(Vec::new(), |text| text.symbols.tasks().to_vec());
+            let configured = listed.iter().any(|task| !task.name.is_empty());
+            if let (true, Some((_, node))) = (configured, task) {
+                let message = "the CONFIGURATION of the sources says which tasks there are";
+                self.report(Diagnostic::new(Code::BadValue, node.span, message).help("leave `task` out"));
+            }
+            let own = |reader: &mut Self, tasks: &Option<Vec<Task>>| {
+                let (name, span) = match task {
+                    None => (MAIN, key.span),
+                    Some((_, node)) => (reader.text(node, "`task`")?, node.span),
+                };
+                reader.task_index(name, span, tasks.as_deref())
+            };
+            let calls: Option<Vec<Call>> = if configured {
+                let call = |task: &st::Task| {
+                    let index = if task.name.is_empty() {
+                        self.task_index(MAIN, key.span, tasks.as_deref())
+                    } else {
+                        self.configured_task(task, fields, key.span, tasks.as_mut())
+                    };
+                    Some(Call {
+                        task: index?,
+                        entry: Some(task.entry.clone()),
+                    })
+                };
+                listed.iter().map(call).collect()
+            } else {
+                own(self, tasks).map(|task| vec![Call { task, entry: None }])
+            };
+            if let (Some(calls), Some(Some(program))) = (calls, self.programs.get_mut(index)) {
+                program.calls = calls;
+            }
+        }
+    }
+
+    /// The script's task that a TASK becomes.
+    fn configured_task(
+        &mut self,
+        task: &st::Task,
+        fields: &Fields<'_>,
+        span: Span,
+        tasks: Option<&mut Vec<Task>>,
+    ) -> Option<usize> {
+        let (tasks, cycle) = (tasks?, self.cycle_ns?);
+        let interval_ns = task.interval_ns.unwrap_or(cycle);
+        let title = format!("TASK {}", quoted(&task.name));
+        if interval_ns % cycle != 0 {
+            let (interval, cycle) = (super::time::literal(interval_ns), super::time::literal(cycle));
+            let message =
+                format!("{title} has an INTERVAL of {interval}, no whole multiple of the cycle {cycle}");
+            self.report(Diagnostic::new(Code::BadTime, span, message));
+            return None;
+        }
+        let interval = Some((interval_ns / cycle).unsigned_abs());
+        let upper = task.name.to_ascii_uppercase();
+        let Some(place) = self.task_places.get(&upper).copied() else {
+            self.task_places.insert(upper, tasks.len());
+            tasks.push(Task {
+                name: task.name.clone(),
+                interval,
+                priority: u32::try_from(task.priority.max(0)).unwrap_or(u32::MAX),
+                single: None,
+                watchdog: None,
+            });
+            return Some(tasks.len() - 1);
+        };
+        let there = tasks.get_mut(place)?;
+        let blocks = fields.get("blocks").map(|node| &node.json);
+        let nobody =
+            fields.get("tasks").is_none() && matches!(blocks, Some(Json::List(items)) if items.is_empty());
+        if nobody && there.interval == Some(1) {
+            // The task that is there by itself, and that nothing of the script runs in.
+            there.interval = interval;
+            return Some(place);
+        }
+        if there.interval != interval {
+            let message = format!(
+                "{title} runs every {}, the script's task of this name does not",
+                super::time::literal(interval_ns)
+            );
+            let help = "say the same `interval` in `tasks`, or leave the task out there";
+            self.report(Diagnostic::new(Code::BadTime, span, message).help(help));
+            return None;
+        }
+        Some(place)
+    }
+}
+
+/// The signal that the runtime writes.
+pub(super) fn fault_symbol() -> Symbol {
+    Symbol {
+        name: FAULT.to_owned(),
+        ty: PinType::Bool,
+        own: standstill_guest::SymbolType::Bool,
+        address: None,
+        export: None,
+        variable: None,
+    }
+}
+
+/// A variable as a signal. One called like the runtime's own is known by its whole path.
+fn column(symbols: &Symbols, symbol: &st::Symbol) -> Symbol {
+    let short = symbols.short(&symbol.path);
+    let own = short.eq_ignore_ascii_case(FAULT);
+    let variable = Variable::new(symbol);
+    Symbol {
+        name: if own {
+            symbol.path.clone()
+        } else {
+            short.to_owned()
+        },
+        ty: variable.signal(),
+        own: variable.read_as(),
+        address: Some(symbol.address),
+        export: None,
+        variable: Some(variable),
+    }
+}

@@ -1,0 +1,287 @@
+//! What is legal in a script and tests nothing, and what is changed without a word.
+//!
+//! Everything is read off the rows and notes of the run, after it. A warning never changes a verdict by itself.
+
+mod claims;
+mod subjects;
+
+use crate::advice;
+use crate::error::{Code, Diagnostic, File, file, place_of, rendered};
+use crate::model::{Script, Span, When};
+use crate::run::{Outcome, rows_of};
+use annotate_snippets::Level;
+use std::fmt;
+use std::sync::Arc;
+
+/// Warnings of one script that are rendered in full; the rest is counted.
+const SHOWN_MOST: usize = 20;
+
+/// What a warning is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum WarningKind {
+    /// It tests nothing.
+    Vacuous,
+    /// A value above its limit was lowered.
+    Clamped,
+    /// Something in a program in Structured Text works, and is probably not meant.
+    Doubtful,
+    /// It may be meant otherwise; no test fails for it.
+    Note,
+}
+
+impl WarningKind {
+    /// Its name in messages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Vacuous => "vacuous",
+            Self::Clamped => "clamped",
+            Self::Doubtful => "doubtful",
+            Self::Note => "note",
+        }
+    }
+}
+
+/// One warning.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// What it is about.
+    pub kind: WarningKind,
+    /// JSON path of what it is about, such as `steps[2]`.
+    pub path: String,
+    /// Where that stands.
+    pub span: Span,
+    /// What is the matter, one sentence without a full stop.
+    pub message: String,
+    /// What to do about it.
+    pub help: String,
+}
+
+impl Warning {
+    pub(crate) fn vacuous(path: String, span: Span, message: String) -> Self {
+        Self {
+            kind: WarningKind::Vacuous,
+            path,
+            span,
+            message,
+            help: "mend it or take it out; \"vacuous\": \"allowed\" beside it says that it is meant"
+                .to_owned(),
+        }
+    }
+
+    /// Whether a strict test fails for it.
+    #[must_use]
+    pub const fn counts(&self) -> bool {
+        !matches!(self.kind, WarningKind::Note)
+    }
+}
+
+/// The warnings of a script, in the order of its text.
+#[derive(Clone, Debug, Default)]
+pub struct Warnings {
+    files: Arc<[File]>,
+    /// All of them.
+    pub all: Vec<Warning>,
+}
+
+impl Warnings {
+    /// File, line and column of a warning, both numbers from 1.
+    #[must_use]
+    pub fn place(&self, warning: &Warning) -> (&str, usize, usize) {
+        let (line, column) = place_of(&self.files, warning.span);
+        (file(&self.files, warning.span).name(), line, column)
+    }
+
+    /// Whether a strict test fails for one of them.
+    #[must_use]
+    pub fn count(&self) -> bool {
+        self.all.iter().any(Warning::counts)
+    }
+
+    /// Each that a strict test fails for, as a line with its place.
+    pub fn lines(&self) -> impl Iterator<Item = String> + '_ {
+        let counted = self.all.iter().filter(|warning| warning.counts());
+        counted.map(|warning| {
+            let (_, line, column) = self.place(warning);
+            let (path, kind) = (&warning.path, warning.kind.name());
+            format!("{path} ({line}:{column}): {kind}: {}", warning.message)
+        })
+    }
+}
+
+/// For people, each with its place in the text.
+impl fmt::Display for Warnings {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for warning in self.all.iter().take(SHOWN_MOST) {
+            let level = match warning.kind {
+                WarningKind::Note => Level::NOTE,
+                WarningKind::Vacuous | WarningKind::Clamped | WarningKind::Doubtful => Level::WARNING,
+            };
+            let diagnostic =
+                Diagnostic::new(Code::BadValue, warning.span, &warning.message).help(&warning.help);
+            writeln!(
+                out,
+                "{}",
+                rendered(&self.files, &level, warning.kind.name(), &diagnostic)
+            )?;
+        }
+        match self.all.len().checked_sub(SHOWN_MOST) {
+            Some(more @ 1..) => writeln!(
+                out,
+                "warning: {more} more in {}",
+                file(&self.files, Span::default()).name()
+            ),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What the run of a script shows to test nothing, and to be changed on its way; `has_golden` says that a golden is held
+/// against it besides.
+///
+/// Cost: some passes over the rows for what is suspicious, and few looks for everything else.
+#[must_use]
+pub fn warnings(script: &Script, outcome: &Outcome, has_golden: bool) -> Warnings {
+    let mut all = Vec::new();
+    if script.files.is_empty() {
+        return Warnings {
+            files: Arc::clone(&script.files),
+            all,
+        };
+    }
+    rows_of(script, outcome, |rows| {
+        for (index, step) in script.steps.iter().enumerate() {
+            if !step.place.may_be_vacuous
+                && let Some(why) = not_applied(&step.when, rows)
+            {
+                all.push(Warning::vacuous(format!("steps[{index}]"), step.place.span, why));
+            }
+        }
+        claims::look(rows, &mut all);
+        subjects::look(rows, &mut all);
+    });
+    if !script.clamps_expected {
+        clamps(script, outcome, &mut all);
+    }
+    references(script, &mut all);
+    doubts(script, &mut all);
+    if script.claims.is_empty() && !has_golden {
+        let message = "the script has no claims and no golden: it tests nothing".to_owned();
+        let span = Span { start: 0, end: 1 };
+        all.push(Warning::vacuous("expect".to_owned(), span, message));
+    }
+    // An included file is shared: what one script does not use of it, another one does.
+    let own = script.files.first().map_or(0, File::after);
+    all.retain(|warning| warning.kind != WarningKind::Vacuous || warning.span.start < own);
+    all.sort_by_key(|warning| warning.span.start);
+    Warnings {
+        files: Arc::clone(&script.files),
+        all,
+    }
+}
+
+/// Why a step was never applied.
+fn not_applied(when: &When, rows: &crate::run::Rows<'_>) -> Option<String> {
+    let count = rows.count();
+    let last = count.saturating_sub(1);
+    match when {
+        When::At(at) if *at < count => None,
+        When::At(at) => Some(format!(
+            "the step is never applied: it is for scan {at}, and the run ended with scan {last}"
+        )),
+        When::Holds {
+            conditions, after, ..
+        } => {
+            let Some(held) = (0..count).find(|&scan| rows.hold(conditions, scan)) else {
+                return Some("the step is never applied: its `when` held in no scan".to_owned());
+            };
+            let applied = held.saturating_add(1).saturating_add(*after);
+            (applied >= count).then(|| {
+                format!("the step is never applied: its `when` held in scan {held}, so it is for scan {applied}, and the run ended with scan {last}")
+            })
+        }
+    }
+}
+
+/// Values that were lowered to a limit, each pin once.
+fn clamps(script: &Script, outcome: &Outcome, all: &mut Vec<Warning>) {
+    let mut told: Vec<(&str, &str)> = Vec::new();
+    for note in outcome.trace.notes() {
+        let Some((pin, values)) = note
+            .text
+            .strip_prefix("clamped: ")
+            .and_then(|text| text.split_once(' '))
+        else {
+            continue;
+        };
+        if told.contains(&(note.subject.as_str(), pin)) {
+            continue;
+        }
+        told.push((&note.subject, pin));
+        let owner = note.subject.split('.').next().unwrap_or_default();
+        let block = script.blocks.iter().position(|block| block.name == note.subject);
+        let (path, span) = match block {
+            Some(index) => (
+                format!("blocks[{index}]"),
+                script
+                    .blocks
+                    .get(index)
+                    .map_or(Span::default(), |block| block.place.span),
+            ),
+            None => {
+                let program = script.programs.iter().find(|program| program.name == owner);
+                let span = program.map_or(Span { start: 0, end: 1 }, |program| program.place.span);
+                (format!("programs.{owner}"), span)
+            }
+        };
+        let values = values.replacen(" to ", " was lowered to ", 1);
+        all.push(Warning {
+            kind: WarningKind::Clamped,
+            path,
+            span,
+            message: format!("{}.{pin} {values} in scan {}", note.subject, note.scan),
+            help: "stay below the limit of the axis, raise it, or say \"clamps\": \"expected\"".to_owned(),
+        });
+    }
+}
+
+/// What the compiler finds doubtful in programs in Structured Text.
+fn doubts(script: &Script, all: &mut Vec<Warning>) {
+    for program in &script.programs {
+        for doubt in program.text.iter().flat_map(|text| &text.doubtful) {
+            all.push(Warning {
+                kind: WarningKind::Doubtful,
+                path: format!("programs.{}", program.name),
+                span: program.place.span,
+                message: doubt.message.clone(),
+                help: doubt.help.clone(),
+            });
+        }
+    }
+}
+
+/// Simulated references that lie behind the search for them.
+fn references(script: &Script, all: &mut Vec<Warning>) {
+    for axis in &script.axes {
+        let homes = script.blocks.iter().any(|block| block.block.name == "MC_Home");
+        if axis.config.modulo.is_some() {
+            continue;
+        }
+        let behind = advice::reference_behind(
+            &axis.name,
+            axis.config.position,
+            &axis.config.homing,
+            axis.drive.switches(),
+        );
+        if let Some(message) = behind.filter(|_| homes) {
+            all.push(Warning {
+                kind: WarningKind::Note,
+                path: format!("axes.{}", axis.name),
+                span: axis.place.span,
+                message,
+                help: "turn `direction` of its `homing`, or move the switch, unless it is to turn at a limit switch"
+                    .to_owned(),
+            });
+        }
+    }
+}

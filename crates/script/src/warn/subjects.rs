@@ -1,0 +1,170 @@
+//! Inputs that nobody reads, blocks that do nothing, axes that nobody commands.
+
+use super::Warning;
+use crate::model::{Action, Claim, ClaimKind, Condition, Instance, Point, Script, Signal, Test, When, Wire};
+use crate::run::Rows;
+use standstill_trace::Cell;
+use std::collections::BTreeSet;
+
+/// Looks at every input variable, block, program and axis.
+pub(super) fn look(rows: &Rows<'_>, all: &mut Vec<Warning>) {
+    let script = rows.script;
+    let read = read_inputs(script);
+    for (index, input) in script.inputs.iter().enumerate() {
+        if !input.place.may_be_vacuous && !read.contains(&index) {
+            let message = format!("the input {} is read by no wire, step or claim", input.name);
+            all.push(Warning::vacuous(
+                format!("inputs.{}", input.name),
+                input.place.span,
+                message,
+            ));
+        }
+    }
+    let idle: Vec<bool> = (0..script.tasks.len())
+        .map(|task| never_runs(rows, task))
+        .collect();
+    let is_idle = |task: usize| idle.get(task).copied().unwrap_or(false);
+    for (index, instance) in script.blocks.iter().enumerate() {
+        if instance.place.may_be_vacuous {
+            continue;
+        }
+        let name = &instance.name;
+        let message = if is_idle(instance.task) {
+            Some(format!("{name} is never called: its task never runs"))
+        } else {
+            never_commanded(rows, index, instance)
+        };
+        if let Some(message) = message {
+            all.push(Warning::vacuous(
+                format!("blocks[{index}]"),
+                instance.place.span,
+                message,
+            ));
+        }
+    }
+    for program in &script.programs {
+        let runs = program.calls.iter().any(|call| !is_idle(call.task));
+        if !runs && !program.place.may_be_vacuous {
+            let message = format!(
+                "the program {} never runs: no task that runs calls it",
+                program.name
+            );
+            let path = format!("programs.{}", program.name);
+            all.push(Warning::vacuous(path, program.place.span, message));
+        }
+    }
+    for (index, axis) in script.axes.iter().enumerate() {
+        if !axis.place.may_be_vacuous && !is_commanded(script, index) {
+            let message = format!("no block commands the axis {}", axis.name);
+            all.push(Warning::vacuous(
+                format!("axes.{}", axis.name),
+                axis.place.span,
+                message,
+            ));
+        }
+    }
+}
+
+/// The input variables that wires, steps or claims look at.
+fn read_inputs(script: &Script) -> BTreeSet<usize> {
+    let wires = script.blocks.iter().flat_map(|block| &block.wires);
+    let wires = wires.map(|(_, wire)| wire);
+    let singles = script.tasks.iter().filter_map(|task| task.single.as_ref());
+    let wired = wires.chain(singles).flat_map(Wire::points).copied();
+    let of_formulas = script.formulas.iter().flat_map(|formula| &formula.inputs);
+    let of_formulas = of_formulas.filter_map(|input| match input.signal {
+        Signal::Point(point) => Some(point),
+        _ => None,
+    });
+    let whens = script.steps.iter().filter_map(|step| match &step.when {
+        When::Holds { conditions, .. } => Some(conditions),
+        When::At(_) => None,
+    });
+    let stop = script.stop_when.iter().map(|(conditions, _)| conditions);
+    let of_steps = whens.chain(stop).flatten().flat_map(points);
+    let of_claims = script.claims.iter().flat_map(claimed);
+    let inputs = wired.chain(of_formulas).chain(of_steps).chain(of_claims);
+    inputs
+        .filter_map(|point| match point {
+            Point::Input(index) => Some(index),
+            Point::Pin(..) | Point::Symbol(..) | Point::Formula(_) => None,
+        })
+        .collect()
+}
+
+/// The points a condition looks at.
+fn points(condition: &Condition) -> Vec<Point> {
+    let mut signals = vec![&condition.signal];
+    if let Test::Compare(comparisons) = &condition.test {
+        signals.extend(comparisons.iter().filter_map(|comparison| comparison.other()));
+    }
+    signals
+        .into_iter()
+        .filter_map(|signal| match signal {
+            Signal::Point(point) => Some(*point),
+            _ => None,
+        })
+        .collect()
+}
+
+fn claimed(claim: &Claim) -> Vec<Point> {
+    match &claim.kind {
+        ClaimKind::Exclusive(_, named) => named.iter().map(|(_, point)| *point).collect(),
+        kind => kind.conditions().into_iter().flat_map(points).collect(),
+    }
+}
+
+/// Whether a task has neither an interval nor an edge that starts it.
+fn never_runs(rows: &Rows<'_>, task: usize) -> bool {
+    let Some(task) = rows.script.tasks.get(task) else {
+        return false;
+    };
+    let Some(single) = task.single.as_ref().filter(|_| task.interval.is_none()) else {
+        return false;
+    };
+    // A wire with `not` may start it in any scan.
+    let ever = |point: &Point| is_ever(rows, *point);
+    match single {
+        Wire::Not(_) => false,
+        Wire::From(point) => !ever(point),
+        Wire::Any(points) => !points.iter().any(ever),
+        Wire::All(points) => !points.iter().all(ever),
+    }
+}
+
+/// Whether a point is TRUE in some scan.
+fn is_ever(rows: &Rows<'_>, point: Point) -> bool {
+    let signal = Signal::Point(point);
+    (0..rows.count()).any(|scan| rows.cell(&signal, scan) == Some(Cell::Bool(true)))
+}
+
+/// Why a block has nothing to do in the whole run.
+fn never_commanded(rows: &Rows<'_>, index: usize, instance: &Instance) -> Option<String> {
+    let triggers: Vec<(usize, &str)> = instance.triggers().collect();
+    let any = triggers
+        .iter()
+        .any(|(pin, _)| is_ever(rows, Point::Pin(index, *pin)));
+    if any || triggers.is_empty() {
+        return None;
+    }
+    let names: Vec<&str> = triggers.iter().map(|(_, name)| *name).collect();
+    Some(format!(
+        "{} is never commanded: {} is FALSE in every scan",
+        instance.name,
+        names.join(" and ")
+    ))
+}
+
+/// Whether a block that does more than read has the axis, or a step or a program acts on it.
+fn is_commanded(script: &Script, axis: usize) -> bool {
+    let commands =
+        |instance: &Instance| !instance.block.name.starts_with("MC_Read") && instance.has_axis(axis);
+    let mut actions = script.steps.iter().flat_map(|step| &step.actions);
+    let acts = actions.any(|action| match action {
+        Action::Fault { axis: on, .. } | Action::Clear { axis: on } | Action::Drive { axis: on, .. } => {
+            *on == axis
+        }
+        Action::Set(..) => false,
+    });
+    acts || !script.programs.is_empty() || script.blocks.iter().any(commands)
+}

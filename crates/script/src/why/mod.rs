@@ -1,0 +1,315 @@
+//! Why claims fail: the way from a failing claim back through wires, blocks, axes and steps, to where it stopped.
+//!
+//! Everything is read off the rows and notes of the run, after it: a run whose claims hold pays nothing. No golden is
+//! needed. The first reason is the likeliest; where a run stops for one reason, the others are what stands near it.
+
+mod axis;
+mod block;
+mod feed;
+mod look;
+mod order;
+mod standard;
+mod words;
+
+use crate::claims::Verdict;
+use crate::model::{Claim, ClaimKind, Condition, Follow, Point, Range, Signal};
+use crate::run::Rows;
+use look::Look;
+use std::collections::BTreeSet;
+
+/// Reasons told at most.
+const TOLD_MOST: usize = 6;
+
+/// Blocks, axes and wires that the walk from one claim visits at most.
+const VISITS_MOST: usize = 2_000;
+
+/// Inputs on one way back from a claim at most: so long may a chain of blocks be.
+const DEPTH_MOST: usize = 250;
+
+/// Failing claims that are walked back from at most.
+const CLAIMS_MOST: usize = 20;
+
+/// Cells and notes that all walks of a run look at, at most, before they end: so many, and [`PASSES_MOST`] for each row.
+const LOOKS_MOST: u64 = 50_000_000;
+
+/// See [`LOOKS_MOST`].
+const PASSES_MOST: u64 = 40;
+
+/// One thing that may be behind a failing test.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reason {
+    /// The scan it shows in first.
+    pub scan: Option<u64>,
+    /// What happened there, how it leads to the claim, and what to do about it, in one line.
+    pub text: String,
+    /// Paths of the failing claims it was found from.
+    pub claims: Vec<String>,
+}
+
+/// How much a finding explains; the first explains most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Rank {
+    /// A wire is read one scan late, and the claim is missed by as much.
+    Order,
+    /// Here it went no further.
+    Stopped,
+    /// A value was changed on its way.
+    Changed,
+    /// It goes on, too slowly.
+    Slow,
+    /// What the signal follows.
+    Follows,
+    /// What the script's author counts on.
+    Expected,
+}
+
+/// Where a walk ended.
+#[derive(Clone, Debug)]
+struct Finding {
+    rank: Rank,
+    scan: Option<u64>,
+    /// From the claim's signal to here, a phrase a step.
+    way: Vec<String>,
+    text: String,
+}
+
+impl Finding {
+    fn new(rank: Rank, scan: Option<u64>, text: String) -> Self {
+        Self {
+            rank,
+            scan,
+            way: Vec::new(),
+            text,
+        }
+    }
+
+    /// With one more step in front.
+    fn after(mut self, step: &str) -> Self {
+        self.way.insert(0, step.to_owned());
+        self
+    }
+
+    /// The way, shortened in the middle, and what it leads to.
+    fn line(&self) -> String {
+        let mut parts: Vec<&str> = self.way.iter().map(String::as_str).collect();
+        if parts.len() > 4 {
+            parts.splice(2..parts.len() - 2, [".."]);
+        }
+        parts.push(&self.text);
+        parts.join("; ")
+    }
+}
+
+/// What a claim asks of a row.
+#[derive(Clone, Copy)]
+enum Asked<'c> {
+    /// This condition must hold, and does not.
+    Holds(&'c Condition),
+    /// This condition must not hold, and does.
+    HoldsNot(&'c Condition),
+    /// This point must not be TRUE, and is.
+    Low(Point),
+    /// The axis must stay inside its limits.
+    Within(usize),
+}
+
+/// The walk from one claim.
+struct Walk<'a> {
+    look: Look<'a>,
+    visited: BTreeSet<(u8, usize, usize)>,
+    /// The inputs on the way from the claim to here.
+    path: Vec<Point>,
+}
+
+impl<'a> Walk<'a> {
+    fn new(look: Look<'a>) -> Self {
+        Self {
+            look,
+            visited: BTreeSet::new(),
+            path: Vec::new(),
+        }
+    }
+
+    /// Whether this place is new, and there may be more.
+    fn enter(&mut self, kind: u8, place: usize, inner: usize) -> bool {
+        self.visited.len() < VISITS_MOST
+            && self.path.len() < DEPTH_MOST
+            && !self.look.is_spent()
+            && self.visited.insert((kind, place, inner))
+    }
+
+    /// What `behind` finds, which is one step further on than `input`.
+    fn deeper(&mut self, input: Point, behind: impl FnOnce(&mut Self) -> Vec<Finding>) -> Vec<Finding> {
+        self.path.push(input);
+        let found = behind(self);
+        self.path.pop();
+        found
+    }
+
+    fn asked(&mut self, asked: Asked<'_>, since: u64, scan: u64) -> Vec<Finding> {
+        match asked {
+            Asked::Holds(condition) => {
+                let late = self.late(condition, scan);
+                let mut found = self.condition(condition, since, scan);
+                found.extend(late);
+                found
+            }
+            Asked::HoldsNot(condition) => self.standing(&condition.signal, scan),
+            Asked::Low(point) => self.standing(&Signal::Point(point), scan),
+            Asked::Within(axis) => self.axis(axis, scan),
+        }
+    }
+
+    /// Why a condition does not hold by `scan`, having been asked for since `since`.
+    fn condition(&mut self, condition: &Condition, since: u64, scan: u64) -> Vec<Finding> {
+        match condition.signal {
+            Signal::Point(Point::Pin(instance, pin)) if look::wants_false(condition) => {
+                self.standing(&Signal::Point(Point::Pin(instance, pin)), scan)
+            }
+            Signal::Point(Point::Pin(instance, pin)) if !self.look.is_bool(instance, pin) => {
+                self.number(instance, scan)
+            }
+            Signal::Point(point) => self.point(point, since, scan),
+            Signal::Formula(formula) => self.formula(formula, true, since, scan),
+            Signal::State(axis)
+            | Signal::Master(axis)
+            | Signal::Axis(axis, _)
+            | Signal::Difference(axis, _) => self.axis(axis, scan),
+        }
+    }
+
+    /// Why a signal is as it is, where it should be otherwise.
+    pub(super) fn standing(&mut self, signal: &Signal, scan: u64) -> Vec<Finding> {
+        match *signal {
+            Signal::Point(Point::Pin(instance, pin)) => self.stands(instance, pin, scan),
+            Signal::Point(point) => self.written(point, scan).into_iter().collect(),
+            Signal::Formula(formula) => self.formula(formula, false, scan, scan),
+            Signal::State(axis)
+            | Signal::Master(axis)
+            | Signal::Axis(axis, _)
+            | Signal::Difference(axis, _) => self.axis(axis, scan),
+        }
+    }
+}
+
+/// Why the failing claims fail, the likeliest reason first; nothing where all hold.
+///
+/// Cost: a constant number of passes over the rows for each of the blocks and axes that lead to a failing claim, and at most
+/// [`LOOKS_MOST`] looks and [`PASSES_MOST`] for each row in all, and one pass; where that is used up the walk ends.
+pub(crate) fn why(rows: &Rows<'_>, verdicts: &[Verdict]) -> Vec<Reason> {
+    if verdicts.iter().all(Verdict::passed) || rows.count() == 0 {
+        return Vec::new();
+    }
+    let look = Look::new(rows, verdicts);
+    let mut found: Vec<(Finding, &str)> = Vec::new();
+    let failing = rows.script.claims.iter().zip(verdicts);
+    let failing = failing.filter(|(_, verdict)| !verdict.passed()).take(CLAIMS_MOST);
+    let mut latest = 0;
+    for (claim, verdict) in failing {
+        // The first claims say most.
+        if look.is_spent() {
+            break;
+        }
+        for (asked, since, scan) in targets(rows, claim, verdict) {
+            latest = latest.max(scan);
+            let findings = Walk::new(look.clone()).asked(asked, since, scan);
+            found.extend(findings.into_iter().map(|finding| (finding, claim.path.as_str())));
+        }
+    }
+    // In file order where they explain as much and show in the same scan.
+    found.sort_by_key(|(finding, _)| {
+        // What goes on too slowly and what a signal follows are told as they come.
+        let class = match finding.rank {
+            Rank::Follows => Rank::Slow,
+            rank => rank,
+        };
+        (class, finding.scan.unwrap_or(u64::MAX), finding.rank)
+    });
+    let mut reasons: Vec<Reason> = Vec::new();
+    let mut ends: Vec<String> = Vec::new();
+    for (finding, claim) in found {
+        // What a block makes an axis do is told once.
+        let key = match (finding.rank, finding.text.split_once(") ")) {
+            (Rank::Follows | Rank::Slow, Some((who, _))) => who.to_owned(),
+            _ => finding.text.clone(),
+        };
+        match ends.iter().position(|end| *end == key) {
+            Some(place) => {
+                if let Some(reason) = reasons.get_mut(place)
+                    && !reason.claims.iter().any(|known| known == claim)
+                {
+                    reason.claims.push(claim.to_owned());
+                }
+            }
+            None => {
+                reasons.push(Reason {
+                    scan: finding.scan,
+                    text: finding.line(),
+                    claims: vec![claim.to_owned()],
+                });
+                ends.push(key);
+            }
+        }
+    }
+    reasons.truncate(TOLD_MOST);
+    for (scan, text) in look.told_by(latest) {
+        if reasons.len() >= TOLD_MOST {
+            break;
+        }
+        if !reasons.iter().any(|reason| reason.text.contains(&text)) {
+            reasons.push(Reason {
+                scan: Some(scan),
+                text,
+                claims: Vec::new(),
+            });
+        }
+    }
+    reasons
+}
+
+/// What a failing claim asked for, since when, and in which scan it was missed.
+fn targets<'c>(rows: &Rows<'_>, claim: &'c Claim, verdict: &Verdict) -> Vec<(Asked<'c>, u64, u64)> {
+    let last = rows.count().saturating_sub(1);
+    let shown = verdict.failures.iter().filter_map(|failure| failure.scan).min();
+    let unmet = |that: &'c [Condition], since: u64, scan: u64| -> Vec<_> {
+        let unmet = that.iter().filter(|condition| !rows.holds(condition, scan));
+        unmet
+            .map(|condition| (Asked::Holds(condition), since, scan))
+            .collect()
+    };
+    let met = |that: &'c [Condition], scan: u64| -> Vec<_> {
+        let each = that.iter();
+        each.map(|condition| (Asked::HoldsNot(condition), 0, scan))
+            .collect()
+    };
+    let end = |range: &Range| range.to.unwrap_or(last).min(last);
+    match &claim.kind {
+        ClaimKind::At(scan, that) => unmet(that, 0, (*scan).min(last)),
+        ClaimKind::By(range, that) => unmet(that, range.from, end(range)),
+        ClaimKind::Always { that, .. } => unmet(that, 0, shown.unwrap_or(last)),
+        ClaimKind::Never { that, .. } => met(that, shown.unwrap_or(last)),
+        ClaimKind::Once(range, that) => match shown {
+            Some(second) => met(that, second),
+            None => unmet(that, range.from, end(range)),
+        },
+        ClaimKind::Exclusive(_, points) => {
+            let scan = shown.unwrap_or(last);
+            let points = points.iter().map(|(_, point)| (Asked::Low(*point), 0, scan));
+            points.collect()
+        }
+        ClaimKind::Answered { within, that, .. } => {
+            let end = shown.unwrap_or(last).min(last);
+            unmet(that, end.saturating_sub(*within), end)
+        }
+        ClaimKind::NeverFor { that, .. } => met(that, shown.unwrap_or(last)),
+        ClaimKind::Duration {
+            ends: [_, end_of], ..
+        } => unmet(end_of, 0, shown.unwrap_or(last).min(last)),
+        ClaimKind::Count { that, .. } => unmet(that, 0, shown.unwrap_or(last).min(last)),
+        ClaimKind::WithinLimits { axis: of, .. }
+        | ClaimKind::Follows {
+            follow: Follow { slave: of, .. },
+            ..
+        } => vec![(Asked::Within(*of), 0, shown.unwrap_or(last))],
+    }
+}

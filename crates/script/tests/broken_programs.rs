@@ -1,0 +1,118 @@
+//! Programs of the gallery with one fault each, as an engineer makes them: the first line of "why" names the fault.
+//!
+//! `broken_programs/programs.json` holds the faults: what is replaced in the text of the script (or which block is called
+//! before which), and the words that name the fault. Nothing here is told what the walk does.
+
+use serde::Deserialize;
+use standstill_script::suite::read_text;
+use standstill_script::{Outcome, read, run};
+use std::path::Path;
+
+/// Of so many broken programs at least this many are named.
+const NAMED_LEAST: usize = 37;
+const OF: usize = 41;
+
+#[derive(Deserialize)]
+struct Broken {
+    kind: String,
+    script: String,
+    #[serde(default)]
+    find: String,
+    #[serde(default)]
+    replace: String,
+    edit: Option<Edit>,
+    names: Vec<String>,
+}
+
+/// A block that is called too early.
+#[derive(Deserialize)]
+struct Edit {
+    #[serde(rename = "move")]
+    block: String,
+    before: String,
+}
+
+fn broken() -> Vec<Broken> {
+    serde_json::from_str(include_str!("broken_programs/programs.json")).unwrap()
+}
+
+fn text(script: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests/gallery");
+    read_text(&folder.join(format!("{script}.scan.json"))).unwrap()
+}
+
+/// The script with its fault.
+fn with_fault(broken: &Broken) -> String {
+    let text = text(&broken.script);
+    let Some(edit) = &broken.edit else {
+        assert_eq!(
+            text.matches(&broken.find).count(),
+            1,
+            "{}: {}",
+            broken.script,
+            broken.find
+        );
+        return text.replace(&broken.find, &broken.replace);
+    };
+    let mut script: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let blocks = script["blocks"].as_array_mut().unwrap();
+    let place = |blocks: &[serde_json::Value], name: &str| {
+        blocks.iter().position(|block| block["name"] == name).unwrap()
+    };
+    let from = place(blocks, &edit.block);
+    let block = blocks.remove(from);
+    let to = place(blocks, &edit.before);
+    assert!(
+        to < from,
+        "{} is called before {} already",
+        edit.block,
+        edit.before
+    );
+    blocks.insert(to, block);
+    script.to_string()
+}
+
+fn run_of(broken: &Broken) -> Outcome {
+    let script = read(&with_fault(broken), &broken.script, &[]).unwrap_or_else(|error| panic!("{error}"));
+    run(&script).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn the_first_line_of_why_names_the_fault() {
+    let all = broken();
+    let mut misses = Vec::new();
+    for broken in &all {
+        let outcome = run_of(broken);
+        let edit = broken.edit.as_ref();
+        let edit = edit.map_or(String::new(), |edit| {
+            format!("{} before {}", edit.block, edit.before)
+        });
+        let what = format!("{}: {}: {}{edit}", broken.kind, broken.script, broken.find);
+        assert!(!outcome.passed(), "{what}: no claim fails");
+        let first = outcome.why.first().map_or("", |reason| reason.text.as_str());
+        if !broken.names.iter().all(|name| first.contains(name.as_str())) {
+            misses.push(format!("{what}\n    wanted {:?}\n    {first}", broken.names));
+        }
+    }
+    println!("{} misses\n{}", misses.len(), misses.join("\n"));
+    assert_eq!(all.len(), OF);
+    assert!(all.len() - misses.len() >= NAMED_LEAST, "{}", misses.join("\n"));
+}
+
+/// A reason leads to a scan, and to the claims that fail for it.
+#[test]
+fn a_reason_names_its_scan_and_its_claims() {
+    let all = broken();
+    let missing = all.iter().find(|broken| broken.script == "gate").unwrap();
+    let why = run_of(missing).why;
+    assert_eq!(why[0].scan, Some(5));
+    assert!(why[0].text.contains("in scan 5"), "{}", why[0].text);
+    assert!(why[0].claims.contains(&"expect[0]".to_owned()));
+}
+
+#[test]
+fn a_run_whose_claims_hold_has_no_reasons() {
+    let script = read(&text("gate"), "gate", &[]).unwrap();
+    let outcome = run(&script).unwrap();
+    assert!(outcome.passed() && outcome.why.is_empty());
+}

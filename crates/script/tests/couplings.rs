@@ -1,0 +1,158 @@
+//! What a script sees of axes that follow axes: the columns of slaves, and their signals in claims, steps and wires.
+//!
+//! S follows M at 1/1 from scan 1 on. M goes at 200 u/s from scan 10 on, S may go at 100: it lags, and catches up
+//! when M rests again. L follows S; A follows nothing and stands at no `Slave` pin.
+
+use standstill_script::{Outcome, read, run};
+use standstill_trace::{Cell, cell_text};
+
+fn script(keys: &str) -> String {
+    format!(
+        r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 900, "inputs": {{"GO": false, "RUN": false, "off": false}},
+            "axes": {{"M": {{"limits": {{"velocity": 200, "acceleration": 10000}}, "state": "Standstill"}},
+                     "S": {{"limits": {{"velocity": 100, "acceleration": 10000}}, "state": "Standstill"}},
+                     "A": {{"limits": {{"velocity": 100, "acceleration": 10000}}, "state": "Standstill"}},
+                     "L": {{"limits": {{"velocity": 100, "acceleration": 10000}}, "state": "Standstill"}}}},
+            "blocks": [{{"name": "gear", "type": "MC_GearIn", "pins": {{"Master": "M", "Slave": "S",
+                          "Execute": {{"from": "GO"}}, "RatioNumerator": 1, "RatioDenominator": 1}}}},
+                       {{"name": "last", "type": "MC_GearIn", "pins": {{"Master": "S", "slave": "L",
+                          "Execute": {{"from": "GO"}}, "RatioNumerator": 1, "RatioDenominator": 2}}}},
+                       {{"name": "drive", "type": "MC_MoveRelative", "pins": {{"Axis": "M", "Execute": {{"from": "RUN"}},
+                          "Distance": 40, "Velocity": 200}}}},
+                       {{"name": "halt", "type": "MC_Halt", "pins": {{"Axis": "S", "Execute": {{"from": "off"}}}}}},
+                       {{"name": "far", "type": "MC_MoveRelative", "pins": {{"Axis": "A", "Execute": "=S.Deviation < -5.0",
+                          "Distance": 1, "Velocity": 50}}}}],
+            {keys}}}"#
+    )
+}
+
+const STEPS: &str = r#""steps": [{"at": 1, "set": {"GO": true}}, {"at": 10, "set": {"RUN": true}}, {"at": 800, "set": {"off": true}}]"#;
+
+fn outcome(claims: &str) -> Outcome {
+    let text = script(&format!("{STEPS}, \"expect\": [{claims}]"));
+    let script = read(&text, "test.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
+    run(&script).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn refused(claim: &str) -> String {
+    let text = script(&format!("{STEPS}, \"expect\": [{claim}]"));
+    read(&text, "test.scan.json", &[]).expect_err(claim).to_string()
+}
+
+#[test]
+fn only_slaves_have_the_columns() {
+    let trace = outcome("").trace;
+    let names: Vec<&str> = trace
+        .columns()
+        .iter()
+        .map(|column| column.name.as_str())
+        .collect();
+    let of_slaves: Vec<&str> = names
+        .iter()
+        .copied()
+        .filter(|name| {
+            ["Master", "Deviation", "Phase"]
+                .iter()
+                .any(|signal| name.ends_with(signal))
+        })
+        .filter(|name| !name.starts_with("gear.") && !name.starts_with("last."))
+        .collect();
+    assert_eq!(
+        of_slaves,
+        [
+            "S.Master",
+            "S.Deviation",
+            "S.Phase",
+            "L.Master",
+            "L.Deviation",
+            "L.Phase"
+        ]
+    );
+    let behind = names
+        .iter()
+        .position(|name| *name == "S.ActualPosition")
+        .map(|at| at + 1);
+    assert_eq!(trace.column("S.Master"), behind);
+}
+
+#[test]
+fn the_columns_tell_of_their_row_and_are_empty_without_a_master() {
+    let outcome = outcome("");
+    let trace = &outcome.trace;
+    let text = |name: &str, scan| cell_text(trace.cell(scan, trace.column(name).unwrap()).unwrap());
+    let number = |name: &str, scan| match trace.cell(scan, trace.column(name).unwrap()) {
+        Some(Cell::Real(value)) => value,
+        other => panic!("{other:?}"),
+    };
+    for (scan, master) in [(0, ""), (1, "M"), (100, "M"), (799, "M"), (800, ""), (899, "")] {
+        assert_eq!(text("S.Master", scan), master, "{scan}");
+    }
+    assert_eq!(text("L.Master", 899), "S");
+    for scan in 0..trace.scans() {
+        let off = number("S.Position", scan) - number("M.Position", scan);
+        let shown = number("S.Deviation", scan);
+        if text("S.Master", scan).is_empty() {
+            assert_eq!(shown, 0.0, "{scan}");
+        } else {
+            assert!((shown - off).abs() < 1e-12, "{scan}: {shown} {off}");
+        }
+        assert_eq!(number("S.Phase", scan), 0.0, "{scan}");
+    }
+    // The block sees it one scan later.
+    let lag = number("S.Deviation", 100);
+    assert!(lag < -5.0, "{lag}");
+    assert_eq!(number("gear.Deviation", 101), lag);
+}
+
+#[test]
+fn claims_conditions_and_expressions_read_them() {
+    let claims = r#"
+        {"at": 1, "that": {"S.Master": "M", "L.Master": "s", "S.Phase": 0}},
+        {"at": 0, "that": {"S.Master": ""}},
+        {"at": 850, "that": {"S.Master": {"ne": "M"}, "S.Deviation": 0.0}},
+        {"always": {"s.deviation": {"le": 1e-12, "ge": -25}}},
+        {"always": "=S.Deviation <= 1.0E-12 AND L.Phase = 0.0"},
+        {"by": 200, "that": {"far.Busy": true}},
+        {"never": {"S.Deviation": {"lt": -5}}, "to": 100}"#;
+    let failures: Vec<String> = outcome(claims)
+        .verdicts
+        .iter()
+        .flat_map(|verdict| &verdict.failures)
+        .map(ToString::to_string)
+        .collect();
+    // The way at 100 u/s is 5 u behind after some 60 ms; the last claim is there to show a value.
+    assert_eq!(failures.len(), 1, "{failures:#?}");
+    assert!(
+        failures[0].starts_with("expect[6].never: S.Deviation -5."),
+        "{failures:#?}"
+    );
+}
+
+#[test]
+fn others_are_told_what_they_lack() {
+    for (claim, message) in [
+        (
+            r#"{"at": 1, "that": {"M.Deviation": 0}}"#,
+            "`M` stands at no `Slave` pin, and has no `Deviation`",
+        ),
+        (
+            r#"{"at": 1, "that": {"A.Master": ""}}"#,
+            "`A` stands at no `Slave` pin, and has no `Master`",
+        ),
+        (
+            r#"{"at": 1, "that": {"S.Master": "N"}}"#,
+            "the script has no axis `N`",
+        ),
+        (
+            r#"{"always": "=S.Master = M"}"#,
+            "`S.Master` is the master of an axis, which expressions do not read",
+        ),
+        (
+            r#"{"at": 1, "that": {"S.Deviatoin": 0}}"#,
+            "did you mean `Deviation`?",
+        ),
+    ] {
+        let error = refused(claim);
+        assert!(error.contains(message), "{claim}\n{error}");
+    }
+}

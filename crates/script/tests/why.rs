@@ -1,0 +1,178 @@
+//! Reasons: through expressions in wires, steps and claims, and within their bound whatever the script is.
+
+use standstill_script::{Outcome, read, run};
+use std::fmt::Write as _;
+use std::time::{Duration, Instant};
+
+/// Two axes; X is on, Y is not. What is in `inputs`, `blocks`, `steps` and `expect` is the test's.
+fn outcome(inputs: &str, blocks: &str, steps: &str, expect: &str) -> Outcome {
+    let text = format!(
+        r#"{{"standstill": 1, "cycle": "T#1ms", "scans": 200, "inputs": {{{inputs}}},
+            "axes": {{"X": {{"limits": {{"velocity": 1000, "acceleration": 100000}}, "state": "Standstill"}},
+                      "Y": {{"limits": {{"velocity": 1000, "acceleration": 100000}}}}}},
+            "blocks": [{blocks}], "steps": [{steps}], "expect": [{expect}]}}"#
+    );
+    let script = read(&text, "test.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
+    run(&script).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn first(outcome: &Outcome) -> &str {
+    assert!(!outcome.passed());
+    outcome.why.first().map_or("", |reason| reason.text.as_str())
+}
+
+#[track_caller]
+fn names(outcome: &Outcome, words: &[&str]) {
+    let first = first(outcome);
+    assert!(words.iter().all(|word| first.contains(word)), "{first}");
+}
+
+fn move_of(name: &str, axis: &str, execute: &str) -> String {
+    format!(
+        r#"{{"name": "{name}", "type": "MC_MoveAbsolute",
+             "pins": {{"Axis": "{axis}", "Execute": {execute}, "Position": 10, "Velocity": 1000}}}}"#
+    )
+}
+
+/// The wire is an expression over outputs of a block that was refused.
+#[test]
+fn a_wire_that_is_an_expression_leads_to_what_it_reads() {
+    let blocks = [
+        move_of("there", "Y", r#""=go AND NOT stop""#),
+        move_of("further", "X", r#""=there.Done OR (there.Error AND FALSE)""#),
+    ];
+    let found = outcome(
+        r#""go": false, "stop": false"#,
+        &blocks.join(","),
+        r#"{"at": 1, "set": {"go": true}}"#,
+        r#"{"by": 190, "that": {"further.Done": true}}"#,
+    );
+    names(
+        &found,
+        &[
+            "further.Execute",
+            "there was refused in scan 1: 201 NotPowered",
+            "Y",
+        ],
+    );
+}
+
+/// What keeps an expression FALSE may be an operand that is TRUE.
+#[test]
+fn an_operand_that_blocks_an_expression_is_named() {
+    let found = outcome(
+        r#""go": false, "stop": true"#,
+        &move_of("there", "X", r#""=go AND NOT stop""#),
+        r#"{"at": 1, "set": {"go": true}}"#,
+        r#"{"by": 190, "that": {"there.Done": true}}"#,
+    );
+    names(&found, &["there.Execute", "stop is TRUE", "no step sets it"]);
+}
+
+#[test]
+fn a_step_whose_condition_is_an_expression_leads_to_what_it_reads() {
+    let blocks = [
+        move_of("there", "Y", r#"{"from": "go"}"#),
+        move_of("further", "X", r#"{"from": "next"}"#),
+    ];
+    let found = outcome(
+        r#""go": false, "next": false"#,
+        &blocks.join(","),
+        r#"{"at": 1, "set": {"go": true}}, {"when": "=there.Done AND Y.Position > 5.0", "set": {"next": true}}"#,
+        r#"{"by": 190, "that": {"further.Done": true}}"#,
+    );
+    names(
+        &found,
+        &["steps[1]", "there was refused in scan 1: 201 NotPowered"],
+    );
+}
+
+#[test]
+fn a_claim_that_is_an_expression_leads_to_what_it_reads() {
+    let found = outcome(
+        r#""go": false"#,
+        &move_of("there", "Y", r#"{"from": "go"}"#),
+        r#"{"at": 1, "set": {"go": true}}"#,
+        r#"{"by": 190, "that": "=there.Done AND Y.Position > 5.0"}"#,
+    );
+    names(&found, &["there was refused in scan 1: 201 NotPowered", "Y"]);
+    assert_eq!(found.why[0].claims, ["expect[0]"]);
+}
+
+/// A number that a wire computes.
+#[test]
+fn a_number_from_an_expression_leads_to_the_block_it_goes_to() {
+    let found = outcome(
+        r#""go": false, "length": 4"#,
+        r#"{"name": "there", "type": "MC_MoveAbsolute",
+            "pins": {"Axis": "X", "Execute": {"from": "go"}, "Position": "=length * 2.0", "Velocity": 60000}}"#,
+        r#"{"at": 1, "set": {"go": true}}"#,
+        r#"{"by": 190, "that": {"X.Position": 10}}"#,
+    );
+    names(
+        &found,
+        &["there", "Velocity", "clamped", "60000.0 to 1000.0", "per minute"],
+    );
+    let all: String = found.why.iter().map(|reason| reason.text.as_str()).collect();
+    assert!(all.contains("Position 8.0"), "{all}");
+}
+
+/// Blocks in a ring, each started by the one before it, over many scans: the walk back ends in time, and says nothing
+/// that is not so.
+fn ring(blocks: usize, scans: usize, claims: usize, claim: &str) -> Outcome {
+    let mut all = String::new();
+    for index in 0..blocks {
+        let before = (index + blocks - 1) % blocks;
+        let comma = if index == 0 { "" } else { "," };
+        write!(
+            all,
+            r#"{comma}{{"name": "b{index}", "type": "R_TRIG", "pins": {{"CLK": {{"from": "b{before}.Q"}}}}}}"#
+        )
+        .unwrap();
+    }
+    let expect: Vec<_> = (0..claims)
+        .map(|index| {
+            format!(
+                r#"{{"by": {}, "that": {{"b{}.Q": {claim}}}}}"#,
+                scans - 1,
+                index * blocks / claims
+            )
+        })
+        .collect();
+    let text = format!(
+        r#"{{"standstill": 1, "cycle": "T#1ms", "scans": {scans},
+            "axes": {{"X": {{"limits": {{"velocity": 1, "acceleration": 1}}}}}},
+            "blocks": [{all}], "expect": [{}]}}"#,
+        expect.join(",")
+    );
+    let script = read(&text, "ring.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
+    run(&script).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Twenty claims, each at another place of a ring of 2,000 blocks: the walks end, together, in the time that a few runs take.
+#[test]
+fn a_ring_of_many_blocks_over_many_scans_is_walked_within_its_bound() {
+    let timed = |claim: &str| {
+        let begin = Instant::now();
+        let outcome = ring(2_000, 4_000, 20, claim);
+        (begin.elapsed(), outcome)
+    };
+    let (without, holds) = timed("false");
+    assert!(holds.passed() && holds.why.is_empty());
+    let (with, fails) = timed("true");
+    assert!(!fails.passed() && !fails.why.is_empty() && fails.why.len() <= 6);
+    let walk = with.saturating_sub(without);
+    assert!(
+        walk < 3 * without + Duration::from_secs(2),
+        "{without:?} without, {with:?} with the walk"
+    );
+}
+
+#[test]
+fn a_ring_is_named_as_one() {
+    let found = ring(3, 10, 1, "true");
+    names(
+        &found,
+        &["b0.CLK is b2.Q, which never rose", "b0.CLK waits for itself"],
+    );
+}

@@ -1,0 +1,216 @@
+//! The lints, each by its code.
+
+use super::facts::{Call, Facts, Variable};
+use crate::check::{Program, UnitKind};
+use crate::error::{Code, Diagnostic};
+use crate::types::{Member, MemberKind, Type, UnitId};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// All that there is to say.
+pub(super) fn all(program: &Program<'_>, facts: &Facts) -> Vec<Diagnostic> {
+    let mut told = Vec::new();
+    let mut by_variable: BTreeMap<Variable, Vec<&Call>> = BTreeMap::new();
+    for call in &facts.calls {
+        by_variable.entry(call.variable).or_default().push(call);
+    }
+    for calls in by_variable.values() {
+        in_a_branch(program, calls, &mut told);
+        twice(program, calls, &mut told);
+    }
+    for call in &facts.calls {
+        always_true(program, call, &mut told);
+    }
+    two_writers(program, facts, &mut told);
+    refusals(program, facts, &by_variable, &mut told);
+    unused(program, facts, &mut told);
+    for span in &facts.equal {
+        let message = "two numbers with a point are compared for being equal to the bit";
+        told.push(
+            Diagnostic::warning(Code::St55, *span, message)
+                .help("compare their difference: ABS(a - b) < 0.001"),
+        );
+    }
+    for (span, before) in &facts.narrowed {
+        let message = format!(
+            "the value is {} before it is made wider and narrow again",
+            before.name()
+        );
+        told.push(Diagnostic::warning(Code::St56, *span, message).help("leave the conversion out"));
+    }
+    for span in &facts.unreachable {
+        let message = "no value leads to this branch of the CASE";
+        told.push(Diagnostic::warning(Code::St57, *span, message));
+    }
+    told
+}
+
+fn member<'p>(program: &'p Program<'_>, variable: Variable) -> Option<&'p Member> {
+    match variable.unit {
+        None => program.globals.get(variable.member).map(|global| &global.member),
+        Some(unit) => program
+            .units
+            .get(unit.0 as usize)?
+            .members
+            .list
+            .get(variable.member),
+    }
+}
+
+/// The block of a call, if it is one of motion.
+fn motion(program: &Program<'_>, unit: UnitId) -> bool {
+    matches!(
+        program.units.get(unit.0 as usize).map(|info| &info.kind),
+        Some(UnitKind::Library(info)) if info.name.starts_with("MC_")
+    )
+}
+
+/// Where the pin of a unit stands in an instance.
+fn pin(program: &Program<'_>, unit: UnitId, key: &str) -> Option<u32> {
+    let members = &program.units.get(unit.0 as usize)?.members;
+    members.find(key).map(|(_, member)| member.offset)
+}
+
+/// ST50: a block of motion is called in a branch only.
+fn in_a_branch(program: &Program<'_>, calls: &[&Call], told: &mut Vec<Diagnostic>) {
+    let Some(first) = calls.first().filter(|call| motion(program, call.callee)) else {
+        return;
+    };
+    if calls.iter().any(|call| !call.branch) {
+        return;
+    }
+    let name = member(program, first.variable).map_or("", |member| member.name.as_str());
+    let message = format!(
+        "`{name}` is called in a branch only: while it is not, its outputs stand still and an edge may be missed"
+    );
+    told.push(
+        Diagnostic::warning(Code::St50, first.span, message)
+            .help("call it in every scan, and say in Execute or Enable when it works"),
+    );
+}
+
+/// ST54: one block is called twice on one path.
+fn twice(program: &Program<'_>, calls: &[&Call], told: &mut Vec<Diagnostic>) {
+    for (place, second) in calls.iter().enumerate() {
+        let on_path = |first: &&&Call| {
+            first.place == second.place
+                && !first.indexed
+                && !second.indexed
+                && first.lists.last().is_some_and(|list| second.lists.contains(list))
+        };
+        if let Some(first) = calls.iter().take(place).find(on_path) {
+            let name = member(program, second.variable).map_or("", |member| member.name.as_str());
+            let message = format!("`{name}` is called a second time in the same scan");
+            told.push(
+                Diagnostic::warning(Code::St54, second.span, message).related(first.span, "the first one"),
+            );
+        }
+    }
+}
+
+/// ST51: Execute is TRUE for good.
+fn always_true(program: &Program<'_>, call: &Call, told: &mut Vec<Diagnostic>) {
+    let execute = pin(program, call.callee, "EXECUTE").filter(|_| motion(program, call.callee));
+    let given = call
+        .inputs
+        .iter()
+        .find(|(at, value, _)| Some(*at) == execute && *value);
+    if let Some((.., span)) = given {
+        let message = "Execute is always TRUE: it rises once, and never again";
+        told.push(Diagnostic::warning(Code::St51, *span, message).help("give it a condition"));
+    }
+}
+
+/// ST52: two instances write one variable.
+fn two_writers(program: &Program<'_>, facts: &Facts, told: &mut Vec<Diagnostic>) {
+    for (place, call) in facts.calls.iter().enumerate() {
+        for (base, offset, span) in &call.targets {
+            let same = |other: &&Call| {
+                other.variable.unit == call.variable.unit
+                    && other.place != call.place
+                    && other.targets.iter().any(|(b, o, _)| (b, o) == (base, offset))
+            };
+            if let Some(other) = facts.calls.iter().take(place).find(same) {
+                let name =
+                    |call: &Call| member(program, call.variable).map_or("", |member| member.name.as_str());
+                let message = format!(
+                    "`{}` and `{}` write the same variable: the one called last wins",
+                    name(other),
+                    name(call)
+                );
+                told.push(
+                    Diagnostic::warning(Code::St52, *span, message).related(other.span, "the other one"),
+                );
+            }
+        }
+    }
+}
+
+/// ST53: nobody looks whether a block of motion refused.
+fn refusals(
+    program: &Program<'_>,
+    facts: &Facts,
+    calls: &BTreeMap<Variable, Vec<&Call>>,
+    told: &mut Vec<Diagnostic>,
+) {
+    let reads: BTreeSet<(Variable, u32)> = facts.reads.iter().copied().collect();
+    for (variable, calls) in calls {
+        let Some(first) = calls.first().filter(|call| motion(program, call.callee)) else {
+            continue;
+        };
+        let pins = ["ERROR", "ERRORID"].map(|key| pin(program, first.callee, key));
+        let Some(error) = pins[0] else { continue };
+        let is_read =
+            |at: u32| reads.contains(&(*variable, at)) || calls.iter().any(|call| call.outputs.contains(&at));
+        let handed = reads.contains(&(*variable, 0));
+        if handed || is_read(error) || pins[1].is_some_and(is_read) {
+            continue;
+        }
+        let name = member(program, *variable).map_or("", |member| member.name.as_str());
+        let message = format!("nobody reads `{name}.Error`: the program cannot notice a refusal");
+        told.push(Diagnostic::warning(Code::St53, first.span, message));
+    }
+}
+
+/// ST53 and ST57: instances that are never called, and variables that are never used.
+fn unused(program: &Program<'_>, facts: &Facts, told: &mut Vec<Diagnostic>) {
+    let of_units = program.units.iter().enumerate().flat_map(|(unit, info)| {
+        let own = matches!(
+            info.kind,
+            UnitKind::Program | UnitKind::Block | UnitKind::Function
+        );
+        let members = info.members.list.iter().enumerate().filter(move |_| own);
+        members.map(move |(place, member)| {
+            let unit = Some(UnitId(unit as u32));
+            (Variable { unit, member: place }, member)
+        })
+    });
+    let of_all = program.globals.iter().enumerate().map(|(place, global)| {
+        let variable = Variable {
+            unit: None,
+            member: place,
+        };
+        (variable, &global.member)
+    });
+    for (variable, member) in of_units.chain(of_all) {
+        let own = variable.unit.is_none() || matches!(member.kind, MemberKind::Var | MemberKind::Temp);
+        if !own || facts.used.contains(&variable) || member.constant || member.address.is_some() {
+            continue;
+        }
+        let mut ty = member.ty;
+        while let Type::Array(array) = program.types.get(ty) {
+            ty = array.of;
+        }
+        match program.types.get(ty) {
+            Type::Block(_) => {
+                let message = format!("`{}` is declared and never called", member.name);
+                told.push(Diagnostic::warning(Code::St53, member.span, message));
+            }
+            // The script, or another program, may want a global one.
+            _ if variable.unit.is_none() => {}
+            _ => {
+                let message = format!("`{}` is never used", member.name);
+                told.push(Diagnostic::warning(Code::St57, member.span, message));
+            }
+        }
+    }
+}

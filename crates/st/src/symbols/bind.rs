@@ -1,0 +1,124 @@
+//! Which axes the variables of type AXIS_REF begin as.
+
+use crate::Options;
+use crate::check::{Program, UnitKind};
+use crate::error::{Code, Diagnostic};
+use crate::source::Span;
+use crate::types::{Member, MemberKind, Type, TypeId};
+
+/// Writes which axis each variable of type AXIS_REF begins as.
+pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) -> Result<(), Diagnostic> {
+    let mut found = Vec::new();
+    for global in &program.globals {
+        references(
+            program,
+            global.member.ty,
+            &global.member.name,
+            global.member.offset,
+            &mut found,
+        );
+    }
+    for instance in &program.instances {
+        let members = &program.units[instance.unit.0 as usize].members;
+        let path = &instance.name;
+        member_references(program, &members.list, path, instance.address, &mut found);
+    }
+    for (path, _, address) in &found {
+        let name = path.rsplit('.').next().unwrap_or(path);
+        let axis = options
+            .axes
+            .iter()
+            .position(|axis| axis.eq_ignore_ascii_case(name));
+        if let Some(axis) = axis {
+            put(memory, *address, axis as u32 + 1);
+        }
+    }
+    let only = match program.instances.as_slice() {
+        [one] => Some(one.name.as_str()),
+        _ => None,
+    };
+    for (path, number) in &options.bindings {
+        let within = only.map(|name| format!("{name}.{path}"));
+        let same = |known: &str| {
+            known.eq_ignore_ascii_case(path)
+                || within.as_ref().is_some_and(|it| known.eq_ignore_ascii_case(it))
+        };
+        match found.iter().find(|(known, ..)| same(known)) {
+            Some((.., address)) => put(memory, *address, (*number).into()),
+            None => {
+                let known = found.iter().map(|(path, ..)| path.as_str());
+                let guess = crate::error::did_you_mean(path, known);
+                let message = format!("there is no variable `{path}` of type AXIS_REF to bind to an axis");
+                return Err(
+                    Diagnostic::error(Code::UnknownBinding, Span::default(), message).maybe_help(guess)
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+fn put(memory: &mut [u8], address: u32, number: u32) {
+    let at = address as usize;
+    if let Some(place) = memory.get_mut(at..at + 4) {
+        place.copy_from_slice(&number.to_le_bytes());
+    }
+}
+
+/// All variables of type AXIS_REF: path, type and address.
+type References = Vec<(String, TypeId, u32)>;
+
+fn references(program: &Program<'_>, ty: TypeId, path: &str, address: u32, found: &mut References) {
+    /// More axes than any script has.
+    const MOST: usize = 65_536;
+    if found.len() >= MOST {
+        return;
+    }
+    match program.types.get(ty) {
+        Type::Structure(structure) if structure.name == "AXIS_REF" => {
+            found.push((path.to_owned(), ty, address))
+        }
+        Type::Structure(structure) => {
+            member_references(program, &structure.members.list, path, address, found)
+        }
+        Type::Block(unit) => {
+            let unit = &program.units[unit.0 as usize];
+            if !matches!(unit.kind, UnitKind::Library(_)) {
+                member_references(program, &unit.members.list, path, address, found);
+            }
+        }
+        Type::Array(array) if program.types.elementary(array.of).is_none() && array.bounds.len() == 1 => {
+            let before = found.len();
+            for number in 0..array.count {
+                let index = array.bounds.first().map_or(0, |(low, _)| *low) + i64::from(number);
+                references(
+                    program,
+                    array.of,
+                    &format!("{path}[{index}]"),
+                    address + number * array.stride,
+                    found,
+                );
+                // What the first element does not have no other one has.
+                if found.len() == before {
+                    return;
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+fn member_references(
+    program: &Program<'_>,
+    members: &[Member],
+    path: &str,
+    address: u32,
+    found: &mut References,
+) {
+    for member in members {
+        if !matches!(member.kind, MemberKind::InOut | MemberKind::External(_)) {
+            let path = format!("{path}.{}", member.name);
+            references(program, member.ty, &path, address + member.offset, found);
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Lints: what each of them finds, and what it leaves alone.
+
+use standstill_st::{Options, Source};
+
+/// The codes and lines of what is doubtful in a program with these variables and statements, from line 10 on.
+fn lints(variables: &str, statements: &str) -> Vec<(&'static str, u32)> {
+    let text = format!(
+        "PROGRAM P\nVAR\n  X : AXIS_REF;\n  go, done : BOOL;\n  n : INT(0..9);\n  a, b : LREAL;\n{variables}\nEND_VAR\n\n\
+         {statements}\ngo := done AND n = 1 AND a > b AND X.Number = 1;\nEND_PROGRAM\n"
+    );
+    let source = Source {
+        name: "p.st",
+        bytes: text.as_bytes(),
+    };
+    let options = Options {
+        lint: true,
+        ..Options::default()
+    };
+    let report = standstill_st::check(&[source], &options);
+    assert!(!report.has_errors(), "{report}");
+    let told = report.diagnostics().iter();
+    told.map(|it| (it.code.name(), report.positions(it.span).0.line))
+        .collect()
+}
+
+const MOVE: &str = "Mv : MC_MoveAbsolute;";
+
+/// Covers: ST50
+#[test]
+fn a_motion_block_is_called_in_every_scan() {
+    let in_branch = "IF go THEN\nMv(Axis := X, Execute := done);\nEND_IF;\ngo := Mv.Error;";
+    assert_eq!(lints(MOVE, in_branch), [("ST50", 11)]);
+    let in_case = "CASE n OF\n1: Mv(Axis := X, Execute := done);\nEND_CASE;\ngo := Mv.Error;";
+    assert_eq!(lints(MOVE, in_case), [("ST50", 11)]);
+    let always = "Mv(Axis := X, Execute := done);\ngo := Mv.Error;";
+    assert_eq!(lints(MOVE, always), []);
+    // Called in both branches and besides; a timer may stand still.
+    let both = "IF go THEN\nn := 1;\nEND_IF;\nMv(Axis := X, Execute := done);\ngo := Mv.Error;";
+    assert_eq!(lints(MOVE, both), []);
+    assert_eq!(
+        lints("T : TON;", "IF go THEN\nT(IN := done, PT := T#1s);\nEND_IF;"),
+        []
+    );
+    let all = "FOR i := 1 TO 2 DO\nMvs[i](Axis := X, Execute := done);\ngo := Mvs[i].Error;\nEND_FOR;";
+    assert_eq!(lints("i : INT; Mvs : ARRAY [1..2] OF MC_MoveAbsolute;", all), []);
+}
+
+/// Covers: ST51
+#[test]
+fn execute_has_a_condition() {
+    assert_eq!(
+        lints(MOVE, "Mv(Axis := X, Execute := TRUE);\ngo := Mv.Error;"),
+        [("ST51", 10)]
+    );
+    assert_eq!(lints(MOVE, "Mv(Axis := X, Execute := go);\ngo := Mv.Error;"), []);
+    assert_eq!(
+        lints(
+            "P1 : MC_Power;",
+            "P1(Axis := X, Enable := TRUE);\ngo := P1.Error;"
+        ),
+        []
+    );
+}
+
+/// Covers: ST52
+#[test]
+fn one_variable_has_one_writer() {
+    let two = "A1(Axis := X, Execute := go, Done => done, Error => go);\nB1(Axis := X, Execute := go, Done => done);\ngo := B1.Error;";
+    assert_eq!(lints("A1, B1 : MC_MoveAbsolute;", two), [("ST52", 11)]);
+    let one = "A1(Axis := X, Execute := go, Done => done, Error => go);\nB1(Axis := X, Execute := go);\ngo := B1.Error;";
+    assert_eq!(lints("A1, B1 : MC_MoveAbsolute;", one), []);
+}
+
+/// Covers: ST53
+#[test]
+fn a_refusal_is_noticed() {
+    assert_eq!(lints(MOVE, ""), [("ST53", 7)]);
+    assert_eq!(lints(MOVE, "Mv(Axis := X, Execute := go);"), [("ST53", 10)]);
+    for noticed in ["go := Mv.Error;", "go := Mv.ErrorID <> 0;"] {
+        assert_eq!(
+            lints(MOVE, &format!("Mv(Axis := X, Execute := go);\n{noticed}")),
+            [],
+            "{noticed}"
+        );
+    }
+    assert_eq!(lints(MOVE, "Mv(Axis := X, Execute := go, Error => done);"), []);
+}
+
+/// Covers: ST54
+#[test]
+fn a_block_is_called_once_in_a_scan() {
+    let twice = "Mv(Axis := X, Execute := FALSE);\nMv(Execute := go, Axis := X);\ngo := Mv.Error;";
+    assert_eq!(lints(MOVE, twice), [("ST54", 11)]);
+    let again = "T(IN := go, PT := T#1s);\nIF go THEN\nT(IN := FALSE);\nEND_IF;";
+    assert_eq!(lints("T : TON;", again), [("ST54", 12)]);
+    let either = "IF go THEN\nT(IN := go, PT := T#1s);\nELSE\nT(IN := FALSE);\nEND_IF;";
+    assert_eq!(lints("T : TON;", either), []);
+    let elements = "Ts[1](IN := go, PT := T#1s);\nTs[2](IN := go, PT := T#1s);";
+    assert_eq!(lints("Ts : ARRAY [1..2] OF TON;", elements), []);
+}
+
+/// Covers: ST55
+#[test]
+fn numbers_with_a_point_are_not_compared_for_being_equal() {
+    assert_eq!(lints("", "go := a = b;"), [("ST55", 10)]);
+    assert_eq!(lints("", "go := a <> b;"), [("ST55", 10)]);
+    assert_eq!(lints("", "go := ABS(a - b) < 0.001 OR n = 3;"), []);
+}
+
+/// Covers: ST56
+#[test]
+fn a_value_is_not_made_wide_to_be_made_narrow() {
+    assert_eq!(lints("i : INT;", "i := DINT_TO_INT(i);"), [("ST56", 10)]);
+    assert_eq!(lints("i : INT; d : DINT;", "i := DINT_TO_INT(d); d := i;"), []);
+}
+
+/// Covers: ST57
+#[test]
+fn every_branch_and_every_variable_is_of_use() {
+    assert_eq!(lints("idle : INT;", ""), [("ST57", 7)]);
+    assert_eq!(lints("i : INT;", "i := 1;"), []);
+    assert_eq!(lints("i AT %QW0 : INT;", ""), []);
+    let beyond = "CASE n OF\n1: go := TRUE;\n12: go := FALSE;\nEND_CASE;";
+    assert!(
+        lints("", beyond).contains(&("ST57", 12)),
+        "{:?}",
+        lints("", beyond)
+    );
+    assert_eq!(lints("", "CASE n OF\n1: go := TRUE;\nEND_CASE;"), []);
+}
+
+/// Covers: ST55
+#[test]
+fn a_lint_is_switched_off_in_place() {
+    let off = "{lint off ST55}\ngo := a = b;\n{lint on ST55}\ngo := a <> b;";
+    assert_eq!(lints("", off), [("ST55", 13)]);
+    assert_eq!(lints("", "{lint off ST50}\ngo := a = b;"), [("ST55", 11)]);
+}
