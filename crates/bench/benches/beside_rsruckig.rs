@@ -6,7 +6,7 @@
 //! check their inputs in the time measured, and rsruckig keeps its memory from plan to plan, as it is made for.
 
 use rsruckig::prelude::{DataArrayOrVec, InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
-use standstill_bench::{CYCLE, Random, Replan};
+use standstill_bench::{CYCLE, Random, Replan, any_unit, ordinary};
 use standstill_planner::{OnlinePlan, Order};
 use std::hint::black_box;
 use std::process::ExitCode;
@@ -28,13 +28,15 @@ const SAMPLES: u32 = 32;
 type Set = (&'static str, fn(u64) -> Replan);
 
 const SETS: [Set; 4] = [
-    ("ordinary sizes, from rest", |seed| Random(seed).ordinary(false)),
-    ("ordinary sizes, moving", |seed| Random(seed).ordinary(true)),
+    ("ordinary sizes, from rest", |seed| {
+        ordinary(&mut Random(seed), false)
+    }),
+    ("ordinary sizes, moving", |seed| ordinary(&mut Random(seed), true)),
     ("servo axes in any unit, from rest", |seed| {
-        Random(seed).any_unit(false)
+        any_unit(&mut Random(seed), false)
     }),
     ("servo axes in any unit, moving", |seed| {
-        Random(seed).any_unit(true)
+        any_unit(&mut Random(seed), true)
     }),
 ];
 

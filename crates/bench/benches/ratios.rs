@@ -5,7 +5,7 @@
 
 use standstill_bench::{
     AXES, CYCLE, Executed, IN_MOTION, LIMITS, ManyAxes, Move, OneAxis, Random, TARGET, Trapezoid, WAYS,
-    trapezoid,
+    servo, trapezoid,
 };
 use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, Servo, SetPoint};
 use standstill_planner::{GridPlan, Method, RampPlan, Setpoint};
@@ -263,7 +263,7 @@ fn grid_sample() -> impl FnMut() -> f64 {
 
 fn grid_plan() -> impl FnMut() -> f64 {
     let mut random = Random(2026);
-    let moves: Vec<Move> = (0..1024).map(|_| random.servo()).collect();
+    let moves: Vec<Move> = (0..1024).map(|_| servo(&mut random)).collect();
     move || {
         time(moves.len() as u64, || {
             for Move {

@@ -2,7 +2,7 @@
 //! `valgrind --tool=callgrind --toggle-collect='*one_operation*'` counts nothing else. Prints how many
 //! operations ran. `.ci/instructions` compares the counts with the committed ones.
 
-use standstill_bench::{CYCLE, Executed, LIMITS, Move, OneAxis, Random, TARGET, Trapezoid};
+use standstill_bench::{CYCLE, Executed, LIMITS, Move, OneAxis, Random, TARGET, Trapezoid, any_unit, servo};
 use standstill_planner::{GridPlan, Method, Order, RampPlan, Setpoint};
 use std::hint::black_box;
 use std::ops::Range;
@@ -124,7 +124,7 @@ fn one_plan(seed: u64) {
         target,
         limits,
         cycle,
-    } = black_box(Random(seed).servo());
+    } = black_box(servo(&mut Random(seed)));
     one_operation(|| GridPlan::new(Method::Overlapped, start, target, &limits, cycle));
 }
 
@@ -141,7 +141,7 @@ fn worst_plan() -> u64 {
 fn replans(order: Order, seeds: Range<u64>) -> u64 {
     let count = seeds.end - seeds.start;
     for seed in seeds {
-        let request = Random(seed).any_unit(true);
+        let request = any_unit(&mut Random(seed), true);
         one_operation(|| black_box(&request).plan(order));
     }
     count
@@ -154,7 +154,7 @@ fn worst_replan(order: Order) -> u64 {
 }
 
 fn replan_sample() -> u64 {
-    let plan = Random(0).any_unit(true).plan(Order::Four).expect("valid");
+    let plan = any_unit(&mut Random(0), true).plan(Order::Four).expect("valid");
     for scan in 0..u64::from(plan.scans()) {
         one_operation(|| black_box(&plan).at(black_box(scan)));
     }

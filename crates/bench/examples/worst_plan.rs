@@ -1,7 +1,7 @@
 //! Looks for the random rest-to-rest move whose search takes the most steps: `worst_plan [MOVES]`, a million
 //! if not said. Prints it with the seed that `instructions.rs` counts as `WORST`.
 
-use standstill_bench::{Move, Random};
+use standstill_bench::{Move, Random, servo};
 use standstill_planner::grid::Work;
 use standstill_planner::{GridPlan, Method};
 use std::process::ExitCode;
@@ -18,7 +18,7 @@ fn main() -> ExitCode {
     let mut total = 0_u64;
     let mut capped = 0_u64;
     for seed in 0..moves {
-        let request = Random(seed).servo();
+        let request = servo(&mut Random(seed));
         let planned = GridPlan::new_counted(
             Method::Overlapped,
             request.start,

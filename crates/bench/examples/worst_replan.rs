@@ -1,7 +1,7 @@
 //! Looks for the random replans that take the most ramps and root steps: `worst_replan [MOVES]`, a million if not
 //! said. `instructions.rs` counts them as `WORST_REPLANS`.
 
-use standstill_bench::Random;
+use standstill_bench::{Random, any_unit};
 use standstill_planner::Order;
 use std::process::ExitCode;
 
@@ -17,7 +17,7 @@ fn main() -> ExitCode {
         let mut most = ((0, 0), 0);
         let mut solves = 0_u64;
         for seed in 0..moves {
-            let request = Random(seed).any_unit(true);
+            let request = any_unit(&mut Random(seed), true);
             let Ok(plan) = request.plan(order) else {
                 eprintln!("seed {seed} is refused: {request:?}");
                 return ExitCode::FAILURE;

@@ -16,6 +16,6 @@ fn main() {
         fs::write(Path::new(&out).join("memory.x"), MEMORY).expect("the folder can be written to");
         println!("cargo::rustc-link-search={out}");
         // The linker script of cortex-m-rt, which reads memory.x.
-        println!("cargo::rustc-link-arg-bins=-Tlink.x");
+        println!("cargo::rustc-link-arg-examples=-Tlink.x");
     }
 }

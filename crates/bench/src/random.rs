@@ -1,13 +1,9 @@
 //! Random moves: from rest of the kind servo axes make, and from any state.
 
+use crate::CYCLE;
 use standstill_planner::kernel::{Sides, second};
 use standstill_planner::{Limits, OnlinePlan, Order, PlanError, Setpoint};
-
-use crate::CYCLE;
-
-/// The generator splitmix64: small, seeded, the same everywhere.
-#[derive(Clone, Copy, Debug)]
-pub struct Random(pub u64);
+use standstill_testkit::Random;
 
 /// A rest-to-rest move.
 #[derive(Clone, Copy, Debug)]
@@ -51,113 +47,99 @@ impl Replan {
     }
 }
 
-impl Random {
-    /// 64 random bits.
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
+/// Between `low` and `high`, both above 0: all binades alike, which bit patterns in order are.
+fn binades(random: &mut Random, low: f64, high: f64) -> f64 {
+    let range = high.to_bits().saturating_sub(low.to_bits()).max(1);
+    f64::from_bits(low.to_bits() + random.bits() % range)
+}
 
-    /// Between `low` and `high`, both above 0: all binades alike, which bit patterns in order are.
-    pub fn log(&mut self, low: f64, high: f64) -> f64 {
-        let range = high.to_bits().saturating_sub(low.to_bits()).max(1);
-        f64::from_bits(low.to_bits() + self.bits() % range)
-    }
-
-    /// A move of order 4: 0.1 ms to 10 s at the velocity limit, in cycles of 0.1 ms to 10 ms.
-    pub fn servo(&mut self) -> Move {
-        let velocity = self.log(0.01, 10.0);
-        let acceleration = velocity * self.log(1.0, 300.0);
-        let jerk = acceleration * self.log(1.0, 1000.0);
-        let snap = jerk * self.log(1.0, 3000.0);
-        let distance = velocity * self.log(1e-4, 10.0);
-        let (forward, positive) = (self.bits() & 1 == 0, self.bits() & 1 == 0);
-        let size = self.log(1e-3, 1e3);
-        let start = if positive { size } else { -size };
-        Move {
-            start,
-            target: if forward {
-                start + distance
-            } else {
-                start - distance
-            },
-            limits: Limits {
-                velocity,
-                acceleration,
-                deceleration: acceleration,
-                jerk,
-                snap,
-            },
-            cycle: self.log(1e-4, 1e-2),
-        }
-    }
-
-    /// Evenly between `low` and `high`.
-    pub fn even(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Positions and limits of ordinary size, as in the examples of planners for robots.
-    pub fn ordinary(&mut self, is_moving: bool) -> Replan {
-        let velocity = self.even(0.1, 12.0);
-        let acceleration = self.even(0.1, 12.0);
-        let jerk = self.even(0.1, 12.0);
-        let snap = self.even(0.1, 12.0);
-        let position = self.even(-8.0, 8.0);
-        let target = self.even(-8.0, 8.0);
-        self.replan(
-            [velocity, acceleration, jerk, snap],
-            position,
-            target - position,
-            is_moving,
-        )
-    }
-
-    /// Limits of servo axes in any unit: spread over binades, with distances from a hundred-thousandth of a
-    /// second at the velocity limit to a hundred seconds.
-    pub fn any_unit(&mut self, is_moving: bool) -> Replan {
-        let velocity = self.log(0.01, 1000.0);
-        let acceleration = velocity * self.log(1.0, 1000.0);
-        let jerk = acceleration * self.log(1.0, 1e4);
-        let snap = jerk * self.log(1.0, 1e4);
-        let distance = velocity * self.log(1e-5, 100.0);
-        let side = if self.bits() & 1 == 0 { 1.0 } else { -1.0 };
-        self.replan(
-            [velocity, acceleration, jerk, snap],
-            0.0,
-            side * distance,
-            is_moving,
-        )
-    }
-
-    fn replan(&mut self, bounds: [f64; 4], position: f64, distance: f64, is_moving: bool) -> Replan {
-        let [velocity, acceleration, jerk, snap] = bounds;
-        let limits = Limits {
+/// A move of order 4: 0.1 ms to 10 s at the velocity limit, in cycles of 0.1 ms to 10 ms.
+pub fn servo(random: &mut Random) -> Move {
+    let velocity = binades(random, 0.01, 10.0);
+    let acceleration = velocity * binades(random, 1.0, 300.0);
+    let jerk = acceleration * binades(random, 1.0, 1000.0);
+    let snap = jerk * binades(random, 1.0, 3000.0);
+    let distance = velocity * binades(random, 1e-4, 10.0);
+    let (forward, positive) = (random.bits() & 1 == 0, random.bits() & 1 == 0);
+    let size = binades(random, 1e-3, 1e3);
+    let start = if positive { size } else { -size };
+    Move {
+        start,
+        target: if forward {
+            start + distance
+        } else {
+            start - distance
+        },
+        limits: Limits {
             velocity,
             acceleration,
             deceleration: acceleration,
             jerk,
             snap,
-        };
-        let mut start = Setpoint::at_rest(position);
-        if is_moving {
-            loop {
-                start.velocity = self.even(-velocity, velocity);
-                start.acceleration = self.even(-acceleration, acceleration);
-                start.jerk = self.even(-jerk, jerk);
-                if is_viable(&start, &limits) {
-                    break;
-                }
+        },
+        cycle: binades(random, 1e-4, 1e-2),
+    }
+}
+
+/// Positions and limits of ordinary size, as in the examples of planners for robots.
+pub fn ordinary(random: &mut Random, is_moving: bool) -> Replan {
+    let velocity = random.between(0.1, 12.0);
+    let acceleration = random.between(0.1, 12.0);
+    let jerk = random.between(0.1, 12.0);
+    let snap = random.between(0.1, 12.0);
+    let position = random.between(-8.0, 8.0);
+    let target = random.between(-8.0, 8.0);
+    replan(
+        random,
+        [velocity, acceleration, jerk, snap],
+        position,
+        target - position,
+        is_moving,
+    )
+}
+
+/// Limits of servo axes in any unit: spread over binades, with distances from a hundred-thousandth of a
+/// second at the velocity limit to a hundred seconds.
+pub fn any_unit(random: &mut Random, is_moving: bool) -> Replan {
+    let velocity = binades(random, 0.01, 1000.0);
+    let acceleration = velocity * binades(random, 1.0, 1000.0);
+    let jerk = acceleration * binades(random, 1.0, 1e4);
+    let snap = jerk * binades(random, 1.0, 1e4);
+    let distance = velocity * binades(random, 1e-5, 100.0);
+    let side = if random.bits() & 1 == 0 { 1.0 } else { -1.0 };
+    replan(
+        random,
+        [velocity, acceleration, jerk, snap],
+        0.0,
+        side * distance,
+        is_moving,
+    )
+}
+
+fn replan(random: &mut Random, bounds: [f64; 4], position: f64, distance: f64, is_moving: bool) -> Replan {
+    let [velocity, acceleration, jerk, snap] = bounds;
+    let limits = Limits {
+        velocity,
+        acceleration,
+        deceleration: acceleration,
+        jerk,
+        snap,
+    };
+    let mut start = Setpoint::at_rest(position);
+    if is_moving {
+        loop {
+            start.velocity = random.between(-velocity, velocity);
+            start.acceleration = random.between(-acceleration, acceleration);
+            start.jerk = random.between(-jerk, jerk);
+            if is_viable(&start, &limits) {
+                break;
             }
         }
-        Replan {
-            start,
-            target: position + distance,
-            limits,
-        }
+    }
+    Replan {
+        start,
+        target: position + distance,
+        limits,
     }
 }
 

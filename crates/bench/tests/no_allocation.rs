@@ -65,6 +65,7 @@ impl Monkey {
             PinType::Time => Value::Time(10_000_000),
             PinType::Enum(_) => Value::Enum((random.bits() % 8) as i32 - 1),
             PinType::Dword => Value::Dword(random.bits() as u32),
+            PinType::Uint => Value::Word((random.bits() % 4) as u16),
             PinType::Word | PinType::Axis(_) | PinType::Table(_) => return None,
         })
     }

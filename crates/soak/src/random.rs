@@ -2,21 +2,23 @@
 
 use std::vec::IntoIter;
 
-/// splitmix64 (Steele, Lea, Flood 2014): a counter and a mixing function. A fuzzer can say what comes first.
+use standstill_testkit as testkit;
+
+/// The numbers of [`testkit::Random`]. A fuzzer can say what comes first.
 #[derive(Debug)]
 pub struct Random {
     given: IntoIter<u64>,
-    counter: u64,
+    stream: testkit::Random,
 }
 
 impl Random {
     /// Independent streams for every `seed` and `stream`.
     pub fn new(seed: u64, stream: u64) -> Self {
-        let counter = |counter| Self {
+        let first = |counter| testkit::Random(counter).bits();
+        Self {
             given: Vec::new().into_iter(),
-            counter,
-        };
-        counter(counter(seed).bits() ^ counter(stream).bits())
+            stream: testkit::Random(first(seed) ^ first(stream)),
+        }
     }
 
     /// Eight bytes are a number each; what is not given is the stream 0 of seed 0.
@@ -29,14 +31,7 @@ impl Random {
     }
 
     fn bits(&mut self) -> u64 {
-        if let Some(bits) = self.given.next() {
-            return bits;
-        }
-        self.counter = self.counter.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.counter;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.given.next().unwrap_or_else(|| self.stream.bits())
     }
 
     /// One of the whole numbers from 0 to `count` - 1.

@@ -68,7 +68,7 @@ fn what_does_not_matter_is_left_out() {
         (scenario.scans, failure)
     };
     let mut shrunk = 0;
-    for number in 0..40 {
+    for number in 0..80 {
         let (_, _, scenario) = record(3, number, 400);
         let (_, Some(failure)) = told_to_move(&scenario) else {
             continue;

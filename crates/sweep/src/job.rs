@@ -206,7 +206,7 @@ impl Job {
         let mut fields = vec![case.to_string()];
         fields.extend(parameters.iter().map(|(_, value)| shortest(*value)));
         fields.push(judged.word().to_owned());
-        if let Some(Outcome { trace, verdicts }) = outcome {
+        if let Some(Outcome { trace, verdicts, .. }) = outcome {
             let held = verdicts.iter().filter(|verdict| verdict.passed()).count();
             fields.extend([trace.scans(), verdicts.len(), held].map(|count| count.to_string()));
             let extremes = extremes(trace);

@@ -117,7 +117,7 @@ fn input(ty: PinType) -> Value {
         PinType::Bool => Value::Bool(any(true)),
         PinType::Int => Value::Int(any(1)),
         PinType::Lreal => Value::Lreal(any(1.0)),
-        PinType::Word => Value::Word(any(1)),
+        PinType::Uint | PinType::Word => Value::Word(any(1)),
         PinType::Time => Value::Time(any(Time(1)).0),
         PinType::Dword => Value::Dword(any(1)),
         PinType::Table(_) => Value::Table(TableRef {

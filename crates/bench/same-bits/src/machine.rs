@@ -1,6 +1,5 @@
 //! A machine: axes, ideal drives and instances of blocks, all drawn at random, and a hand that does things at random.
 
-use crate::random::Random;
 use core::array::from_fn;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Drive, DrivePosition, Event, IdealDrive, InstanceId, Limits, Log,
@@ -8,6 +7,7 @@ use standstill_axis::{
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::{AnyInstance, Context, Direction, Group, Pin, PinType, TableInfo, TableRef, Value};
+use standstill_testkit::Random;
 
 const AXES: usize = 3;
 
@@ -219,6 +219,7 @@ fn block(random: &mut Random, name: &str, axis: usize, config: &AxisConfig, cycl
     let mut block = BlockInstance::new(name).expect("a name of the registry");
     for (index, pin) in block.info().pins().enumerate() {
         let value = match pin.ty {
+            PinType::Axis(_) if pin.name == "Master" => Value::Axis(id((axis + 1) % AXES)),
             PinType::Axis(_) => Value::Axis(id(axis)),
             PinType::Table(of) => Value::Table(table(random, of)),
             PinType::Lreal if pin.direction == Direction::Input => number(random, pin, config, cycle),
@@ -253,7 +254,7 @@ fn draw(random: &mut Random, block: &mut BlockInstance, config: &AxisConfig, cyc
     let value = match pin.ty {
         PinType::Bool => Value::Bool(random.one_in(2)),
         PinType::Int => Value::Int(random.below(12) as i16),
-        PinType::Word => Value::Word(random.below(12) as u16),
+        PinType::Uint | PinType::Word => Value::Word(random.below(12) as u16),
         PinType::Dword => Value::Dword(random.below(1 << 32) as u32),
         PinType::Time => Value::Time(random.below(100_000_000).cast_signed()),
         PinType::Enum(_) => Value::Enum(random.below(6) as i32),

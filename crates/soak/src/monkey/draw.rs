@@ -16,7 +16,7 @@ const AXES: u64 = 3;
 
 /// Played more often than chance would have it: a curve, one that waits for an edge and one that ends that, or limits that
 /// are written while moves blend.
-const FAVOURED: [&[&str]; 8] = [
+const FAVOURED: [&[&str]; 14] = [
     &["MC_PositionProfile"],
     &["MC_VelocityProfile"],
     &["MC_AccelerationProfile"],
@@ -25,6 +25,12 @@ const FAVOURED: [&[&str]; 8] = [
     &["MC_DigitalCamSwitch"],
     &["MC_WriteParameter", "MC_MoveRelative", "MC_MoveRelative"],
     &["MC_WriteParameter", "MC_WriteBoolParameter", "MC_MoveAbsolute"],
+    &["MC_GearIn", "MC_GearOut"],
+    &["MC_GearIn", "MC_GearIn", "MC_MoveVelocity"],
+    &["MC_GearIn", "MC_PhasingAbsolute", "MC_PhasingRelative"],
+    &["MC_GearInPos", "MC_GearOut", "MC_MoveVelocity"],
+    &["MC_GearInPos", "MC_GearIn"],
+    &["MC_GearInPos", "MC_PhasingRelative", "MC_MoveAbsolute"],
 ];
 
 /// Lengths of a scan (ns).
@@ -276,4 +282,20 @@ fn one(name: &'static str) -> &'static BlockInfo {
         .iter()
         .find(|info| info.name == name)
         .unwrap_or(&REGISTRY[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use standstill_fb::Group;
+
+    /// A block that programs do not play would be believed without being tried.
+    #[test]
+    fn every_block_that_couples_axes_is_played() {
+        for info in REGISTRY.iter().filter(|info| info.group == Group::MultiAxis) {
+            assert_ne!(kind_of(info), Kind::Other, "{}", info.name);
+            let is_favoured = FAVOURED.iter().any(|names| names.contains(&info.name));
+            assert!(is_favoured, "{}", info.name);
+        }
+    }
 }

@@ -164,7 +164,10 @@ impl<'a> Monkey<'a> {
             } else {
                 2 + self.random.below(4) as i16
             })),
-            PinType::Int | PinType::Word | PinType::Time | PinType::Axis(_) | PinType::Table(_) => None,
+            // Ratios, small ones more often, now and then none.
+            PinType::Int => Some(Value::Int(self.random.below(9) as i16 - 4)),
+            PinType::Uint => Some(Value::Word(self.random.below(5) as u16)),
+            PinType::Word | PinType::Time | PinType::Axis(_) | PinType::Table(_) => None,
         }
     }
 

@@ -7,7 +7,7 @@ use crate::rules::limits::{Track, check_excess};
 use crate::rules::{Broken, Call, Held, Kind, Outputs, Shown, Truth, check_call, check_truth};
 use standstill_axis::{
     Axis, AxisState, CommandId, ErrorId, Event, Fate, IdealDrive, InstanceId, LOG_KEPT, Plan, Standard,
-    WorkKind,
+    StandardPlan, WorkKind,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, Value};
@@ -364,6 +364,13 @@ impl<H: Hands> Run<'_, H> {
                 let scans = plan.scans();
                 let [from, to] = [0, u64::from(scans)].map(|scan| plan.at(scan).position);
                 self.tracks[index].leads(from, to, scans);
+                self.tracks[index].resolves(resolution(plan));
+            }
+            if let Some((master, numerator, denominator)) = axis.gear()
+                && let Some(master) = self.tracks.get(master.index()).cloned()
+            {
+                let ratio = f64::from(numerator) / f64::from(denominator);
+                self.tracks[index].follows(&master, ratio);
             }
             self.tracks[index].check(&setpoint)?;
         }
@@ -409,6 +416,7 @@ impl<H: Hands> Run<'_, H> {
             owned,
             stopping: owned && state == AxisState::Stopping,
             waiting: axis.waiting(),
+            awaited: axis.awaited_command().is_some(),
             shift_due: state == AxisState::Standstill && axis.waiting() > 0 && shift_is_due(axis),
             added: added.map(|(.., own)| own),
             orphaned: added.is_some_and(|(id, ..)| !holds(id)),
@@ -446,6 +454,11 @@ impl<H: Hands> Run<'_, H> {
         }
         if axis.waiting() > 0 && axis.waiting() > instances().filter(|instance| instance.waits()).count() {
             return broken("a command waits without a block");
+        }
+        if let Some(awaited) = axis.awaited_command()
+            && !instances().any(|instance| instance.given.contains(&Some(awaited)))
+        {
+            return broken("a command waits for its start point without a block");
         }
         Ok(())
     }
@@ -489,6 +502,12 @@ impl<H: Hands> Run<'_, H> {
                 | Event::RoomAwaited
                 | Event::Planned { .. }
                 | Event::Paused { .. }
+                | Event::Coupled { .. }
+                | Event::Approaching { .. }
+                | Event::InGear
+                | Event::GearLost { .. }
+                | Event::SyncLate { .. }
+                | Event::Phasing { .. }
                 | Event::Fault { .. } => {}
             }
         }
@@ -497,6 +516,24 @@ impl<H: Hands> Run<'_, H> {
             self.fail(time.scan, Who::Axis(axis), broken);
         }
     }
+}
+
+/// What the jerk and the snap of a plan are off by for the rounding of positions: nothing, but on a curve, whose stretches have
+/// polynomials of degree 7 (docs/profiles.md).
+fn resolution(plan: &StandardPlan) -> [f64; 2] {
+    let StandardPlan::Profile(profile) = plan else {
+        return [0.0; 2];
+    };
+    let mut off = [0.0_f64; 2];
+    let mut last = None;
+    for (time, state) in profile.nodes() {
+        if let Some((before, from)) = last.replace((time, state.position)) {
+            let (time, way): (f64, f64) = (time - before, state.position - from);
+            let unit = f64::EPSILON * way.abs() / (time * time * time);
+            off = [off[0].max(1680.0 * unit), off[1].max(13_440.0 * unit / time)];
+        }
+    }
+    off
 }
 
 /// Whether MC_SetPosition is the first command that waits.

@@ -130,6 +130,11 @@ pub fn kind_of(info: &BlockInfo) -> Kind {
         // The drive sees no edge: it waits until it is aborted, or finds the probe taken.
         "MC_TouchProbe" => Kind::Administrative,
         "MC_DigitalCamSwitch" | "MC_ReadActualTorque" => Kind::Reading,
+        "MC_GearIn" | "MC_GearInPos" => Kind::Motion,
+        // Beside the coupling, which owns the axis; without one it is refused.
+        "MC_PhasingAbsolute" | "MC_PhasingRelative" => Kind::Administrative,
+        // Its command owns the axis, but the block does not show that.
+        "MC_GearOut" => Kind::Administrative,
         _ => Kind::of(info),
     }
 }
@@ -138,6 +143,15 @@ pub fn kind_of(info: &BlockInfo) -> Kind {
 pub fn axis_pins(info: &'static BlockInfo) -> impl Iterator<Item = (usize, &'static Pin)> {
     let pins = info.pins().enumerate();
     pins.filter(|(_, pin)| matches!(pin.ty, PinType::Axis(_)))
+}
+
+/// The axis of `count` at a pin of a block of `axis`: a master is the next one, so that all of them could make a ring.
+pub fn wired(pin: &Pin, axis: usize, count: usize) -> usize {
+    if pin.name == "Master" {
+        (axis + 1) % count.max(1)
+    } else {
+        axis
+    }
 }
 
 impl AxisSetup {
@@ -176,8 +190,9 @@ impl Scenario {
         let mut first = 0;
         let made = self.blocks.iter().map(|setup| {
             let mut block = BlockInstance::new(setup.block)?;
-            for (pin, _) in axis_pins(block.info()) {
-                block.set(pin, Value::Axis(axis_id(setup.axis))).ok()?;
+            for (pin, entry) in axis_pins(block.info()) {
+                let axis = wired(entry, setup.axis, self.axes.len());
+                block.set(pin, Value::Axis(axis_id(axis))).ok()?;
             }
             for (pin, value) in &setup.constants {
                 block.set(*pin, *value).ok()?;

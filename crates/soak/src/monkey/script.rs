@@ -1,7 +1,7 @@
 //! A scenario as a scan script that `standstill run` takes.
 
 use super::run::{Failure, Who};
-use super::scenario::{Action, AxisSetup, BlockSetup, FAULT_CODE, Scenario, axis_pins};
+use super::scenario::{Action, AxisSetup, BlockSetup, FAULT_CODE, Scenario, axis_pins, wired};
 use standstill_axis::{AboveLimit, AxisConfig, Limits, MoveProfile, PowerOff, StartState};
 use standstill_blocks::{REGISTRY, registry::find};
 use standstill_fb::{BlockInfo, Pin, PinType, Value};
@@ -60,8 +60,10 @@ impl Scenario {
         });
         list(&mut text, "axes", '{', axes, '}', false);
         let blocks = self.blocks.iter().enumerate().map(|(index, setup)| {
-            let axis = axis_name(setup.axis);
-            let axes = axis_pins(info(setup.block)).map(|(_, pin)| format!("\"{}\": \"{axis}\"", pin.name));
+            let axes = axis_pins(info(setup.block)).map(|(_, pin)| {
+                let axis = axis_name(wired(pin, setup.axis, self.axes.len()));
+                format!("\"{}\": \"{axis}\"", pin.name)
+            });
             let constants = setup
                 .constants
                 .iter()

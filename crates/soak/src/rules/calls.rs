@@ -78,7 +78,7 @@ pub struct Shown {
     pub error: bool,
     /// ErrorID.
     pub error_id: u16,
-    /// InVelocity, InEndVelocity, InTorque.
+    /// InVelocity, InEndVelocity, InTorque, InGear, InSync.
     pub reached: bool,
     /// Status of MC_Power.
     pub status: bool,
@@ -121,7 +121,7 @@ impl Outputs {
                 place("Done").or_else(|| place("ProfileCompleted")),
                 place("CommandAborted"),
                 place("Error"),
-                ["InVelocity", "InEndVelocity", "InTorque"]
+                ["InVelocity", "InEndVelocity", "InTorque", "InGear", "InSync"]
                     .into_iter()
                     .find_map(place),
                 place("Status"),

@@ -45,6 +45,8 @@ pub struct Track {
     longest: u32,
     /// The last motion is what it was in the scan before, so nothing has to be looked at.
     resting: bool,
+    /// What jerk and snap of a curve are off by for the rounding of its positions.
+    off: [f64; 2],
 }
 
 /// What may be recorded as unavoidable: that a stop turns back, with no more than the velocity limit.
@@ -82,6 +84,7 @@ impl Track {
             moving: 0,
             longest: 0,
             resting: false,
+            off: [0.0; 2],
         }
     }
 
@@ -96,6 +99,20 @@ impl Track {
     pub fn leads(&mut self, from: f64, to: f64, scans: u32) {
         self.largest = self.largest.max(from.abs()).max(to.abs());
         self.longest = self.longest.max(scans);
+        self.resting = false;
+    }
+
+    /// Jerk and snap of the motion planned last are off by this for the rounding of its positions.
+    pub fn resolves(&mut self, off: [f64; 2]) {
+        self.off = off;
+    }
+
+    /// It moves `ratio` times as `master` does: so are the roundings of that.
+    pub fn follows(&mut self, master: &Self, ratio: f64) {
+        let largest = (ratio * master.largest).abs();
+        self.largest = self.largest.max(largest);
+        self.off = master.off.map(|off| (ratio * off).abs());
+        self.longest = self.longest.max(master.longest).max(master.moving);
         self.resting = false;
     }
 
@@ -141,6 +158,7 @@ impl Track {
         } else {
             limits.deceleration
         };
+        let less = |value: f64, off: f64| (value.abs() - off).max(0.0);
         let rates = [
             acceleration,
             if limits.jerk.is_finite() { limits.jerk } else { 0.0 },
@@ -157,12 +175,12 @@ impl Track {
             "the acceleration exceeds the limit of the axis",
         )?;
         rule(
-            inside(setpoint.jerk, limits.jerk, rates[2]),
+            inside(less(setpoint.jerk, self.off[0]), limits.jerk, rates[2]),
             "limits",
             "the jerk exceeds the limit of the axis",
         )?;
         rule(
-            inside(setpoint.snap, limits.snap, 0.0),
+            inside(less(setpoint.snap, self.off[1]), limits.snap, 0.0),
             "limits",
             "the snap exceeds the limit of the axis",
         )?;

@@ -25,6 +25,8 @@ pub struct Truth {
     pub stopping: bool,
     /// Commands in the buffer.
     pub waiting: usize,
+    /// A command that waits for a place of its master, beside the owner.
+    pub awaited: bool,
     /// The first of them moves the coordinates: it waits for the next latch whatever the state.
     pub shift_due: bool,
     /// A superimposed command, and whether the added motion is its own.
@@ -49,6 +51,7 @@ pub fn check_truth(axis: &Truth, held: impl Iterator<Item = Held>) -> Result<(),
         owned,
         stopping,
         waiting,
+        awaited,
         shift_due,
         added,
         orphaned,
@@ -84,8 +87,9 @@ pub fn check_truth(axis: &Truth, held: impl Iterator<Item = Held>) -> Result<(),
         "R77",
         "an idle state with a waiting command",
     )?;
+    let beside_waits = usize::from(awaited) + usize::from(added == Some(false) && !orphaned);
     rule(
-        inactive <= waiting + usize::from(stopping) + usize::from(added == Some(false) && !orphaned),
+        inactive <= waiting + usize::from(stopping) + beside_waits,
         "R50",
         "an instance is Busy with a command that neither owns the axis nor waits",
     )

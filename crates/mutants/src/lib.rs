@@ -40,7 +40,11 @@ struct Args {
     scripts: bool,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+/// Does what the command line asks for.
+///
+/// # Errors
+/// What keeps it from that.
+pub fn run() -> Result<(), Box<dyn Error>> {
     let args = Args::parse();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../..")
