@@ -50,6 +50,13 @@ enum standstill_mc_source {
     STANDSTILL_MC_ACTUAL_VALUE = 2,
 };
 
+/** MC_SYNC_MODE */
+enum standstill_mc_sync_mode {
+    STANDSTILL_MC_SHORTEST = 0,
+    STANDSTILL_MC_CATCH_UP = 1,
+    STANDSTILL_MC_SLOW_DOWN = 2,
+};
+
 /** MC_TRIGGER_REF */
 enum standstill_mc_trigger_ref {
     STANDSTILL_MC_PROBE1_RISING = 0,
@@ -1655,6 +1662,240 @@ static inline standstill_mc_jog_out standstill_mc_jog_out_default(void) {
     return out;
 }
 
+/** MC_GearIn: Lets one axis follow another by a ratio. */
+typedef struct standstill_mc_gear_in_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t master; /* Master: The axis to follow. */
+    int32_t slave; /* Slave: The axis that follows. */
+    uint8_t execute; /* Execute: A rising edge couples the axes with the values of that call. */
+    uint8_t continuous_update; /* ContinuousUpdate: Changed inputs hold for the coupling in progress while TRUE, if it was TRUE at the rising edge. */
+    int16_t ratio_numerator; /* RatioNumerator: Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest. */
+    uint16_t ratio_denominator; /* RatioDenominator: Denominator of the ratio, above 0. */
+    uint8_t reserved_18[2];
+    int32_t master_value_source; /* MasterValueSource: mcSetValue; other values of the master are not followed in this version. */
+    double acceleration; /* Acceleration: Rate while the speed grows, until in gear; 0 takes the axis default. (u/s^2) */
+    double deceleration; /* Deceleration: Rate while the speed falls, until in gear; 0 takes the axis default. (u/s^2) */
+    double jerk; /* Jerk: Jerk until in gear; 0 takes the axis default, and no limit if there is none. (u/s^3) */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it. */
+    uint8_t reserved_52[4];
+    double snap; /* Snap: Snap until in gear; 0 takes the axis default, and no limit if there is none. (u/s^4) */
+} standstill_mc_gear_in_in;
+STANDSTILL_ASSERT(mc_gear_in_in, sizeof(standstill_mc_gear_in_in) == 64);
+
+typedef struct standstill_mc_gear_in_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t in_gear; /* InGear: The set position of the slave is the one the ratio asks for. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t active; /* Active: The block controls the slave. */
+    uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint8_t reserved_9[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_12[4];
+    double deviation; /* Deviation: How far the slave is from where the ratio asks it to be, once it was in gear; 0 in gear. (u) */
+    uint8_t master_lost; /* MasterLost: The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost). */
+    uint8_t reserved_25[7];
+} standstill_mc_gear_in_out;
+STANDSTILL_ASSERT(mc_gear_in_out, sizeof(standstill_mc_gear_in_out) == 32);
+
+static inline standstill_mc_gear_in_in standstill_mc_gear_in_in_default(void) {
+    standstill_mc_gear_in_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    in.master_value_source = 1;
+    return in;
+}
+
+static inline standstill_mc_gear_in_out standstill_mc_gear_in_out_default(void) {
+    standstill_mc_gear_in_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
+/** MC_GearOut: Ends MC_GearIn and MC_GearInPos; the slave keeps its velocity. */
+typedef struct standstill_mc_gear_out_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t slave; /* Slave: The axis that follows another by MC_GearIn or MC_GearInPos. */
+    uint8_t execute; /* Execute: A rising edge ends the coupling. */
+    uint8_t reserved_9[7];
+} standstill_mc_gear_out_in;
+STANDSTILL_ASSERT(mc_gear_out_in, sizeof(standstill_mc_gear_out_in) == 16);
+
+typedef struct standstill_mc_gear_out_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t done; /* Done: The coupling has ended. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint8_t reserved_7[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_10[6];
+} standstill_mc_gear_out_out;
+STANDSTILL_ASSERT(mc_gear_out_out, sizeof(standstill_mc_gear_out_out) == 16);
+
+static inline standstill_mc_gear_out_in standstill_mc_gear_out_in_default(void) {
+    standstill_mc_gear_out_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    return in;
+}
+
+static inline standstill_mc_gear_out_out standstill_mc_gear_out_out_default(void) {
+    standstill_mc_gear_out_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
+/** MC_GearInPos: Lets one axis follow another by a ratio, through a given place of both. */
+typedef struct standstill_mc_gear_in_pos_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t master; /* Master: The axis to follow. */
+    int32_t slave; /* Slave: The axis that follows. */
+    uint8_t execute; /* Execute: A rising edge couples the axes with the values of that call. */
+    uint8_t reserved_13[1];
+    int16_t ratio_numerator; /* RatioNumerator: Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest. */
+    uint16_t ratio_denominator; /* RatioDenominator: Denominator of the ratio, above 0. */
+    uint8_t reserved_18[2];
+    int32_t master_value_source; /* MasterValueSource: mcSetValue; other values of the master are not followed in this version. */
+    double master_sync_position; /* MasterSyncPosition: Place of the master at the sync point. (u) */
+    double slave_sync_position; /* SlaveSyncPosition: Place of the slave at the sync point. (u) */
+    int32_t sync_mode; /* SyncMode: Which of the places that mean the same on a modulo slave; with mcSlowDown the slave is never faster than in sync. */
+    uint8_t reserved_44[4];
+    double master_start_distance; /* MasterStartDistance: How far before its sync point the master is where the slave sets off; above 0 for a master that moves forwards, below 0 for one that moves backwards. 0 sets off at once. (u) */
+    double velocity; /* Velocity: Most speed from StartSync until InSync; 0 takes the axis limit. (u/s) */
+    double acceleration; /* Acceleration: Rate while the speed grows, until in sync; 0 takes the axis default. (u/s^2) */
+    double deceleration; /* Deceleration: Rate while the speed falls, until in sync; 0 takes the axis default. (u/s^2) */
+    double jerk; /* Jerk: Jerk until in sync; 0 takes the axis default, and no limit if there is none. (u/s^3) */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it; mcAborting with a MasterStartDistance. */
+    uint8_t reserved_92[4];
+    double snap; /* Snap: Snap until in sync; 0 takes the axis default, and no limit if there is none. (u/s^4) */
+} standstill_mc_gear_in_pos_in;
+STANDSTILL_ASSERT(mc_gear_in_pos_in, sizeof(standstill_mc_gear_in_pos_in) == 104);
+
+typedef struct standstill_mc_gear_in_pos_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t start_sync; /* StartSync: The slave is on its way to the sync point; FALSE from InSync on. */
+    uint8_t in_sync; /* InSync: The set position of the slave is the one the ratio asks for. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t active; /* Active: The block controls the slave. */
+    uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_12[4];
+    double deviation; /* Deviation: How far the slave is from where the ratio asks it to be; 0 in sync. (u) */
+    uint8_t master_lost; /* MasterLost: The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost). */
+    uint8_t reserved_25[7];
+} standstill_mc_gear_in_pos_out;
+STANDSTILL_ASSERT(mc_gear_in_pos_out, sizeof(standstill_mc_gear_in_pos_out) == 32);
+
+static inline standstill_mc_gear_in_pos_in standstill_mc_gear_in_pos_in_default(void) {
+    standstill_mc_gear_in_pos_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    in.master_value_source = 1;
+    return in;
+}
+
+static inline standstill_mc_gear_in_pos_out standstill_mc_gear_in_pos_out_default(void) {
+    standstill_mc_gear_in_pos_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
+/** MC_PhasingAbsolute: Shifts the place of a master, as its slave sees it, to a distance from where it is. */
+typedef struct standstill_mc_phasing_absolute_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t master; /* Master: The axis that is followed. */
+    int32_t slave; /* Slave: The axis that follows it. */
+    uint8_t execute; /* Execute: A rising edge shifts the master as the slave sees it. */
+    uint8_t reserved_13[3];
+    double phase_shift; /* PhaseShift: How far ahead of its place the master is to be seen; below 0 behind. (u) */
+    double velocity; /* Velocity: Most speed of the shift; 0 takes what the slave's limits leave. (u/s) */
+    double acceleration; /* Acceleration: Rate while that speed grows; 0 takes what the slave's limits leave. (u/s^2) */
+    double deceleration; /* Deceleration: Rate while it falls; the lower of both holds. 0 takes what the slave's limits leave. (u/s^2) */
+    double jerk; /* Jerk: Jerk of the shift; 0 takes what the slave's limits leave. (u/s^3) */
+    int32_t buffer_mode; /* BufferMode: How the shift follows one in progress: mcAborting takes over, the other modes wait for its end. */
+    uint8_t reserved_60[4];
+    double snap; /* Snap: Snap of the shift; 0 takes what the slave's limits leave. (u/s^4) */
+} standstill_mc_phasing_absolute_in;
+STANDSTILL_ASSERT(mc_phasing_absolute_in, sizeof(standstill_mc_phasing_absolute_in) == 72);
+
+typedef struct standstill_mc_phasing_absolute_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t done; /* Done: The shift is reached. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t active; /* Active: The shift moves; FALSE while it waits for room. */
+    uint8_t command_aborted; /* CommandAborted: Interrupted by another phasing, or the coupling has ended. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint8_t reserved_9[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_12[4];
+    double absolute_phase_shift; /* AbsolutePhaseShift: The shift there is, updated while Busy. (u) */
+} standstill_mc_phasing_absolute_out;
+STANDSTILL_ASSERT(mc_phasing_absolute_out, sizeof(standstill_mc_phasing_absolute_out) == 24);
+
+static inline standstill_mc_phasing_absolute_in standstill_mc_phasing_absolute_in_default(void) {
+    standstill_mc_phasing_absolute_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    return in;
+}
+
+static inline standstill_mc_phasing_absolute_out standstill_mc_phasing_absolute_out_default(void) {
+    standstill_mc_phasing_absolute_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
+/** MC_PhasingRelative: Shifts the place of a master, as its slave sees it, by a distance. */
+typedef struct standstill_mc_phasing_relative_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t master; /* Master: The axis that is followed. */
+    int32_t slave; /* Slave: The axis that follows it. */
+    uint8_t execute; /* Execute: A rising edge shifts the master as the slave sees it. */
+    uint8_t reserved_13[3];
+    double phase_shift; /* PhaseShift: By how much further ahead of its place the master is to be seen; below 0 further behind. (u) */
+    double velocity; /* Velocity: Most speed of the shift; 0 takes what the slave's limits leave. (u/s) */
+    double acceleration; /* Acceleration: Rate while that speed grows; 0 takes what the slave's limits leave. (u/s^2) */
+    double deceleration; /* Deceleration: Rate while it falls; the lower of both holds. 0 takes what the slave's limits leave. (u/s^2) */
+    double jerk; /* Jerk: Jerk of the shift; 0 takes what the slave's limits leave. (u/s^3) */
+    int32_t buffer_mode; /* BufferMode: How the shift follows one in progress: mcAborting takes over, the other modes wait for its end. */
+    uint8_t reserved_60[4];
+    double snap; /* Snap: Snap of the shift; 0 takes what the slave's limits leave. (u/s^4) */
+} standstill_mc_phasing_relative_in;
+STANDSTILL_ASSERT(mc_phasing_relative_in, sizeof(standstill_mc_phasing_relative_in) == 72);
+
+typedef struct standstill_mc_phasing_relative_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t done; /* Done: The shift is reached. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t active; /* Active: The shift moves; FALSE while it waits for room. */
+    uint8_t command_aborted; /* CommandAborted: Interrupted by another phasing, or the coupling has ended. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint8_t reserved_9[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_12[4];
+    double covered_phase_shift; /* CoveredPhaseShift: How far the shift has changed since the rising edge, updated while Busy. (u) */
+} standstill_mc_phasing_relative_out;
+STANDSTILL_ASSERT(mc_phasing_relative_out, sizeof(standstill_mc_phasing_relative_out) == 24);
+
+static inline standstill_mc_phasing_relative_in standstill_mc_phasing_relative_in_default(void) {
+    standstill_mc_phasing_relative_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    return in;
+}
+
+static inline standstill_mc_phasing_relative_out standstill_mc_phasing_relative_out_default(void) {
+    standstill_mc_phasing_relative_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
 /** R_TRIG: Detects a rising edge. */
 typedef struct standstill_r_trig_in {
     uint32_t size; /* sizeof this structure */
@@ -2109,6 +2350,26 @@ int32_t standstill_mc_halt_superimposed(struct standstill_runtime *runtime, uint
 /** One call of MC_Jog. A key of 0 makes the instance. */
 int32_t standstill_mc_jog(struct standstill_runtime *runtime, uint64_t *key,
     const struct standstill_mc_jog_in *in, struct standstill_mc_jog_out *out);
+
+/** One call of MC_GearIn. A key of 0 makes the instance. */
+int32_t standstill_mc_gear_in(struct standstill_runtime *runtime, uint64_t *key,
+    const struct standstill_mc_gear_in_in *in, struct standstill_mc_gear_in_out *out);
+
+/** One call of MC_GearOut. A key of 0 makes the instance. */
+int32_t standstill_mc_gear_out(struct standstill_runtime *runtime, uint64_t *key,
+    const struct standstill_mc_gear_out_in *in, struct standstill_mc_gear_out_out *out);
+
+/** One call of MC_GearInPos. A key of 0 makes the instance. */
+int32_t standstill_mc_gear_in_pos(struct standstill_runtime *runtime, uint64_t *key,
+    const struct standstill_mc_gear_in_pos_in *in, struct standstill_mc_gear_in_pos_out *out);
+
+/** One call of MC_PhasingAbsolute. A key of 0 makes the instance. */
+int32_t standstill_mc_phasing_absolute(struct standstill_runtime *runtime, uint64_t *key,
+    const struct standstill_mc_phasing_absolute_in *in, struct standstill_mc_phasing_absolute_out *out);
+
+/** One call of MC_PhasingRelative. A key of 0 makes the instance. */
+int32_t standstill_mc_phasing_relative(struct standstill_runtime *runtime, uint64_t *key,
+    const struct standstill_mc_phasing_relative_in *in, struct standstill_mc_phasing_relative_out *out);
 
 /** One call of R_TRIG. A key of 0 makes the instance. */
 int32_t standstill_r_trig(struct standstill_runtime *runtime, uint64_t *key,

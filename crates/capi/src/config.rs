@@ -2,8 +2,9 @@
 
 use crate::{AxisSetup, DriveSetup};
 use standstill_axis::{
-    AboveLimit, AxisConfig, BlockDetection, ConfigError, Defaults, HomeDirection, Homing, InPosition, Limits,
-    MoveProfile, PowerOff, Procedure, Scaling, StartState, SwitchEdge,
+    AboveLimit, AxisConfig, BlockDetection, ConfigError, Defaults, Following, HomeDirection, Homing,
+    InPosition, Limits, MoveProfile, OnLimit, OnMasterLost, PowerOff, Procedure, Scaling, StartState,
+    SwitchEdge,
 };
 use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
@@ -62,6 +63,9 @@ impl AxisSetup {
             homing_time_limit: 0,
             homing_distance_limit: 0.0,
             power_timeout: 0,
+            max_deviation: 0.0,
+            on_limit: 0,
+            on_master_lost: 0,
         }
     }
 
@@ -125,6 +129,15 @@ impl AxisSetup {
                 window,
                 scans: self.in_position_scans,
             }),
+            following: Following {
+                on_limit: choice("on_limit", self.on_limit, &[OnLimit::Lag, OnLimit::Error])?,
+                max_deviation: given(self.max_deviation),
+                on_master_lost: choice(
+                    "on_master_lost",
+                    self.on_master_lost,
+                    &[OnMasterLost::Error, OnMasterLost::Hold],
+                )?,
+            },
         })
     }
 

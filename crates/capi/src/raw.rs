@@ -31,7 +31,7 @@ sized!(
     Dump
 );
 
-// SAFETY: as those above. It grew: power_timeout came behind its first 264 bytes.
+// SAFETY: as those above. It grew: power_timeout and what a slave does came behind its first 264 bytes.
 unsafe impl Sized32 for crate::AxisSetup {
     const LEAST: usize = 264;
 }

@@ -318,7 +318,7 @@ impl Recorder {
         };
         let states = self.states.slice().iter();
         for ((words, state), axis) in of_axes.chunks_exact_mut(AXIS_WORDS).zip(states).zip(axes) {
-            write_axis(words, *state, axis);
+            write_axis(words, scan, *state, axis);
         }
         for recording in self.instances.slice() {
             let count = recording.block.pins().count();

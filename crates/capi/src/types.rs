@@ -161,6 +161,13 @@ pub struct AxisSetup {
     /// Scans the drive may take to confirm its power, then MC_Power shows error 503; 0: any. A structure that ends before
     /// has 0.
     pub power_timeout: u64,
+    /// How far a slave may be off the law of its gear (u), then error 420; 0: any distance. This and what follows is 0 in a
+    /// structure that ends before.
+    pub max_deviation: f64,
+    /// What a slave does that cannot keep up: 0 lags and catches up, 1 stops with error 420.
+    pub on_limit: i32,
+    /// What a slave does whose master goes out of operation: 0 stops with error 421, 1 comes to rest and stays coupled.
+    pub on_master_lost: i32,
 }
 
 /// The drive under an axis. drive_defaults gives an ideal one.
@@ -552,7 +559,7 @@ pub struct Dump {
 
 // No gap a compiler might fill otherwise: every byte belongs to a field.
 const _: () = assert!(size_of::<RuntimeConfig>() == 24);
-const _: () = assert!(size_of::<AxisSetup>() == 272);
+const _: () = assert!(size_of::<AxisSetup>() == 288);
 const _: () = assert!(size_of::<DriveSetup>() == 248);
 const _: () = assert!(size_of::<Feedback>() == 136);
 const _: () = assert!(size_of::<Command>() == 80);

@@ -34,14 +34,26 @@ pub enum Command {
     Live(LiveArguments),
     /// Hold scripts against their claims and goldens
     Test {
-        /// Scripts, and folders of them
-        #[arg(value_name = "PATH", default_value = SCRIPTS)]
+        /// Scripts, and folders of them [default: scan-tests, or this folder where there is none]
+        #[arg(value_name = "PATH")]
         paths: Vec<PathBuf>,
         /// Take the runs as they are for goldens, where all claims hold
         #[arg(long)]
         accept: bool,
-        /// How exactly a run must be as its golden: to the bit, or its events to the scan and its set-points within
-        /// --abs and --rel
+        /// Fail for what tests nothing and for values that were clamped, too
+        #[arg(long)]
+        strict: bool,
+        /// Print the outcome as one JSON object
+        #[arg(long)]
+        json: bool,
+        /// Change the programs of the scripts in small ways, and say which changes no claim notices
+        #[arg(long, conflicts_with_all = ["accept", "golden", "abs", "rel", "report", "junit", "recording", "strict"])]
+        mutate: bool,
+        /// With --mutate: of a script with very many changes those are tried that follow from it
+        #[arg(long, value_name = "S", default_value_t = 1, requires = "mutate")]
+        seed: u64,
+        /// How exactly a run must be as its golden: to the bit, its events to the scan and its set-points within
+        /// --abs and --rel, or not at all
         #[arg(long, value_enum, value_name = "HOW", default_value_t = Golden::Exact)]
         golden: Golden,
         /// With --golden events: how far a set-point may be off, in its own unit [default: 1e-6]
@@ -119,6 +131,14 @@ pub enum Command {
         #[command(subcommand)]
         what: Soak,
     },
+    /// Write a first test into a folder: a machine file, a script, what editors and CI need
+    ///
+    /// If a file of that name is there already nothing is written.
+    Init {
+        /// The folder; it is made if it is not there
+        #[arg(value_name = "FOLDER", default_value = ".")]
+        folder: PathBuf,
+    },
     /// List the function blocks and their pins
     Blocks {
         /// As JSON
@@ -140,7 +160,7 @@ pub enum Command {
         #[arg(long, value_name = "NAME")]
         dialect: Option<String>,
     },
-    /// Check or compile programs in Structured Text
+    /// Check, lint or compile programs in Structured Text
     St {
         /// What to do
         #[command(subcommand)]
@@ -170,6 +190,8 @@ pub enum Golden {
     Exact,
     /// Events to the scan, set-points within tolerances
     Events,
+    /// Claims decide alone
+    None,
 }
 
 /// For whom `export` writes.
@@ -200,6 +222,8 @@ pub enum Schema {
     Map,
     /// Sweeps
     Sweep,
+    /// What `test --json` and `run --json` print
+    Json,
 }
 
 /// What `soak` tries.
@@ -251,6 +275,15 @@ pub enum St {
         #[arg(long)]
         json: bool,
     },
+    /// Say what works and is probably not meant, where motion is concerned above all
+    Lint {
+        /// The project
+        #[command(flatten)]
+        sources: StSources,
+        /// As JSON
+        #[arg(long)]
+        json: bool,
+    },
     /// Compile a project to a guest in WebAssembly, with a file of its symbols beside it
     Build {
         /// The project
@@ -280,14 +313,26 @@ pub struct StSources {
 const FAILURES: &str = "soak-failures";
 
 /// Where the scripts of a repository stand.
-const SCRIPTS: &str = "scan-tests";
+pub const SCRIPTS: &str = "scan-tests";
 
 /// What `run` takes.
 #[derive(Args, Debug)]
 pub struct RunArguments {
-    /// The scripts, run in this order
+    /// The scripts, run in this order; or the files of one program in Structured Text
     #[arg(value_name = "SCRIPT", required = true)]
     pub scripts: Vec<PathBuf>,
+    /// The machine file with the axes of a program in Structured Text
+    #[arg(long, value_name = "MACHINE.json")]
+    pub axes: Option<PathBuf>,
+    /// Of such a program: the PROGRAM that runs
+    #[arg(long, value_name = "NAME")]
+    pub program: Option<String>,
+    /// Of such a program: the length of a scan; T#1ms if absent
+    #[arg(long, value_name = "TIME", value_parser = cycle)]
+    pub cycle: Option<i64>,
+    /// Of such a program: how many scans; 1000 if absent
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    pub scans: Option<u64>,
     /// Write the trace to this file; its ending says how
     #[arg(long, value_name = "FILE(.csv|.jsonl)")]
     pub trace: Option<PathBuf>,
@@ -315,6 +360,9 @@ pub struct RunArguments {
     /// Print failing claims and one line a script
     #[arg(long, short)]
     pub quiet: bool,
+    /// Print the outcome as one JSON object
+    #[arg(long, conflicts_with = "quiet")]
+    pub json: bool,
 }
 
 /// What `sweep` takes.
@@ -442,6 +490,14 @@ fn size(text: &str) -> Result<u64, String> {
     number
         .and_then(|number| number.checked_mul(bytes))
         .ok_or_else(|| "write a number of bytes, or one with KiB, MiB or GiB, such as 256MiB".to_owned())
+}
+
+/// Reads the length of a scan (ns).
+fn cycle(text: &str) -> Result<i64, String> {
+    match standstill_script::parse_time(text) {
+        Ok(ns) if ns > 0 => Ok(ns),
+        _ => Err("write a time above 0, such as T#1ms".to_owned()),
+    }
 }
 
 /// Reads a delimiter.

@@ -3,8 +3,9 @@
 use crate::exit::{Exit, Failure};
 use crate::report::page_failure;
 use standstill_report::{Mark, Source, check, html_marked};
-use standstill_script::golden;
+use standstill_script::golden::Standing;
 use standstill_script::suite::{Report, SuiteError, shown};
+use standstill_script::{Reason, golden};
 use standstill_trace::compare::{Difference, Yardstick, compare_by};
 use standstill_trace::file::replace_beside;
 use standstill_trace::{Trace, time_literal};
@@ -30,7 +31,12 @@ impl<'a> Pages<'a> {
     }
 
     /// Writes the page of a script that failed by this yardstick; its path.
-    pub fn write(&mut self, script: &Path, report: &Report, yardstick: Yardstick) -> Result<String, Failure> {
+    pub fn write(
+        &mut self,
+        script: &Path,
+        report: &Report,
+        yardstick: Option<Yardstick>,
+    ) -> Result<String, Failure> {
         let path = self.place(script);
         let folder = path.parent().unwrap_or(self.root);
         make(folder)?;
@@ -76,7 +82,7 @@ fn make(folder: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder).map_err(|error| Failure::io(&shown(folder), &error))
 }
 
-fn page(script: &Path, report: &Report, yardstick: Yardstick) -> Result<String, Failure> {
+fn page(script: &Path, report: &Report, yardstick: Option<Yardstick>) -> Result<String, Failure> {
     let run = &report.outcome.trace;
     let mut golden = golden::expected(script, run).map_err(SuiteError::from)?;
     if let Some(expected) = &mut golden {
@@ -85,12 +91,17 @@ fn page(script: &Path, report: &Report, yardstick: Yardstick) -> Result<String, 
     // A run that differs in nothing is not shown twice.
     let difference = golden
         .as_ref()
-        .and_then(|expected| compare_by(expected, run, yardstick));
+        .zip(yardstick.filter(|_| report.golden != Standing::Unasked))
+        .and_then(|(expected, yardstick)| compare_by(expected, run, yardstick));
     let name = shown(script);
     let names = [format!("expected: golden of {name}"), format!("found: {name}")];
     let lacks = ["the notes of its run".to_owned()];
     let found = source(&names[1], run, &[]);
-    let marks: Vec<Mark> = difference.as_ref().map(mark).into_iter().collect();
+    // The page begins at the first.
+    let marks: Vec<Mark> = why_mark(&report.why)
+        .into_iter()
+        .chain(difference.as_ref().map(mark))
+        .collect();
     let both = match (&golden, &difference) {
         (Some(expected), Some(_)) => vec![source(&names[0], expected, &lacks), found],
         _ => vec![found],
@@ -102,6 +113,17 @@ fn page(script: &Path, report: &Report, yardstick: Yardstick) -> Result<String, 
 
 fn source<'a>(name: &'a str, trace: &'a Trace, lacks: &'a [String]) -> Source<'a> {
     Source { name, trace, lacks }
+}
+
+/// Why a run fails, at the scan of the likeliest reason.
+pub fn why_mark(why: &[Reason]) -> Option<Mark> {
+    let first = why.first()?;
+    let scan = first.scan.and_then(|scan| usize::try_from(scan).ok());
+    Some(Mark {
+        scan,
+        title: scan.map_or_else(|| "why".to_owned(), |scan| format!("why: scan {scan}")),
+        text: why.iter().map(|reason| format!("{}\n", reason.text)).collect(),
+    })
 }
 
 /// The first difference; past the end of the shorter trace if only their lengths differ.

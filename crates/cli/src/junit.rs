@@ -110,11 +110,15 @@ fn write_case(out: &mut String, case: &Case) {
         Ending::Failed => ("failure", "failed"),
         Ending::Broken => ("error", "broken"),
     };
-    let first = case.text.lines().next().unwrap_or_default();
+    let mut first = case.text.lines().next().unwrap_or_default().to_owned();
+    // What a reader shows in its list.
+    if let Some(why) = case.text.lines().skip_while(|line| *line != "why").nth(1) {
+        first = format!("{first}; why: {}", why.trim());
+    }
     let _ = writeln!(
         out,
         ">\n      <{element} type=\"{kind}\" message=\"{}\">{}</{element}>\n    </testcase>",
-        attribute(first),
+        attribute(&first),
         escaped(&case.text)
     );
 }

@@ -12,12 +12,15 @@ mod explain;
 mod export;
 mod failing;
 mod fmt;
+mod init;
 mod json;
 mod junit;
 mod limit;
 #[cfg(feature = "live")]
 mod live;
+mod mutate;
 mod out;
+mod outcome;
 pub mod plan;
 mod progress;
 mod report;
@@ -79,15 +82,16 @@ fn is_data(command: &Command) -> bool {
         | Command::Sweep(_)
         | Command::Blocks { .. }
         | Command::Schema { .. } => true,
-        Command::St { what } => matches!(what, St::Check { json: true, .. }),
+        Command::St { what } => matches!(what, St::Check { json: true, .. } | St::Lint { json: true, .. }),
         Command::Fmt { paths, .. } => paths.iter().any(|path| is_standard(path)),
-        Command::Run(_)
-        | Command::Live(_)
+        Command::Run(arguments) => arguments.json,
+        Command::Test { json, .. } => *json,
+        Command::Live(_)
         | Command::Watch(_)
-        | Command::Test { .. }
         | Command::Report { .. }
         | Command::Explain { .. }
         | Command::Compare { .. }
+        | Command::Init { .. }
         | Command::Soak { .. }
         | Command::Export { .. } => false,
     }
@@ -117,6 +121,10 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Test {
             paths,
             accept,
+            strict,
+            json,
+            mutate,
+            seed,
             golden,
             abs,
             rel,
@@ -125,9 +133,16 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             recording,
             outside,
         } => {
+            let paths = &test::where_scripts_are(paths);
+            if *mutate {
+                let scripts = test::found(paths)?;
+                return mutate::mutate(&scripts, *seed, &outside.allowed(), *json, out);
+            }
             let wish = test::Wish {
                 paths,
                 accept: *accept,
+                strict: *strict,
+                json: *json,
                 yardstick: test::yardstick(*golden, *abs, *rel)?,
                 junit: junit.as_deref(),
                 report: report.as_deref(),
@@ -180,6 +195,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
                     failures,
                 },
         } => soak::blocks(*seed, *count, resume.as_deref(), failures, out),
+        Command::Init { folder } => init::init(folder, out),
         Command::Blocks { json: true } => blocks::json(out),
         Command::Blocks { json: false } => blocks::table(out),
         Command::Export {
@@ -193,7 +209,11 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         #[cfg(feature = "st")]
         Command::St {
             what: St::Check { sources, json },
-        } => st::check(sources, *json, out),
+        } => st::check(sources, *json, false, out),
+        #[cfg(feature = "st")]
+        Command::St {
+            what: St::Lint { sources, json },
+        } => st::check(sources, *json, true, out),
         #[cfg(feature = "st")]
         Command::St {
             what:
@@ -209,6 +229,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
                 Schema::Machine => standstill_script::machine_schema(),
                 Schema::Map => standstill_script::map_schema(),
                 Schema::Sweep => standstill_script::sweep_schema(),
+                Schema::Json => outcome::schema(),
             };
             write!(out, "{text}")?;
             Ok(Exit::Passed)

@@ -2,7 +2,7 @@
 
 use crate::exit::{Exit, Failure, complain};
 use crate::limit;
-use standstill_report::{ReportError, Source, html};
+use standstill_report::{Mark, ReportError, Source, html_marked};
 use standstill_script::suite::shown;
 use standstill_trace::file::{self, replace};
 use standstill_trace::{Loaded, svg, vcd};
@@ -38,7 +38,7 @@ pub fn report(traces: &[PathBuf], targets: Targets<'_>) -> Result<Exit, Failure>
     }
     let loaded: Vec<(String, Loaded)> = traces.iter().map(|path| load(path)).collect::<Result<_, _>>()?;
     let sources: Vec<_> = loaded.iter().map(|(name, loaded)| source(name, loaded)).collect();
-    write_all(&sources, targets)?;
+    write_all(&sources, &[], targets)?;
     Ok(Exit::Passed)
 }
 
@@ -60,10 +60,10 @@ fn source<'a>(name: &'a str, loaded: &'a Loaded) -> Source<'a> {
     }
 }
 
-/// Writes what is wanted.
-pub fn write_all(sources: &[Source<'_>], targets: Targets<'_>) -> Result<(), Failure> {
+/// Writes what is wanted; the page begins at the first mark.
+pub fn write_all(sources: &[Source<'_>], marks: &[Mark], targets: Targets<'_>) -> Result<(), Failure> {
     if let Some(path) = targets.html {
-        let page = html(sources).map_err(page_failure)?;
+        let page = html_marked(sources, marks).map_err(page_failure)?;
         replace(path, |out| out.write_all(page.as_bytes()))?;
     }
     if let ([source], Some(path)) = (sources, targets.svg) {

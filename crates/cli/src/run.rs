@@ -1,16 +1,21 @@
 //! `standstill run`: one or more scripts, shown to a person.
 
 use crate::args::RunArguments;
-use crate::exit::{Exit, Failure, go_on};
+use crate::exit::{Exit, Failure, complain, go_on};
+use crate::failing;
+use crate::json::Object;
 use crate::limit;
+use crate::outcome;
 use crate::progress::Progress;
 use crate::report::{self, Targets};
 use standstill_report::Source;
-use standstill_script::suite::{self, SuiteError};
-use standstill_script::{Code, Outcome, ScriptError};
+use standstill_script::bare::{Bare, run_bare};
+use standstill_script::model::Script;
+use standstill_script::suite::{self, Reasons, SuiteError};
+use standstill_script::{Code, Outcome, ScriptError, warnings};
 use standstill_trace::csv::Dialect;
 use standstill_trace::{Header, digest, events_text, extremes_text, file, plot};
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::Path;
 
 /// Width of drawings (characters). It does not follow the terminal: the output is the same everywhere.
@@ -19,12 +24,56 @@ const WIDTH: usize = 100;
 /// Runs the scripts in the order given. A script that cannot be run does not keep the others from it.
 pub fn run(arguments: &RunArguments, out: &mut dyn Write) -> Result<Exit, Failure> {
     let dialect = checked(arguments)?;
+    let texts = arguments.scripts.iter().filter(|path| is_text(path)).count();
+    let options = [
+        ("--axes", arguments.axes.is_some()),
+        ("--program", arguments.program.is_some()),
+        ("--cycle", arguments.cycle.is_some()),
+        ("--scans", arguments.scans.is_some()),
+    ];
+    let option = options.iter().find(|(_, given)| *given);
+    match (texts, option) {
+        (0, None) => {}
+        (0, Some((option, _))) => {
+            let message =
+                format!("{option} is for programs in Structured Text (.st): a script says it itself");
+            return Err(Failure::usage(&message));
+        }
+        _ if texts < arguments.scripts.len() => {
+            return Err(Failure::usage(
+                "scripts and files of Structured Text do not run together: a script names its programs itself",
+            ));
+        }
+        _ => {}
+    }
+    if !arguments.json {
+        return all(arguments, dialect, &mut Vec::new(), out);
+    }
+    let mut told = Vec::new();
+    let exit = all(arguments, dialect, &mut told, &mut io::sink())?;
+    writeln!(out, "{}", outcome::whole("run", exit, &[], &told))?;
+    Ok(exit)
+}
+
+/// Runs all scripts, tells of them in text, and collects what there is to tell as JSON.
+fn all(
+    arguments: &RunArguments,
+    dialect: Dialect,
+    told: &mut Vec<Object>,
+    out: &mut dyn Write,
+) -> Result<Exit, Failure> {
+    if arguments.scripts.iter().any(|path| is_text(path)) {
+        return run_text(arguments, dialect, told, out);
+    }
     let mut exit = Exit::Passed;
     for (index, script) in arguments.scripts.iter().enumerate() {
         if index > 0 && !arguments.quiet {
             writeln!(out)?;
         }
-        let this = run_one(script, arguments, dialect, out);
+        let this = run_one(script, arguments, dialect, told, out);
+        if let Err(Failure::Told(_, text)) = &this {
+            told.push(outcome::broken(&suite::shown(script), text));
+        }
         exit = exit.max(go_on(this, out)?);
     }
     Ok(exit)
@@ -81,33 +130,95 @@ fn checked(arguments: &RunArguments) -> Result<Dialect, Failure> {
     }
 }
 
-fn run_one(
-    script: &Path,
+fn is_text(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("st"))
+}
+
+/// Runs a program in Structured Text without a script.
+fn run_text(
     arguments: &RunArguments,
     dialect: Dialect,
+    told: &mut Vec<Object>,
     out: &mut dyn Write,
 ) -> Result<Exit, Failure> {
-    let name = suite::shown(script);
-    let outcome = {
+    const SCANS: u64 = 1000;
+    const CYCLE_NS: i64 = 1_000_000;
+    for path in arguments.scripts.iter().chain(&arguments.axes) {
+        std::fs::metadata(path).map_err(|error| Failure::io(&suite::shown(path), &error))?;
+    }
+    let name = arguments
+        .scripts
+        .last()
+        .map_or_else(String::new, |path| suite::shown(path));
+    let bare = Bare {
+        sources: &arguments.scripts,
+        axes: arguments.axes.as_deref(),
+        program: arguments.program.as_deref(),
+        cycle_ns: arguments.cycle.unwrap_or(CYCLE_NS),
+        scans: arguments.scans.unwrap_or(SCANS),
+    };
+    let run = {
         let mut progress = Progress::new(!arguments.quiet);
         limit::doing(name.clone());
-        suite::run_file(script, &arguments.set, &arguments.outside.allowed(), |scans| {
+        run_bare(bare, &arguments.set, &arguments.outside.allowed(), |scans| {
             limit::doing(format!("{name}: {scans} scans"));
             progress.show(|| format!("{name}: {scans} scans"))
         })
     };
-    let outcome = outcome.map_err(failure)?;
-    if arguments.quiet {
-        write!(out, "{}", failing_claims(&outcome))?;
-    } else {
-        show(&name, &outcome, out)?;
+    let (script, outcome) = run.map_err(failure)?;
+    tell(&name, (&script, &outcome), arguments, dialect, told, out)
+}
+
+fn run_one(
+    script: &Path,
+    arguments: &RunArguments,
+    dialect: Dialect,
+    told: &mut Vec<Object>,
+    out: &mut dyn Write,
+) -> Result<Exit, Failure> {
+    let name = suite::shown(script);
+    let run = {
+        let mut progress = Progress::new(!arguments.quiet);
+        limit::doing(name.clone());
+        suite::run_script(script, &arguments.set, &arguments.outside.allowed(), |scans| {
+            limit::doing(format!("{name}: {scans} scans"));
+            progress.show(|| format!("{name}: {scans} scans"))
+        })
+    };
+    let (script, outcome) = run.map_err(failure)?;
+    tell(&name, (&script, &outcome), arguments, dialect, told, out)
+}
+
+/// Says how a run went, and writes its files.
+fn tell(
+    name: &str,
+    (script, outcome): (&Script, &Outcome),
+    arguments: &RunArguments,
+    dialect: Dialect,
+    told: &mut Vec<Object>,
+    out: &mut dyn Write,
+) -> Result<Exit, Failure> {
+    // The golden is not looked at here, but the script has one.
+    let warnings = warnings(script, outcome, script.golden);
+    if arguments.json {
+        told.push(outcome::run(name, outcome, &warnings));
     }
-    writeln!(out, "{name}: {}", verdict(&outcome))?;
+    if arguments.quiet {
+        write!(out, "{}", failing_claims(outcome))?;
+    } else {
+        show(name, outcome, out)?;
+    }
+    writeln!(out, "{name}: {}", verdict(outcome))?;
+    if !warnings.all.is_empty() {
+        out.flush()?;
+        complain(warnings.to_string().trim_end());
+    }
     if let Some(path) = &arguments.trace {
         file::save_as(&outcome.trace, path, dialect)?;
     }
     let source = Source {
-        name: &name,
+        name,
         trace: &outcome.trace,
         lacks: &[],
     };
@@ -116,7 +227,8 @@ fn run_one(
         svg: arguments.svg.as_deref(),
         vcd: arguments.vcd.as_deref(),
     };
-    report::write_all(&[source], targets)?;
+    let mark = failing::why_mark(&outcome.why);
+    report::write_all(&[source], &Vec::from_iter(mark), targets)?;
     Ok(Exit::of(outcome.passed()))
 }
 
@@ -155,9 +267,12 @@ fn show(name: &str, outcome: &Outcome, out: &mut dyn Write) -> Result<(), Failur
     Ok(())
 }
 
+/// The claims that fail, and why, indented.
 pub fn failing_claims(outcome: &Outcome) -> String {
     let failures = outcome.verdicts.iter().flat_map(|verdict| &verdict.failures);
-    failures.map(|failure| format!("  {failure}\n")).collect()
+    let failures: String = failures.map(|failure| format!("{failure}\n")).collect();
+    let text = format!("{failures}{}", Reasons(&outcome.why));
+    text.lines().map(|line| format!("  {line}\n")).collect()
 }
 
 /// The last line: how many claims held, how long it was, and one number for every bit.

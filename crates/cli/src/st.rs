@@ -28,12 +28,13 @@ fn sources(files: &[(String, Vec<u8>)]) -> Vec<Source<'_>> {
     files.iter().map(|(name, bytes)| Source { name, bytes }).collect()
 }
 
-/// Says what is wrong and doubtful.
-pub fn check(given: &StSources, json: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
+/// Says what is wrong and doubtful, with or without lints; a lint is a failure.
+pub fn check(given: &StSources, json: bool, lint: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let files = read(&given.files)?;
     let options = Options {
         program: given.program.clone(),
         library: true,
+        lint,
         ..Options::default()
     };
     let report = standstill_st::check(&sources(&files), &options);
@@ -49,6 +50,8 @@ pub fn check(given: &StSources, json: bool, out: &mut dyn Write) -> Result<Exit,
     }
     Ok(if report.has_errors() {
         Exit::BadInput
+    } else if lint && !report.diagnostics().is_empty() {
+        Exit::Failed
     } else {
         Exit::Passed
     })
@@ -114,7 +117,7 @@ fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 fn symbols(symbols: &Symbols) -> String {
     let variables = symbols.leaves(SYMBOLS_MOST).into_iter().map(|symbol| {
         let elements = match symbol.value {
-            Value::Plain => None,
+            Value::Plain | Value::Range(..) => None,
             Value::Element(elements) => {
                 let pair = |(name, number): (String, i128)| {
                     Object::new()
@@ -143,7 +146,8 @@ fn symbols(symbols: &Symbols) -> String {
             .with("kind", string(place.kind.text()))
             .text()
     });
-    let tasks = symbols.tasks().iter().map(|task| {
+    let named = symbols.tasks().iter().filter(|task| !task.name.is_empty());
+    let tasks = named.map(|task| {
         Object::new()
             .with("name", string(&task.name))
             .with_some("interval_ns", task.interval_ns.map(|ns| ns.to_string()))

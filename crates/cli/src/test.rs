@@ -1,18 +1,20 @@
 //! `standstill test`: scripts as tests, held against their claims and goldens.
 
-use crate::args::Golden;
-use crate::exit::{Exit, Failure, go_on};
+use crate::args::{Golden, SCRIPTS};
+use crate::exit::{Exit, Failure, complain, go_on};
 use crate::explain::load;
 use crate::failing::Pages;
+use crate::json::Object;
 use crate::junit::{self, Case, Ending};
 use crate::limit;
+use crate::outcome;
 use crate::progress::Progress;
 use standstill_script::golden::{Mode, Standing};
-use standstill_script::judge_recording;
 use standstill_script::suite::{self, Allowed, Report};
+use standstill_script::{Warnings, judge_recording};
 use standstill_trace::compare::{Tolerance, Yardstick};
 use std::fmt;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -23,8 +25,12 @@ pub struct Wish<'a> {
     pub paths: &'a [PathBuf],
     /// Goldens become what the runs are.
     pub accept: bool,
-    /// How exactly a run must be as its golden.
-    pub yardstick: Yardstick,
+    /// Warnings fail.
+    pub strict: bool,
+    /// The outcome is printed as JSON.
+    pub json: bool,
+    /// How exactly a run must be as its golden; it need not without.
+    pub yardstick: Option<Yardstick>,
     /// Where to write the outcome as JUnit XML.
     pub junit: Option<&'a Path>,
     /// The folder for pages of scripts that fail.
@@ -36,15 +42,16 @@ pub struct Wish<'a> {
 }
 
 /// How exactly a run must be as its golden, from the arguments.
-pub fn yardstick(golden: Golden, abs: Option<f64>, rel: Option<f64>) -> Result<Yardstick, Failure> {
+pub fn yardstick(golden: Golden, abs: Option<f64>, rel: Option<f64>) -> Result<Option<Yardstick>, Failure> {
     let tolerance = Tolerance::default();
     match (golden, abs.or(rel)) {
-        (Golden::Events, _) => Ok(Yardstick::Events(Tolerance {
+        (Golden::Events, _) => Ok(Some(Yardstick::Events(Tolerance {
             absolute: abs.unwrap_or(tolerance.absolute),
             relative: rel.unwrap_or(tolerance.relative),
-        })),
-        (Golden::Exact, None) => Ok(Yardstick::Exact),
-        (Golden::Exact, Some(_)) => Err(Failure::usage(
+        }))),
+        (Golden::Exact, None) => Ok(Some(Yardstick::Exact)),
+        (Golden::None, None) => Ok(None),
+        (Golden::Exact | Golden::None, Some(_)) => Err(Failure::usage(
             "--abs and --rel are for --golden events: to the bit there is no tolerance",
         )),
     }
@@ -52,13 +59,42 @@ pub fn yardstick(golden: Golden, abs: Option<f64>, rel: Option<f64>) -> Result<Y
 
 /// Judges all scripts at the paths, in sorted order, and reports goldens that have no script any more.
 pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
-    if let Some(recording) = wish.recording {
-        return on_recording(wish, recording, out);
+    if !wish.json {
+        return told(wish, out).map(|tally| tally.exit());
     }
+    let tally = told(wish, &mut io::sink())?;
+    let exit = tally.exit();
+    writeln!(out, "{}", tally.json(exit))?;
+    Ok(exit)
+}
+
+/// Judges what is wished for and tells of it in text.
+fn told(wish: Wish<'_>, out: &mut dyn Write) -> Result<Tally, Failure> {
+    if wish.accept && wish.yardstick.is_none() {
+        return Err(Failure::usage(
+            "--accept writes goldens, and --golden none asks for none",
+        ));
+    }
+    let tally = match wish.recording {
+        Some(recording) => on_recording(wish, recording, out)?,
+        None => judged(wish, out)?,
+    };
+    write!(out, "{tally}")?;
+    if let Some(path) = wish.junit {
+        junit::save(&tally.cases, path)?;
+    }
+    Ok(tally)
+}
+
+fn judged(wish: Wish<'_>, out: &mut dyn Write) -> Result<Tally, Failure> {
     let mode = Mode::from_environment(wish.accept).map_err(|error| Failure::usage(&error.to_string()))?;
     let scripts = found(wish.paths)?;
     let mut pages = wish.report.map(Pages::new).transpose()?;
-    let mut tally = Tally::default();
+    let mut tally = Tally {
+        strict: wish.strict,
+        json: wish.json,
+        ..Tally::default()
+    };
     let mut progress = Progress::new(true);
     for (index, script) in scripts.iter().enumerate() {
         let name = suite::shown(script);
@@ -95,12 +131,24 @@ pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
     }
     for folder in wish.paths.iter().filter(|path| path.is_dir()) {
         tally.orphans(&suite::orphans(folder)?, out)?;
+        mention(folder)?;
     }
-    tally.end(wish, out)
+    Ok(tally)
+}
+
+/// Tells of files that look like scripts but are not called so.
+fn mention(folder: &Path) -> Result<(), Failure> {
+    for file in suite::overlooked(folder)? {
+        let (name, ending) = (suite::shown(&file), suite::EXTENSION);
+        complain(&format!(
+            "note: {name} looks like a scan script, but is not tested: its name does not end in {ending}"
+        ));
+    }
+    Ok(())
 }
 
 /// Judges the claims of one script on a recording.
-fn on_recording(wish: Wish<'_>, recording: &Path, out: &mut dyn Write) -> Result<Exit, Failure> {
+fn on_recording(wish: Wish<'_>, recording: &Path, out: &mut dyn Write) -> Result<Tally, Failure> {
     let [script] = wish.paths else {
         return Err(Failure::usage("--recording is judged by one script"));
     };
@@ -118,13 +166,18 @@ fn on_recording(wish: Wish<'_>, recording: &Path, out: &mut dyn Write) -> Result
             format!("error: {}: {error}", suite::shown(recording)),
         )
     })?;
-    // No golden is of this trace, so none is missed.
+    // No golden is of this trace, so none is missed; and what the script does is not what was recorded.
     let report = Report {
+        why: outcome.why.clone(),
         outcome,
-        golden: Standing::Same,
+        golden: Standing::Unasked,
+        warnings: Warnings::default(),
     };
     let name = suite::shown(script);
-    let mut tally = Tally::default();
+    let mut tally = Tally {
+        json: wish.json,
+        ..Tally::default()
+    };
     let shown = format!("{name} on {}", suite::shown(recording));
     let (ending, text) = tally.judged(&shown, &report, out)?;
     tally.cases.push(Case {
@@ -133,17 +186,30 @@ fn on_recording(wish: Wish<'_>, recording: &Path, out: &mut dyn Write) -> Result
         text,
         took: begin.elapsed(),
     });
-    tally.end(wish, out)
+    Ok(tally)
+}
+
+/// The paths, or without any `scan-tests`, or the working folder where there is none.
+pub fn where_scripts_are(paths: &[PathBuf]) -> Vec<PathBuf> {
+    if !paths.is_empty() {
+        return paths.to_vec();
+    }
+    let folder = Path::new(SCRIPTS);
+    let here = if folder.is_dir() { folder } else { Path::new(".") };
+    vec![here.to_owned()]
 }
 
 /// All scripts at the paths.
-fn found(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+pub fn found(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut all = Vec::new();
     for path in paths {
         let scripts = suite::find(path)?;
         if scripts.is_empty() {
+            if path.is_dir() {
+                mention(path)?;
+            }
             let message = format!(
-                "{}: there is no {} file in it",
+                "{}: there is no {} file in it; `standstill init` writes a first one",
                 suite::shown(path),
                 suite::EXTENSION
             );
@@ -165,6 +231,12 @@ struct Tally {
     orphans: usize,
     /// Everything that was judged, in order.
     cases: Vec<Case>,
+    /// The same as JSON.
+    told: Vec<Object>,
+    /// Warnings fail.
+    strict: bool,
+    /// It is told as JSON: what that takes is done only then.
+    json: bool,
 }
 
 impl Tally {
@@ -174,11 +246,17 @@ impl Tally {
         report: &Report,
         out: &mut dyn Write,
     ) -> Result<(Ending, String), Failure> {
-        let (count, word) = match (&report.golden, report.passed()) {
+        let passed = report.passed() && !(self.strict && report.warnings.count());
+        let (count, word) = match (&report.golden, passed) {
             (_, false) | (Standing::Failed(_), _) => (&mut self.failed, "FAILED"),
             (Standing::Accepted, true) => (&mut self.accepted, "accepted"),
-            (Standing::Same | Standing::Close(_) | Standing::Old(_), true) => (&mut self.passed, "ok"),
+            (Standing::Same | Standing::Close(_) | Standing::Old(_) | Standing::Unasked, true) => {
+                (&mut self.passed, "ok")
+            }
         };
+        if self.json {
+            self.told.push(outcome::judged(name, word, report));
+        }
         *count += 1;
         writeln!(out, "{word:<8}  {name}")?;
         if let (Standing::Close(Some(how)), true) = (&report.golden, report.passed()) {
@@ -187,15 +265,19 @@ impl Tally {
         if let (Standing::Old(note), true) = (&report.golden, report.passed()) {
             writeln!(out, "    {note}")?;
         }
-        let text = report.to_string();
+        let mut text = report.to_string();
+        if self.strict {
+            text.extend(report.warnings.lines().map(|line| format!("{line}\n")));
+        }
         for line in text.lines() {
             writeln!(out, "    {line}")?;
         }
-        let ending = if report.passed() {
-            Ending::Passed
-        } else {
-            Ending::Failed
-        };
+        if !report.warnings.all.is_empty() {
+            // What was printed so far stands before it.
+            out.flush()?;
+            complain(report.warnings.to_string().trim_end());
+        }
+        let ending = if passed { Ending::Passed } else { Ending::Failed };
         Ok((ending, text))
     }
 
@@ -210,6 +292,7 @@ impl Tally {
             Failure::Output(_) => String::new(),
         };
         writeln!(out, "BROKEN    {name}")?;
+        self.told.push(outcome::broken(name, &text));
         self.broken.push(go_on(Err(failure), out)?);
         Ok((Ending::Broken, text))
     }
@@ -219,6 +302,7 @@ impl Tally {
         for orphan in orphans {
             let (name, text) = (suite::shown(orphan), "its script is not there any more");
             writeln!(out, "ORPHAN    {name}\n    {text}")?;
+            self.told.push(outcome::orphaned(&name));
             self.cases.push(Case {
                 file: name,
                 ending: Ending::Failed,
@@ -237,13 +321,16 @@ impl Tally {
         }
     }
 
-    /// Prints the counts and writes what was asked for.
-    fn end(&self, wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
-        write!(out, "{self}")?;
-        if let Some(path) = wish.junit {
-            junit::save(&self.cases, path)?;
-        }
-        Ok(self.exit())
+    /// Everything as one JSON object.
+    fn json(&self, exit: Exit) -> String {
+        let counts = [
+            ("passed", self.passed),
+            ("accepted", self.accepted),
+            ("failed", self.failed),
+            ("broken", self.broken.len()),
+            ("orphaned", self.orphans),
+        ];
+        outcome::whole("test", exit, &counts, &self.told)
     }
 
     fn exit(&self) -> Exit {
@@ -262,6 +349,7 @@ impl fmt::Display for Tally {
             broken,
             orphans,
             cases,
+            ..
         } = self;
         let bad = cases.iter().filter(|case| case.ending != Ending::Passed);
         if cases.len() > 1 && bad.clone().next().is_some() {

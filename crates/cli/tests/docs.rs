@@ -163,6 +163,7 @@ fn every_console_block_and_every_table_of_plans_is_true() {
         ("from-your-vendor.md", 1, 10),
         ("gallery/README.md", 1, 0),
         ("how-to/ci.md", 2, 0),
+        ("mutants.md", 1, 0),
         ("planner-lines.md", 1, 0),
         ("reports.md", 3, 0),
         ("sweeps.md", 1, 0),

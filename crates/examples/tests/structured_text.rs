@@ -36,3 +36,10 @@ fn prog_st_as_it_stands() {
         hold("Structured Text", &trace, None);
     }
 }
+
+/// Covers: ST20, ST43
+#[test]
+fn prog_st_named_by_a_scan_script() {
+    let trace = of_guest(&folder().join("text.scan.json"), str::to_owned);
+    hold("Structured Text in a script", &trace, None);
+}

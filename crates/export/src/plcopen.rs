@@ -104,7 +104,13 @@ fn structure(out: &mut String, name: &str, members: &str) {
 /// A type as an element.
 fn ty(ty: PinType) -> String {
     match ty {
-        PinType::Bool | PinType::Int | PinType::Lreal | PinType::Word | PinType::Dword | PinType::Time => {
+        PinType::Bool
+        | PinType::Int
+        | PinType::Lreal
+        | PinType::Uint
+        | PinType::Word
+        | PinType::Dword
+        | PinType::Time => {
             format!("<{}/>", ty.iec_name())
         }
         PinType::Axis(_) | PinType::Enum(_) | PinType::Table(_) => {

@@ -396,6 +396,19 @@ typedef struct standstill_axis_setup {
    * has 0.
    */
   uint64_t power_timeout;
+  /**
+   * How far a slave may be off the law of its gear (u), then error 420; 0: any distance. This and what follows is 0 in a
+   * structure that ends before.
+   */
+  double max_deviation;
+  /**
+   * What a slave does that cannot keep up: 0 lags and catches up, 1 stops with error 420.
+   */
+  int32_t on_limit;
+  /**
+   * What a slave does whose master goes out of operation: 0 stops with error 421, 1 comes to rest and stays coupled.
+   */
+  int32_t on_master_lost;
 } standstill_axis_setup;
 
 /**
@@ -1316,7 +1329,7 @@ int32_t standstill_instance_make(struct standstill_runtime *runtime, const char 
 
 /* The library was compiled with these sizes. */
 STANDSTILL_ASSERT(runtime_config, sizeof(standstill_runtime_config) == 24);
-STANDSTILL_ASSERT(axis_setup, sizeof(standstill_axis_setup) == 272);
+STANDSTILL_ASSERT(axis_setup, sizeof(standstill_axis_setup) == 288);
 STANDSTILL_ASSERT(drive_setup, sizeof(standstill_drive_setup) == 248);
 STANDSTILL_ASSERT(feedback, sizeof(standstill_feedback) == 136);
 STANDSTILL_ASSERT(command, sizeof(standstill_command) == 80);

@@ -36,7 +36,7 @@ fn another_reader_finds_every_pin_of_every_block() {
         .collect();
     for pin in REGISTRY.iter().flat_map(|info| info.pins()) {
         let name = pin.ty.iec_name();
-        let elementary = ["BOOL", "INT", "LREAL", "WORD", "DWORD", "TIME"].contains(&name);
+        let elementary = ["BOOL", "INT", "LREAL", "UINT", "WORD", "DWORD", "TIME"].contains(&name);
         assert!(
             elementary || declared.iter().any(|ty| ty == name),
             "{name} is not declared"

@@ -14,7 +14,7 @@ pub fn page() -> Generated {
          Execute falls and take good values at the next edge, blocks with Enable mend as soon as the value does.\n\n\
          An `Axis` that does not exist is error {} of every block; blocks with Enable then need a new edge, too.\n\n\
          The window of MC_TouchProbe is not read without WindowOnly; its rows are with it, and with the pin that is not\n\
-         named at 0, if first, or at the largest number.\n\n\
+         named at 0, if first, or at the largest number. MC_PhasingAbsolute and MC_PhasingRelative find their slave in gear.\n\n\
          ## Numbers\n\n\
          | block | pin | NaN | +infinity | -infinity | 0 | -1 | 1e300 |\n\
          | --- | --- | --- | --- | --- | --- | --- | --- |\n",

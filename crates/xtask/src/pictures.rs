@@ -2,7 +2,7 @@
 
 use crate::{Generated, root};
 use standstill_blocks::REGISTRY;
-use standstill_script::{read, run};
+use standstill_script::{read_with_programs, run};
 use standstill_trace::Trace;
 use standstill_trace::svg::{report, svg};
 use std::collections::BTreeMap;
@@ -70,7 +70,14 @@ pub fn pictures() -> BTreeMap<String, Picture> {
 fn picture(name: &str, script: &str, signals: &str) -> Picture {
     let path = format!("scan-tests/{script}.scan.json");
     let text = fs::read_to_string(root().join(&path)).unwrap_or_else(|error| panic!("{path}: {error}"));
-    let script = read(&text, &path, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let folder = root().join(&path);
+    let mut machine = |_: &str| Err("a picture is of a script without machine files".to_owned());
+    let mut program = |inner: &str| {
+        let bytes = fs::read(folder.with_file_name(inner));
+        bytes.map_err(|error| error.to_string())
+    };
+    let script = read_with_programs(&text, &path, &[], &mut machine, &mut program)
+        .unwrap_or_else(|error| panic!("{error}"));
     let trace = run(&script)
         .unwrap_or_else(|error| panic!("{path}: {error}"))
         .trace;

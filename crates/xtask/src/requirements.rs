@@ -11,10 +11,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// File names below `crates/xtask/requirements` and `docs/requirements`, without extension.
-const AREAS: [&str; 7] = [
+const AREAS: [&str; 8] = [
     "rules",
     "states",
     "buffer-modes",
+    "coupling",
     "structured-text",
     "tables",
     "vendor-choices",

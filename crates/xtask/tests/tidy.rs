@@ -16,6 +16,25 @@ fn generated_files_are_fresh() {
     }
 }
 
+/// With a second program `cargo run` of README does not know which one is meant.
+#[test]
+fn the_command_line_is_the_only_program() {
+    let workspace = fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let members = workspace
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix('"')?.strip_suffix("\","));
+    let is_program = |member: &&str| {
+        let folder = root().join(member);
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        manifest.contains("[[bin]]")
+            || ["main.rs", "bin"]
+                .iter()
+                .any(|name| folder.join("src").join(name).exists())
+    };
+    let programs: Vec<_> = members.filter(is_program).collect();
+    assert_eq!(programs, ["crates/cli"]);
+}
+
 #[test]
 fn every_block_has_a_timing_picture() {
     let files = generated();
@@ -209,9 +228,11 @@ fn layers_depend_only_downwards() {
                 "standstill-planner",
                 "standstill-record",
                 "standstill-scan",
+                "standstill-st",
                 "standstill-trace",
             ],
         ),
+        ("crates/testkit", "standstill-testkit", &[]),
         (
             "crates/soak",
             "standstill-soak",
@@ -221,6 +242,7 @@ fn layers_depend_only_downwards() {
                 "standstill-fb",
                 "standstill-planner",
                 "standstill-scan",
+                "standstill-testkit",
             ],
         ),
         (

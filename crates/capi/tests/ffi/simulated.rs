@@ -65,9 +65,11 @@ fn an_axis_of_the_first_header_has_no_power_timeout() {
     let (mut axis, drive) = Host::setup();
     axis.size = FIRST_AXIS;
     axis.power_timeout = 7;
+    axis.on_limit = 9;
     // SAFETY: as its size says, and more.
     assert_eq!(unsafe { standstill_axis_defaults(&mut axis) }, 0);
-    assert_eq!((axis.size, axis.power_timeout), (FIRST_AXIS, 7), "behind its end");
+    let behind = (axis.size, axis.power_timeout, axis.on_limit);
+    assert_eq!(behind, (FIRST_AXIS, 7, 9), "behind its end");
     (axis.velocity, axis.acceleration) = (10.0, 100.0);
     let never = DriveSetup {
         power_on: -1,

@@ -6,6 +6,7 @@ mod compare;
 mod ends;
 mod export;
 mod fmt;
+mod init;
 mod live;
 mod machine;
 mod plan;

@@ -37,9 +37,9 @@ fn a_golden_is_accepted_once_and_judges_from_then_on() {
     assert_eq!(differs.status, 1);
     assert!(
         differs.out.contains("first difference in scan 25")
-            && differs
-                .out
-                .contains("    likely cause\n      another input: GO is FALSE instead of TRUE\n"),
+            && differs.out.contains(
+                "    why\n      another input: GO is FALSE instead of TRUE; look at: the steps that set it"
+            ),
         "{}",
         differs.out
     );
@@ -71,21 +71,20 @@ fn a_golden_of_version_1_passes_with_the_command_that_renews_it() {
 }
 
 #[test]
-fn scan_tests_is_the_default_and_has_to_be_there() {
+fn the_default_is_scan_tests_or_what_is_in_the_folder() {
     let folder = scratch("test_default");
     let nothing = standstill(&folder, &["test"]);
-    assert_eq!(nothing.status, 4);
-    assert!(nothing.err.starts_with("error: scan-tests: "), "{}", nothing.err);
+    assert_eq!(nothing.status, 2);
+    let told = "error: .: there is no .scan.json file in it; `standstill init` writes a first one\n";
+    assert!(nothing.err.starts_with(told), "{}", nothing.err);
+    write(&folder, "here.scan.json", SCRIPT);
+    let here = standstill(&folder, &["test", "--golden", "none"]);
+    assert_eq!(here.out, "ok        ./here.scan.json\n1 script: 1 passed\n");
     fs::create_dir_all(folder.join("scan-tests/moves")).unwrap();
     let empty = standstill(&folder, &["test"]);
     assert_eq!(empty.status, 2);
-    assert!(
-        empty
-            .err
-            .contains("scan-tests: there is no .scan.json file in it"),
-        "{}",
-        empty.err
-    );
+    let told = "scan-tests: there is no .scan.json file in it";
+    assert!(empty.err.contains(told), "{}", empty.err);
     write(&folder, "scan-tests/moves/move.scan.json", SCRIPT);
     assert_eq!(standstill(&folder, &["test", "--accept"]).status, 0);
     let passed = standstill(&folder, &["test"]);
@@ -245,6 +244,8 @@ fn a_failing_script_gets_a_page_of_golden_and_run() {
         .matches("<script type=\"text/plain\" class=\"rows\">")
         .count();
     assert_eq!(traces, 2);
+    // The output that differs first: Done goes out with Execute.
+    assert!(page.contains("why: scan 25</button>"), "{page:.3000}");
     assert!(page.contains("<b>A</b>expected: golden of ./move.scan.json: 30 scans"));
     assert!(page.contains("<b>B</b>found: ./move.scan.json: 30 scans"));
     assert!(page.contains("data-scan=\"25\">first difference in scan 25 (T#250ms)</button>"));
@@ -330,7 +331,7 @@ fn by_events_a_golden_admits_what_no_machine_notices() {
     );
     let line = "move.Position  expected 1.0  found 0.999999999999  (may be 1.0e-13 apart)";
     assert!(found.out.contains(line), "{}", found.out);
-    assert!(read(&folder, "pages/move.html").contains("\"marks\":[0]"));
+    assert!(read(&folder, "pages/move.html").contains(",0]}"));
     assert!(read(&folder, "out.xml").contains("move.Position  expected 1.0  found 0.999999999999"));
 }
 
@@ -461,8 +462,9 @@ fn a_recording_is_judged_by_the_claims_of_a_script() {
         (
             1,
             "FAILED    move.scan.json on run.jsonl\n    expect[0].that.move.Done: FALSE at scan 21, expected TRUE; it \
-             came at 26, 5 later\n    expect[0].that.X.Position: 0.92 at scan 21, expected 1.0; it came at 25, 4 later\n\
-             1 script: 1 failed\n"
+             came at 26, 5 later\n    expect[0].that.X.Position: 0.92 at scan 21, expected 1.0; it came at 25, 4 later\n    \
+             why\n      move (MC_MoveAbsolute) is under way since scan 1 with Position 1.0, Velocity 5.0, held by its \
+             Velocity 5.0\n1 script: 1 failed\n"
         )
     );
     assert!(read(&folder, "out.xml").contains("it came at 26, 5 later"));
@@ -562,4 +564,243 @@ fn a_recording_needs_one_script_and_no_golden() {
         assert_eq!(ended.status, 2, "{arguments:?}: {}", ended.err);
         assert!(ended.err.contains(wanted), "{arguments:?}: {}", ended.err);
     }
+}
+
+#[test]
+fn a_failing_test_says_why_in_every_form() {
+    let folder = scratch("test_why");
+    write(
+        &folder,
+        "off.scan.json",
+        &SCRIPT.replace(", \"state\": \"Standstill\"", ""),
+    );
+    let why = "move was refused in scan 1: 201 NotPowered: switch it on with MC_Power and wait for Status; there is no \
+               MC_Power for X, and it does not start in Standstill";
+    let tested = standstill(
+        &folder,
+        &[
+            "test",
+            "off.scan.json",
+            "--golden",
+            "none",
+            "--junit",
+            "out.xml",
+            "--report",
+            "pages",
+        ],
+    );
+    assert_eq!(tested.status, 1);
+    assert!(
+        tested.out.contains(&format!("    why\n      {why}\n")),
+        "{}",
+        tested.out
+    );
+    let quiet = standstill(&folder, &["run", "-q", "off.scan.json", "--report", "run.html"]);
+    assert!(
+        quiet.out.contains(&format!("  why\n    {why}\n")),
+        "{}",
+        quiet.out
+    );
+    let junit = read(&folder, "out.xml");
+    let document = roxmltree::Document::parse(&junit).unwrap();
+    let failure = document
+        .descendants()
+        .find(|node| node.has_tag_name("failure"))
+        .unwrap();
+    assert!(
+        failure
+            .attribute("message")
+            .unwrap()
+            .contains(&format!("; why: {why}")),
+        "{junit}"
+    );
+    assert!(failure.text().unwrap().contains(why));
+    for page in ["pages/off.html", "run.html"] {
+        let page = read(&folder, page);
+        assert!(page.contains("data-scan=\"1\">why: scan 1</button>"));
+        assert!(page.contains("move was refused in scan 1: 201 NotPowered"));
+        assert!(page.contains("\"marks\":[1"));
+    }
+}
+
+/// The script with an input that nobody reads and a velocity per minute.
+fn doubtful() -> String {
+    SCRIPT
+        .replace("\"GO\": false", "\"GO\": false, \"STOP\": false")
+        .replace("\"v\": 10", "\"v\": 600")
+        .replace("\"at\": 21", "\"by\": 28")
+}
+
+#[test]
+fn what_tests_nothing_is_told_and_fails_only_under_strict() {
+    let folder = scratch("test_strict");
+    write(&folder, "a.scan.json", &doubtful());
+    let arguments = ["test", "a.scan.json", "--golden", "none"];
+    let loose = standstill(&folder, &arguments);
+    assert_eq!(
+        (loose.status, loose.out.as_str()),
+        (0, "ok        a.scan.json\n1 script: 1 passed\n")
+    );
+    let nobody = "warning[vacuous]: the input STOP is read by no wire, step or claim";
+    let clamped = "warning[clamped]: move.Velocity 600.0 was lowered to 20.0 in scan 1";
+    for told in [nobody, clamped, "a.scan.json:10:27"] {
+        assert!(loose.err.contains(told), "{}", loose.err);
+    }
+    let strict = standstill(&folder, &[&arguments[..], &["--strict"]].concat());
+    assert_eq!(strict.status, 1);
+    assert_eq!(
+        strict.out,
+        "FAILED    a.scan.json\n    inputs.STOP (10:27): vacuous: the input STOP is read by no wire, step or claim\n    \
+         blocks[0] (12:5): clamped: move.Velocity 600.0 was lowered to 20.0 in scan 1\n1 script: 1 failed\n"
+    );
+    let quiet = standstill(&folder, &["run", "-q", "a.scan.json"]);
+    assert_eq!(quiet.status, 0);
+    assert!(quiet.err.contains(clamped), "{}", quiet.err);
+    // What is meant is said.
+    let meant = doubtful()
+        .replace(
+            "\"STOP\": false",
+            "\"STOP\": {\"value\": false, \"vacuous\": \"allowed\"}",
+        )
+        .replace("\"scans\": 30,", "\"scans\": 30, \"clamps\": \"expected\",");
+    write(&folder, "a.scan.json", &meant);
+    let strict = standstill(&folder, &[&arguments[..], &["--strict"]].concat());
+    assert_eq!((strict.status, strict.err.as_str()), (0, ""), "{}", strict.out);
+}
+
+#[test]
+fn claims_decide_alone_where_no_golden_is_asked_for() {
+    let folder = scratch("test_no_golden");
+    write(&folder, "a.scan.json", SCRIPT);
+    assert_eq!(
+        standstill(&folder, &["test", "a.scan.json"]).status,
+        1,
+        "there is no golden yet"
+    );
+    let none = standstill(&folder, &["test", "a.scan.json", "--golden", "none"]);
+    assert_eq!(
+        (none.status, none.out.as_str()),
+        (0, "ok        a.scan.json\n1 script: 1 passed\n")
+    );
+    let said = SCRIPT.replace("\"scans\": 30,", "\"scans\": 30, \"golden\": false,");
+    write(&folder, "a.scan.json", &said);
+    for arguments in [&["test", "a.scan.json"][..], &["test", "--accept", "a.scan.json"]] {
+        assert_eq!(standstill(&folder, arguments).status, 0);
+    }
+    assert!(!folder.join("a.snap").exists() && !folder.join("a.exact").exists());
+    let both = standstill(&folder, &["test", "--accept", "--golden", "none", "a.scan.json"]);
+    assert_eq!(both.status, 2);
+    // A script without either tests nothing.
+    let empty = said.replace("\"expect\": [", "\"expect\": [],\n  \"covers\": [");
+    let start = empty.find("\"covers\": [").unwrap();
+    write(
+        &folder,
+        "a.scan.json",
+        &(empty[..start].trim_end().trim_end_matches(',').to_owned() + "}"),
+    );
+    let nothing = standstill(&folder, &["test", "--strict", "a.scan.json"]);
+    assert_eq!(nothing.status, 1);
+    assert!(
+        nothing.out.contains("the script has no claims and no golden"),
+        "{}",
+        nothing.out
+    );
+}
+
+#[test]
+fn the_outcome_as_json_is_what_its_schema_says() {
+    let folder = scratch("test_json");
+    write(&folder, "a.scan.json", &doubtful());
+    write(
+        &folder,
+        "off.scan.json",
+        &SCRIPT.replace(", \"state\": \"Standstill\"", ""),
+    );
+    write(&folder, "broken.scan.json", "{");
+    fs::write(folder.join("gone.snap"), "").unwrap();
+    let schema = standstill(&folder, &["schema", "json"]);
+    let schema: serde_json::Value = serde_json::from_str(&schema.out).unwrap();
+    let tested = standstill(&folder, &["test", ".", "--json", "--golden", "none"]);
+    let ran = standstill(&folder, &["run", "--json", "a.scan.json", "off.scan.json"]);
+    assert_eq!((tested.status, ran.status), (3, 1));
+    let [tested, ran] = [tested.out, ran.out].map(|out| {
+        assert_eq!(out.lines().count(), 1);
+        serde_json::from_str::<serde_json::Value>(&out).unwrap()
+    });
+    for outcome in [&tested, &ran] {
+        let mut schemas = boon::Schemas::new();
+        let mut compiler = boon::Compiler::new();
+        compiler.add_resource("outcome.json", schema.clone()).unwrap();
+        let index = compiler.compile("outcome.json", &mut schemas).unwrap();
+        assert!(schemas.validate(outcome, index).is_ok(), "{outcome}");
+    }
+    let verdicts: Vec<_> = tested["scripts"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|script| &script["verdict"])
+        .collect();
+    assert_eq!(verdicts, ["passed", "broken", "failed", "orphaned"]);
+    let off = &tested["scripts"][2];
+    assert_eq!(off["why"][0]["scan"], 1);
+    assert!(off["why"][0]["text"].as_str().unwrap().contains("201 NotPowered"));
+    assert_eq!(off["claims"][0]["failures"][0]["scan"], 21);
+    assert_eq!(ran["scripts"][0]["warnings"][1]["kind"], "clamped");
+}
+
+#[test]
+fn a_file_that_looks_like_a_script_is_mentioned() {
+    let folder = with_script("test_overlooked");
+    write(&folder, "second.json", SCRIPT);
+    write(&folder, "settings.json", "{\"cycle\": 1}");
+    let ended = standstill(&folder, &["test", ".", "--golden", "none"]);
+    assert_eq!(ended.status, 0);
+    assert_eq!(
+        ended.err,
+        "note: ./second.json looks like a scan script, but is not tested: its name does not end in .scan.json\n"
+    );
+}
+
+#[test]
+fn mutants_that_no_claim_notices_survive() {
+    let folder = scratch("test_mutate");
+    let loose = SCRIPT.replace("\"at\": 21", "\"by\": 28");
+    write(&folder, "a.scan.json", &loose);
+    let first = standstill(&folder, &["test", "--mutate", "a.scan.json"]);
+    assert_eq!((first.status, first.err.as_str()), (0, ""));
+    // With a higher acceleration, velocity or limit nothing is otherwise: a move of 20 scans has no time for it.
+    assert_eq!(
+        first.out,
+        "survived  axes.X.limits.acceleration: 100.0 to 90.0\n\
+         killed    blocks[0]: move left out (expect[0])\n\
+         survived  blocks[0].pins.Execute: from to not\n\
+         killed    blocks[0].pins.Position: 1.0 to 0.9 (expect[0])\n\
+         killed    blocks[0].pins.Position: 1.0 to 1.1 (expect[0])\n\
+         survived  blocks[0].pins.Velocity: 10.0 to 9.0\n\
+         a.scan.json: 3 of 6 mutants killed (50.0 %), 5 change nothing\n"
+    );
+    let again = standstill(&folder, &["test", "--mutate", "a.scan.json", "--seed", "7"]);
+    assert_eq!(again.out, first.out, "all fit, so none is drawn");
+    // Two claims more, and no survivors are left.
+    let told = r#"{"duration": [{"move.Busy": true}, {"move.Done": true}], "ge": 20, "le": 20},
+        {"never": {"move.Busy": true}, "to": 0}, {"never": {"move.Error""#;
+    let better = loose.replace("{\"never\": {\"move.Error\"", told);
+    write(&folder, "a.scan.json", &better);
+    let json = standstill(&folder, &["test", "--mutate", "a.scan.json", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&json.out).unwrap();
+    let script = &json["scripts"][0];
+    assert_eq!((&script["killed"], &script["survived"]), (&6.into(), &0.into()));
+    assert_eq!(script["mutants"][0]["claim"], "expect[1]");
+    write(
+        &folder,
+        "a.scan.json",
+        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
+    );
+    let broken = standstill(&folder, &["test", "--mutate", "a.scan.json"]);
+    assert_eq!(broken.status, 1);
+    assert!(
+        broken.out.contains("its claims fail without a change"),
+        "{}",
+        broken.out
+    );
 }

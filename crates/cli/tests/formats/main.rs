@@ -4,6 +4,7 @@
 mod play;
 
 use play::{FORMATS, play};
+use standstill_testkit::Random;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -19,18 +20,6 @@ const PEAK: u64 = 400_000;
 
 /// Largest file to begin with (bytes).
 const LARGEST: u64 = 8_000;
-
-/// xorshift64*: small, and the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33) as usize % bound.max(1)
-    }
-}
 
 /// Files of the repository with this ending, sorted.
 fn files(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
@@ -122,22 +111,22 @@ const PIECES: [&[u8]; 16] = [
 
 /// A file with some damage: bytes changed, pieces put in, cut out or repeated, or the halves of two files.
 fn damaged(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
-    let mut bytes = seeds[random.below(seeds.len())].clone();
-    for _ in 0..=random.below(4) {
-        let at = random.below(bytes.len() + 1);
-        let end = (at + random.below(40)).min(bytes.len());
-        match random.below(6) {
-            0 if at < bytes.len() => bytes[at] ^= 1 << random.below(8),
-            1 => drop(bytes.splice(at..at, PIECES[random.below(PIECES.len())].iter().copied())),
+    let mut bytes = seeds[random.place(seeds.len())].clone();
+    for _ in 0..=random.place(4) {
+        let at = random.place(bytes.len() + 1);
+        let end = (at + random.place(40)).min(bytes.len());
+        match random.place(6) {
+            0 if at < bytes.len() => bytes[at] ^= 1 << random.place(8),
+            1 => drop(bytes.splice(at..at, PIECES[random.place(PIECES.len())].iter().copied())),
             2 => drop(bytes.drain(at..end)),
             3 => {
-                let piece = bytes[at..end].repeat(1 + random.below(20));
+                let piece = bytes[at..end].repeat(1 + random.place(20));
                 bytes.splice(at..at, piece);
             }
             4 => {
-                let other = &seeds[random.below(seeds.len())];
+                let other = &seeds[random.place(seeds.len())];
                 bytes.truncate(at);
-                bytes.extend(&other[random.below(other.len() + 1)..]);
+                bytes.extend(&other[random.place(other.len() + 1)..]);
             }
             _ => bytes.truncate(at),
         }

@@ -82,7 +82,7 @@ fn called(info: &BlockInfo, values: &[(&str, &str)]) -> Option<Trace> {
                 format!("\"{}\"", pin.name)
             }
             (None, _, PinType::Bool) if is_trigger(pin.name) => "true".into(),
-            (None, _, PinType::Lreal | PinType::Int) => "1".into(),
+            (None, _, PinType::Lreal | PinType::Int | PinType::Uint) => "1".into(),
             (None, ..) => continue,
         };
         pins.push(format!("\"{}\": {value}", pin.name));

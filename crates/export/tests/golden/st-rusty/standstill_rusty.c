@@ -1956,6 +1956,346 @@ void MC_Jog(struct standstill_mc_jog_fb *self) {
     }
 }
 
+struct standstill_mc_gear_in_fb {
+    void *table;
+    struct standstill_reference *master;
+    struct standstill_reference *slave;
+    uint8_t execute;
+    uint8_t continuous_update;
+    int16_t ratio_numerator;
+    uint16_t ratio_denominator;
+    int32_t master_value_source;
+    double acceleration;
+    double deceleration;
+    double jerk;
+    int32_t buffer_mode;
+    double snap;
+    uint8_t in_gear;
+    uint8_t busy;
+    uint8_t active;
+    uint8_t command_aborted;
+    uint8_t error;
+    uint16_t error_id;
+    double deviation;
+    uint8_t master_lost;
+    int32_t result;
+    uint64_t key;
+};
+STANDSTILL_ASSERT(rusty_mc_gear_in_master, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, master) == 8);
+STANDSTILL_ASSERT(rusty_mc_gear_in_slave, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, slave) == 16);
+STANDSTILL_ASSERT(rusty_mc_gear_in_execute, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, execute) == 24);
+STANDSTILL_ASSERT(rusty_mc_gear_in_continuous_update, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, continuous_update) == 25);
+STANDSTILL_ASSERT(rusty_mc_gear_in_ratio_numerator, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, ratio_numerator) == 26);
+STANDSTILL_ASSERT(rusty_mc_gear_in_ratio_denominator, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, ratio_denominator) == 28);
+STANDSTILL_ASSERT(rusty_mc_gear_in_master_value_source, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, master_value_source) == 32);
+STANDSTILL_ASSERT(rusty_mc_gear_in_acceleration, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, acceleration) == 40);
+STANDSTILL_ASSERT(rusty_mc_gear_in_deceleration, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, deceleration) == 48);
+STANDSTILL_ASSERT(rusty_mc_gear_in_jerk, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, jerk) == 56);
+STANDSTILL_ASSERT(rusty_mc_gear_in_buffer_mode, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, buffer_mode) == 64);
+STANDSTILL_ASSERT(rusty_mc_gear_in_snap, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, snap) == 72);
+STANDSTILL_ASSERT(rusty_mc_gear_in_in_gear, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, in_gear) == 80);
+STANDSTILL_ASSERT(rusty_mc_gear_in_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, busy) == 81);
+STANDSTILL_ASSERT(rusty_mc_gear_in_active, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, active) == 82);
+STANDSTILL_ASSERT(rusty_mc_gear_in_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, command_aborted) == 83);
+STANDSTILL_ASSERT(rusty_mc_gear_in_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, error) == 84);
+STANDSTILL_ASSERT(rusty_mc_gear_in_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, error_id) == 86);
+STANDSTILL_ASSERT(rusty_mc_gear_in_deviation, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, deviation) == 88);
+STANDSTILL_ASSERT(rusty_mc_gear_in_master_lost, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_fb, master_lost) == 96);
+STANDSTILL_ASSERT(rusty_mc_gear_in_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_gear_in_fb, result) == 100 && offsetof(struct standstill_mc_gear_in_fb, key) == 104 && sizeof(struct standstill_mc_gear_in_fb) == 112));
+
+void MC_GearIn(struct standstill_mc_gear_in_fb *self);
+
+void MC_GearIn(struct standstill_mc_gear_in_fb *self) {
+    struct standstill_mc_gear_in_in in = standstill_mc_gear_in_in_default();
+    struct standstill_mc_gear_in_out out = standstill_mc_gear_in_out_default();
+    in.master = self->master != NULL ? self->master->number : 0;
+    in.slave = self->slave != NULL ? self->slave->number : 0;
+    in.execute = self->execute;
+    in.continuous_update = self->continuous_update;
+    in.ratio_numerator = self->ratio_numerator;
+    in.ratio_denominator = self->ratio_denominator;
+    in.master_value_source = (int32_t)self->master_value_source;
+    in.acceleration = self->acceleration;
+    in.deceleration = self->deceleration;
+    in.jerk = self->jerk;
+    in.buffer_mode = (int32_t)self->buffer_mode;
+    in.snap = self->snap;
+    self->result = standstill_mc_gear_in(STANDSTILL_RUNTIME &self->key, &in, &out);
+    if (self->result == 0) {
+        self->in_gear = out.in_gear;
+        self->busy = out.busy;
+        self->active = out.active;
+        self->command_aborted = out.command_aborted;
+        self->error = out.error;
+        self->error_id = out.error_id;
+        self->deviation = out.deviation;
+        self->master_lost = out.master_lost;
+    }
+}
+
+struct standstill_mc_gear_out_fb {
+    void *table;
+    struct standstill_reference *slave;
+    uint8_t execute;
+    uint8_t done;
+    uint8_t busy;
+    uint8_t error;
+    uint16_t error_id;
+    int32_t result;
+    uint64_t key;
+};
+STANDSTILL_ASSERT(rusty_mc_gear_out_slave, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_out_fb, slave) == 8);
+STANDSTILL_ASSERT(rusty_mc_gear_out_execute, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_out_fb, execute) == 16);
+STANDSTILL_ASSERT(rusty_mc_gear_out_done, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_out_fb, done) == 17);
+STANDSTILL_ASSERT(rusty_mc_gear_out_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_out_fb, busy) == 18);
+STANDSTILL_ASSERT(rusty_mc_gear_out_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_out_fb, error) == 19);
+STANDSTILL_ASSERT(rusty_mc_gear_out_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_out_fb, error_id) == 20);
+STANDSTILL_ASSERT(rusty_mc_gear_out_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_gear_out_fb, result) == 24 && offsetof(struct standstill_mc_gear_out_fb, key) == 32 && sizeof(struct standstill_mc_gear_out_fb) == 40));
+
+void MC_GearOut(struct standstill_mc_gear_out_fb *self);
+
+void MC_GearOut(struct standstill_mc_gear_out_fb *self) {
+    struct standstill_mc_gear_out_in in = standstill_mc_gear_out_in_default();
+    struct standstill_mc_gear_out_out out = standstill_mc_gear_out_out_default();
+    in.slave = self->slave != NULL ? self->slave->number : 0;
+    in.execute = self->execute;
+    self->result = standstill_mc_gear_out(STANDSTILL_RUNTIME &self->key, &in, &out);
+    if (self->result == 0) {
+        self->done = out.done;
+        self->busy = out.busy;
+        self->error = out.error;
+        self->error_id = out.error_id;
+    }
+}
+
+struct standstill_mc_gear_in_pos_fb {
+    void *table;
+    struct standstill_reference *master;
+    struct standstill_reference *slave;
+    uint8_t execute;
+    int16_t ratio_numerator;
+    uint16_t ratio_denominator;
+    int32_t master_value_source;
+    double master_sync_position;
+    double slave_sync_position;
+    int32_t sync_mode;
+    double master_start_distance;
+    double velocity;
+    double acceleration;
+    double deceleration;
+    double jerk;
+    int32_t buffer_mode;
+    double snap;
+    uint8_t start_sync;
+    uint8_t in_sync;
+    uint8_t busy;
+    uint8_t active;
+    uint8_t command_aborted;
+    uint8_t error;
+    uint16_t error_id;
+    double deviation;
+    uint8_t master_lost;
+    int32_t result;
+    uint64_t key;
+};
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_master, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, master) == 8);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_slave, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, slave) == 16);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_execute, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, execute) == 24);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_ratio_numerator, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, ratio_numerator) == 26);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_ratio_denominator, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, ratio_denominator) == 28);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_master_value_source, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, master_value_source) == 32);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_master_sync_position, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, master_sync_position) == 40);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_slave_sync_position, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, slave_sync_position) == 48);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_sync_mode, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, sync_mode) == 56);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_master_start_distance, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, master_start_distance) == 64);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_velocity, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, velocity) == 72);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_acceleration, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, acceleration) == 80);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_deceleration, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, deceleration) == 88);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_jerk, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, jerk) == 96);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_buffer_mode, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, buffer_mode) == 104);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_snap, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, snap) == 112);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_start_sync, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, start_sync) == 120);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_in_sync, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, in_sync) == 121);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, busy) == 122);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_active, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, active) == 123);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, command_aborted) == 124);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, error) == 125);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, error_id) == 126);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_deviation, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, deviation) == 128);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_master_lost, sizeof(void *) != 8 || offsetof(struct standstill_mc_gear_in_pos_fb, master_lost) == 136);
+STANDSTILL_ASSERT(rusty_mc_gear_in_pos_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_gear_in_pos_fb, result) == 140 && offsetof(struct standstill_mc_gear_in_pos_fb, key) == 144 && sizeof(struct standstill_mc_gear_in_pos_fb) == 152));
+
+void MC_GearInPos(struct standstill_mc_gear_in_pos_fb *self);
+
+void MC_GearInPos(struct standstill_mc_gear_in_pos_fb *self) {
+    struct standstill_mc_gear_in_pos_in in = standstill_mc_gear_in_pos_in_default();
+    struct standstill_mc_gear_in_pos_out out = standstill_mc_gear_in_pos_out_default();
+    in.master = self->master != NULL ? self->master->number : 0;
+    in.slave = self->slave != NULL ? self->slave->number : 0;
+    in.execute = self->execute;
+    in.ratio_numerator = self->ratio_numerator;
+    in.ratio_denominator = self->ratio_denominator;
+    in.master_value_source = (int32_t)self->master_value_source;
+    in.master_sync_position = self->master_sync_position;
+    in.slave_sync_position = self->slave_sync_position;
+    in.sync_mode = (int32_t)self->sync_mode;
+    in.master_start_distance = self->master_start_distance;
+    in.velocity = self->velocity;
+    in.acceleration = self->acceleration;
+    in.deceleration = self->deceleration;
+    in.jerk = self->jerk;
+    in.buffer_mode = (int32_t)self->buffer_mode;
+    in.snap = self->snap;
+    self->result = standstill_mc_gear_in_pos(STANDSTILL_RUNTIME &self->key, &in, &out);
+    if (self->result == 0) {
+        self->start_sync = out.start_sync;
+        self->in_sync = out.in_sync;
+        self->busy = out.busy;
+        self->active = out.active;
+        self->command_aborted = out.command_aborted;
+        self->error = out.error;
+        self->error_id = out.error_id;
+        self->deviation = out.deviation;
+        self->master_lost = out.master_lost;
+    }
+}
+
+struct standstill_mc_phasing_absolute_fb {
+    void *table;
+    struct standstill_reference *master;
+    struct standstill_reference *slave;
+    uint8_t execute;
+    double phase_shift;
+    double velocity;
+    double acceleration;
+    double deceleration;
+    double jerk;
+    int32_t buffer_mode;
+    double snap;
+    uint8_t done;
+    uint8_t busy;
+    uint8_t active;
+    uint8_t command_aborted;
+    uint8_t error;
+    uint16_t error_id;
+    double absolute_phase_shift;
+    int32_t result;
+    uint64_t key;
+};
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_master, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, master) == 8);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_slave, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, slave) == 16);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_execute, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, execute) == 24);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_phase_shift, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, phase_shift) == 32);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_velocity, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, velocity) == 40);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_acceleration, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, acceleration) == 48);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_deceleration, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, deceleration) == 56);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_jerk, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, jerk) == 64);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_buffer_mode, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, buffer_mode) == 72);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_snap, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, snap) == 80);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_done, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, done) == 88);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, busy) == 89);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_active, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, active) == 90);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, command_aborted) == 91);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, error) == 92);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, error_id) == 94);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_absolute_phase_shift, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_absolute_fb, absolute_phase_shift) == 96);
+STANDSTILL_ASSERT(rusty_mc_phasing_absolute_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_phasing_absolute_fb, result) == 104 && offsetof(struct standstill_mc_phasing_absolute_fb, key) == 112 && sizeof(struct standstill_mc_phasing_absolute_fb) == 120));
+
+void MC_PhasingAbsolute(struct standstill_mc_phasing_absolute_fb *self);
+
+void MC_PhasingAbsolute(struct standstill_mc_phasing_absolute_fb *self) {
+    struct standstill_mc_phasing_absolute_in in = standstill_mc_phasing_absolute_in_default();
+    struct standstill_mc_phasing_absolute_out out = standstill_mc_phasing_absolute_out_default();
+    in.master = self->master != NULL ? self->master->number : 0;
+    in.slave = self->slave != NULL ? self->slave->number : 0;
+    in.execute = self->execute;
+    in.phase_shift = self->phase_shift;
+    in.velocity = self->velocity;
+    in.acceleration = self->acceleration;
+    in.deceleration = self->deceleration;
+    in.jerk = self->jerk;
+    in.buffer_mode = (int32_t)self->buffer_mode;
+    in.snap = self->snap;
+    self->result = standstill_mc_phasing_absolute(STANDSTILL_RUNTIME &self->key, &in, &out);
+    if (self->result == 0) {
+        self->done = out.done;
+        self->busy = out.busy;
+        self->active = out.active;
+        self->command_aborted = out.command_aborted;
+        self->error = out.error;
+        self->error_id = out.error_id;
+        self->absolute_phase_shift = out.absolute_phase_shift;
+    }
+}
+
+struct standstill_mc_phasing_relative_fb {
+    void *table;
+    struct standstill_reference *master;
+    struct standstill_reference *slave;
+    uint8_t execute;
+    double phase_shift;
+    double velocity;
+    double acceleration;
+    double deceleration;
+    double jerk;
+    int32_t buffer_mode;
+    double snap;
+    uint8_t done;
+    uint8_t busy;
+    uint8_t active;
+    uint8_t command_aborted;
+    uint8_t error;
+    uint16_t error_id;
+    double covered_phase_shift;
+    int32_t result;
+    uint64_t key;
+};
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_master, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, master) == 8);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_slave, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, slave) == 16);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_execute, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, execute) == 24);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_phase_shift, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, phase_shift) == 32);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_velocity, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, velocity) == 40);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_acceleration, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, acceleration) == 48);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_deceleration, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, deceleration) == 56);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_jerk, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, jerk) == 64);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_buffer_mode, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, buffer_mode) == 72);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_snap, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, snap) == 80);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_done, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, done) == 88);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, busy) == 89);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_active, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, active) == 90);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, command_aborted) == 91);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, error) == 92);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, error_id) == 94);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_covered_phase_shift, sizeof(void *) != 8 || offsetof(struct standstill_mc_phasing_relative_fb, covered_phase_shift) == 96);
+STANDSTILL_ASSERT(rusty_mc_phasing_relative_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_phasing_relative_fb, result) == 104 && offsetof(struct standstill_mc_phasing_relative_fb, key) == 112 && sizeof(struct standstill_mc_phasing_relative_fb) == 120));
+
+void MC_PhasingRelative(struct standstill_mc_phasing_relative_fb *self);
+
+void MC_PhasingRelative(struct standstill_mc_phasing_relative_fb *self) {
+    struct standstill_mc_phasing_relative_in in = standstill_mc_phasing_relative_in_default();
+    struct standstill_mc_phasing_relative_out out = standstill_mc_phasing_relative_out_default();
+    in.master = self->master != NULL ? self->master->number : 0;
+    in.slave = self->slave != NULL ? self->slave->number : 0;
+    in.execute = self->execute;
+    in.phase_shift = self->phase_shift;
+    in.velocity = self->velocity;
+    in.acceleration = self->acceleration;
+    in.deceleration = self->deceleration;
+    in.jerk = self->jerk;
+    in.buffer_mode = (int32_t)self->buffer_mode;
+    in.snap = self->snap;
+    self->result = standstill_mc_phasing_relative(STANDSTILL_RUNTIME &self->key, &in, &out);
+    if (self->result == 0) {
+        self->done = out.done;
+        self->busy = out.busy;
+        self->active = out.active;
+        self->command_aborted = out.command_aborted;
+        self->error = out.error;
+        self->error_id = out.error_id;
+        self->covered_phase_shift = out.covered_phase_shift;
+    }
+}
+
 struct standstill_r_trig_fb {
     void *table;
     uint8_t clk;

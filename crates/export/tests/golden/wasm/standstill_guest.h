@@ -54,6 +54,13 @@ enum standstill_mc_source {
     STANDSTILL_MC_ACTUAL_VALUE = 2,
 };
 
+/** MC_SYNC_MODE */
+enum standstill_mc_sync_mode {
+    STANDSTILL_MC_SHORTEST = 0,
+    STANDSTILL_MC_CATCH_UP = 1,
+    STANDSTILL_MC_SLOW_DOWN = 2,
+};
+
 /** MC_TRIGGER_REF */
 enum standstill_mc_trigger_ref {
     STANDSTILL_MC_PROBE1_RISING = 0,
@@ -1604,6 +1611,240 @@ static inline standstill_mc_jog_out standstill_mc_jog_out_default(void) {
     return out;
 }
 
+/** MC_GearIn: Lets one axis follow another by a ratio. */
+typedef struct standstill_mc_gear_in_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t master; /* Master: The axis to follow. */
+    int32_t slave; /* Slave: The axis that follows. */
+    uint8_t execute; /* Execute: A rising edge couples the axes with the values of that call. */
+    uint8_t continuous_update; /* ContinuousUpdate: Changed inputs hold for the coupling in progress while TRUE, if it was TRUE at the rising edge. */
+    int16_t ratio_numerator; /* RatioNumerator: Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest. */
+    uint16_t ratio_denominator; /* RatioDenominator: Denominator of the ratio, above 0. */
+    uint8_t reserved_18[2];
+    int32_t master_value_source; /* MasterValueSource: mcSetValue; other values of the master are not followed in this version. */
+    double acceleration; /* Acceleration: Rate while the speed grows, until in gear; 0 takes the axis default. (u/s^2) */
+    double deceleration; /* Deceleration: Rate while the speed falls, until in gear; 0 takes the axis default. (u/s^2) */
+    double jerk; /* Jerk: Jerk until in gear; 0 takes the axis default, and no limit if there is none. (u/s^3) */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it. */
+    uint8_t reserved_52[4];
+    double snap; /* Snap: Snap until in gear; 0 takes the axis default, and no limit if there is none. (u/s^4) */
+} standstill_mc_gear_in_in;
+_Static_assert(sizeof(standstill_mc_gear_in_in) == 64, "mc_gear_in_in");
+
+typedef struct standstill_mc_gear_in_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t in_gear; /* InGear: The set position of the slave is the one the ratio asks for. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t active; /* Active: The block controls the slave. */
+    uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint8_t reserved_9[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_12[4];
+    double deviation; /* Deviation: How far the slave is from where the ratio asks it to be, once it was in gear; 0 in gear. (u) */
+    uint8_t master_lost; /* MasterLost: The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost). */
+    uint8_t reserved_25[7];
+} standstill_mc_gear_in_out;
+_Static_assert(sizeof(standstill_mc_gear_in_out) == 32, "mc_gear_in_out");
+
+static inline standstill_mc_gear_in_in standstill_mc_gear_in_in_default(void) {
+    standstill_mc_gear_in_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    in.master_value_source = 1;
+    return in;
+}
+
+static inline standstill_mc_gear_in_out standstill_mc_gear_in_out_default(void) {
+    standstill_mc_gear_in_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
+/** MC_GearOut: Ends MC_GearIn and MC_GearInPos; the slave keeps its velocity. */
+typedef struct standstill_mc_gear_out_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t slave; /* Slave: The axis that follows another by MC_GearIn or MC_GearInPos. */
+    uint8_t execute; /* Execute: A rising edge ends the coupling. */
+    uint8_t reserved_9[7];
+} standstill_mc_gear_out_in;
+_Static_assert(sizeof(standstill_mc_gear_out_in) == 16, "mc_gear_out_in");
+
+typedef struct standstill_mc_gear_out_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t done; /* Done: The coupling has ended. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint8_t reserved_7[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_10[6];
+} standstill_mc_gear_out_out;
+_Static_assert(sizeof(standstill_mc_gear_out_out) == 16, "mc_gear_out_out");
+
+static inline standstill_mc_gear_out_in standstill_mc_gear_out_in_default(void) {
+    standstill_mc_gear_out_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    return in;
+}
+
+static inline standstill_mc_gear_out_out standstill_mc_gear_out_out_default(void) {
+    standstill_mc_gear_out_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
+/** MC_GearInPos: Lets one axis follow another by a ratio, through a given place of both. */
+typedef struct standstill_mc_gear_in_pos_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t master; /* Master: The axis to follow. */
+    int32_t slave; /* Slave: The axis that follows. */
+    uint8_t execute; /* Execute: A rising edge couples the axes with the values of that call. */
+    uint8_t reserved_13[1];
+    int16_t ratio_numerator; /* RatioNumerator: Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest. */
+    uint16_t ratio_denominator; /* RatioDenominator: Denominator of the ratio, above 0. */
+    uint8_t reserved_18[2];
+    int32_t master_value_source; /* MasterValueSource: mcSetValue; other values of the master are not followed in this version. */
+    double master_sync_position; /* MasterSyncPosition: Place of the master at the sync point. (u) */
+    double slave_sync_position; /* SlaveSyncPosition: Place of the slave at the sync point. (u) */
+    int32_t sync_mode; /* SyncMode: Which of the places that mean the same on a modulo slave; with mcSlowDown the slave is never faster than in sync. */
+    uint8_t reserved_44[4];
+    double master_start_distance; /* MasterStartDistance: How far before its sync point the master is where the slave sets off; above 0 for a master that moves forwards, below 0 for one that moves backwards. 0 sets off at once. (u) */
+    double velocity; /* Velocity: Most speed from StartSync until InSync; 0 takes the axis limit. (u/s) */
+    double acceleration; /* Acceleration: Rate while the speed grows, until in sync; 0 takes the axis default. (u/s^2) */
+    double deceleration; /* Deceleration: Rate while the speed falls, until in sync; 0 takes the axis default. (u/s^2) */
+    double jerk; /* Jerk: Jerk until in sync; 0 takes the axis default, and no limit if there is none. (u/s^3) */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it; mcAborting with a MasterStartDistance. */
+    uint8_t reserved_92[4];
+    double snap; /* Snap: Snap until in sync; 0 takes the axis default, and no limit if there is none. (u/s^4) */
+} standstill_mc_gear_in_pos_in;
+_Static_assert(sizeof(standstill_mc_gear_in_pos_in) == 104, "mc_gear_in_pos_in");
+
+typedef struct standstill_mc_gear_in_pos_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t start_sync; /* StartSync: The slave is on its way to the sync point; FALSE from InSync on. */
+    uint8_t in_sync; /* InSync: The set position of the slave is the one the ratio asks for. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t active; /* Active: The block controls the slave. */
+    uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_12[4];
+    double deviation; /* Deviation: How far the slave is from where the ratio asks it to be; 0 in sync. (u) */
+    uint8_t master_lost; /* MasterLost: The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost). */
+    uint8_t reserved_25[7];
+} standstill_mc_gear_in_pos_out;
+_Static_assert(sizeof(standstill_mc_gear_in_pos_out) == 32, "mc_gear_in_pos_out");
+
+static inline standstill_mc_gear_in_pos_in standstill_mc_gear_in_pos_in_default(void) {
+    standstill_mc_gear_in_pos_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    in.master_value_source = 1;
+    return in;
+}
+
+static inline standstill_mc_gear_in_pos_out standstill_mc_gear_in_pos_out_default(void) {
+    standstill_mc_gear_in_pos_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
+/** MC_PhasingAbsolute: Shifts the place of a master, as its slave sees it, to a distance from where it is. */
+typedef struct standstill_mc_phasing_absolute_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t master; /* Master: The axis that is followed. */
+    int32_t slave; /* Slave: The axis that follows it. */
+    uint8_t execute; /* Execute: A rising edge shifts the master as the slave sees it. */
+    uint8_t reserved_13[3];
+    double phase_shift; /* PhaseShift: How far ahead of its place the master is to be seen; below 0 behind. (u) */
+    double velocity; /* Velocity: Most speed of the shift; 0 takes what the slave's limits leave. (u/s) */
+    double acceleration; /* Acceleration: Rate while that speed grows; 0 takes what the slave's limits leave. (u/s^2) */
+    double deceleration; /* Deceleration: Rate while it falls; the lower of both holds. 0 takes what the slave's limits leave. (u/s^2) */
+    double jerk; /* Jerk: Jerk of the shift; 0 takes what the slave's limits leave. (u/s^3) */
+    int32_t buffer_mode; /* BufferMode: How the shift follows one in progress: mcAborting takes over, the other modes wait for its end. */
+    uint8_t reserved_60[4];
+    double snap; /* Snap: Snap of the shift; 0 takes what the slave's limits leave. (u/s^4) */
+} standstill_mc_phasing_absolute_in;
+_Static_assert(sizeof(standstill_mc_phasing_absolute_in) == 72, "mc_phasing_absolute_in");
+
+typedef struct standstill_mc_phasing_absolute_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t done; /* Done: The shift is reached. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t active; /* Active: The shift moves; FALSE while it waits for room. */
+    uint8_t command_aborted; /* CommandAborted: Interrupted by another phasing, or the coupling has ended. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint8_t reserved_9[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_12[4];
+    double absolute_phase_shift; /* AbsolutePhaseShift: The shift there is, updated while Busy. (u) */
+} standstill_mc_phasing_absolute_out;
+_Static_assert(sizeof(standstill_mc_phasing_absolute_out) == 24, "mc_phasing_absolute_out");
+
+static inline standstill_mc_phasing_absolute_in standstill_mc_phasing_absolute_in_default(void) {
+    standstill_mc_phasing_absolute_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    return in;
+}
+
+static inline standstill_mc_phasing_absolute_out standstill_mc_phasing_absolute_out_default(void) {
+    standstill_mc_phasing_absolute_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
+/** MC_PhasingRelative: Shifts the place of a master, as its slave sees it, by a distance. */
+typedef struct standstill_mc_phasing_relative_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t master; /* Master: The axis that is followed. */
+    int32_t slave; /* Slave: The axis that follows it. */
+    uint8_t execute; /* Execute: A rising edge shifts the master as the slave sees it. */
+    uint8_t reserved_13[3];
+    double phase_shift; /* PhaseShift: By how much further ahead of its place the master is to be seen; below 0 further behind. (u) */
+    double velocity; /* Velocity: Most speed of the shift; 0 takes what the slave's limits leave. (u/s) */
+    double acceleration; /* Acceleration: Rate while that speed grows; 0 takes what the slave's limits leave. (u/s^2) */
+    double deceleration; /* Deceleration: Rate while it falls; the lower of both holds. 0 takes what the slave's limits leave. (u/s^2) */
+    double jerk; /* Jerk: Jerk of the shift; 0 takes what the slave's limits leave. (u/s^3) */
+    int32_t buffer_mode; /* BufferMode: How the shift follows one in progress: mcAborting takes over, the other modes wait for its end. */
+    uint8_t reserved_60[4];
+    double snap; /* Snap: Snap of the shift; 0 takes what the slave's limits leave. (u/s^4) */
+} standstill_mc_phasing_relative_in;
+_Static_assert(sizeof(standstill_mc_phasing_relative_in) == 72, "mc_phasing_relative_in");
+
+typedef struct standstill_mc_phasing_relative_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t done; /* Done: The shift is reached. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t active; /* Active: The shift moves; FALSE while it waits for room. */
+    uint8_t command_aborted; /* CommandAborted: Interrupted by another phasing, or the coupling has ended. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint8_t reserved_9[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_12[4];
+    double covered_phase_shift; /* CoveredPhaseShift: How far the shift has changed since the rising edge, updated while Busy. (u) */
+} standstill_mc_phasing_relative_out;
+_Static_assert(sizeof(standstill_mc_phasing_relative_out) == 24, "mc_phasing_relative_out");
+
+static inline standstill_mc_phasing_relative_in standstill_mc_phasing_relative_in_default(void) {
+    standstill_mc_phasing_relative_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    return in;
+}
+
+static inline standstill_mc_phasing_relative_out standstill_mc_phasing_relative_out_default(void) {
+    standstill_mc_phasing_relative_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
 /** R_TRIG: Detects a rising edge. */
 typedef struct standstill_r_trig_in {
     uint32_t size; /* sizeof this structure */
@@ -2059,6 +2300,26 @@ STANDSTILL_IMPORT(mc_halt_superimposed) int32_t standstill_mc_halt_superimposed(
 STANDSTILL_IMPORT(mc_jog) int32_t standstill_mc_jog(uint64_t *key,
     const struct standstill_mc_jog_in *in, struct standstill_mc_jog_out *out);
 
+/** One call of MC_GearIn. A key of 0 makes the instance. */
+STANDSTILL_IMPORT(mc_gear_in) int32_t standstill_mc_gear_in(uint64_t *key,
+    const struct standstill_mc_gear_in_in *in, struct standstill_mc_gear_in_out *out);
+
+/** One call of MC_GearOut. A key of 0 makes the instance. */
+STANDSTILL_IMPORT(mc_gear_out) int32_t standstill_mc_gear_out(uint64_t *key,
+    const struct standstill_mc_gear_out_in *in, struct standstill_mc_gear_out_out *out);
+
+/** One call of MC_GearInPos. A key of 0 makes the instance. */
+STANDSTILL_IMPORT(mc_gear_in_pos) int32_t standstill_mc_gear_in_pos(uint64_t *key,
+    const struct standstill_mc_gear_in_pos_in *in, struct standstill_mc_gear_in_pos_out *out);
+
+/** One call of MC_PhasingAbsolute. A key of 0 makes the instance. */
+STANDSTILL_IMPORT(mc_phasing_absolute) int32_t standstill_mc_phasing_absolute(uint64_t *key,
+    const struct standstill_mc_phasing_absolute_in *in, struct standstill_mc_phasing_absolute_out *out);
+
+/** One call of MC_PhasingRelative. A key of 0 makes the instance. */
+STANDSTILL_IMPORT(mc_phasing_relative) int32_t standstill_mc_phasing_relative(uint64_t *key,
+    const struct standstill_mc_phasing_relative_in *in, struct standstill_mc_phasing_relative_out *out);
+
 /** One call of R_TRIG. A key of 0 makes the instance. */
 STANDSTILL_IMPORT(r_trig) int32_t standstill_r_trig(uint64_t *key,
     const struct standstill_r_trig_in *in, struct standstill_r_trig_out *out);
@@ -2114,19 +2375,20 @@ typedef struct standstill_record {
     uint32_t instance;
     /** 1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position,
      *  8 planned to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13
-     *  fault, 14 orphaned. */
+     *  fault, 14 orphaned, 15 coupled, 16 approaching the law of a gear, 17 in gear, 18 no longer in gear. */
     int32_t event;
     /** ErrorID, 0 without one. */
     uint32_t error_id;
-    /** Scans of a plan, number of a point, or code of a drive. */
+    /** Scans of a plan, number of a point or of a master, or code of a drive. */
     uint64_t count;
-    /** What was asked for; the excess of velocity; where to; the velocity. */
+    /** What was asked for; the excess of velocity; where to; the velocity; the numerator of a ratio. */
     double value;
-    /** What was used instead, or the limit; the excess of acceleration; the velocity when passing. */
+    /** What was used instead, or the limit; the excess of acceleration; the velocity when passing; the
+     *  denominator. */
     double limit;
     /** The excess of jerk. */
     double third;
-    /** Name of the pin or field, ending in 0; empty: the axis state decided. */
+    /** Name of the pin, field, quantity or way, ending in 0; empty: the axis state decided. */
     char name[32];
 } standstill_record;
 _Static_assert(sizeof(standstill_record) == 96, "standstill_record");

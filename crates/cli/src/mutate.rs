@@ -1,0 +1,178 @@
+//! `standstill test --mutate`: which small changes of a script's program no claim notices.
+
+use crate::exit::{Exit, Failure, go_on};
+use crate::json::{Object, list, string};
+use crate::limit;
+use crate::outcome;
+use crate::progress::Progress;
+use standstill_script::Outcome;
+use standstill_script::model::Script;
+use standstill_script::mutate::{Fate, Mutant, mutants};
+use standstill_script::suite::{self, Allowed};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+/// Mutants of one script that are tried at most.
+const MUTANTS_MOST: usize = 500;
+
+/// What a script's mutants came to.
+#[derive(Clone, Copy, Debug, Default)]
+struct Score {
+    killed: usize,
+    survived: usize,
+    /// Nothing in the run was otherwise, or it could not be run.
+    left: usize,
+}
+
+/// Tries the mutants of every script at the paths. A score is no verdict: only scripts that fail by themselves fail.
+pub fn mutate(
+    scripts: &[PathBuf],
+    seed: u64,
+    allowed: &Allowed,
+    json: bool,
+    out: &mut dyn Write,
+) -> Result<Exit, Failure> {
+    let (mut exit, mut told, mut total) = (Exit::Passed, Vec::new(), Score::default());
+    for script in scripts {
+        let one = one(
+            script,
+            seed,
+            allowed,
+            &mut told,
+            &mut total,
+            (!json).then_some(&mut *out),
+        );
+        exit = exit.max(go_on(one, out)?);
+    }
+    if json {
+        writeln!(out, "{}", outcome::whole("test", exit, &[], &told))?;
+    } else if scripts.len() > 1 {
+        writeln!(out, "\n{} scripts: {}", scripts.len(), total.text())?;
+    }
+    Ok(exit)
+}
+
+fn one(
+    path: &Path,
+    seed: u64,
+    allowed: &Allowed,
+    told: &mut Vec<Object>,
+    total: &mut Score,
+    out: Option<&mut dyn Write>,
+) -> Result<Exit, Failure> {
+    let name = suite::shown(path);
+    limit::doing(format!("{name}: mutants"));
+    let (script, original) = suite::run_script(path, &[], allowed, |_| {})?;
+    if !original.passed() {
+        if let Some(out) = out {
+            writeln!(out, "FAILED    {name}\n    its claims fail without a change")?;
+        }
+        told.push(outcome::broken(&name, "its claims fail without a change"));
+        return Ok(Exit::Failed);
+    }
+    let all = mutants(&script, seed, MUTANTS_MOST);
+    let fates = judged(&name, &script, &original, &all);
+    let mut score = Score::default();
+    for fate in &fates {
+        match fate {
+            Fate::Killed(_) => score.killed += 1,
+            Fate::Survived => score.survived += 1,
+            Fate::Same | Fate::Impossible => score.left += 1,
+        }
+    }
+    if let Some(out) = out {
+        for (mutant, fate) in all.iter().zip(&fates) {
+            let (path, says) = (&mutant.path, &mutant.says);
+            match fate {
+                Fate::Killed(claim) => writeln!(out, "killed    {path}: {says} ({claim})")?,
+                Fate::Survived => writeln!(out, "survived  {path}: {says}")?,
+                Fate::Same | Fate::Impossible => {}
+            }
+        }
+        writeln!(out, "{name}: {}", score.text())?;
+    }
+    told.push(as_json(&name, &all, &fates, score));
+    total.killed += score.killed;
+    total.survived += score.survived;
+    total.left += score.left;
+    Ok(Exit::Passed)
+}
+
+/// The fate of every mutant, in their order; on all processors.
+fn judged(name: &str, script: &Script, original: &Outcome, all: &[Mutant]) -> Vec<Fate> {
+    let next = AtomicUsize::new(0);
+    let fates = Mutex::new(Vec::with_capacity(all.len()));
+    let progress = Mutex::new(Progress::new(true));
+    let work = || {
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(mutant) = all.get(index) else { break };
+            let fate = mutant.judge(script, original);
+            let mut fates = fates.lock().unwrap_or_else(PoisonError::into_inner);
+            fates.push((index, fate));
+            let done = fates.len();
+            drop(fates);
+            let mut progress = progress.lock().unwrap_or_else(PoisonError::into_inner);
+            progress.show(|| format!("{name}: {done} of {} mutants", all.len()));
+        }
+    };
+    let threads = thread::available_parallelism()
+        .map_or(1, usize::from)
+        .min(all.len());
+    if threads <= 1 {
+        work();
+    } else {
+        thread::scope(|scope| {
+            for _ in 0..threads {
+                // Where no more threads are to be had, those there are do the work.
+                let _ = thread::Builder::new().spawn_scoped(scope, work);
+            }
+        });
+        work();
+    }
+    let mut fates = fates.into_inner().unwrap_or_else(PoisonError::into_inner);
+    fates.sort_unstable_by_key(|(index, _)| *index);
+    fates.into_iter().map(|(_, fate)| fate).collect()
+}
+
+impl Score {
+    /// `18 of 20 killed (90.0 %), 4 change nothing`
+    fn text(self) -> String {
+        let Self {
+            killed,
+            survived,
+            left,
+        } = self;
+        let counted = killed + survived;
+        let share = match counted {
+            0 => String::new(),
+            counted => format!(" ({:.1} %)", 100.0 * killed as f64 / counted as f64),
+        };
+        let change = if left == 1 { "changes" } else { "change" };
+        format!("{killed} of {counted} mutants killed{share}, {left} {change} nothing")
+    }
+}
+
+fn as_json(name: &str, all: &[Mutant], fates: &[Fate], score: Score) -> Object {
+    let counted = all.iter().zip(fates).filter_map(|(mutant, fate)| {
+        let object = Object::new()
+            .with("path", string(&mutant.path))
+            .with("change", string(&mutant.says));
+        match fate {
+            Fate::Killed(claim) => Some(
+                object
+                    .with("verdict", string("killed"))
+                    .with("claim", string(claim)),
+            ),
+            Fate::Survived => Some(object.with("verdict", string("survived"))),
+            Fate::Same | Fate::Impossible => None,
+        }
+    });
+    outcome::named(name, "passed")
+        .with("killed", score.killed.to_string())
+        .with("survived", score.survived.to_string())
+        .with("mutants", list(counted.map(Object::text)))
+}

@@ -1,0 +1,147 @@
+//! What `test --json` and `run --json` print: the same as their text, for programs.
+
+use crate::exit::Exit;
+use crate::json::{Object, list, string};
+use standstill_script::golden::Standing;
+use standstill_script::suite::Report;
+use standstill_script::{Failure, Outcome, Reason, Verdict, Warnings};
+use standstill_trace::digest;
+
+/// The schema of what is printed.
+pub fn schema() -> String {
+    include_str!("outcome.schema.json").to_owned()
+}
+
+/// Everything as one object.
+pub fn whole(command: &str, exit: Exit, counts: &[(&str, usize)], scripts: &[Object]) -> String {
+    let mut object = Object::new();
+    object = object.with("standstill_json", "1");
+    object = object.with("command", string(command));
+    object = object.with("passed", (exit == Exit::Passed).to_string());
+    object = object.with("status", (exit as u8).to_string());
+    if !counts.is_empty() {
+        let mut all = Object::new();
+        for (what, count) in counts {
+            all = all.with(what, count.to_string());
+        }
+        object = object.with("counts", all.text());
+    }
+    object = object.with("scripts", list(scripts.iter().cloned().map(Object::text)));
+    object.text()
+}
+
+/// A script that was run.
+pub fn run(name: &str, outcome: &Outcome, warnings: &Warnings) -> Object {
+    let verdict = if outcome.passed() { "passed" } else { "failed" };
+    ran(name, verdict, outcome, &outcome.why, warnings)
+}
+
+/// A script that was judged; `word` is that of the text.
+pub fn judged(name: &str, word: &str, report: &Report) -> Object {
+    let verdict = match word {
+        "ok" => "passed",
+        "accepted" => "accepted",
+        _ => "failed",
+    };
+    let mut object = ran(name, verdict, &report.outcome, &report.why, &report.warnings);
+    let (golden, text) = match &report.golden {
+        Standing::Same => ("same", None),
+        Standing::Close(how) => ("close", how.as_ref().map(ToString::to_string)),
+        Standing::Old(note) => ("old", Some(note.clone())),
+        Standing::Unasked => ("none", None),
+        Standing::Accepted => ("accepted", None),
+        Standing::Failed(what) => ("failed", Some(what.clone())),
+    };
+    let mut standing = Object::new();
+    standing = standing.with("verdict", string(golden));
+    if let Some(text) = text {
+        standing = standing.with("text", string(text.trim_end()));
+    }
+    object = object.with("golden", standing.text());
+    object
+}
+
+/// A script that could not be judged, and why.
+pub fn broken(name: &str, text: &str) -> Object {
+    let mut object = named(name, "broken");
+    object = object.with("error", string(text.trim_end()));
+    object
+}
+
+/// A golden whose script is not there any more.
+pub fn orphaned(name: &str) -> Object {
+    named(name, "orphaned")
+}
+
+/// What every script begins with.
+pub fn named(name: &str, verdict: &str) -> Object {
+    let mut object = Object::new();
+    object = object.with("script", string(name));
+    object = object.with("verdict", string(verdict));
+    object
+}
+
+fn ran(name: &str, verdict: &str, outcome: &Outcome, why: &[Reason], warnings: &Warnings) -> Object {
+    let mut object = named(name, verdict);
+    object = object.with("title", string(&outcome.trace.header().title));
+    object = object.with("scans", outcome.trace.scans().to_string());
+    object = object.with(
+        "digest",
+        string(&format!("{:016x}", digest::whole(&outcome.trace))),
+    );
+    object = object.with("claims", list(outcome.verdicts.iter().map(claim)));
+    object = object.with("why", list(why.iter().map(reason)));
+    object = object.with("warnings", list(told(warnings)));
+    object
+}
+
+fn claim(verdict: &Verdict) -> String {
+    let mut object = Object::new();
+    object = object.with("path", string(&verdict.path));
+    object = object.with("text", string(&verdict.says));
+    object = object.with("passed", verdict.passed().to_string());
+    if let Some(scans) = verdict.scans {
+        object = object.with("scans", list(scans.map(|scan| scan.to_string())));
+    }
+    if let Some(held) = verdict.held {
+        object = object.with("held", held.to_string());
+    }
+    if !verdict.passed() {
+        object = object.with("failures", list(verdict.failures.iter().map(failure)));
+    }
+    object.text()
+}
+
+fn failure(failure: &Failure) -> String {
+    let mut object = Object::new();
+    object = object.with("path", string(&failure.path));
+    if let Some(scan) = failure.scan {
+        object = object.with("scan", scan.to_string());
+    }
+    object = object.with("text", string(&failure.text));
+    object.text()
+}
+
+fn reason(reason: &Reason) -> String {
+    let mut object = Object::new();
+    if let Some(scan) = reason.scan {
+        object = object.with("scan", scan.to_string());
+    }
+    object = object.with("text", string(&reason.text));
+    object = object.with("claims", list(reason.claims.iter().map(|path| string(path))));
+    object.text()
+}
+
+fn told(warnings: &Warnings) -> impl Iterator<Item = String> + '_ {
+    warnings.all.iter().map(|warning| {
+        let (file, line, column) = warnings.place(warning);
+        let mut object = Object::new();
+        object = object.with("kind", string(warning.kind.name()));
+        object = object.with("path", string(&warning.path));
+        object = object.with("file", string(file));
+        object = object.with("line", line.to_string());
+        object = object.with("column", column.to_string());
+        object = object.with("text", string(&warning.message));
+        object.text()
+    })
+}
