@@ -8,7 +8,7 @@ use crate::{Axis, AxisId, AxisState, Command, CommandId, ErrorId, Planner, QUEUE
 
 /// Gives `slave` a command that may couple it to a master; any other command is given as it is.
 ///
-/// Cost: that of the command, and a look up the chain of masters, at most one for each axis.
+/// Cost: that of the command, and of a look up the chains of masters, at most as many looks at all axes as there are.
 ///
 /// # Errors
 /// What [`Axis::command`] refuses; besides [`ErrorId::AxisUnknown`] if there is no such slave or master,
@@ -44,19 +44,46 @@ pub fn couple<P: Planner>(
 }
 
 /// Why `slave` can't follow `master` now.
-fn obstacle<P: Planner>(axes: &[Axis<P>], slave: AxisId, master: AxisId) -> Option<ErrorId> {
-    let Some(axis) = axes.get(master.index()) else {
+fn obstacle<P: Planner>(axes: &mut [Axis<P>], slave: AxisId, master: AxisId) -> Option<ErrorId> {
+    let Some(is_operating) = axes.get(master.index()).map(Axis::is_operating) else {
         return Some(ErrorId::AxisUnknown);
     };
-    let mut next = Some(master);
-    for _ in 0..axes.len() {
-        let Some(id) = next else { break };
-        if id == slave {
-            return Some(ErrorId::CouplingRing);
-        }
-        next = axes.get(id.index()).and_then(Axis::master);
+    if is_above(axes, slave, master) {
+        return Some(ErrorId::CouplingRing);
     }
-    (!axis.is_operating()).then_some(ErrorId::MasterLost)
+    (!is_operating).then_some(ErrorId::MasterLost)
+}
+
+/// Whether `upper` is among `lower`, its masters, and theirs. A command that waits for a place of a master counts: its slave moves
+/// behind that already, and masters and slaves that wait for each other would have no order.
+///
+/// Cost: as many looks at all axes as the longest chain has axes.
+fn is_above<P: Planner>(axes: &mut [Axis<P>], upper: AxisId, lower: AxisId) -> bool {
+    for axis in axes.iter_mut() {
+        axis.set_above(axis.id() == lower);
+    }
+    for _ in 0..axes.len() {
+        let mut is_settled = true;
+        for index in 0..axes.len() {
+            let Some(axis) = axes.get(index).filter(|axis| axis.is_above()) else {
+                continue;
+            };
+            if axis.id() == upper {
+                return true;
+            }
+            for master in axis.masters() {
+                let new = axes.get_mut(master.index()).filter(|axis| !axis.is_above());
+                if let Some(axis) = new {
+                    axis.set_above(true);
+                    is_settled = false;
+                }
+            }
+        }
+        if is_settled {
+            break;
+        }
+    }
+    false
 }
 
 /// The motion step where some axis may follow another: masters first, axes of one rank in the order of their numbers.
@@ -99,8 +126,7 @@ fn set_ranks<P: Planner>(axes: &mut [Axis<P>]) -> u16 {
         let mut is_settled = true;
         for index in 0..axes.len() {
             let Some(axis) = axes.get(index) else { continue };
-            let masters = [axis.master(), axis.awaited_master()].into_iter().flatten();
-            let above = masters.filter_map(|master| axes.get(master.index()));
+            let above = axis.masters().filter_map(|master| axes.get(master.index()));
             let rank = above.map(|master| master.rank().saturating_add(1)).max();
             let rank = rank.unwrap_or(0);
             highest = rank.max(highest);

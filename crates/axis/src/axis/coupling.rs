@@ -331,6 +331,21 @@ impl<P: Planner> Axis<P> {
         self.rank = rank;
     }
 
+    /// Whether the search for a ring that is under way has come to this axis.
+    pub(crate) fn is_above(&self) -> bool {
+        self.is_above
+    }
+
+    /// The search for a ring has come here, or begins.
+    pub(crate) fn set_above(&mut self, is_above: bool) {
+        self.is_above = is_above;
+    }
+
+    /// Whom it follows, and for whose place a command of it waits.
+    pub(crate) fn masters(&self) -> impl Iterator<Item = AxisId> + use<P> {
+        [self.master(), self.awaited_master()].into_iter().flatten()
+    }
+
     /// A command that follows a master waits.
     pub(super) fn note_bound(&mut self, entry: &Entry) {
         self.is_bound |= matches!(entry.work, Work::Gear(_));

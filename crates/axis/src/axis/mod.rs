@@ -287,6 +287,8 @@ pub struct Axis<P: Planner = Standard> {
     source: coupling::Source,
     /// How many masters stand above it.
     rank: u16,
+    /// Reached in the search for a ring that is under way.
+    is_above: bool,
     /// The owner is MC_Stop, stands, and is held by its Execute.
     stop_held: bool,
     queue: Queue,
@@ -355,6 +357,7 @@ impl<P: Planner> Axis<P> {
             is_bound: false,
             source: coupling::Source::default(),
             rank: 0,
+            is_above: false,
             stop_held: false,
             queue: Queue::default(),
             fates: Fates::default(),
@@ -675,6 +678,11 @@ impl<P: Planner> Axis<P> {
         }
         self.stop_held = false;
         self.replan_due = false;
+        self.end_coupling();
+    }
+
+    /// The axis follows no master any more.
+    fn end_coupling(&mut self) {
         if self.coupling.take().is_some() {
             self.end_phasing();
         }

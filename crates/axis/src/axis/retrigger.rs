@@ -73,6 +73,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn end_orphan(&mut self) {
         let held_up = |owner: &Entry| owner.orphaned && (owner.paused || owner.halted);
         if let Some(owner) = self.owner.filter(held_up) {
+            self.end_coupling();
             self.enter(AxisEvent::StartDiscrete);
             self.own(Entry {
                 work: Work::Halt,
