@@ -4,7 +4,8 @@ use super::scenario::{AxisSetup, BlockSetup, Scenario, TableSetup, kind_of};
 use crate::cases::extreme;
 use crate::random::Random;
 use standstill_axis::{
-    AboveLimit, AxisConfig, Defaults, Limits, MoveProfile, PowerOff, QUEUE_MAX, Scaling, StartState,
+    AboveLimit, AxisConfig, Defaults, Following, Limits, MoveProfile, OnLimit, OnMasterLost, PowerOff,
+    QUEUE_MAX, Scaling, StartState,
 };
 use standstill_blocks::REGISTRY;
 use standstill_fb::{BlockInfo, PinType, Value};
@@ -149,6 +150,13 @@ fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
     if random.one_in(6) {
         let increments = one_of(random, &[1000, 65536, 1 << 20]);
         config.scaling = Scaling::new(increments, one_of(random, &[1, 7, 360]), random.one_in(2), 0.0).ok();
+    }
+    if random.one_in(4) {
+        config.following = Following {
+            on_limit: one_of(random, &[OnLimit::Lag, OnLimit::Error]),
+            max_deviation: random.one_in(2).then(|| way * random.log_between(1.0, 1000.0)),
+            on_master_lost: one_of(random, &[OnMasterLost::Error, OnMasterLost::Hold]),
+        };
     }
     // What the configuration says no to goes.
     if config.check().is_err() {

@@ -3,6 +3,7 @@
 use super::scenario::{Action, Bench, FAULT_CODE, FaultKind, Scenario, axis_id, kind_of};
 use crate::rules::arrows::{Part, Reach};
 use crate::rules::fence::Fence;
+use crate::rules::law::Law;
 use crate::rules::limits::{Track, check_excess};
 use crate::rules::{Broken, Call, Held, Kind, Outputs, Shown, Truth, check_call, check_truth};
 use standstill_axis::{
@@ -102,6 +103,7 @@ struct Run<'a, H> {
     reach: Reach,
     tracks: Vec<Track>,
     fences: Vec<Fence>,
+    laws: Vec<Law>,
     /// The state of each axis as last seen.
     states: Vec<AxisState>,
     following: Vec<bool>,
@@ -178,6 +180,7 @@ pub fn run(scenario: &Scenario, hands: &mut impl Hands) -> (Seen, Option<Failure
             .map(|axis| Track::new(axis, scenario.cycle()))
             .collect(),
         fences: machine.axes().iter().map(Fence::new).collect(),
+        laws: vec![Law::default(); machine.axes().len()],
         states: machine.axes().iter().map(Axis::state).collect(),
         following: vec![true; machine.axes().len()],
         orphans: vec![None; machine.axes().len()],
@@ -348,7 +351,12 @@ impl<H: Hands> Run<'_, H> {
     }
 
     /// What is so after the motion step.
-    fn check_axis(&mut self, index: usize, axis: &Axis<Standard>) -> Result<(), Broken> {
+    fn check_axis(
+        &mut self,
+        index: usize,
+        axis: &Axis<Standard>,
+        axes: &[Axis<Standard>],
+    ) -> Result<(), Broken> {
         let state = axis.state();
         let setpoint = axis.setpoint();
         self.seen.fold(setpoint.position.to_bits() ^ (state as u64) << 52);
@@ -375,6 +383,7 @@ impl<H: Hands> Run<'_, H> {
             self.tracks[index].check(&setpoint)?;
         }
         self.fences[index].check(axis)?;
+        self.laws[index].check(axis, axes)?;
         if state == AxisState::ErrorStop && axis.error_id().number() >= 900 {
             return Err(Broken {
                 id: "R79",
@@ -489,6 +498,7 @@ impl<H: Hands> Run<'_, H> {
                 Event::Shifted { .. } => {
                     track.forget();
                     self.fences[record.axis.index()].forget();
+                    self.laws.iter_mut().for_each(Law::forget);
                 }
                 Event::Orphaned => {
                     let index = record.axis.index();
@@ -616,7 +626,7 @@ impl<H: Hands> Programs<Standard, IdealDrive> for Run<'_, H> {
         self.follow_states(Part::Motion, time.scan, machine.axes());
         self.read_records(time, machine);
         for (index, axis) in machine.axes().iter().enumerate() {
-            if let Err(broken) = self.check_axis(index, axis) {
+            if let Err(broken) = self.check_axis(index, axis, machine.axes()) {
                 self.fail(time.scan, Who::Axis(index), broken);
             }
         }

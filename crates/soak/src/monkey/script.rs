@@ -2,7 +2,9 @@
 
 use super::run::{Failure, Who};
 use super::scenario::{Action, AxisSetup, BlockSetup, FAULT_CODE, Scenario, axis_pins, wired};
-use standstill_axis::{AboveLimit, AxisConfig, Limits, MoveProfile, PowerOff, StartState};
+use standstill_axis::{
+    AboveLimit, AxisConfig, Limits, MoveProfile, OnLimit, OnMasterLost, PowerOff, StartState,
+};
 use standstill_blocks::{REGISTRY, registry::find};
 use standstill_fb::{BlockInfo, Pin, PinType, Value};
 use std::fmt::Write;
@@ -270,6 +272,17 @@ fn members(axis: &AxisSetup) -> Vec<String> {
     }
     if config.needs_homed {
         members.push("\"needs_homed\": true".to_owned());
+    }
+    let following = &config.following;
+    let mut coupling = numbers(&[("max_deviation", following.max_deviation)]);
+    if following.on_limit == OnLimit::Error {
+        coupling.push("\"on_limit\": \"error\"".to_owned());
+    }
+    if following.on_master_lost == OnMasterLost::Hold {
+        coupling.push("\"on_master_lost\": \"hold\"".to_owned());
+    }
+    if !coupling.is_empty() {
+        members.push(format!("\"coupling\": {{{}}}", coupling.join(", ")));
     }
     if (axis.delay, axis.power_on) != (0, 0) {
         members.push(format!(

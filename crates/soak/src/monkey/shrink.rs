@@ -3,7 +3,7 @@
 use super::replay;
 use super::run::Failure;
 use super::scenario::{Action, Scenario, Step};
-use standstill_axis::{AxisConfig, Limits, StartState};
+use standstill_axis::{AxisConfig, Following, Limits, StartState};
 use standstill_fb::Value;
 
 /// Scans run at most to find a smaller one.
@@ -141,7 +141,7 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
 
     /// Every part of a configuration as it is by default.
     fn plainer_axes(&mut self) {
-        let plainer: [fn(&mut AxisConfig); 15] = [
+        let plainer: [fn(&mut AxisConfig); 16] = [
             |config| config.start = StartState::Standstill,
             |config| config.modulo = None,
             |config| config.software_limits = None,
@@ -153,6 +153,7 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
             |config| config.stop_deceleration = None,
             |config| config.stop_jerk = None,
             |config| config.needs_homed = false,
+            |config| config.following = Following::DEFAULT,
             |config| config.defaults = Default::default(),
             |config| config.limits.snap = f64::INFINITY,
             |config| {

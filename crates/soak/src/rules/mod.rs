@@ -6,6 +6,7 @@
 pub mod arrows;
 mod calls;
 pub mod fence;
+pub mod law;
 pub mod limits;
 mod truth;
 
