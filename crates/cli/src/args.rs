@@ -37,6 +37,15 @@ pub enum Command {
         /// Scripts, and folders of them [default: scan-tests, or this folder where there is none]
         #[arg(value_name = "PATH")]
         paths: Vec<PathBuf>,
+        /// Only scripts whose path has this in it, without regard to case
+        #[arg(short = 'k', value_name = "WORD")]
+        word: Option<String>,
+        /// Judge nothing; print the paths of the scripts
+        #[arg(long, conflicts_with_all = ["accept", "strict", "json", "mutate", "golden", "abs", "rel", "junit", "report", "recording", "watch"])]
+        list: bool,
+        /// Judge again whenever a file below the paths is saved, first what failed; until it is interrupted
+        #[arg(long, conflicts_with_all = ["accept", "json", "mutate", "junit", "recording"])]
+        watch: bool,
         /// Take the runs as they are for goldens, where all claims hold
         #[arg(long)]
         accept: bool,
@@ -72,6 +81,9 @@ pub enum Command {
         /// recorder kept, say
         #[arg(long, value_name = "TRACE", conflicts_with_all = ["accept", "golden", "abs", "rel", "report"])]
         recording: Option<PathBuf>,
+        /// Judge on so many threads instead of on all processors; what is printed is the same
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), conflicts_with_all = ["mutate", "recording"])]
+        threads: Option<u16>,
         /// Files beside those of the script's folder
         #[command(flatten)]
         outside: Outside,
@@ -97,6 +109,9 @@ pub enum Command {
         expected: PathBuf,
         /// The trace as it is
         found: PathBuf,
+        /// As one JSON object
+        #[arg(long)]
+        json: bool,
     },
     /// Hold a trace against the recording of a machine
     Compare {
@@ -141,9 +156,33 @@ pub enum Command {
     },
     /// List the function blocks and their pins
     Blocks {
+        /// These blocks only
+        #[arg(value_name = "NAME")]
+        names: Vec<String>,
         /// As JSON
         #[arg(long)]
         json: bool,
+        /// Say instead what an ErrorID means and what to do about it; its number or its name
+        #[arg(long, value_name = "N", conflicts_with_all = ["names", "json"])]
+        error: Option<String>,
+    },
+    /// Say what an ErrorID means and what to do about it
+    ExplainError {
+        /// Its number or its name
+        #[arg(value_name = "N")]
+        error: String,
+    },
+    /// Print completions of the command line for a shell
+    Completions {
+        /// The shell
+        #[arg(value_enum, value_name = "SHELL")]
+        shell: clap_complete::Shell,
+    },
+    /// Write manual pages
+    Man {
+        /// The folder for them; it is made if it is not there
+        #[arg(value_name = "FOLDER")]
+        folder: PathBuf,
     },
     /// Write what a host needs to call the blocks: headers, shims, imports, a library
     Export {

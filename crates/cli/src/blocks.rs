@@ -2,13 +2,34 @@
 
 use crate::exit::{Exit, Failure};
 use crate::json::{Object, list, number, string};
+use crate::suggest::nearest;
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::{AnyInstance, BlockInfo, Direction, Pin, PinType, Value};
 use std::io::Write;
 
+/// The blocks with these names, without regard to case; all without any.
+fn named(names: &[String]) -> Result<Vec<&'static BlockInfo>, Failure> {
+    if names.is_empty() {
+        return Ok(REGISTRY.iter().collect());
+    }
+    let find = |name: &String| {
+        let mut all = REGISTRY.iter();
+        let found = all.find(|info| info.name.eq_ignore_ascii_case(name));
+        found.ok_or_else(|| {
+            let known = REGISTRY.iter().map(|info| info.name);
+            let remedy = nearest(name, known).map_or_else(
+                || "`standstill blocks` lists all".to_owned(),
+                |name| format!("did you mean `{name}`?"),
+            );
+            Failure::usage(&format!("there is no block {name}; {remedy}"))
+        })
+    };
+    names.iter().map(find).collect()
+}
+
 /// The registry as a JSON list, one block a line.
-pub fn json(out: &mut dyn Write) -> Result<Exit, Failure> {
-    let blocks: Vec<_> = REGISTRY.iter().map(block).collect();
+pub fn json(names: &[String], out: &mut dyn Write) -> Result<Exit, Failure> {
+    let blocks: Vec<_> = named(names)?.into_iter().map(block).collect();
     writeln!(out, "[\n{}\n]", blocks.join(",\n"))?;
     Ok(Exit::Passed)
 }
@@ -43,8 +64,8 @@ fn pin(info: &BlockInfo, index: usize, pin: &Pin) -> String {
 }
 
 /// The registry as a table for people.
-pub fn table(out: &mut dyn Write) -> Result<Exit, Failure> {
-    for (index, info) in REGISTRY.iter().enumerate() {
+pub fn table(names: &[String], out: &mut dyn Write) -> Result<Exit, Failure> {
+    for (index, info) in named(names)?.into_iter().enumerate() {
         if index > 0 {
             writeln!(out)?;
         }

@@ -2,6 +2,7 @@
 
 use crate::exit::{Exit, Failure, complain};
 use crate::limit;
+use crate::outcome;
 use standstill_script::suite::shown;
 use standstill_trace::story::story;
 use standstill_trace::{Trace, file};
@@ -9,9 +10,18 @@ use std::io::Write;
 use std::path::Path;
 
 /// Tells how `found` differs from `expected`, from the first scan and signals on, and what may be behind it.
-pub fn explain(expected: &Path, found: &Path, out: &mut dyn Write) -> Result<Exit, Failure> {
+pub fn explain(expected: &Path, found: &Path, json: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let story = story(&load(expected)?, &load(found)?);
     let (expected, found) = (shown(expected), shown(found));
+    if json {
+        let exit = Exit::of(story.is_none());
+        writeln!(
+            out,
+            "{}",
+            outcome::explained(exit, (&expected, &found), story.as_ref())
+        )?;
+        return Ok(exit);
+    }
     match story {
         None => {
             writeln!(out, "{expected} and {found} are equal to the bit")?;

@@ -67,15 +67,23 @@ impl<'a> Pages<'a> {
             .collect();
         // Two extensions are one too many for `with_extension`.
         let stem = self.root.join(inner).with_extension("").with_extension("");
-        let mut path = stem.with_added_extension("html");
+        let mut path = with_ending(&stem, "html");
         // `a/x` and `../a/x` are two scripts.
         let mut number = 2;
         while !self.written.insert(path.clone()) {
-            path = stem.with_added_extension(format!("{number}.html"));
+            path = with_ending(&stem, &format!("{number}.html"));
             number += 1;
         }
         path
     }
+}
+
+/// A path with a dot and an ending behind it.
+pub fn with_ending(stem: &Path, ending: &str) -> PathBuf {
+    let mut path = stem.as_os_str().to_owned();
+    path.push(".");
+    path.push(ending);
+    path.into()
 }
 
 fn make(folder: &Path) -> Result<(), Failure> {

@@ -7,6 +7,8 @@
 mod args;
 mod blocks;
 mod compare;
+mod cores;
+mod errors;
 pub mod exit;
 mod explain;
 mod export;
@@ -21,10 +23,12 @@ mod live;
 mod mutate;
 mod out;
 mod outcome;
+mod pages;
 pub mod plan;
 mod progress;
 mod report;
 mod run;
+mod saved;
 mod soak;
 #[cfg(feature = "st")]
 mod st;
@@ -81,17 +85,19 @@ fn is_data(command: &Command) -> bool {
         | Command::ComparePlanners { .. }
         | Command::Sweep(_)
         | Command::Blocks { .. }
+        | Command::Completions { .. }
         | Command::Schema { .. } => true,
         Command::St { what } => matches!(what, St::Check { json: true, .. } | St::Lint { json: true, .. }),
         Command::Fmt { paths, .. } => paths.iter().any(|path| is_standard(path)),
         Command::Run(arguments) => arguments.json,
-        Command::Test { json, .. } => *json,
+        Command::Test { json, .. } | Command::Explain { json, .. } => *json,
         Command::Live(_)
         | Command::Watch(_)
         | Command::Report { .. }
-        | Command::Explain { .. }
         | Command::Compare { .. }
         | Command::Init { .. }
+        | Command::ExplainError { .. }
+        | Command::Man { .. }
         | Command::Soak { .. }
         | Command::Export { .. } => false,
     }
@@ -120,6 +126,9 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Watch(_) => Err(Failure::left_out("watch")),
         Command::Test {
             paths,
+            word,
+            list,
+            watch,
             accept,
             strict,
             json,
@@ -131,24 +140,33 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             junit,
             report,
             recording,
+            threads,
             outside,
         } => {
             let paths = &test::where_scripts_are(paths);
+            if *list {
+                return test::list(paths, word.as_deref(), out);
+            }
             if *mutate {
-                let scripts = test::found(paths)?;
+                let scripts = test::found(paths, word.as_deref())?;
                 return mutate::mutate(&scripts, *seed, &outside.allowed(), *json, out);
             }
             let wish = test::Wish {
                 paths,
+                word: word.as_deref(),
                 accept: *accept,
                 strict: *strict,
                 json: *json,
+                threads: *threads,
                 yardstick: test::yardstick(*golden, *abs, *rel)?,
                 junit: junit.as_deref(),
                 report: report.as_deref(),
                 recording: recording.as_deref(),
                 allowed: &outside.allowed(),
             };
+            if *watch {
+                return test::watch(wish, out);
+            }
             test::test(wish, out)
         }
         Command::Report {
@@ -164,7 +182,11 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             };
             report::report(traces, targets)
         }
-        Command::Explain { expected, found } => explain::explain(expected, found, out),
+        Command::Explain {
+            expected,
+            found,
+            json,
+        } => explain::explain(expected, found, *json, out),
         Command::Compare {
             recording,
             trace,
@@ -196,8 +218,16 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
                 },
         } => soak::blocks(*seed, *count, resume.as_deref(), failures, out),
         Command::Init { folder } => init::init(folder, out),
-        Command::Blocks { json: true } => blocks::json(out),
-        Command::Blocks { json: false } => blocks::table(out),
+        Command::Blocks {
+            error: Some(error), ..
+        }
+        | Command::ExplainError { error } => errors::explain(error, out),
+        Command::Blocks {
+            names, json: true, ..
+        } => blocks::json(names, out),
+        Command::Blocks { names, .. } => blocks::table(names, out),
+        Command::Completions { shell } => pages::completions(*shell, out),
+        Command::Man { folder } => pages::man(folder, out),
         Command::Export {
             target,
             out: folder,

@@ -1,5 +1,6 @@
 //! `standstill test --mutate`: which small changes of a script's program no claim notices.
 
+use crate::cores;
 use crate::exit::{Exit, Failure, go_on};
 use crate::json::{Object, list, string};
 use crate::limit;
@@ -11,9 +12,6 @@ use standstill_script::mutate::{Fate, Mutant, mutants};
 use standstill_script::suite::{self, Allowed};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
-use std::thread;
 
 /// Mutants of one script that are tried at most.
 const MUTANTS_MOST: usize = 500;
@@ -74,7 +72,7 @@ fn one(
         return Ok(Exit::Failed);
     }
     let all = mutants(&script, seed, MUTANTS_MOST);
-    let fates = judged(&name, &script, &original, &all);
+    let fates = judged(&name, &script, &original, &all)?;
     let mut score = Score::default();
     for fate in &fates {
         match fate {
@@ -102,40 +100,17 @@ fn one(
 }
 
 /// The fate of every mutant, in their order; on all processors.
-fn judged(name: &str, script: &Script, original: &Outcome, all: &[Mutant]) -> Vec<Fate> {
-    let next = AtomicUsize::new(0);
-    let fates = Mutex::new(Vec::with_capacity(all.len()));
-    let progress = Mutex::new(Progress::new(true));
-    let work = || {
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(mutant) = all.get(index) else { break };
-            let fate = mutant.judge(script, original);
-            let mut fates = fates.lock().unwrap_or_else(PoisonError::into_inner);
-            fates.push((index, fate));
-            let done = fates.len();
-            drop(fates);
-            let mut progress = progress.lock().unwrap_or_else(PoisonError::into_inner);
-            progress.show(|| format!("{name}: {done} of {} mutants", all.len()));
-        }
+fn judged(name: &str, script: &Script, original: &Outcome, all: &[Mutant]) -> Result<Vec<Fate>, Failure> {
+    let mut fates = Vec::with_capacity(all.len());
+    let mut progress = Progress::new(true);
+    let judge = |index: usize| all[index].judge(script, original);
+    let take = |index, fate| {
+        progress.show(|| format!("{name}: {index} of {} mutants", all.len()));
+        fates.extend(fate);
+        Ok(())
     };
-    let threads = thread::available_parallelism()
-        .map_or(1, usize::from)
-        .min(all.len());
-    if threads <= 1 {
-        work();
-    } else {
-        thread::scope(|scope| {
-            for _ in 0..threads {
-                // Where no more threads are to be had, those there are do the work.
-                let _ = thread::Builder::new().spawn_scoped(scope, work);
-            }
-        });
-        work();
-    }
-    let mut fates = fates.into_inner().unwrap_or_else(PoisonError::into_inner);
-    fates.sort_unstable_by_key(|(index, _)| *index);
-    fates.into_iter().map(|(_, fate)| fate).collect()
+    cores::in_order(all.len(), cores::processors(), judge, take)?;
+    Ok(fates)
 }
 
 impl Score {

@@ -1,24 +1,84 @@
-//! What `test --json` and `run --json` print: the same as their text, for programs.
+//! What `test --json`, `run --json` and `explain --json` print: the same as their text, for programs.
 
 use crate::exit::Exit;
 use crate::json::{Object, list, string};
 use standstill_script::golden::Standing;
 use standstill_script::suite::Report;
 use standstill_script::{Failure, Outcome, Reason, Verdict, Warnings};
+use standstill_trace::compare::SignalDifference;
 use standstill_trace::digest;
+use standstill_trace::story::Story;
 
 /// The schema of what is printed.
 pub fn schema() -> String {
     include_str!("outcome.schema.json").to_owned()
 }
 
+/// What every outcome begins with.
+fn begun(command: &str, exit: Exit) -> Object {
+    Object::new()
+        .with("standstill_json", "1")
+        .with("command", string(command))
+        .with("passed", (exit == Exit::Passed).to_string())
+        .with("status", (exit as u8).to_string())
+}
+
+/// How two traces differ, which have these names.
+pub fn explained(exit: Exit, (expected, found): (&str, &str), story: Option<&Story>) -> String {
+    let mut object = begun("explain", exit);
+    object = object.with("expected", string(expected));
+    object = object.with("found", string(found));
+    if let Some(story) = story {
+        object = object.with("story", told_story(story));
+    }
+    object.text()
+}
+
+fn told_story(story: &Story) -> String {
+    let difference = &story.difference;
+    let (expected, found) = difference.scans;
+    let names = |names: &[String]| list(names.iter().map(|name| string(name)));
+    let rows = Object::new()
+        .with("expected", expected.to_string())
+        .with("found", found.to_string());
+    let mut object = Object::new()
+        .with("rows", rows.text())
+        .with("only_expected", names(&difference.only_expected))
+        .with("only_found", names(&difference.only_actual));
+    if let Some(first) = &difference.first {
+        let part = Object::new()
+            .with("scan", first.scan.to_string())
+            .with("signals", list(first.signals.iter().map(signal)));
+        object = object.with("first", part.text());
+    }
+    if let Some(extent) = &story.extent {
+        let part = Object::new()
+            .with("scans", extent.scans.to_string())
+            .with("of", extent.of.to_string())
+            .with("last", extent.last.to_string());
+        object = object.with("extent", part.text());
+    }
+    let causes = story.causes.iter().map(|cause| string(&cause.to_string()));
+    object
+        .with("causes", list(causes))
+        .with("text", string(story.to_string().trim_end()))
+        .text()
+}
+
+fn signal(signal: &SignalDifference) -> String {
+    let mut object = Object::new()
+        .with("signal", string(&signal.name))
+        .with("expected", string(&signal.expected))
+        .with("found", string(&signal.actual));
+    if let Some(ulps) = signal.ulps {
+        object = object.with("ulps", ulps.to_string());
+    }
+    object.text()
+}
+
 /// Everything as one object.
 pub fn whole(command: &str, exit: Exit, counts: &[(&str, usize)], scripts: &[Object]) -> String {
-    let mut object = Object::new();
-    object = object.with("standstill_json", "1");
-    object = object.with("command", string(command));
-    object = object.with("passed", (exit == Exit::Passed).to_string());
-    object = object.with("status", (exit as u8).to_string());
+    let mut object = begun(command, exit);
     if !counts.is_empty() {
         let mut all = Object::new();
         for (what, count) in counts {

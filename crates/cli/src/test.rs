@@ -1,6 +1,7 @@
 //! `standstill test`: scripts as tests, held against their claims and goldens.
 
 use crate::args::{Golden, SCRIPTS};
+use crate::cores;
 use crate::exit::{Exit, Failure, complain, go_on};
 use crate::explain::load;
 use crate::failing::Pages;
@@ -9,26 +10,34 @@ use crate::junit::{self, Case, Ending};
 use crate::limit;
 use crate::outcome;
 use crate::progress::Progress;
+use crate::saved::Saved;
 use standstill_script::golden::{Mode, Standing};
-use standstill_script::suite::{self, Allowed, Report};
+use standstill_script::suite::{self, Allowed, Report, SuiteError};
 use standstill_script::{Warnings, judge_recording};
 use standstill_trace::compare::{Tolerance, Yardstick};
+use std::collections::BTreeSet;
 use std::fmt;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// What `test` was asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Wish<'a> {
     /// Scripts, and folders of them.
     pub paths: &'a [PathBuf],
+    /// Only scripts whose path has this in it.
+    pub word: Option<&'a str>,
     /// Goldens become what the runs are.
     pub accept: bool,
     /// Warnings fail.
     pub strict: bool,
     /// The outcome is printed as JSON.
     pub json: bool,
+    /// Threads that judge; all processors without.
+    pub threads: Option<u16>,
     /// How exactly a run must be as its golden; it need not without.
     pub yardstick: Option<Yardstick>,
     /// Where to write the outcome as JUnit XML.
@@ -60,16 +69,47 @@ pub fn yardstick(golden: Golden, abs: Option<f64>, rel: Option<f64>) -> Result<O
 /// Judges all scripts at the paths, in sorted order, and reports goldens that have no script any more.
 pub fn test(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
     if !wish.json {
-        return told(wish, out).map(|tally| tally.exit());
+        return told(wish, &BTreeSet::new(), out).map(|tally| tally.exit());
     }
-    let tally = told(wish, &mut io::sink())?;
+    let tally = told(wish, &BTreeSet::new(), &mut io::sink())?;
     let exit = tally.exit();
     writeln!(out, "{}", tally.json(exit))?;
     Ok(exit)
 }
 
-/// Judges what is wished for and tells of it in text.
-fn told(wish: Wish<'_>, out: &mut dyn Write) -> Result<Tally, Failure> {
+/// Prints the paths of the scripts.
+pub fn list(paths: &[PathBuf], word: Option<&str>, out: &mut dyn Write) -> Result<Exit, Failure> {
+    for script in found(paths, word)? {
+        writeln!(out, "{}", suite::shown(&script))?;
+    }
+    Ok(Exit::Passed)
+}
+
+/// Time between two looks for files that were saved.
+const LOOK_EVERY: Duration = Duration::from_millis(200);
+
+/// Judges the scripts, and again whenever a file was saved: first those that failed. It ends where nobody can read what it prints.
+pub fn watch(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {
+    let mut failed = BTreeSet::new();
+    loop {
+        let before = Saved::below(wish.paths, wish.report);
+        match told(wish, &failed, out) {
+            Ok(tally) => failed = tally.bad().map(|case| case.file.clone()).collect(),
+            // A folder that is empty for now, say.
+            Err(failure @ Failure::Told(..)) => drop(go_on(Err(failure), out)?),
+            Err(failure) => return Err(failure),
+        }
+        out.flush()?;
+        complain("watching; tests run again when a file is saved");
+        while Saved::below(wish.paths, wish.report) == before {
+            thread::sleep(LOOK_EVERY);
+        }
+        writeln!(out)?;
+    }
+}
+
+/// Judges what is wished for, those named `first` before the others, and tells of it in text.
+fn told(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Result<Tally, Failure> {
     if wish.accept && wish.yardstick.is_none() {
         return Err(Failure::usage(
             "--accept writes goldens, and --golden none asks for none",
@@ -77,7 +117,7 @@ fn told(wish: Wish<'_>, out: &mut dyn Write) -> Result<Tally, Failure> {
     }
     let tally = match wish.recording {
         Some(recording) => on_recording(wish, recording, out)?,
-        None => judged(wish, out)?,
+        None => judged(wish, first, out)?,
     };
     write!(out, "{tally}")?;
     if let Some(path) = wish.junit {
@@ -86,9 +126,11 @@ fn told(wish: Wish<'_>, out: &mut dyn Write) -> Result<Tally, Failure> {
     Ok(tally)
 }
 
-fn judged(wish: Wish<'_>, out: &mut dyn Write) -> Result<Tally, Failure> {
+fn judged(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Result<Tally, Failure> {
     let mode = Mode::from_environment(wish.accept).map_err(|error| Failure::usage(&error.to_string()))?;
-    let scripts = found(wish.paths)?;
+    let mut scripts = found(wish.paths, wish.word)?;
+    // The sort is stable.
+    scripts.sort_by_key(|script| !first.contains(&suite::shown(script)));
     let mut pages = wish.report.map(Pages::new).transpose()?;
     let mut tally = Tally {
         strict: wish.strict,
@@ -96,17 +138,26 @@ fn judged(wish: Wish<'_>, out: &mut dyn Write) -> Result<Tally, Failure> {
         ..Tally::default()
     };
     let mut progress = Progress::new(true);
-    for (index, script) in scripts.iter().enumerate() {
-        let name = suite::shown(script);
-        let place = format!("{} of {}{}: {name}", index + 1, scripts.len(), tally.trouble());
-        progress.show(|| place.clone());
+    let scans: Vec<_> = scripts.iter().map(|_| AtomicU64::new(0)).collect();
+    let judge = |index: usize| {
         let begin = Instant::now();
-        limit::doing(place.clone());
-        let told = |scans| {
-            limit::doing(format!("{place}, {scans} scans"));
-            progress.show(|| format!("{place}, {scans} scans"));
+        let told = |count| scans[index].store(count, Ordering::Relaxed);
+        let judged = suite::judge_file(&scripts[index], mode, wish.yardstick, wish.allowed, told);
+        (judged, begin.elapsed())
+    };
+    let take = |index: usize, judged: Option<(Result<Report, SuiteError>, Duration)>| {
+        let script = &scripts[index];
+        let name = suite::shown(script);
+        let Some((judged, took)) = judged else {
+            let mut place = format!("{} of {}{}: {name}", index + 1, scripts.len(), tally.trouble());
+            match scans[index].load(Ordering::Relaxed) {
+                0 => {}
+                count => place.push_str(&format!(", {count} scans")),
+            }
+            limit::doing(place.clone());
+            progress.show(|| place);
+            return Ok(());
         };
-        let judged = suite::judge_file(script, mode, wish.yardstick, wish.allowed, told);
         progress.clear();
         let (ending, text) = match judged {
             Ok(report) => {
@@ -126,14 +177,28 @@ fn judged(wish: Wish<'_>, out: &mut dyn Write) -> Result<Tally, Failure> {
             file: name,
             ending,
             text,
-            took: begin.elapsed(),
+            took,
         });
-    }
-    for folder in wish.paths.iter().filter(|path| path.is_dir()) {
+        Ok(())
+    };
+    cores::in_order(scripts.len(), threads(&wish, &scripts), judge, take)?;
+    let folders = wish.paths.iter().filter(|path| path.is_dir());
+    // Of some scripts it is not asked what else there is.
+    for folder in folders.filter(|_| wish.word.is_none()) {
         tally.orphans(&suite::orphans(folder)?, out)?;
         mention(folder)?;
     }
     Ok(tally)
+}
+
+/// On how many threads the scripts are judged.
+fn threads(wish: &Wish<'_>, scripts: &[PathBuf]) -> usize {
+    // A script that is named twice has its golden written twice: one after the other.
+    let files: BTreeSet<_> = scripts.iter().map(|path| path.canonicalize().ok()).collect();
+    if files.len() < scripts.len() {
+        return 1;
+    }
+    wish.threads.map_or_else(cores::processors, usize::from)
 }
 
 /// Tells of files that look like scripts but are not called so.
@@ -199,8 +264,8 @@ pub fn where_scripts_are(paths: &[PathBuf]) -> Vec<PathBuf> {
     vec![here.to_owned()]
 }
 
-/// All scripts at the paths.
-pub fn found(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+/// All scripts at the paths whose own paths have `word` in them, without regard to case.
+pub fn found(paths: &[PathBuf], word: Option<&str>) -> Result<Vec<PathBuf>, Failure> {
     let mut all = Vec::new();
     for path in paths {
         let scripts = suite::find(path)?;
@@ -216,6 +281,15 @@ pub fn found(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             return Err(Failure::usage(&message));
         }
         all.extend(scripts);
+    }
+    let Some(word) = word else { return Ok(all) };
+    let count = all.len();
+    let wanted = word.to_lowercase();
+    all.retain(|script| suite::shown(script).to_lowercase().contains(&wanted));
+    if all.is_empty() {
+        let message =
+            format!("-k {word}: none of {count} scripts has that in its path; `--list` prints them");
+        return Err(Failure::usage(&message));
     }
     Ok(all)
 }
@@ -307,10 +381,15 @@ impl Tally {
                 file: name,
                 ending: Ending::Failed,
                 text: text.to_owned(),
-                took: std::time::Duration::ZERO,
+                took: Duration::ZERO,
             });
         }
         Ok(())
+    }
+
+    /// What did not pass.
+    fn bad(&self) -> impl Iterator<Item = &Case> + Clone {
+        self.cases.iter().filter(|case| case.ending != Ending::Passed)
     }
 
     /// What has gone wrong so far, in a few words for the line of progress.
@@ -351,7 +430,7 @@ impl fmt::Display for Tally {
             cases,
             ..
         } = self;
-        let bad = cases.iter().filter(|case| case.ending != Ending::Passed);
+        let bad = self.bad();
         if cases.len() > 1 && bad.clone().next().is_some() {
             writeln!(f, "\nto look at")?;
             for case in bad {

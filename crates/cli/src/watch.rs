@@ -2,6 +2,7 @@
 
 use crate::args::WatchArguments;
 use crate::exit::{Exit, Failure};
+use crate::failing::with_ending;
 #[cfg(any(unix, windows))]
 use standstill_script::suite::{self, shown};
 use std::io::Write;
@@ -86,7 +87,7 @@ fn save(
         } else {
             format!("-{number}")
         };
-        let target = stem.with_added_extension(format!("watched{end}{}", suite::EXTENSION));
+        let target = with_ending(&stem, &format!("watched{end}{}", suite::EXTENSION));
         // A link that leads nowhere is a name that is taken, too.
         if std::fs::symlink_metadata(&target).is_err() {
             break target;

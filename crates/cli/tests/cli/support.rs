@@ -112,3 +112,15 @@ pub fn write(folder: &Path, name: &str, text: &str) {
 pub fn read(folder: &Path, name: &str) -> String {
     fs::read_to_string(folder.join(name)).expect("a file that was written")
 }
+
+/// What a command prints with `--json` is as the program's own schema says.
+#[track_caller]
+pub fn is_an_outcome(outcome: &serde_json::Value) {
+    let schema = ended(&mut command(&["schema", "json"])).out;
+    let schema = serde_json::from_str(&schema).expect("JSON");
+    let mut schemas = boon::Schemas::new();
+    let mut compiler = boon::Compiler::new();
+    compiler.add_resource("outcome.json", schema).expect("a schema");
+    let index = compiler.compile("outcome.json", &mut schemas).expect("a schema");
+    assert!(schemas.validate(outcome, index).is_ok(), "{outcome}");
+}

@@ -1,6 +1,6 @@
 //! Scripts as tests.
 
-use crate::support::{SCRIPT, command, ended, read, scratch, standstill, with_script, write};
+use crate::support::{SCRIPT, command, ended, is_an_outcome, read, scratch, standstill, with_script, write};
 use std::fs;
 use std::path::Path;
 
@@ -200,6 +200,48 @@ fn the_outcome_goes_into_a_junit_file_that_a_reader_understands() {
     assert!(late.2.starts_with("expect[0]"), "{late:?}");
     assert_eq!((no.0, no.1), ("no", "error"));
     assert!(no.2.starts_with("error[syntax]"), "{no:?}");
+}
+
+/// Whatever ends first, what is told stands in the order of the files.
+#[test]
+fn any_number_of_threads_prints_the_same() {
+    let folder = with_script("test_threads");
+    assert_eq!(standstill(&folder, &["test", "--accept", "."]).status, 0);
+    for number in 0..12 {
+        let script = match number % 3 {
+            // The first of all takes longest.
+            0 => SCRIPT.replace("\"scans\": 30", &format!("\"scans\": {}", 9_000 / (number + 1))),
+            1 => SCRIPT.replace("\"at\": 21", "\"at\": 19"),
+            _ => "{".to_owned(),
+        };
+        write(&folder, &format!("a{number:02}.scan.json"), &script);
+    }
+    let run = |threads: &[&str]| {
+        let mut parts = vec!["test", ".", "--golden", "none", "--strict"];
+        parts.extend(threads);
+        let ended = standstill(&folder, &parts);
+        (ended.status, ended.out, ended.err)
+    };
+    let one = run(&["--threads", "1"]);
+    assert_eq!(one.0, 3);
+    assert!(
+        one.1
+            .contains("\nto look at\n  ./a01.scan.json\n  ./a02.scan.json\n  ./a04"),
+        "{}",
+        one.1
+    );
+    for threads in [&["--threads", "2"][..], &["--threads", "7"], &[]] {
+        assert_eq!(run(threads), one, "{threads:?}");
+    }
+    // One that is named twice is judged once after the other: both write the same golden.
+    let twice = standstill(
+        &folder,
+        &["test", "move.scan.json", "./move.scan.json", "--accept"],
+    );
+    assert_eq!(
+        (twice.status, twice.out.matches("move.scan.json").count()),
+        (0, 2)
+    );
 }
 
 #[test]
@@ -718,8 +760,6 @@ fn the_outcome_as_json_is_what_its_schema_says() {
     );
     write(&folder, "broken.scan.json", "{");
     fs::write(folder.join("gone.snap"), "").unwrap();
-    let schema = standstill(&folder, &["schema", "json"]);
-    let schema: serde_json::Value = serde_json::from_str(&schema.out).unwrap();
     let tested = standstill(&folder, &["test", ".", "--json", "--golden", "none"]);
     let ran = standstill(&folder, &["run", "--json", "a.scan.json", "off.scan.json"]);
     assert_eq!((tested.status, ran.status), (3, 1));
@@ -728,11 +768,7 @@ fn the_outcome_as_json_is_what_its_schema_says() {
         serde_json::from_str::<serde_json::Value>(&out).unwrap()
     });
     for outcome in [&tested, &ran] {
-        let mut schemas = boon::Schemas::new();
-        let mut compiler = boon::Compiler::new();
-        compiler.add_resource("outcome.json", schema.clone()).unwrap();
-        let index = compiler.compile("outcome.json", &mut schemas).unwrap();
-        assert!(schemas.validate(outcome, index).is_ok(), "{outcome}");
+        is_an_outcome(outcome);
     }
     let verdicts: Vec<_> = tested["scripts"]
         .as_array()

@@ -1,6 +1,7 @@
 //! Traces, written and compared.
 
-use crate::support::{Ended, read, standstill, with_script, write};
+use crate::support::{Ended, is_an_outcome, read, standstill, with_script, write};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// A folder with the trace of the script in both forms, and that of a slower run.
@@ -54,6 +55,48 @@ fn the_first_difference_is_explained() {
         ended.out
     );
     assert!(ended.out.contains("move.Velocity"), "{}", ended.out);
+}
+
+#[test]
+fn the_story_is_there_as_json() {
+    let folder = traces("traces_json");
+    let json = |found: &str, status: i32| {
+        let ended = standstill(&folder, &["explain", "a.csv", found, "--json"]);
+        assert_eq!((ended.status, ended.err.as_str()), (status, ""));
+        assert_eq!(ended.out.lines().count(), 1);
+        let outcome: Value = serde_json::from_str(&ended.out).unwrap();
+        is_an_outcome(&outcome);
+        outcome
+    };
+    let same = json("a.jsonl", 0);
+    assert_eq!(
+        (&same["passed"], &same["found"], same.get("story")),
+        (&true.into(), &"a.jsonl".into(), None)
+    );
+    let slow = json("slow.csv", 1);
+    assert_eq!(
+        (&slow["command"], &slow["passed"], &slow["status"]),
+        (&"explain".into(), &false.into(), &1.into())
+    );
+    let story = &slow["story"];
+    let first = &story["first"];
+    assert_eq!(first["scan"], 0);
+    let signals = first["signals"].as_array().unwrap();
+    assert!(
+        signals.iter().any(|signal| {
+            (&signal["signal"], &signal["expected"], &signal["found"])
+                == (&"move.Velocity".into(), &"10.0".into(), &"2.0".into())
+        }),
+        "{signals:?}"
+    );
+    assert!(
+        story["causes"][0]
+            .as_str()
+            .unwrap()
+            .starts_with("a changed parameter: move.Velocity")
+    );
+    let text = explain(&folder, "a.csv", "slow.csv").out;
+    assert!(text.trim_end().ends_with(story["text"].as_str().unwrap()));
 }
 
 #[test]

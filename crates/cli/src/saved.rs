@@ -1,0 +1,53 @@
+//! Files of a folder as they were saved last.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// Endings of what tests write themselves.
+const WRITTEN: [&str; 2] = [".new", ".partial"];
+
+/// Folders in which nobody edits: they may hold very many files.
+const LEFT_OUT: [&str; 2] = ["target", "node_modules"];
+
+/// When each file below some paths was saved, and how long it is.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Saved(BTreeMap<PathBuf, (Option<SystemTime>, u64)>);
+
+impl Saved {
+    /// All files below the paths, of a file those of its folder; `except` and what is below it are left out. What cannot be read is as if
+    /// it were not there.
+    pub fn below(paths: &[PathBuf], except: Option<&Path>) -> Self {
+        let mut folders: Vec<PathBuf> = paths
+            .iter()
+            .map(|path| match path.parent() {
+                _ if path.is_dir() => path.clone(),
+                Some(folder) if folder != Path::new("") => folder.to_owned(),
+                _ => PathBuf::from("."),
+            })
+            .collect();
+        let except = except.and_then(|path| path.canonicalize().ok());
+        let mut files = BTreeMap::new();
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(&folder).into_iter().flatten().flatten() {
+                let path = entry.path();
+                let name = entry.file_name();
+                let name = name.to_string_lossy();
+                let Ok(about) = entry.metadata() else { continue };
+                if name.starts_with('.') {
+                    continue;
+                }
+                if about.is_dir() {
+                    let is_left_out = except.is_some() && path.canonicalize().ok() == except;
+                    if !is_left_out && !LEFT_OUT.contains(&&*name) {
+                        folders.push(path);
+                    }
+                } else if !WRITTEN.iter().any(|ending| name.ends_with(ending)) {
+                    files.insert(path, (about.modified().ok(), about.len()));
+                }
+            }
+        }
+        Self(files)
+    }
+}
