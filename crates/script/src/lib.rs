@@ -42,5 +42,6 @@ pub use schema::schema;
 pub use schema_machine::machine_schema;
 pub use schema_map::map_schema;
 pub use schema_sweep::sweep_schema;
+pub use standstill_axis::ErrorId;
 pub use warn::{Warning, WarningKind, Warnings, warnings};
 pub use why::Reason;

@@ -416,7 +416,8 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, SuiteError> {
     Ok(files)
 }
 
-/// Goldens and proposals in a folder whose script is not there any more, sorted by path.
+/// Goldens and proposals in a folder whose script is not there any more, sorted by path. Snapshots that `insta` keeps for other tests
+/// are none of them.
 ///
 /// # Errors
 /// A folder that cannot be read.
@@ -431,8 +432,24 @@ pub fn orphans(folder: &Path) -> Result<Vec<PathBuf>, SuiteError> {
         COMPANIONS
             .iter()
             .any(|ending| stem(file, ending).is_some_and(|stem| !has_script(&stem)))
+            && !is_of_another_test(file)
     };
     Ok(files.iter().filter(|file| lonely(file)).cloned().collect())
+}
+
+/// A snapshot whose header names a source that is no scan script.
+fn is_of_another_test(file: &Path) -> bool {
+    // The header stands at the top; what cannot be read is no snapshot of anybody's.
+    const HEADER: u64 = 4096;
+    let mut text = Vec::new();
+    let read = fs::File::open(file).and_then(|file| file.take(HEADER).read_to_end(&mut text));
+    let text = String::from_utf8_lossy(&text);
+    let Some(header) = text.strip_prefix("---\n").filter(|_| read.is_ok()) else {
+        return false;
+    };
+    let mut lines = header.lines().take_while(|line| *line != "---");
+    let source = lines.find_map(|line| line.strip_prefix("source: "));
+    source.is_some_and(|source| !source.trim_matches('"').ends_with(EXTENSION))
 }
 
 /// Files in a folder that look like scan scripts, but for their names, sorted by path: they are not tested.

@@ -122,6 +122,14 @@ fn claims_that_ask_for_nothing_are_told() {
         "asks for nothing",
     );
     claim(
+        r#"{"never": {"move.Busy": true}, "for": 1000}"#,
+        "fewer than `for`",
+    );
+    claim(
+        r#"{"never": {"move.Busy": true}, "for": 20, "from": 5, "to": 15}"#,
+        "11 rows on end at most",
+    );
+    claim(
         r#"{"always": {"move.Position": 4}}"#,
         "no wire and no step writes it",
     );

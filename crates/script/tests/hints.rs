@@ -1,6 +1,6 @@
 //! Mistakes of the first day: each message says what to write instead.
 
-use standstill_script::read;
+use standstill_script::{Diagnostic, read};
 
 const SCRIPT: &str = r#"{"standstill": 1, "cycle": "T#1ms", "scans": 9, "inputs": {"GO": false, "b": false},
 "axes": {"X": {"limits": {"velocity": 1, "acceleration": 1}}},
@@ -99,16 +99,22 @@ fn all_missing_keys_are_told_at_once() {
     }
 }
 
+/// The codes of all that is wrong with a script.
+fn codes(script: &str) -> Vec<&'static str> {
+    let error = read(script, "a.scan.json", &[]).unwrap_err();
+    let of = |diagnostic: &Diagnostic| diagnostic.code.name();
+    error.diagnostics().iter().map(of).collect()
+}
+
 #[test]
 fn what_follows_from_another_mistake_is_left_out() {
     let slips = said(r#""name": "speed""#, r#""nmae": "speed""#);
     assert!(slips.contains("a block needs the key `name`"), "{slips}");
     let without = SCRIPT.replacen("\"axes\"", "\"axis\"", 1);
-    let error = read(&without, "a.scan.json", &[]).unwrap_err();
-    let codes: Vec<_> = error
-        .diagnostics()
-        .iter()
-        .map(|diagnostic| diagnostic.code.name())
-        .collect();
-    assert_eq!(codes, ["missing_key", "unknown_key"], "{error}");
+    assert_eq!(codes(&without), ["missing_key", "unknown_key"]);
+    let slip = SCRIPT.replacen("\"inputs\"", "\"input\"", 1);
+    assert_eq!(codes(&slip), ["unknown_key"]);
+    let (begin, _) = SCRIPT.split_once("\"inputs\": {").unwrap();
+    let (_, end) = SCRIPT[begin.len()..].split_once('}').unwrap();
+    assert_eq!(codes(&format!("{begin}\"inputs\": []{end}")), ["wrong_type"]);
 }

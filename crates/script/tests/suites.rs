@@ -225,12 +225,18 @@ fn scripts_are_found_in_sorted_order_and_orphans_reported() {
     ] {
         folder.write(file, "");
     }
+    let of_insta = |source: &str| format!("---\nsource: {source}\nexpression: text\n---\nsource: x\n");
+    folder.write("b/units__text.snap", &of_insta("src/units.rs"));
+    folder.write("b/gone.snap", &of_insta("\"gone.scan.json\""));
     let names =
         |paths: Vec<PathBuf>| -> Vec<String> { paths.iter().map(|path| name(&folder.0, path)).collect() };
     let found = find(&folder.0).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(names(found), ["a", "b/a", "b/z", "b"]);
     let lonely = orphans(&folder.0).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(names(lonely), ["b/c.exact", "b/d.snap.new", "c.snap"]);
+    assert_eq!(
+        names(lonely),
+        ["b/c.exact", "b/d.snap.new", "b/gone.snap", "c.snap"]
+    );
     assert!(matches!(
         find(&folder.0.join("nowhere")),
         Err(SuiteError::Io { .. })

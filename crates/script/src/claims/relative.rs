@@ -81,9 +81,27 @@ pub(crate) fn asks_nothing(rows: &Rows<'_>, claim: &Claim) -> Option<String> {
             ends: [begin, _],
             ..
         } => nothing(range, during, begin),
+        ClaimKind::NeverFor {
+            range, during, scans, ..
+        } => {
+            let longest = longest_run(scans_of(rows, *range), |scan| rows.hold(during, scan));
+            return (longest < *scans).then(|| {
+                format!("the claim asks for nothing: it is judged in {longest} rows on end at most, fewer than `for`")
+            });
+        }
         _ => false,
     }
     .then(|| "the claim asks for nothing: what it waits for never rises".to_owned())
+}
+
+/// The most scans on end in which `holds`.
+fn longest_run(scans: RangeInclusive<u64>, holds: impl Fn(u64) -> bool) -> u64 {
+    let (mut longest, mut run) = (0, 0);
+    for scan in scans {
+        run = if holds(scan) { run + 1 } else { 0 };
+        longest = longest.max(run);
+    }
+    longest
 }
 
 /// The scans of a range that the run has.

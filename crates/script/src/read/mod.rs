@@ -389,7 +389,19 @@ impl Reader {
             let node = fields.get(key).map(|node| &node.json);
             matches!(node, Some(Json::Map(_) | Json::List(_)))
         };
-        self.lacks_names = !is_there("axes") || !is_there("blocks");
+        let lacks = |key: &str| {
+            let node = fields.get(key).map(|node| &node.json);
+            node.is_some_and(|json| !matches!(json, Json::Map(_)))
+        };
+        let is_slip = |key: &str| {
+            !shape::SCRIPT.keys.contains(&key)
+                && names::nearest(key, ["inputs", "programs"].into_iter()).is_some()
+        };
+        self.lacks_names = !is_there("axes")
+            || !is_there("blocks")
+            || lacks("inputs")
+            || lacks("programs")
+            || fields.iter().any(|(key, _)| is_slip(&key.text));
         let mut places: BTreeMap<String, Span> = BTreeMap::new();
         if let Some(Json::Map(members)) = fields.get("axes").map(|node| &node.json) {
             self.axis_names = members.iter().map(|(key, _)| key.text.clone()).collect();
