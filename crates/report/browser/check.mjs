@@ -257,6 +257,31 @@ async function marked() {
   await page.close();
 }
 
+// The page of a claim that fails without a golden: it opens where the cause is, not where the claim is.
+async function explained() {
+  const tests = file('explained');
+  rmSync(tests, { recursive: true, force: true });
+  mkdirSync(tests);
+  const [EDGE, CLAIM] = [7, 50];
+  writeFileSync(resolve(tests, 'a.scan.json'), JSON.stringify({
+    standstill: 1, title: 'No power', cycle: 'T#1ms', scans: 60,
+    axes: { X: { limits: { velocity: 10, acceleration: 100 } } },
+    inputs: { GO: false },
+    blocks: [{ name: 'move', type: 'MC_MoveAbsolute', pins: { Axis: 'X', Execute: { from: 'GO' }, Position: 1, Velocity: 5 } }],
+    steps: [{ at: EDGE, set: { GO: true } }],
+    expect: [{ at: CLAIM, that: { 'move.Done': true } }],
+  }));
+  standstill('test', '--golden', 'none', tests, '--report', resolve(tests, 'pages'));
+  const html = readdirSync(resolve(tests, 'pages'), { recursive: true }).find((path) => path.endsWith('.html'));
+  const { page, complaints } = await open(`explained/pages/${html}`);
+  const scan = await page.textContent('#scan');
+  check('the page opens at the scan of the cause', scan === `scan ${EDGE}`, scan);
+  const header = await page.textContent('header');
+  check('and says the cause and its remedy', header.includes(`why: scan ${EDGE}`) && header.includes('MC_Power'), header);
+  check('no error, no request with a cause', complaints.length === 0, complaints.join('; '));
+  await page.close();
+}
+
 async function texts() {
   standstill('run', '-q', file('nasty.scan.json'), '--report', file('nasty.html'));
   const { page, complaints } = await open('nasty.html');
@@ -332,7 +357,7 @@ async function longRun() {
   await page.close();
 }
 
-for (const part of [cursorAndZoom, overlaid, coupled, marked, texts, hardNumbers, longRun]) await part();
+for (const part of [cursorAndZoom, overlaid, coupled, marked, explained, texts, hardNumbers, longRun]) await part();
 await browser.close();
 console.log(`${passed} passed, ${failed} failed`);
 process.exit(failed === 0 ? 0 : 1);
