@@ -593,6 +593,10 @@ impl<P: Planner> Axis<P> {
         match error {
             ErrorId::PositiveBarred | ErrorId::NegativeBarred | ErrorId::OutwardFromLimitSwitch => {
                 self.pause(error, scope);
+                if !self.is_coupled() {
+                    // One that no block follows has become a halt.
+                    self.advance(scope);
+                }
             }
             ErrorId::OutwardFromSoftwareLimit => self.fail(ErrorId::SoftwareLimitReached, scope),
             ErrorId::MasterTooFast => self.give_up(view, scope),

@@ -59,7 +59,8 @@ impl<P: Planner> Axis<P> {
                 OnMasterLost::Hold => self.hold_without_master(scope),
             }
         }
-        if self.has_lost_master() {
+        // One that no block follows has become a halt.
+        if self.has_lost_master() || !self.is_coupled() {
             return self.advance(scope);
         }
         let view = &self.shifted_view(view, scope);
