@@ -20,8 +20,14 @@ pub enum Field {
     Jerk,
     /// Velocity at the end (u/s).
     EndVelocity,
+    /// Acceleration at the end (u/s^2).
+    EndAcceleration,
     /// Velocity bound (u/s).
     LimitVelocity,
+    /// Velocity bound towards larger positions (u/s).
+    VelocityLimitPositive,
+    /// Velocity bound towards smaller positions (u/s).
+    VelocityLimitNegative,
     /// Acceleration bound (u/s^2).
     LimitAcceleration,
     /// Deceleration bound (u/s^2).
@@ -49,7 +55,10 @@ impl Field {
             Self::Acceleration => "acceleration",
             Self::Jerk => "jerk",
             Self::EndVelocity => "end_velocity",
+            Self::EndAcceleration => "end_acceleration",
             Self::LimitVelocity => "limits.velocity",
+            Self::VelocityLimitPositive => "velocity_limits.positive",
+            Self::VelocityLimitNegative => "velocity_limits.negative",
             Self::LimitAcceleration => "limits.acceleration",
             Self::LimitDeceleration => "limits.deceleration",
             Self::LimitJerk => "limits.jerk",

@@ -1,4 +1,4 @@
-//! The law of an electronic gear: where a slave is for a place of its master.
+//! The law of an electronic gear: where a slave is for a place of its master, or of its two masters.
 //!
 //! What stands here: a ratio of integers, places with whole turns, and the law as a pure function of the master's place. So
 //! nothing adds up from scan to scan: a master that comes back to a place brings the slave back to its bits, and after any
@@ -20,7 +20,8 @@ pub struct Place {
     pub turns: i64,
     /// Position (u).
     pub position: f64,
-    /// How far ahead of that it is seen (u): a shift, which is no part of where it is.
+    /// How far ahead of that it is seen (u): a shift, which is no part of where it is. Of a slave's place in an [`Anchor`]: what
+    /// is added to the law.
     pub phase: f64,
 }
 
@@ -29,6 +30,8 @@ pub struct Place {
 pub struct Anchor {
     /// Of the master.
     pub master: Place,
+    /// Of the second master, for a slave that has two.
+    pub second: Place,
     /// Of the slave.
     pub slave: Place,
 }
@@ -43,7 +46,7 @@ struct Turns {
 /// A gear between two axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gear {
-    numerator: i16,
+    numerator: i32,
     denominator: u16,
     /// Length of a turn (u), of an axis that has turns.
     master_turn: Option<f64>,
@@ -75,7 +78,7 @@ impl Gear {
             _ => None,
         };
         Some(Self {
-            numerator,
+            numerator: numerator.into(),
             denominator,
             master_turn,
             slave_turn,
@@ -83,8 +86,21 @@ impl Gear {
         })
     }
 
-    /// Numerator and denominator, as given.
-    pub const fn ratio(&self) -> (i16, u16) {
+    /// The same gear the other way round: where the slave went up it goes down.
+    pub fn reversed(self) -> Self {
+        let reversed = |turns: Turns| Turns {
+            slave: turns.slave.wrapping_neg(),
+            ..turns
+        };
+        Self {
+            numerator: self.numerator.wrapping_neg(),
+            turns: self.turns.map(reversed),
+            ..self
+        }
+    }
+
+    /// Numerator and denominator.
+    pub const fn ratio(&self) -> (i32, u16) {
         (self.numerator, self.denominator)
     }
 
@@ -101,8 +117,29 @@ impl Gear {
     /// Cost: about 100 operations.
     #[inline(never)]
     pub fn slave(&self, anchor: &Anchor, master: Place) -> Place {
-        let whole = master.turns.wrapping_sub(anchor.master.turns);
-        let within = two_sum(master.position, -anchor.master.position);
+        let (turns, way) = self.way(&anchor.master, &master);
+        let position = self.geared(two_sum(anchor.slave.position, anchor.slave.phase), way);
+        self.placed(anchor, turns, position)
+    }
+
+    /// Where the slave of two masters is for masters that are there: the ways of both, each geared, added, and rounded once to less
+    /// than an ulp.
+    ///
+    /// Cost: about 200 operations.
+    pub fn slave_of_two(&self, second: &Self, anchor: &Anchor, masters: [Place; 2]) -> Place {
+        let (turns, way) = self.way(&anchor.master, &masters[0]);
+        let (more, second_way) = second.way(&anchor.second, &masters[1]);
+        let position = add(
+            self.geared(two_sum(anchor.slave.position, anchor.slave.phase), way),
+            second.geared((0.0, 0.0), second_way),
+        );
+        self.placed(anchor, turns.wrapping_add(more), position)
+    }
+
+    /// How far a master has come: whole turns of the slave that this makes, and the rest of the way (u of the master).
+    fn way(&self, from: &Place, to: &Place) -> (i64, Double) {
+        let whole = to.turns.wrapping_sub(from.turns);
+        let within = two_sum(to.position, -from.position);
         // As many turns of the master as are whole turns of the slave are taken off first: no number grows with them. The rest
         // has the sign of all, so that it is never the larger one of two.
         let (turns, whole) = match &self.turns {
@@ -119,9 +156,13 @@ impl Gear {
             Some(length) => add(two_product(whole as f64, length), within),
             None => within,
         };
-        let phase = two_sum(master.phase, -anchor.master.phase);
+        let phase = two_sum(to.phase, -from.phase);
         let way = if phase.0 == 0.0 { way } else { add(way, phase) };
-        let position = self.geared(anchor.slave.position, way);
+        (turns, way)
+    }
+
+    /// `position` as a place of the slave, so many whole turns further than the anchor.
+    fn placed(&self, anchor: &Anchor, turns: i64, position: Double) -> Place {
         match self.slave_turn {
             None => Place {
                 turns: 0,
@@ -141,10 +182,16 @@ impl Gear {
 
     /// `start` and `way` times numerator by denominator: divided once, after what is exact has been added, so that nothing is
     /// lost where the one takes away most of the other.
-    fn geared(&self, start: f64, way: Double) -> Double {
+    fn geared(&self, start: Double, way: Double) -> Double {
         let (numerator, denominator) = (f64::from(self.numerator), f64::from(self.denominator));
-        let coarse = add(two_product(denominator, start), two_product(numerator, way.0));
-        divided(add(coarse, two_product(numerator, way.1)), denominator)
+        let coarse = add(two_product(denominator, start.0), two_product(numerator, way.0));
+        let fine = two_product(numerator, way.1);
+        let fine = if start.1 == 0.0 {
+            fine
+        } else {
+            add(fine, two_product(denominator, start.1))
+        };
+        divided(add(coarse, fine), denominator)
     }
 }
 
@@ -302,6 +349,7 @@ mod tests {
             let anchor = Anchor {
                 master: at(m0 as f64 * unit),
                 slave: at(x0 as f64 * unit),
+                ..Anchor::default()
             };
             let gear = gear(numerator as i16, denominator as u16);
             let slave = gear.slave(&anchor, at(m as f64 * unit)).position;
@@ -328,6 +376,7 @@ mod tests {
             let anchor = Anchor {
                 master: at(in_units(m0)),
                 slave: at(in_units(x0)),
+                ..Anchor::default()
             };
             let gear = gear(numerator as i16, denominator as u16);
             let slave = gear.slave(&anchor, at(in_units(m))).position;
@@ -343,6 +392,7 @@ mod tests {
         let anchor = Anchor {
             master: at(0.1),
             slave: at(0.2),
+            ..Anchor::default()
         };
         // After 7 turns of the master the slave has the bits it started with; in between a seventh of 3 turns more for each.
         for whole in [0_i64, 1, 6, 7, 1_000_000, 5_000_000, -1, -8, 1 << 60] {
@@ -392,14 +442,65 @@ mod tests {
         let anchor = Anchor {
             master: at(0.0),
             slave: at(1.0),
+            ..Anchor::default()
         };
         // The exact sum of both numbers, rounded once.
         assert_eq!(gear.slave(&anchor, shifted).position, 0.399_999_999_999_999_97);
         let anchor = Anchor {
             master: shifted,
             slave: at(1.0),
+            ..Anchor::default()
         };
         assert_eq!(gear.slave(&anchor, shifted).position, 1.0);
+    }
+
+    /// Covers: G65
+    #[test]
+    fn the_law_of_two_masters_is_the_sum_of_both_but_for_an_ulp() {
+        let mut random = standstill_testkit::Random(3);
+        let unit = 1.0 / (1_u64 << 20) as f64;
+        let in_units = |value: i128| at(value as f64 * unit);
+        for _ in 0..200_000 {
+            let mut next = |below: u64| i128::from(random.below(below));
+            let numerators = [next(65_535) - 32_767, next(65_535) - 32_767];
+            let denominators = [1 + next(65_535), 1 + next(65_535)];
+            let from = [next(1 << 30) - (1 << 29), next(1 << 30) - (1 << 29)];
+            let to = [next(1 << 31) - (1 << 30), next(1 << 31) - (1 << 30)];
+            let x0 = next(1 << 30) - (1 << 29);
+            let gears = [0, 1].map(|leg| gear(numerators[leg] as i16, denominators[leg] as u16));
+            let anchor = Anchor {
+                master: in_units(from[0]),
+                second: in_units(from[1]),
+                slave: in_units(x0),
+            };
+            let masters = to.map(in_units);
+            let down = denominators[0] * denominators[1];
+            let ways = [0, 1].map(|leg| numerators[leg] * denominators[1 - leg] * (to[leg] - from[leg]));
+            let sum = |sign: i128| (x0 * down + ways[0] + sign * ways[1]) as f64 / down as f64 * unit;
+            for (second, wanted) in [(gears[1], sum(1)), (gears[1].reversed(), sum(-1))] {
+                let slave = gears[0].slave_of_two(&second, &anchor, masters).position;
+                let ulp = f64::EPSILON * wanted.abs().max(unit);
+                assert!((slave - wanted).abs() <= 2.0 * ulp, "{gears:?} {slave} {wanted}");
+            }
+        }
+    }
+
+    /// Covers: G65
+    #[test]
+    fn turns_of_two_masters_are_integers() {
+        let round =
+            |numerator, denominator| Gear::new(numerator, denominator, Some(360.0), Some(360.0)).unwrap();
+        let (first, second) = (round(3, 7), round(2, 5).reversed());
+        let anchor = Anchor {
+            master: at(0.1),
+            second: at(0.2),
+            slave: at(0.3),
+        };
+        for whole in [0_i64, 1, -1, 5_000_000, 1 << 50] {
+            let masters = [place(7 * whole, 0.1), place(5 * whole, 0.2)];
+            let slave = first.slave_of_two(&second, &anchor, masters);
+            assert_eq!(slave, place(3 * whole - 2 * whole, 0.3), "{whole}");
+        }
     }
 
     /// Covers: G33
@@ -458,7 +559,8 @@ mod tests {
             gear.slave(
                 &Anchor {
                     master: at(3.0),
-                    slave: at(7.25)
+                    slave: at(7.25),
+                    ..Anchor::default()
                 },
                 at(1e9)
             ),

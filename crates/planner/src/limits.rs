@@ -32,6 +32,114 @@ pub struct Limits {
     pub snap: f64,
 }
 
+/// Bounds with a velocity bound for each direction.
+///
+/// A move beside something that moves itself needs them: beside a line of velocity `v`, 0 or more, an axis of the
+/// velocity bound `V` has `V - v` left forwards and `V + v` backwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DirectedLimits {
+    /// Velocity towards larger positions (u/s), above 0; `f64::INFINITY` means no bound.
+    pub positive: f64,
+    /// The same towards smaller positions, as a magnitude.
+    pub negative: f64,
+    /// All other bounds; the velocity in it plays no part.
+    pub limits: Limits,
+}
+
+impl From<Limits> for DirectedLimits {
+    /// The same velocity in both directions.
+    fn from(limits: Limits) -> Self {
+        Self {
+            positive: limits.velocity,
+            negative: limits.velocity,
+            limits,
+        }
+    }
+}
+
+impl DirectedLimits {
+    /// The bounds without a direction: the velocity is the larger one of both.
+    pub fn either(&self) -> Limits {
+        let velocity = if self.positive >= self.negative {
+            self.positive
+        } else {
+            self.negative
+        };
+        Limits {
+            velocity,
+            ..self.limits
+        }
+    }
+
+    /// The lower one of both velocities (u/s).
+    pub(crate) const fn lower_velocity(&self) -> f64 {
+        if self.positive <= self.negative {
+            self.positive
+        } else {
+            self.negative
+        }
+    }
+
+    /// The bound of a velocity with the sign of `side`.
+    pub(crate) const fn velocity(&self, side: f64) -> f64 {
+        if side < 0.0 { self.negative } else { self.positive }
+    }
+
+    /// By how much a velocity is outside its bound (u/s), below 0 inside.
+    pub(crate) fn outside(&self, velocity: f64) -> f64 {
+        velocity.abs() - self.velocity(velocity)
+    }
+
+    /// As [`Limits::or_larger`].
+    pub fn or_larger(&self, before: &Self) -> Self {
+        Self {
+            positive: larger(self.positive, before.positive),
+            negative: larger(self.negative, before.negative),
+            limits: self.limits.or_larger(&before.limits),
+        }
+    }
+
+    /// As [`Limits::acting_for`].
+    pub(crate) fn acting_for(&self, start: &Setpoint, end: f64, distance: f64, cycle: f64) -> Self {
+        let given = self.either();
+        let limits = given.acting_for(start, end, distance, cycle);
+        let side = |side: f64| {
+            if side >= given.velocity {
+                limits.velocity
+            } else {
+                side.min(limits.velocity).max(f64::MIN_POSITIVE)
+            }
+        };
+        Self {
+            positive: side(self.positive),
+            negative: side(self.negative),
+            limits,
+        }
+    }
+
+    /// As [`Limits::check`].
+    ///
+    /// # Errors
+    /// [`PlanError::InvalidInput`] names the first bound that is NaN, zero or negative.
+    pub fn check(&self) -> Result<(), PlanError> {
+        let sides = [
+            (Field::VelocityLimitPositive, self.positive),
+            (Field::VelocityLimitNegative, self.negative),
+        ];
+        for (field, value) in sides {
+            if !(value > 0.0) && self.positive.to_bits() != self.negative.to_bits() {
+                return Err(PlanError::InvalidInput { field, value });
+            }
+        }
+        self.either().check()
+    }
+}
+
+/// The larger one of a pair; an infinite bound of `old` says nothing.
+fn larger(new: f64, old: f64) -> f64 {
+    if old.is_finite() && old > new { old } else { new }
+}
+
 /// Which derivative of position is the highest that stays finite, that is, how smooth a plan is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Order {
@@ -86,15 +194,35 @@ impl Limits {
 
     /// The larger one of each finite pair; an infinite bound of `before` says nothing, that of these limits stays.
     pub fn or_larger(&self, before: &Self) -> Self {
-        let larger = |new: f64, old: f64| {
-            if old.is_finite() && old > new { old } else { new }
-        };
         Self {
             velocity: larger(self.velocity, before.velocity),
             acceleration: larger(self.acceleration, before.acceleration),
             deceleration: larger(self.deceleration, before.deceleration),
             jerk: larger(self.jerk, before.jerk),
             snap: larger(self.snap, before.snap),
+        }
+    }
+
+    /// The smaller one of each pair.
+    pub fn or_smaller(&self, other: &Self) -> Self {
+        let smaller = |one: f64, other: f64| if other < one { other } else { one };
+        Self {
+            velocity: smaller(self.velocity, other.velocity),
+            acceleration: smaller(self.acceleration, other.acceleration),
+            deceleration: smaller(self.deceleration, other.deceleration),
+            jerk: smaller(self.jerk, other.jerk),
+            snap: smaller(self.snap, other.snap),
+        }
+    }
+
+    /// Each of them `factor` times as large.
+    pub fn times(&self, factor: f64) -> Self {
+        Self {
+            velocity: self.velocity * factor,
+            acceleration: self.acceleration * factor,
+            deceleration: self.deceleration * factor,
+            jerk: self.jerk * factor,
+            snap: self.snap * factor,
         }
     }
 

@@ -2,8 +2,9 @@
 
 use crate::grid::Family;
 use crate::{
-    Excess, GridPlan, Limits, Method, OnlinePlan, Passage, PlanError, ProfileFault, ProfileKind, ProfilePlan,
-    ProfilePoint, RampPlan, Rung, SampledPlan, Segment, Setpoint, UnequalPlan, online, ramp, sum,
+    DirectedLimits, Excess, GridPlan, Leads, Limits, Method, OnlinePlan, Passage, PlanError, ProfileFault,
+    ProfileKind, ProfilePlan, ProfilePoint, RampPlan, Rung, SampledPlan, Segment, Setpoint, UnequalPlan,
+    online, ramp, sum,
 };
 
 /// Plans moves for an axis.
@@ -76,6 +77,25 @@ pub trait Planner {
         before: &Limits,
     ) -> Result<Option<Self::Plan>, PlanError>;
 
+    /// A move from `start` that ends at rest exactly on `target` (u), switches anywhere, with a velocity bound for each
+    /// direction; `before` as in [`Planner::move_to`]. A planner that knows one velocity bound only keeps the lower one.
+    ///
+    /// # Errors
+    /// [`PlanError`] if an input is not usable or the move too long.
+    fn move_by_direction(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        limits: &DirectedLimits,
+        before: &DirectedLimits,
+    ) -> Result<Self::Plan, PlanError> {
+        let lower = Limits {
+            velocity: limits.lower_velocity(),
+            ..limits.limits
+        };
+        self.move_to(MoveProfile::Online, start, target, &lower, &before.either())
+    }
+
     /// The curve through `points` from `start`, inside `limits` and, where given, a range of positions (u).
     ///
     /// # Errors
@@ -113,12 +133,12 @@ pub trait Planner {
     /// How far (u) the rest of a plan moves up and how far down, up to its goal.
     fn ways(&self, rest: (&Self::Plan, u64)) -> (f64, f64);
 
-    /// Whether the rest of a master's plan, its derivatives times `factor`, and what a slave moves beside keep `limits` together
-    /// from now on, and nothing jumps whose derivative they bound; `now` is the sum as published. A planner that can't tell says no: its slaves are then looked after scan by scan.
+    /// Whether the rest of the masters' plans and what a slave moves beside keep `limits` together from now on, and nothing jumps
+    /// whose derivative they bound; `now` is the sum as published. A planner that can't tell says no: its slaves are then looked
+    /// after scan by scan.
     fn fits_behind(
         &self,
-        _master: (&Self::Plan, u64),
-        _factor: f64,
+        _leads: &Leads<'_, Self::Plan>,
         _now: &Setpoint,
         _beside: Option<(&Self::Plan, u64)>,
         _limits: &Limits,
@@ -129,16 +149,15 @@ pub trait Planner {
     /// The lowest and the highest velocity (u/s) of what [`Planner::fits_behind`] looks at; `None` where they are not known.
     fn velocities_behind(
         &self,
-        _master: (&Self::Plan, u64),
-        _factor: f64,
+        _leads: &Leads<'_, Self::Plan>,
         _beside: (&Self::Plan, u64),
     ) -> Option<(f64, f64)> {
         None
     }
 
-    /// The next stretch of constant velocity of the rest of a plan: the scans of the plan at which it begins and ends, the
+    /// The next stretch in which the masters' plans together have a constant velocity: in how many scans it begins and ends, the
     /// largest number if it has no end. `None` where that is not known.
-    fn stretch(&self, _rest: (&Self::Plan, u64)) -> Option<(u64, u64)> {
+    fn stretch(&self, _leads: &Leads<'_, Self::Plan>) -> Option<(u64, u64)> {
         None
     }
 
@@ -416,6 +435,16 @@ impl Planner for Standard {
         }
     }
 
+    fn move_by_direction(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        limits: &DirectedLimits,
+        before: &DirectedLimits,
+    ) -> Result<StandardPlan, PlanError> {
+        OnlinePlan::by_direction(start, target, 0.0, limits, before, self.cycle).map(StandardPlan::Online)
+    }
+
     fn ramp_to(
         &self,
         start: &Setpoint,
@@ -488,26 +517,24 @@ impl Planner for Standard {
 
     fn fits_behind(
         &self,
-        master: (&StandardPlan, u64),
-        factor: f64,
+        leads: &Leads<'_, StandardPlan>,
         now: &Setpoint,
         beside: Option<(&StandardPlan, u64)>,
         limits: &Limits,
     ) -> bool {
-        sum::fits_behind(master, factor, now, beside, limits, self.cycle)
+        sum::fits_behind(leads, now, beside, limits, self.cycle)
     }
 
     fn velocities_behind(
         &self,
-        master: (&StandardPlan, u64),
-        factor: f64,
+        leads: &Leads<'_, StandardPlan>,
         beside: (&StandardPlan, u64),
     ) -> Option<(f64, f64)> {
-        sum::velocities_behind(master, factor, beside, self.cycle)
+        sum::velocities_behind(leads, beside, self.cycle)
     }
 
-    fn stretch(&self, rest: (&StandardPlan, u64)) -> Option<(u64, u64)> {
-        sum::stretch(rest, self.cycle)
+    fn stretch(&self, leads: &Leads<'_, StandardPlan>) -> Option<(u64, u64)> {
+        sum::stretch(leads, self.cycle)
     }
 
     fn peaks(&self, rest: (&StandardPlan, u64)) -> Option<Setpoint> {

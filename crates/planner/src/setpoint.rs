@@ -48,6 +48,17 @@ impl Setpoint {
         }
     }
 
+    /// Position and derivatives `factor` times as large.
+    pub fn times(&self, factor: f64) -> Self {
+        Self {
+            position: factor * self.position,
+            velocity: factor * self.velocity,
+            acceleration: factor * self.acceleration,
+            jerk: factor * self.jerk,
+            snap: factor * self.snap,
+        }
+    }
+
     /// Position and derivatives in order. What a function out of line gives back as numbers, its caller can keep
     /// in registers; a set-point it would keep in memory, along with those it computed itself.
     #[inline]

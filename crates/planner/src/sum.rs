@@ -1,4 +1,4 @@
-//! Two motions at once: whether their sum keeps the limits.
+//! Some motions at once: whether their sum keeps the limits.
 //!
 //! What stands here: two plans laid over each other piece by piece, and the head room one leaves. What does
 //! not: how the second motion is chosen. Between two switches of either plan the sum is a polynomial of
@@ -10,6 +10,9 @@ use crate::{Limits, Order, Plan, Segment, Setpoint, StandardPlan};
 
 /// Most switches of two plans: a path, a wait and a grid plan each.
 const MAX_SWITCHES: usize = 96;
+
+/// Most switches of three plans.
+const MAX_SWITCHES_BEHIND: usize = 144;
 
 /// Shorter pieces of the sum are rounding, not motion, relative to a cycle: where two switches that belong
 /// to the same scan end do not coincide to the bit.
@@ -23,6 +26,28 @@ const ROUNDING: f64 = 1e-9;
 
 /// A plan, so many scans after its start.
 pub type Part<'a> = (&'a StandardPlan, u64);
+
+/// The rest of a master's plan, as its slave sees it.
+#[derive(Debug)]
+pub struct Lead<'a, Plan> {
+    /// The plan.
+    pub plan: &'a Plan,
+    /// Scans since its start.
+    pub elapsed: u64,
+    /// What its derivatives are multiplied by to be those of the slave.
+    pub factor: f64,
+}
+
+impl<Plan> Clone for Lead<'_, Plan> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Plan> Copy for Lead<'_, Plan> {}
+
+/// The plans that a slave follows: of one master, or of two.
+pub type Leads<'a, Plan> = [Option<Lead<'a, Plan>>; 2];
 
 /// The rest of a plan, followed piece by piece.
 struct Walk<I> {
@@ -154,35 +179,83 @@ pub(crate) fn fits(
     false
 }
 
-/// Whether the rest of a master's plan, its derivatives times `factor`, and what a slave moves beside keep `limits` together
-/// from now on. On a curve through points that is not known, and so it does not fit.
+/// The sum of at most three plans, followed piece by piece: those of masters, and what a slave moves beside.
+struct Behind<I> {
+    walks: [Option<Walk<I>>; 3],
+}
+
+impl<I: Iterator<Item = Segment>> Behind<I> {
+    fn state(&self) -> Setpoint {
+        let mut walks = self.walks.iter().flatten().map(|walk| walk.state);
+        let first = walks.next().unwrap_or_default();
+        walks.fold(first, |sum, state| sum.plus(&state))
+    }
+
+    /// Time until the next switch of any of them (s); infinite from the end of all on.
+    fn left(&self) -> f64 {
+        let shorter = |least: f64, left: f64| if left < least { left } else { least };
+        let walks = self.walks.iter().flatten();
+        walks.map(|walk| walk.left).fold(f64::INFINITY, shorter)
+    }
+
+    fn go(&mut self, time: f64) {
+        for walk in self.walks.iter_mut().flatten() {
+            walk.go(time);
+        }
+    }
+}
+
+/// The plans of `leads` and, in units of the slave, the one `beside`; `None` where one of them is on a curve.
+fn behind<'a>(
+    leads: &Leads<'a, StandardPlan>,
+    beside: Option<Part<'a>>,
+    cycle: f64,
+) -> Option<Behind<impl Iterator<Item = Segment> + use<'a>>> {
+    let beside = beside.map(|(plan, elapsed)| Lead {
+        plan,
+        elapsed,
+        factor: 1.0,
+    });
+    let parts = [leads[0], leads[1], beside];
+    if parts.iter().flatten().any(|lead| is_curve(lead.part())) {
+        return None;
+    }
+    let walk =
+        |lead: Lead<'a, StandardPlan>| Walk::geared(lead.plan.segments(), lead.part(), lead.factor, cycle);
+    Some(Behind {
+        walks: parts.map(|lead| lead.map(walk)),
+    })
+}
+
+impl<'a> Lead<'a, StandardPlan> {
+    fn part(&self) -> Part<'a> {
+        (self.plan, self.elapsed)
+    }
+}
+
+/// Whether the rest of the masters' plans and what a slave moves beside keep `limits` together from now on. On a curve through
+/// points that is not known, and so it does not fit.
 ///
-/// What jumps where `limits` bound its derivative does not fit; `now` is what was published of both for this instant.
+/// What jumps where `limits` bound its derivative does not fit; `now` is what was published of all for this instant.
 ///
-/// Limits hold to 1e-9 of each. Bounded by [`MAX_SWITCHES`] pieces with at most two roots each.
+/// Limits hold to 1e-9 of each. Bounded by [`MAX_SWITCHES_BEHIND`] pieces with at most two roots each.
 pub(crate) fn fits_behind(
-    master: Part<'_>,
-    factor: f64,
+    leads: &Leads<'_, StandardPlan>,
     now: &Setpoint,
     beside: Option<Part<'_>>,
     limits: &Limits,
     cycle: f64,
 ) -> bool {
-    if is_curve(master) || beside.is_some_and(is_curve) {
+    let Some(mut sum) = behind(leads, beside, cycle) else {
         return false;
-    }
-    let mut one = Walk::geared(master.0.segments(), master, factor, cycle);
-    let mut two = beside.map(|part| Walk::new(part.0.segments(), part, cycle));
+    };
     let mut last = *now;
-    for _ in 0..MAX_SWITCHES {
-        let (state, left) = match &two {
-            Some(two) => (one.state.plus(&two.state), two.left),
-            None => (one.state, f64::INFINITY),
-        };
+    for _ in 0..MAX_SWITCHES_BEHIND {
+        let state = sum.state();
         if !is_continuous(&last, &state, limits, cycle) {
             return false;
         }
-        let length = if one.left < left { one.left } else { left };
+        let length = sum.left();
         if !length.is_finite() {
             return state.velocity.abs() <= limits.velocity * (1.0 + ROUNDING);
         }
@@ -190,36 +263,28 @@ pub(crate) fn fits_behind(
             return false;
         }
         last = moved(&state, length);
-        one.go(length);
-        if let Some(two) = &mut two {
-            two.go(length);
-        }
+        sum.go(length);
     }
     false
 }
 
-/// The lowest and the highest velocity of the rest of a master's plan, its derivatives times `factor`, and of what a slave moves
-/// beside, together. `None` on a curve through points. Bounded by [`MAX_SWITCHES`] pieces with at most two roots each.
+/// The lowest and the highest velocity of the rest of the masters' plans and of what a slave moves beside, together. `None` on a
+/// curve through points. Bounded by [`MAX_SWITCHES_BEHIND`] pieces with at most two roots each.
 pub(crate) fn velocities_behind(
-    master: Part<'_>,
-    factor: f64,
+    leads: &Leads<'_, StandardPlan>,
     beside: Part<'_>,
     cycle: f64,
 ) -> Option<(f64, f64)> {
-    if is_curve(master) || is_curve(beside) {
-        return None;
-    }
-    let mut one = Walk::geared(master.0.segments(), master, factor, cycle);
-    let mut two = Walk::new(beside.0.segments(), beside, cycle);
+    let mut sum = behind(leads, Some(beside), cycle)?;
     let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for _ in 0..MAX_SWITCHES {
-        let state = one.state.plus(&two.state);
+    for _ in 0..MAX_SWITCHES_BEHIND {
+        let state = sum.state();
         let mut see = |velocity: f64| {
             lowest = lowest.min(velocity);
             highest = highest.max(velocity);
         };
         see(state.velocity);
-        let length = if one.left < two.left { one.left } else { two.left };
+        let length = sum.left();
         if !length.is_finite() {
             return Some((lowest, highest));
         }
@@ -228,8 +293,7 @@ pub(crate) fn velocities_behind(
             let path = Path::<1>::follow(Order::Four, &state, f64::INFINITY, piece);
             path.extremes(f64::INFINITY, |state, _| see(state.velocity));
         }
-        one.go(length);
-        two.go(length);
+        sum.go(length);
     }
     None
 }
@@ -243,33 +307,34 @@ fn is_continuous(last: &Setpoint, next: &Setpoint, limits: &Limits, cycle: f64) 
     keeps(last.acceleration, next.acceleration, jerk) && keeps(last.jerk, next.jerk, limits.snap)
 }
 
-/// The next stretch of constant velocity of a plan, at or after `elapsed`: the scans of the plan at which it begins and ends,
-/// the largest number if it has no end. `None` on a curve through points.
+/// The next stretch in which the masters' plans together have a constant velocity: in how many scans it begins and ends, the
+/// largest number if it has no end. `None` on a curve through points.
 ///
-/// Bounded by [`MAX_SWITCHES`] pieces.
-pub(crate) fn stretch((plan, elapsed): Part<'_>, cycle: f64) -> Option<(u64, u64)> {
-    if is_curve((plan, elapsed)) {
-        return None;
-    }
+/// Bounded by [`MAX_SWITCHES_BEHIND`] pieces.
+pub(crate) fn stretch(leads: &Leads<'_, StandardPlan>, cycle: f64) -> Option<(u64, u64)> {
     let mut time = 0.0;
-    let mut walk = Walk::new(plan.segments(), (plan, elapsed), cycle);
-    for _ in 0..MAX_SWITCHES {
-        let state = &walk.state;
-        let is_even = state.acceleration == 0.0 && state.jerk == 0.0 && state.snap == 0.0;
-        let begin = elapsed.saturating_add(u64::from(crate::ramp::scans(time, cycle)?));
-        if !walk.left.is_finite() {
-            return Some((
-                begin.max(elapsed).min(u64::from(plan.scans()).max(elapsed)),
-                u64::MAX,
-            ));
+    let mut sum = behind(leads, None, cycle)?;
+    // From its last scan on a plan does not change.
+    let rest = |lead: &Lead<'_, StandardPlan>| u64::from(lead.plan.scans()).saturating_sub(lead.elapsed);
+    let all = leads.iter().flatten().map(rest).max().unwrap_or(0);
+    for _ in 0..MAX_SWITCHES_BEHIND {
+        let even = |walk: &Walk<_>| {
+            let state = &walk.state;
+            state.acceleration == 0.0 && state.jerk == 0.0 && state.snap == 0.0
+        };
+        let is_even = sum.walks.iter().flatten().all(even);
+        let left = sum.left();
+        let begin = u64::from(crate::ramp::scans(time, cycle)?);
+        if !left.is_finite() {
+            return Some((begin.min(all), u64::MAX));
         }
         // The scan before the one in which it ends is the last that is all in it.
-        let end = elapsed.saturating_add(((time + walk.left) / cycle * (1.0 + GRAIN)) as u64);
+        let end = ((time + left) / cycle * (1.0 + GRAIN)) as u64;
         if is_even && end > begin {
             return Some((begin, end));
         }
-        time += walk.left;
-        walk.go(walk.left);
+        time += left;
+        sum.go(left);
     }
     None
 }
@@ -325,7 +390,7 @@ fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, room: Option<&mut 
         f64::INFINITY,
         core::iter::once((length, state.snap)),
     );
-    if excess::excess(&path, 0.0, None, limits).is_some() {
+    if excess::excess(&path, 0.0, None, &(*limits).into()).is_some() {
         return false;
     }
     let Some(room) = room else { return true };

@@ -57,6 +57,15 @@ impl Sides {
         }
     }
 
+    /// The lower one.
+    pub(crate) const fn lower(self) -> f64 {
+        if self.plus <= self.minus {
+            self.plus
+        } else {
+            self.minus
+        }
+    }
+
     /// These bounds with the upper one raised to `value` if `value` is outside by no more than [`ON_LIMIT`].
     fn raised_to(self, value: f64) -> Self {
         let on = value > self.plus && value <= self.plus * (1.0 + ON_LIMIT);

@@ -105,6 +105,16 @@ impl<const N: usize> Spans<N> {
         self
     }
 
+    /// The spans from the last to the first, with every input multiplied by `factor`.
+    #[must_use]
+    pub fn backwards(&self, factor: f64) -> Self {
+        let mut backwards = Self::new();
+        for span in self.list.iter().take(self.len).rev() {
+            backwards.push(span.duration, factor * span.input);
+        }
+        backwards
+    }
+
     /// Sum of all durations.
     pub fn duration(&self) -> f64 {
         self.iter().map(|span| span.duration).sum()

@@ -6,7 +6,7 @@
 
 use super::search::{Search, follow};
 use super::{OnlinePlan, Rung, check};
-use crate::kernel::{NOISE, ON_LIMIT, Point, zero};
+use crate::kernel::{NOISE, ON_LIMIT, Point, Sides, zero};
 use crate::ramp::solve::{Course, Ramps, heading};
 use crate::{Limits, PlanError, Setpoint};
 
@@ -54,7 +54,7 @@ impl OnlinePlan {
     ) -> Result<Option<Self>, PlanError> {
         let distance = target - start.position;
         let wanted = passage.wanted;
-        check(start, target, 0.0, limits, before, cycle)?;
+        check(start, target, 0.0, &(*limits).into(), &(*before).into(), cycle)?;
         let limits = &limits.acting(cycle);
         if distance == 0.0 {
             return Ok(None);
@@ -63,13 +63,15 @@ impl OnlinePlan {
         // One velocity for all speeds tried, so that a start faster than the limit is not brought inside first
         // for one and not for another: the push goes for the limit anyway. Faster than what held before is no
         // start that comes from inside.
-        let ramps = Ramps::new(limits, limits);
+        let directed = &(*limits).into();
+        let ramps = Ramps::new(directed, directed);
         let arrested = side * ramps.arrested(&ramps.state_inward(start)) / ramps.inward(1.0, 1);
         let raised = Limits {
             velocity: limits.velocity.max(wanted).max(arrested.min(before.velocity)),
             ..*limits
         };
-        let ramps = Ramps::new(&raised, &raised.or_larger(before).acting(cycle));
+        let wider = raised.or_larger(before).acting(cycle);
+        let ramps = Ramps::new(&raised.into(), &wider.into());
         let way = Way {
             start,
             target,
@@ -129,9 +131,9 @@ impl Way<'_> {
             self.start,
             self.target,
             self.side * speed,
-            self.top,
-            limits,
-            self.before,
+            Sides::both(self.top),
+            &(*limits).into(),
+            &(*self.before).into(),
             self.cycle,
         )?;
         // A push towards the target turns only what has to be turned; any other may not turn at all.
@@ -176,7 +178,8 @@ impl Way<'_> {
         let distance = self.ramps.inward(self.target - self.start.position, 0);
         let added_up = self.start.position.abs() + self.target.abs();
         let resolution = NOISE * self.ramps.inward(added_up, 0);
-        Search::new(self.ramps, distance, 0.0, self.ramps.velocity(), resolution)
+        let top = Sides::both(self.ramps.velocity(self.side));
+        Search::new(self.ramps, distance, 0.0, top, resolution)
     }
 
     /// The start in the kernel's units, at position 0.
@@ -211,7 +214,8 @@ pub fn entry_speed(wanted: f64, distance: f64, exit: f64, limits: &Limits, cycle
         velocity: limits.velocity.max(wanted),
         ..*limits
     }
-    .acting(cycle);
+    .acting(cycle)
+    .into();
     let ramps = Ramps::new(&limits, &limits);
     let down_to = |exit| fastest_down_to(wanted, distance, exit, &ramps, cycle);
     let entry = down_to(exit);
@@ -231,7 +235,7 @@ fn fastest_down_to(wanted: f64, distance: f64, exit: f64, ramps: &Ramps, cycle: 
             velocity: ramps.inward(speed, 1),
             ..Setpoint::default()
         };
-        let heading = heading(&start, goal, ramps.velocity(), ramps.order());
+        let heading = heading(&start, goal, ramps.lower_velocity(), ramps.order());
         let ramp = ramps.ramp(&start, goal, heading, Course::Free);
         let end = follow(ramps, &start, &ramp.spans).position;
         Point {

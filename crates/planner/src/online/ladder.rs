@@ -1,14 +1,16 @@
 //! The ladder: each candidate is verified against the true limits before it is taken.
 
+use super::ends::{Ends, Wide};
 use super::search::Search;
 use super::{MAX_PIECES, OnlinePlan, grid_from};
 use crate::grid::GridPlan;
-use crate::kernel::{NOISE, ON_LIMIT, Spans};
+use crate::kernel::{NOISE, ON_LIMIT, Sides, Spans};
+use crate::math::sqrt;
 use crate::ramp::excess::{self, Excess};
 use crate::ramp::path::Path;
 use crate::ramp::solve::{RAMP_SPANS, Ramps};
 use crate::ramp::{is_there, scans};
-use crate::{Field, Limits, Order, PlanError, Setpoint};
+use crate::{DirectedLimits, Field, Limits, Order, PlanError, Setpoint};
 
 /// By how much a limit may be exceeded by what closes a plan on its target: half of what the contract grants.
 const UNSEEN: f64 = 0.5e-9;
@@ -92,23 +94,24 @@ struct Climb<'a> {
     start: Setpoint,
     distance: f64,
     end_velocity: f64,
+    end_acceleration: f64,
     cycle: f64,
     /// How far apart (u) the positions of a scan may be for rounding alone.
     resolved: f64,
-    limits: &'a Limits,
+    limits: &'a DirectedLimits,
     /// What can't be avoided, once it had to be known.
     unavoidable: Option<Excess>,
 }
 
 impl OnlinePlan {
     /// Finds the first candidate from rung `first` on that keeps the limits and arrives (O8), for a plan of
-    /// which nothing is found yet; before its last ramp it goes for the velocity `top`.
+    /// which nothing is found yet; before its last ramp it goes for the velocity `top` of its direction.
     pub(super) fn climb(
         &mut self,
         first: Rung,
-        top: f64,
-        limits: &Limits,
-        wider: &Limits,
+        top: Sides,
+        limits: &DirectedLimits,
+        wider: &DirectedLimits,
     ) -> Result<(), PlanError> {
         let Self {
             start,
@@ -119,30 +122,7 @@ impl OnlinePlan {
             ..
         } = *self;
         let ramps = Ramps::new(limits, wider);
-        let origin = Setpoint {
-            position: 0.0,
-            ..start
-        };
-        let distance = target - start.position;
-        let resolution = NOISE * ramps.inward(start.position.abs() + target.abs(), 0);
-        let mut climb = Climb {
-            search: Search::new(
-                &ramps,
-                ramps.inward(distance, 0),
-                ramps.inward(end_velocity, 1),
-                ramps.inward(top, 1),
-                resolution,
-            ),
-            ramps: &ramps,
-            inward: ramps.state_inward(&origin),
-            start: origin,
-            distance,
-            end_velocity,
-            cycle,
-            resolved: f64::EPSILON * (start.position.abs() + target.abs()),
-            limits,
-            unavoidable: None,
-        };
+        let mut climb = Climb::new(&ramps, start, target, (end_velocity, 0.0), top, limits, cycle);
         for rung in Rung::ALL.into_iter().filter(|rung| *rung >= first) {
             let from = climb.inward;
             found.rung = rung;
@@ -173,9 +153,125 @@ impl OnlinePlan {
             value: target,
         })
     }
+
+    /// As [`OnlinePlan::climb`], for a plan with an end acceleration: of the candidates that keep the limits and arrive the
+    /// shortest.
+    pub(super) fn climb_to_end(
+        &mut self,
+        top: Sides,
+        limits: &DirectedLimits,
+        wider: &DirectedLimits,
+    ) -> Result<(), PlanError> {
+        let Self {
+            start,
+            target,
+            end_velocity,
+            end_acceleration,
+            cycle,
+            ref mut found,
+            ..
+        } = *self;
+        let ramps = &Ramps::new(limits, wider);
+        let end = (end_velocity, end_acceleration);
+        let mut climb = Climb::new(ramps, start, target, end, top, limits, cycle);
+        let ends = Ends::new(
+            ramps,
+            ramps.inward(climb.distance, 0),
+            (ramps.inward(end_velocity, 1), ramps.inward(end_acceleration, 2)),
+            sides_inward(ramps, top),
+            NOISE * ramps.inward(start.position.abs() + target.abs(), 0),
+        );
+        let from = climb.inward;
+        let order = ramps.order();
+        let mut best: Option<Found> = None;
+        let take = |climb: &mut Climb<'_>, best: &mut Option<Found>, rung, spans: &Wide| {
+            let mut found = Found::nothing(order);
+            found.rung = rung;
+            let duration = ramps
+                .scale()
+                .outward(spans)
+                .fold(0.0, |sum, (time, _)| sum + time);
+            let is_shorter = best.as_ref().is_none_or(|best| duration < best.path.duration());
+            if is_shorter && climb.verify(&mut found, spans) {
+                *best = Some(found);
+            }
+        };
+        let is_steady = (order < Order::Four || from.jerk == 0.0)
+            && (order < Order::Three || from.acceleration == 0.0)
+            && limits.outside(start.velocity) <= 0.0;
+        if is_steady {
+            let mut spans = Wide::new();
+            spans.extend(&ends.of_steady_start(&from));
+            take(&mut climb, &mut best, Rung::PushThenStop, &spans);
+        }
+        for side in [1.0, -1.0] {
+            ends.pushes(&from, side, |spans| {
+                take(&mut climb, &mut best, Rung::PushThenStop, spans)
+            });
+        }
+        take(&mut climb, &mut best, Rung::TwoPhase, &ends.two_phase(&from));
+        take(&mut climb, &mut best, Rung::Arrest, &ends.arrest(&from));
+        if best.is_none() {
+            take(&mut climb, &mut best, Rung::Brake, &ends.rest_then_run_up(&from));
+        }
+        let Some(best) = best else {
+            return Err(PlanError::TooLong {
+                field: Field::Target,
+                value: target,
+            });
+        };
+        *found = best;
+        found.solves = ends.solves();
+        found.steps = ends.steps();
+        Ok(())
+    }
 }
 
-impl Climb<'_> {
+/// Velocity bounds in the kernel's units.
+fn sides_inward(ramps: &Ramps, top: Sides) -> Sides {
+    Sides {
+        minus: ramps.inward(top.minus, 1),
+        plus: ramps.inward(top.plus, 1),
+    }
+}
+
+impl<'a> Climb<'a> {
+    fn new(
+        ramps: &'a Ramps,
+        start: Setpoint,
+        target: f64,
+        (end_velocity, end_acceleration): (f64, f64),
+        top: Sides,
+        limits: &'a DirectedLimits,
+        cycle: f64,
+    ) -> Self {
+        let origin = Setpoint {
+            position: 0.0,
+            ..start
+        };
+        let distance = target - start.position;
+        let resolution = NOISE * ramps.inward(start.position.abs() + target.abs(), 0);
+        Climb {
+            search: Search::new(
+                ramps,
+                ramps.inward(distance, 0),
+                ramps.inward(end_velocity, 1),
+                sides_inward(ramps, top),
+                resolution,
+            ),
+            ramps,
+            inward: ramps.state_inward(&origin),
+            start: origin,
+            distance,
+            end_velocity,
+            end_acceleration,
+            cycle,
+            resolved: f64::EPSILON * (start.position.abs() + target.abs()),
+            limits,
+            unavoidable: None,
+        }
+    }
+
     /// Lays `candidate` into `found`; whether it arrives and, but on the last rung, exceeds no more than what
     /// can't be avoided.
     fn verify<const N: usize>(&mut self, found: &mut Found, candidate: &Spans<N>) -> bool {
@@ -185,14 +281,16 @@ impl Climb<'_> {
         let path = &mut found.path;
         let end = path.fill(
             &self.start,
-            self.limits.lower_acceleration(),
+            self.limits.limits.lower_acceleration(),
             self.ramps.scale().outward(candidate),
         );
-        path.pin(self.end_velocity);
+        path.pin_both(self.end_velocity, self.end_acceleration);
         found.residual = self.distance - path.end_position().unwrap_or(0.0);
-        let way = self.limits.velocity.max(self.start.velocity.abs()) * path.duration();
+        let fastest = self.limits.limits.velocity;
+        let way = fastest.max(self.start.velocity.abs()) * path.duration();
         let arrives = found.residual.abs() <= ON_LIMIT * way + NOISE * self.distance.abs()
-            && (end.velocity - self.end_velocity).abs() <= ON_LIMIT * self.limits.velocity;
+            && (end.velocity - self.end_velocity).abs() <= ON_LIMIT * fastest
+            && (self.end_acceleration == 0.0 || self.accelerates(&end));
         let moving = scans(path.duration(), self.cycle).map_or(0.0, f64::from);
         found.is_rounding = found.residual.abs() <= self.resolved * moving;
         if !arrives || !(found.is_rounding || self.closes_gently(found.residual, path.duration())) {
@@ -203,10 +301,25 @@ impl Climb<'_> {
         found.rung == Rung::Brake || found.excess.is_none_or(|excess| self.is_unavoidable(&excess))
     }
 
+    /// Whether a path that ends in `end` has the end acceleration and no jerk.
+    fn accelerates(&self, end: &Setpoint) -> bool {
+        let Limits {
+            acceleration,
+            deceleration,
+            jerk,
+            snap,
+            ..
+        } = self.limits.limits;
+        let steepest = acceleration.max(deceleration);
+        let jerk = jerk.min(sqrt(snap) * sqrt(steepest));
+        (end.acceleration - self.end_acceleration).abs() <= ON_LIMIT * steepest
+            && (self.ramps.order() < Order::Four || end.jerk.abs() <= ON_LIMIT * jerk)
+    }
+
     /// Whether what spreads `residual` (u) over `duration` (s) takes no more than a part of each limit that nobody sees: the
     /// most of the derivatives of the share (O9). Roots are not looked for beyond the noise of their positions.
     fn closes_gently(&self, residual: f64, duration: f64) -> bool {
-        let (limits, residual) = (self.limits, residual.abs());
+        let (limits, residual) = (&self.limits.limits, residual.abs());
         let square = duration * duration;
         residual <= NOISE / f64::EPSILON * self.resolved
             || (5.8 * residual <= UNSEEN * limits.lower_acceleration() * square
@@ -226,8 +339,11 @@ impl Climb<'_> {
 
     fn least_excess(&self) -> Excess {
         let stop = self.search.whole_ramp(&self.inward, 0.0);
-        let bound = self.ramps.velocity();
-        let back = if self.start.velocity < 0.0 { bound } else { -bound };
+        let back = if self.start.velocity < 0.0 {
+            self.ramps.velocity(1.0)
+        } else {
+            -self.ramps.velocity(-1.0)
+        };
         let turn = self.search.whole_ramp(&self.inward, back);
         let one = self.excess_of(&stop.spans, stop.spans.len());
         let other = self.excess_of(&turn.spans, turn.lead);
@@ -244,7 +360,7 @@ impl Climb<'_> {
         let path = Path::<MAX_PIECES>::follow(
             self.ramps.order(),
             &self.start,
-            self.limits.lower_acceleration(),
+            self.limits.limits.lower_acceleration(),
             spans,
         );
         excess::excess(&path, 0.0, None, self.limits).unwrap_or_default()
@@ -262,7 +378,7 @@ impl Climb<'_> {
         let path = &mut found.path;
         let end = path.fill(
             &self.start,
-            self.limits.lower_acceleration(),
+            self.limits.limits.lower_acceleration(),
             self.ramps.scale().outward(&stop),
         );
         path.pin(0.0);
@@ -272,15 +388,20 @@ impl Climb<'_> {
             field: Field::Target,
             value: target,
         };
-        if !is_there(&end, 0.0, (&self.start, self.limits, path.duration())) {
+        let limits = &self.limits.limits;
+        if !is_there(&end, 0.0, (&self.start, limits, path.duration())) {
             return Err(too_long);
         }
         let begin = scans(path.duration(), cycle).ok_or(too_long)?;
         found.excess = excess::excess(path, 0.0, None, self.limits);
         found.residual = 0.0;
         found.is_rounding = true;
+        let onwards = Limits {
+            velocity: self.limits.velocity(target - rest),
+            ..*limits
+        };
         found.tail = Some(Tail {
-            grid: grid_from(rest, target, self.limits, cycle).map_err(|_| too_long)?,
+            grid: grid_from(rest, target, &onwards, cycle).map_err(|_| too_long)?,
             begin,
         });
         Ok(())

@@ -5,6 +5,7 @@
 //! What does not: which move an axis makes next. Equations (O1) and on are in `docs/planner-online.md`.
 
 mod blend;
+mod ends;
 mod ladder;
 mod search;
 
@@ -13,10 +14,10 @@ pub use ladder::Rung;
 pub use search::MAX_SOLVES;
 
 use crate::grid::GridPlan;
-use crate::kernel::ON_LIMIT;
+use crate::kernel::{ON_LIMIT, Sides};
 use crate::ramp::excess::{self, Excess, Peaks};
 use crate::ramp::{self, Segment};
-use crate::{Field, Limits, PlanError, RampPlan, Setpoint};
+use crate::{DirectedLimits, Field, Limits, Order, PlanError, RampPlan, Setpoint};
 use ladder::{Found, Tail};
 
 /// Most pieces of a plan.
@@ -29,9 +30,21 @@ pub struct OnlinePlan {
     start: Setpoint,
     target: f64,
     end_velocity: f64,
+    end_acceleration: f64,
     cycle: f64,
     scans: u32,
     found: Found,
+}
+
+/// Where a move ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Goal {
+    /// Position (u).
+    pub position: f64,
+    /// Velocity there (u/s), of either sign.
+    pub velocity: f64,
+    /// Acceleration there (u/s^2), of either sign; without jerk. At order 2 it can only be 0.
+    pub acceleration: f64,
 }
 
 impl OnlinePlan {
@@ -102,11 +115,49 @@ impl OnlinePlan {
         before: &Limits,
         cycle: f64,
     ) -> Result<Self, PlanError> {
-        let top = limits.velocity;
+        let (limits, before) = (&(*limits).into(), &(*before).into());
+        Self::by_direction_with(first, start, target, end_velocity, limits, before, cycle)
+    }
+
+    /// As [`OnlinePlan::passing`], with a velocity bound for each direction: a push goes for that of its own side.
+    ///
+    /// A start on the far side of its bound is brought inside like any start outside its limits.
+    ///
+    /// # Errors
+    /// As [`OnlinePlan::passing`].
+    pub fn by_direction(
+        start: &Setpoint,
+        target: f64,
+        end_velocity: f64,
+        limits: &DirectedLimits,
+        before: &DirectedLimits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
+        let first = Rung::PushThenStop;
+        Self::by_direction_with(first, start, target, end_velocity, limits, before, cycle)
+    }
+
+    /// As [`OnlinePlan::with`], with a velocity bound for each direction.
+    ///
+    /// # Errors
+    /// As [`OnlinePlan::passing`].
+    pub fn by_direction_with(
+        first: Rung,
+        start: &Setpoint,
+        target: f64,
+        end_velocity: f64,
+        limits: &DirectedLimits,
+        before: &DirectedLimits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
+        let top = Sides {
+            minus: limits.negative,
+            plus: limits.positive,
+        };
         Self::cruising(first, start, target, end_velocity, top, limits, before, cycle)
     }
 
-    /// As [`OnlinePlan::with`], but until its last ramp the plan goes for the velocity `top` (u/s), at most
+    /// As [`OnlinePlan::by_direction_with`], but until its last ramp the plan goes for the velocity `top` (u/s), at most
     /// that of `limits`; so an `end_velocity` above `top` is reached at the end and not before.
     #[expect(clippy::too_many_arguments, reason = "a problem, as it was given")]
     fn cruising(
@@ -114,35 +165,131 @@ impl OnlinePlan {
         start: &Setpoint,
         target: f64,
         end_velocity: f64,
-        top: f64,
-        limits: &Limits,
-        before: &Limits,
+        top: Sides,
+        limits: &DirectedLimits,
+        before: &DirectedLimits,
         cycle: f64,
     ) -> Result<Self, PlanError> {
         check(start, target, end_velocity, limits, before, cycle)?;
-        let acting = |limits: &Limits| limits.acting_for(start, end_velocity, target - start.position, cycle);
+        let acting =
+            |limits: &DirectedLimits| limits.acting_for(start, end_velocity, target - start.position, cycle);
         let (given, wider) = (limits, acting(&limits.or_larger(before)));
         let limits = &acting(limits);
         let mut plan = Self {
             start: *start,
             target,
             end_velocity,
+            end_acceleration: 0.0,
             cycle,
             scans: 0,
-            found: Found::nothing(limits.order()),
+            found: Found::nothing(limits.limits.order()),
         };
         let too_long = PlanError::TooLong {
             field: Field::Target,
             value: target,
         };
-        if end_velocity.abs() > limits.velocity {
+        if limits.outside(end_velocity) > 0.0 {
             return Err(too_long);
         }
-        plan.climb(first, top.min(limits.velocity), limits, &wider)?;
-        plan.found.excess = plan.excess_over(given);
+        let top = Sides {
+            minus: top.minus.min(limits.negative),
+            plus: top.plus.min(limits.positive),
+        };
+        plan.climb(first, top, limits, &wider)?;
+        plan.found.excess = plan.excess_beyond(given);
         let moving = ramp::scans(plan.found.path.duration(), cycle).ok_or(too_long)?;
         // Both counts are below 2^31, so the sum fits.
         plan.scans = moving + plan.found.tail.map_or(0, |tail| tail.grid.scans());
+        Ok(plan)
+    }
+
+    /// Plans from `start` to a `goal` that may have an acceleration, with a velocity bound for each direction: the first
+    /// instant it is known how to be there with that velocity and acceleration, and no jerk.
+    ///
+    /// Without an end acceleration it is [`OnlinePlan::by_direction`]. With one the plan goes on from its end with that
+    /// acceleration, so whoever asked for it has to take over before the velocity comes to its bound. It is the shortest
+    /// of several candidates, each verified: pushes towards both bounds with a last ramp that is a move of one order less,
+    /// and what meets ramps back from the end (docs/planner-online.md, section 8).
+    ///
+    /// Bounded work: at most 2,000 last ramps of at most [`MAX_SOLVES`] ramps each; in practice some thousand ramps.
+    ///
+    /// # Errors
+    /// As [`OnlinePlan::passing`]; [`PlanError::Unreachable`] for an end state that is outside the limits, that no motion
+    /// inside them can have come to, or that none inside them can go on from, with the nearest that is not.
+    pub fn reaching(
+        start: &Setpoint,
+        goal: &Goal,
+        limits: &DirectedLimits,
+        before: &DirectedLimits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
+        let Goal {
+            position: target,
+            velocity,
+            acceleration,
+        } = *goal;
+        if !acceleration.is_finite() {
+            return Err(PlanError::InvalidInput {
+                field: Field::EndAcceleration,
+                value: acceleration,
+            });
+        }
+        check(start, target, 0.0, limits, before, cycle)?;
+        let bound = limits.velocity(velocity);
+        if velocity.abs() > bound {
+            return Err(PlanError::Unreachable {
+                field: Field::EndVelocity,
+                value: velocity,
+                nearest: bound.copysign(velocity),
+            });
+        }
+        if acceleration == 0.0 {
+            return Self::by_direction(start, target, velocity, limits, before, cycle);
+        }
+        let steepest = Setpoint {
+            acceleration: start.acceleration.abs().max(acceleration.abs()),
+            ..*start
+        };
+        let distance = target - start.position;
+        let acting = |limits: &DirectedLimits| limits.acting_for(&steepest, velocity, distance, cycle);
+        let (given, wider) = (limits, acting(&limits.or_larger(before)));
+        let limits = &acting(limits);
+        let end = Setpoint {
+            velocity,
+            acceleration,
+            ..Setpoint::default()
+        };
+        let jumps = limits.limits.order() == Order::Two;
+        if jumps || !ends::is_kept(&end, limits) {
+            return Err(PlanError::Unreachable {
+                field: Field::EndAcceleration,
+                value: acceleration,
+                nearest: if jumps {
+                    0.0
+                } else {
+                    ends::nearest_kept(&end, limits)
+                },
+            });
+        }
+        let mut plan = Self {
+            start: *start,
+            target,
+            end_velocity: velocity,
+            end_acceleration: acceleration,
+            cycle,
+            scans: 0,
+            found: Found::nothing(limits.limits.order()),
+        };
+        let top = Sides {
+            minus: limits.negative,
+            plus: limits.positive,
+        };
+        plan.climb_to_end(top, limits, &wider)?;
+        plan.found.excess = plan.excess_beyond(given);
+        plan.scans = ramp::scans(plan.found.path.duration(), cycle).ok_or(PlanError::TooLong {
+            field: Field::Target,
+            value: target,
+        })?;
         Ok(plan)
     }
 
@@ -159,15 +306,35 @@ impl OnlinePlan {
         before: &Limits,
         cycle: f64,
     ) -> Result<Self, PlanError> {
-        let lowered = |limits| Self::passing(start, target, end_velocity, limits, before, cycle);
+        let (limits, before) = (&(*limits).into(), &(*before).into());
+        Self::keeping_velocities(start, target, end_velocity, limits, before, cycle)
+    }
+
+    /// As [`OnlinePlan::keeping_velocity`], with a velocity bound for each direction.
+    ///
+    /// # Errors
+    /// As [`OnlinePlan::passing`].
+    pub fn keeping_velocities(
+        start: &Setpoint,
+        target: f64,
+        end_velocity: f64,
+        limits: &DirectedLimits,
+        before: &DirectedLimits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
+        let lowered = |limits| Self::by_direction(start, target, end_velocity, limits, before, cycle);
         let plan = lowered(limits)?;
         let wider = limits.or_larger(before);
-        let kept = Limits {
-            velocity: limits.velocity,
-            ..wider
+        let kept = DirectedLimits {
+            limits: Limits {
+                velocity: limits.limits.velocity,
+                ..wider.limits
+            },
+            ..*limits
         };
+        // A tail is inside the new velocity.
         let leaves = |plan: &Self| {
-            plan.found.excess.is_some() && plan.peaks().velocity > wider.velocity * (1.0 + ON_LIMIT)
+            plan.found.excess.is_some() && excess::leaves(&plan.found.path, end_velocity, &wider)
         };
         if kept == *limits || !leaves(&plan) {
             return Ok(plan);
@@ -263,7 +430,7 @@ impl OnlinePlan {
 
     /// The state at a scan from the end of the plan on.
     fn beyond(&self, scan: u64) -> Setpoint {
-        if self.end_velocity == 0.0 {
+        if self.end_velocity == 0.0 && self.end_acceleration == 0.0 {
             return Setpoint::at_rest(self.target);
         }
         let since = scan as f64 * self.cycle - self.duration();
@@ -273,6 +440,14 @@ impl OnlinePlan {
         } else {
             since
         };
+        if self.end_acceleration != 0.0 {
+            let gained = self.end_acceleration * since;
+            return Setpoint {
+                velocity: self.end_velocity + gained,
+                acceleration: self.end_acceleration,
+                ..Setpoint::at_rest(self.target + (self.end_velocity + 0.5 * gained) * since)
+            };
+        }
         Setpoint {
             velocity: self.end_velocity,
             ..Setpoint::at_rest(self.target + self.end_velocity * since)
@@ -291,7 +466,7 @@ impl OnlinePlan {
     /// The motion with the end velocity alone, as a plan of its own with the same count of scans; none before
     /// `scan` is at its end, or if it ends at rest.
     pub(crate) fn cruise(&self, scan: u64) -> Option<RampPlan> {
-        if scan < u64::from(self.scans) || self.end_velocity == 0.0 {
+        if scan < u64::from(self.scans) || self.end_velocity == 0.0 || self.end_acceleration != 0.0 {
             return None;
         }
         let start = self.target - self.end_velocity * self.duration();
@@ -311,6 +486,10 @@ impl OnlinePlan {
     /// What of [`OnlinePlan::excess`] is beyond `limits`, too, which are no lower than those of the plan; found as
     /// by [`RampPlan::excess_over`], in at most 30 pieces.
     pub fn excess_over(&self, limits: &Limits) -> Option<Excess> {
+        self.excess_beyond(&(*limits).into())
+    }
+
+    fn excess_beyond(&self, limits: &DirectedLimits) -> Option<Excess> {
         self.found.excess?;
         excess::excess(&self.found.path, self.end_velocity, None, limits)
     }
@@ -331,6 +510,11 @@ impl OnlinePlan {
     /// Velocity at the end (u/s).
     pub const fn end_velocity(&self) -> f64 {
         self.end_velocity
+    }
+
+    /// Acceleration at the end (u/s^2).
+    pub const fn end_acceleration(&self) -> f64 {
+        self.end_acceleration
     }
 
     /// The rung of the ladder the plan is from.
@@ -396,14 +580,14 @@ fn check(
     start: &Setpoint,
     target: f64,
     end_velocity: f64,
-    limits: &Limits,
-    before: &Limits,
+    limits: &DirectedLimits,
+    before: &DirectedLimits,
     cycle: f64,
 ) -> Result<(), PlanError> {
     let invalid = |field, value| Err(PlanError::InvalidInput { field, value });
     ramp::check(start, end_velocity, limits, before, cycle)?;
-    if !limits.velocity.is_finite() {
-        return invalid(Field::LimitVelocity, limits.velocity);
+    if !limits.either().velocity.is_finite() {
+        return invalid(Field::LimitVelocity, limits.either().velocity);
     }
     if !(target - start.position).is_finite() {
         return invalid(Field::Target, target);

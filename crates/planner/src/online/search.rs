@@ -5,7 +5,7 @@
 use core::cell::Cell;
 
 use crate::Setpoint;
-use crate::kernel::{MAX_STEPS, NOISE, Point, Spans, THIRD_SPANS, zero};
+use crate::kernel::{MAX_STEPS, NOISE, Point, Sides, Spans, THIRD_SPANS, zero};
 use crate::ramp::path::Way;
 use crate::ramp::solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
 
@@ -14,7 +14,7 @@ pub(super) const CANDIDATE_SPANS: usize = 3 * RAMP_SPANS + 1;
 
 /// In how many parts a span of the push is looked at for the first crossing of a move that does not end at
 /// rest (O4).
-const PARTS: usize = 8;
+pub(super) const PARTS: usize = 8;
 
 /// Most ramps [`Search::push_then_stop`] solves: one per look at the push, one per step of the root, and
 /// those around them.
@@ -27,15 +27,15 @@ const HALVINGS: u32 = 64;
 pub const MAX_SOLVES: u32 = 2 * MAX_PUSH_SOLVES + 2 * (MAX_STEPS + 3) + 2 * (HALVINGS + 1) + 5;
 
 /// Spans of a whole move.
-type Candidate = Spans<CANDIDATE_SPANS>;
+pub(super) type Candidate = Spans<CANDIDATE_SPANS>;
 
 /// A move to find.
 pub(super) struct Search<'a> {
     ramps: &'a Ramps,
     target: f64,
     end_velocity: f64,
-    /// The velocity a push goes for and a cruise keeps; that of the limits, or less.
-    top: f64,
+    /// The velocity a push goes for and a cruise keeps in each direction; that of the limits, or less.
+    top: Sides,
     /// What the positions of start and target may be off by.
     resolution: f64,
     /// Ramps solved so far.
@@ -71,7 +71,7 @@ impl<'a> Search<'a> {
         ramps: &'a Ramps,
         target: f64,
         end_velocity: f64,
-        top: f64,
+        top: Sides,
         resolution: f64,
     ) -> Self {
         Self {
@@ -82,6 +82,15 @@ impl<'a> Search<'a> {
             resolution,
             solves: Cell::new(0),
             steps: Cell::new(0),
+        }
+    }
+
+    /// The velocity, with its sign, that a push towards `side` goes for.
+    fn top(&self, side: f64) -> f64 {
+        if side < 0.0 {
+            side * self.top.minus
+        } else {
+            side * self.top.plus
         }
     }
 
@@ -119,7 +128,7 @@ impl<'a> Search<'a> {
             return spans;
         }
         let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
-        let top = side * self.top;
+        let top = self.top(side);
         let push = self.ramp(start, top);
         let mut way = Way::new(self.ramps.order(), start, self.ramps.lower());
         let mut from = stop.ahead(0.0, side);
@@ -145,7 +154,7 @@ impl<'a> Search<'a> {
         }
         let state = steady(&way.state, top);
         let stop = self.stop(&state);
-        self.cruise(&mut spans, -stop.ahead(0.0, side).value);
+        cruise(&mut spans, -stop.ahead(0.0, side).value, top);
         spans.extend(&stop.spans);
         spans
     }
@@ -155,7 +164,7 @@ impl<'a> Search<'a> {
         let mut spans = Spans::new();
         let stop = self.stop(start);
         let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
-        let top = side * self.top;
+        let top = self.top(side);
         let through = |peak: f64| {
             let ramp = self.ramp(start, peak);
             let state = steady(&follow(self.ramps, start, &ramp), peak);
@@ -175,7 +184,7 @@ impl<'a> Search<'a> {
         let (ramp, stop) = through(peak.at);
         spans.extend(&ramp);
         if peak.at == top {
-            self.cruise(&mut spans, -peak.value);
+            cruise(&mut spans, -peak.value, top);
         }
         spans.extend(&stop.spans);
         spans
@@ -183,8 +192,8 @@ impl<'a> Search<'a> {
 
     /// Acceleration and jerk to zero as soon as can be, then push and stop (O7).
     pub(super) fn arrest_then_push(&self, start: &Setpoint) -> Candidate {
-        let bound = self.ramps.velocity();
-        let velocity = self.ramps.arrested(start).max(-bound).min(bound);
+        let (low, high) = (-self.ramps.velocity(-1.0), self.ramps.velocity(1.0));
+        let velocity = self.ramps.arrested(start).max(low).min(high);
         let ramp = self.ramp(start, velocity);
         let state = steady(&follow(self.ramps, start, &ramp), velocity);
         let mut spans = Spans::new();
@@ -221,7 +230,7 @@ impl<'a> Search<'a> {
         } else {
             (self.end_velocity.signum(), self.end_velocity.abs())
         };
-        let mut held = self.top;
+        let mut held = self.top(way).abs();
         for _ in 0..HALVINGS {
             let first = self.ramp(rest, way * held);
             let state = steady(&follow(self.ramps, rest, &first), way * held);
@@ -248,7 +257,7 @@ impl<'a> Search<'a> {
     /// As [`Search::ramp`], with what is known of it.
     pub(super) fn whole_ramp(&self, start: &Setpoint, velocity: f64) -> Ramp {
         self.solves.set(self.solves.get() + 1);
-        let heading = heading(start, velocity, self.ramps.velocity(), self.ramps.order());
+        let heading = heading(start, velocity, self.ramps.lower_velocity(), self.ramps.order());
         self.ramps.ramp(start, velocity, heading, Course::Free)
     }
 
@@ -288,15 +297,15 @@ impl<'a> Search<'a> {
         self.steps.set(self.steps.get().max(steps));
         point
     }
+}
 
-    /// Appends what is left at the velocity bound.
-    fn cruise(&self, spans: &mut Candidate, left: f64) {
-        spans.push(left.max(0.0) / self.top, 0.0);
-    }
+/// Appends what is left at the velocity `top`.
+fn cruise(spans: &mut Candidate, left: f64, top: f64) {
+    spans.push(left.max(0.0) / top.abs(), 0.0);
 }
 
 /// `state` with a velocity that is to stay.
-fn steady(state: &Setpoint, velocity: f64) -> Setpoint {
+pub(super) fn steady(state: &Setpoint, velocity: f64) -> Setpoint {
     Setpoint {
         velocity,
         ..Setpoint::at_rest(state.position)

@@ -3,7 +3,7 @@
 use super::path::Path;
 use crate::kernel::ON_LIMIT;
 use crate::limits::REACH;
-use crate::{Limits, Order};
+use crate::{DirectedLimits, Order};
 
 /// What a 64-bit instant of a path resolves, relative to its duration.
 const TICK: f64 = 2.0 * f64::EPSILON;
@@ -56,6 +56,14 @@ pub(crate) fn peaks<const N: usize>(path: &Path<N>, goal: f64) -> Peaks {
     peaks
 }
 
+/// Whether the velocity along `path`, which ends at `goal`, comes out of its bounds.
+pub(crate) fn leaves<const N: usize>(path: &Path<N>, goal: f64, limits: &DirectedLimits) -> bool {
+    let out = |velocity: f64| velocity.abs() > limits.velocity(velocity) * (1.0 + ON_LIMIT);
+    let mut leaves = out(goal);
+    path.extremes(f64::INFINITY, |state, _| leaves |= out(state.velocity));
+    leaves
+}
+
 /// By how much `path`, which ends with the velocity `goal`, exceeds `limits`; `None` if by no more than
 /// rounding, [`ON_LIMIT`] and what is changed within the resolution of the path's times.
 ///
@@ -65,14 +73,15 @@ pub(crate) fn excess<const N: usize>(
     path: &Path<N>,
     goal: f64,
     heading: Option<f64>,
-    limits: &Limits,
+    directed: &DirectedLimits,
 ) -> Option<Excess> {
+    let (limits, lower) = (&directed.either(), directed.lower_velocity());
     // Half the tolerance, so that rounding can't make this say otherwise than what follows.
     let near = 1.0 + 0.5 * ON_LIMIT;
     if heading.is_none()
-        && limits.velocity.is_finite()
+        && lower.is_finite()
         && path.is_surely_within(
-            limits.velocity * near,
+            lower * near,
             limits.lower_acceleration() * near,
             limits.jerk * near,
         )
@@ -81,12 +90,14 @@ pub(crate) fn excess<const N: usize>(
     }
     let mut excess = Excess::default();
     let peaks = peaks(path, goal);
-    let scale = if limits.velocity.is_finite() {
-        limits.velocity.min(4.0 * REACH * peaks.velocity)
-    } else {
-        peaks.velocity
+    let scale = |bound: f64| {
+        if bound.is_finite() {
+            bound.min(4.0 * REACH * peaks.velocity)
+        } else {
+            peaks.velocity
+        }
     };
-    let small = ON_LIMIT * scale;
+    let small = ON_LIMIT * scale(lower);
     // A piece that ends late by what the time since the start resolves goes on changing for as long.
     let tick = TICK * path.duration();
     // A bound far below the other one is met by an acceleration that has changed by as much as the other.
@@ -100,15 +111,17 @@ pub(crate) fn excess<const N: usize>(
     let noticed = if sides_differ { small } else { f64::INFINITY };
     path.extremes(noticed, |state, direction| {
         let velocity = state.velocity;
-        let outside = velocity.abs() - limits.velocity;
+        let outside = directed.outside(velocity);
         let reversed = match heading {
             Some(heading) if goal == 0.0 => -heading * velocity,
             _ => 0.0,
         };
         let over = outside.max(reversed);
-        excess.velocity = excess
-            .velocity
-            .max(beyond(over, scale, tick * state.acceleration));
+        excess.velocity = excess.velocity.max(beyond(
+            over,
+            scale(directed.velocity(velocity)),
+            tick * state.acceleration,
+        ));
 
         // With the motion it raises the speed, against it it lowers it.
         let bound = match direction {

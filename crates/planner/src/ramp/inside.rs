@@ -97,10 +97,18 @@ pub(super) struct Lead {
     pub(super) viable: bool,
 }
 
-/// Brings `state` inside the limits, or as near to them as can be; the velocity has to be in `low ..= high`.
+/// Brings `state` inside the limits, or as near to them as can be; the velocity has to be in `range`, and on the way of
+/// the ramp proper not below `low`.
 ///
 /// `own` are the bounds of the ramp proper, `bounds` those of the state.
-pub(super) fn lead_in(state: State, goal: f64, (low, high): (f64, f64), bounds: &Box4, own: &Bounds) -> Lead {
+pub(super) fn lead_in(
+    state: State,
+    goal: f64,
+    (low, range): (f64, Sides),
+    bounds: &Box4,
+    own: &Bounds,
+) -> Lead {
+    let high = range.plus;
     let mut lead = Lead {
         spans: Spans::new(),
         state,
@@ -115,8 +123,8 @@ pub(super) fn lead_in(state: State, goal: f64, (low, high): (f64, f64), bounds: 
     // Where it comes to may be another place once acceleration and jerk are inside.
     let entered = arrested(state.after_all(&enter(state, bounds)), bounds.jerk);
     // Bound to come out on the other side of zero: before anything else, since this grows for as long as it is put off.
-    if bounds.is_lowered() && lead.rest.min(entered) < -high * (1.0 + ON_LIMIT) {
-        let (spans, steps) = hasten(state.mirrored(), high, -goal, -high, &bounds.turned());
+    if bounds.is_lowered() && lead.rest.min(entered) < -range.minus * (1.0 + ON_LIMIT) {
+        let (spans, steps) = hasten(state.mirrored(), range.minus, -goal, -high, &bounds.turned());
         lead.add(&spans.mirrored(), steps, bounds.jerk);
         return lead;
     }
@@ -150,10 +158,9 @@ fn is_inside(state: State, bounds: &Box4) -> bool {
 
 /// Whether the arrest from a state with jerk and acceleration inside keeps acceleration and velocity inside.
 fn is_viable(state: State, rest: f64, low: f64, high: f64, bounds: &Box4) -> bool {
-    let slack = slack(state, rest, high);
     let coming = state.a + 0.5 * state.j * state.j.abs();
-    state.v.max(top(state, rest)) <= high + slack
-        && state.v.min(bottom(state, rest)) >= low - slack
+    state.v.max(top(state, rest)) <= high + slack(state, rest, high)
+        && state.v.min(bottom(state, rest)) >= low - slack(state, rest, depth(low, high))
         && coming <= bounds.a.plus * (1.0 + ON_LIMIT)
         && coming >= -bounds.a.minus * (1.0 + ON_LIMIT)
 }
@@ -305,10 +312,9 @@ pub(super) fn arrested(state: State, jerk: f64) -> f64 {
 /// The spans by which a velocity that a gentle arrest, ending at `rest`, would take out of `low ..= high` is
 /// kept as near to them as can be (R17, R18), and the root steps taken; none if it stays inside.
 fn relieve(state: State, rest: f64, low: f64, high: f64, bounds: &Bounds) -> (Spans<4>, u32) {
-    let slack = slack(state, rest, high);
-    if (top(state, rest) - high).min(rest - low) > slack {
+    if (top(state, rest) - high).min(rest - low) > slack(state, rest, high) {
         push_down(state, low, high, bounds)
-    } else if (low - bottom(state, rest)).min(high - rest) > slack {
+    } else if (low - bottom(state, rest)).min(high - rest) > slack(state, rest, depth(low, high)) {
         let (spans, steps) = push_down(state.mirrored(), -high, -low, &bounds.mirrored());
         (spans.mirrored(), steps)
     } else {
@@ -316,9 +322,14 @@ fn relieve(state: State, rest: f64, low: f64, high: f64, bounds: &Bounds) -> (Sp
     }
 }
 
-/// How far outside a velocity bound counts as on it.
-fn slack(state: State, rest: f64, high: f64) -> f64 {
-    ON_LIMIT * high.min(state.v.abs().max(rest.abs()))
+/// How far outside a velocity `bound` counts as on it.
+fn slack(state: State, rest: f64, bound: f64) -> f64 {
+    ON_LIMIT * bound.min(state.v.abs().max(rest.abs()))
+}
+
+/// The magnitude of a lower velocity bound; of one at 0 that of the other.
+fn depth(low: f64, high: f64) -> f64 {
+    if low < 0.0 { -low } else { high }
 }
 
 /// Pushes down until the arrest peaks at `high`; at most until the acceleration is zero, when there is

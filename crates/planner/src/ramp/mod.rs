@@ -15,7 +15,7 @@ pub use excess::{Excess, Peaks};
 
 use crate::kernel::ON_LIMIT;
 use crate::turns::{split, two_product, two_sum};
-use crate::{Field, Limits, Order, PlanError, Setpoint};
+use crate::{DirectedLimits, Field, Limits, Order, PlanError, Setpoint};
 use path::Path;
 use solve::{Course, Ramp, Ramps, heading, unmoved};
 
@@ -100,20 +100,35 @@ impl RampPlan {
         before: &Limits,
         cycle: f64,
     ) -> Result<Self, PlanError> {
+        Self::by_direction(start, velocity, &(*limits).into(), &(*before).into(), cycle)
+    }
+
+    /// As [`RampPlan::new`], with a velocity bound for each direction.
+    ///
+    /// # Errors
+    /// As [`RampPlan::new`].
+    pub fn by_direction(
+        start: &Setpoint,
+        velocity: f64,
+        limits: &DirectedLimits,
+        before: &DirectedLimits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
         check(start, velocity, limits, before, cycle)?;
-        let acting = |limits: &Limits| limits.acting_for(start, velocity, 0.0, cycle);
+        let acting = |limits: &DirectedLimits| limits.acting_for(start, velocity, 0.0, cycle);
         let (given, wider) = (limits, acting(&limits.or_larger(before)));
-        let limits = &acting(limits);
+        let directed = &acting(limits);
+        let limits = &directed.limits;
         let too_long = PlanError::TooLong {
             field: Field::EndVelocity,
             value: velocity,
         };
-        if velocity.abs() > limits.velocity {
+        if directed.outside(velocity) > 0.0 {
             return Err(too_long);
         }
         let order = limits.order();
-        let heading = heading(start, velocity, limits.velocity, order);
-        let ramps = Ramps::new(limits, &wider);
+        let heading = heading(start, velocity, directed.lower_velocity(), order);
+        let ramps = Ramps::new(directed, &wider);
         let proposed = |course| {
             let Ramp {
                 spans, steps, viable, ..
@@ -133,7 +148,7 @@ impl RampPlan {
             let excess = if viable && (course == Course::Kept || velocity != 0.0) {
                 None
             } else {
-                excess::excess(&path, velocity, Some(heading), limits)
+                excess::excess(&path, velocity, Some(heading), directed)
             };
             (path, steps, excess, fits, arrives)
         };
@@ -149,7 +164,7 @@ impl RampPlan {
                 // A stop that has to turn back turns once: to turn back less far it would turn twice (R11a).
                 let turns = velocity == 0.0
                     && kept.2.is_some()
-                    && !kept.0.keeps_side(heading, unmoved(limits.velocity));
+                    && !kept.0.keeps_side(heading, unmoved(directed.lower_velocity()));
                 let once = turns.then(|| proposed(Course::Free));
                 once.filter(|(path, _, _, fits, arrives)| {
                     *fits && *arrives && path.duration() < kept.0.duration()
@@ -169,7 +184,7 @@ impl RampPlan {
             excess,
             path,
         };
-        plan.excess = plan.excess_over(given);
+        plan.excess = plan.excess_beyond(given);
         Ok(plan)
     }
 
@@ -185,21 +200,37 @@ impl RampPlan {
         before: &Limits,
         cycle: f64,
     ) -> Result<Self, PlanError> {
-        let plan = Self::new(start, velocity, limits, before, cycle)?;
+        Self::keeping_velocities(start, velocity, &(*limits).into(), &(*before).into(), cycle)
+    }
+
+    /// As [`RampPlan::keeping_velocity`], with a velocity bound for each direction.
+    ///
+    /// # Errors
+    /// As [`RampPlan::new`].
+    pub fn keeping_velocities(
+        start: &Setpoint,
+        velocity: f64,
+        limits: &DirectedLimits,
+        before: &DirectedLimits,
+        cycle: f64,
+    ) -> Result<Self, PlanError> {
+        let plan = Self::by_direction(start, velocity, limits, before, cycle)?;
         let wider = limits.or_larger(before);
-        let kept = Limits {
-            velocity: limits.velocity,
-            ..wider
+        let kept = DirectedLimits {
+            limits: Limits {
+                velocity: limits.limits.velocity,
+                ..wider.limits
+            },
+            ..*limits
         };
-        let leaves =
-            |plan: &Self| plan.excess.is_some() && plan.peaks().velocity > wider.velocity * (1.0 + ON_LIMIT);
+        let leaves = |plan: &Self| plan.excess.is_some() && excess::leaves(&plan.path, velocity, &wider);
         if kept == *limits || !leaves(&plan) {
             return Ok(plan);
         }
         // Too late for the lower rates: the ones before hold to the end if that keeps their velocity.
-        match Self::new(start, velocity, &kept, before, cycle) {
+        match Self::by_direction(start, velocity, &kept, before, cycle) {
             Ok(other) if !leaves(&other) => {
-                let heading = heading(start, velocity, limits.velocity, limits.order());
+                let heading = heading(start, velocity, limits.lower_velocity(), limits.limits.order());
                 let excess = excess::excess(&other.path, velocity, Some(heading), limits);
                 Ok(Self { excess, ..other })
             }
@@ -316,9 +347,13 @@ impl RampPlan {
     /// The path is looked at again: how much the limits are higher tells nothing where the velocity changes its
     /// sign and another bound holds on each side. Bounded by 20 pieces with at most two roots each.
     pub fn excess_over(&self, limits: &Limits) -> Option<Excess> {
+        self.excess_beyond(&(*limits).into())
+    }
+
+    fn excess_beyond(&self, limits: &DirectedLimits) -> Option<Excess> {
         self.excess?;
         let acting = limits.acting_for(&self.start, self.goal, 0.0, self.cycle);
-        let heading = heading(&self.start, self.goal, acting.velocity, self.path.order());
+        let heading = heading(&self.start, self.goal, acting.lower_velocity(), self.path.order());
         excess::excess(&self.path, self.goal, Some(heading), limits)
     }
 
@@ -363,6 +398,7 @@ impl RampPlan {
 /// magnitude at most that of `limits`.
 pub(crate) fn coasting(start: &Setpoint, limits: &Limits, cycle: f64) -> f64 {
     let acting = limits.acting_for(start, start.velocity, 0.0, cycle);
+    let acting = acting.into();
     let velocity = Ramps::new(&acting, &acting).coasting(start);
     velocity.max(-limits.velocity).min(limits.velocity)
 }
@@ -370,10 +406,11 @@ pub(crate) fn coasting(start: &Setpoint, limits: &Limits, cycle: f64) -> f64 {
 pub(crate) fn check(
     start: &Setpoint,
     velocity: f64,
-    limits: &Limits,
-    before: &Limits,
+    directed: &DirectedLimits,
+    before: &DirectedLimits,
     cycle: f64,
 ) -> Result<(), PlanError> {
+    let limits = &directed.limits;
     let invalid = |field, value| Err(PlanError::InvalidInput { field, value });
     if !(cycle > 0.0 && cycle.is_finite()) {
         return invalid(Field::Cycle, cycle);
@@ -390,9 +427,9 @@ pub(crate) fn check(
     if let Some(&(field, value)) = finite.iter().find(|(_, value)| !value.is_finite()) {
         return invalid(field, value);
     }
-    limits.check()?;
+    directed.check()?;
     before.check()?;
-    if velocity.abs() > limits.velocity {
+    if directed.outside(velocity) > 0.0 {
         return invalid(Field::EndVelocity, velocity);
     }
     Ok(())

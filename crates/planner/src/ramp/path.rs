@@ -196,11 +196,16 @@ impl<const N: usize> Path<N> {
     /// Makes the end exactly `velocity`, so that the last piece runs into it from one side, without a
     /// rounding error that would pass it.
     pub(crate) fn pin(&mut self, velocity: f64) {
+        self.pin_both(velocity, 0.0);
+    }
+
+    /// As [`Path::pin`], with an `acceleration` at the end; it plays no part at order 2.
+    pub(crate) fn pin_both(&mut self, velocity: f64, acceleration: f64) {
         let order = self.order;
         if let Some(last) = self.last_mut() {
             last.state.velocity = velocity;
             if order >= Order::Three {
-                last.state.acceleration = 0.0;
+                last.state.acceleration = acceleration;
             }
             if order == Order::Four {
                 last.state.jerk = 0.0;

@@ -2,7 +2,7 @@
 //!
 //! Everything is in the kernel's units and mirrored so that the velocity is not negative.
 
-use crate::kernel::{ON_LIMIT, Spans, falling_root};
+use crate::kernel::{ON_LIMIT, Sides, Spans, falling_root};
 
 /// Velocity and acceleration in the kernel's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,8 +43,9 @@ impl Slope {
     }
 
     /// The spans that bring acceleration and velocity inside, and the root steps taken (R19); none if they
-    /// are inside.
-    pub(super) fn lead_in(self, goal: f64, limit: f64, bounds: &Box3) -> (Spans<3>, u32) {
+    /// are inside. The velocity has to be in `range`.
+    pub(super) fn lead_in(self, goal: f64, range: Sides, bounds: &Box3) -> (Spans<3>, u32) {
+        let limit = range.plus;
         let Box3 {
             down,
             brake_before: brake,
@@ -54,7 +55,7 @@ impl Slope {
         let is_lowered = jerk > 1.0 || brake > down;
         // Bound to come through zero and out on the other side; until it is through, what brings it back is an
         // acceleration.
-        if jerk > 1.0 && self.rest() < -limit * (1.0 + ON_LIMIT) {
+        if jerk > 1.0 && self.rest() < -range.minus * (1.0 + ON_LIMIT) {
             let turned = Box3 {
                 up: down,
                 down: bounds.up,
@@ -65,7 +66,7 @@ impl Slope {
                 v: -self.v,
                 a: -self.a,
             };
-            let (spans, steps) = mirrored.lead_in(-goal, limit, &turned);
+            let (spans, steps) = mirrored.lead_in(-goal, range.mirrored(), &turned);
             return (spans.mirrored(), steps);
         }
         if !is_lowered || self.v.max(self.rest()) <= limit * (1.0 + ON_LIMIT) {

@@ -4,7 +4,7 @@ use super::inside::{self, Box4, LEAD_SPANS, State};
 use super::slope::{Box3, Slope};
 use super::turn::TURN_SPANS;
 use crate::kernel::{Bounds, ON_LIMIT, Profile, Scale, Sides, Spans, second, third};
-use crate::{Limits, Order, Setpoint};
+use crate::{DirectedLimits, Order, Setpoint};
 
 /// Most spans of a ramp: getting inside the limits, then a ramp that may turn.
 pub(crate) const RAMP_SPANS: usize = LEAD_SPANS + TURN_SPANS;
@@ -23,7 +23,7 @@ pub(crate) enum Course {
 pub(crate) struct Ramps {
     order: Order,
     scale: Scale,
-    velocity: f64,
+    velocity: Sides,
     acceleration: f64,
     deceleration: f64,
     jerk: f64,
@@ -53,7 +53,8 @@ pub(crate) struct Ramp {
 
 impl Ramps {
     /// Ramps under `limits`; until a start state is inside them under `wider`, the larger of old and new.
-    pub(crate) fn new(limits: &Limits, wider: &Limits) -> Self {
+    pub(crate) fn new(directed: &DirectedLimits, wider: &DirectedLimits) -> Self {
+        let (limits, wider) = (&directed.limits, &wider.limits);
         let order = limits.order();
         let fastest = limits.acceleration.max(limits.deceleration);
         let (scale, input) = match order {
@@ -65,7 +66,10 @@ impl Ramps {
         Self {
             order,
             scale,
-            velocity: inward(limits.velocity, 1),
+            velocity: Sides {
+                minus: inward(directed.negative, 1),
+                plus: inward(directed.positive, 1),
+            },
             acceleration: inward(limits.acceleration, 2),
             deceleration: inward(limits.deceleration, 2),
             jerk: inward(limits.jerk, 3),
@@ -88,6 +92,58 @@ impl Ramps {
         }
     }
 
+    /// The same for a way back in time: what speeds a motion up slows it down there.
+    pub(crate) const fn backwards(&self) -> Self {
+        Self {
+            acceleration: self.deceleration,
+            deceleration: self.acceleration,
+            before: Before {
+                deceleration: self.acceleration,
+                jerk: self.jerk,
+                input: 1.0,
+            },
+            ..*self
+        }
+    }
+
+    /// Ramps of one order less, in the same units, in which the velocity takes the place of the position: those of the
+    /// acceleration, within `range`.
+    pub(crate) const fn of_velocity(&self, range: Sides) -> Self {
+        let (order, rate, jerk) = match self.order {
+            Order::Four => (Order::Three, self.jerk, 1.0),
+            Order::Three | Order::Two => (Order::Two, 1.0, f64::INFINITY),
+        };
+        Self {
+            order,
+            velocity: range,
+            acceleration: rate,
+            deceleration: rate,
+            jerk,
+            before: Before {
+                deceleration: rate,
+                jerk,
+                input: 1.0,
+            },
+            ..*self
+        }
+    }
+
+    /// The bounds of an acceleration between the velocities `from` and `to`: where they differ in sign the lower one
+    /// holds both ways, but for the acceleration `end` itself.
+    pub(crate) fn accelerations(&self, from: f64, to: f64, end: f64) -> Sides {
+        let (up, down) = if from.min(to) >= 0.0 {
+            (self.acceleration, self.deceleration)
+        } else if from.max(to) <= 0.0 {
+            (self.deceleration, self.acceleration)
+        } else {
+            (self.lower(), self.lower())
+        };
+        Sides {
+            minus: down.max(-end),
+            plus: up.max(end),
+        }
+    }
+
     /// The order of the ramps.
     pub(crate) const fn order(&self) -> Order {
         self.order
@@ -98,9 +154,18 @@ impl Ramps {
         &self.scale
     }
 
-    /// The velocity bound in the kernel's units.
-    pub(crate) const fn velocity(&self) -> f64 {
-        self.velocity
+    /// The bound of a velocity with the sign of `side`, in the kernel's units.
+    pub(crate) const fn velocity(&self, side: f64) -> f64 {
+        if side < 0.0 {
+            self.velocity.minus
+        } else {
+            self.velocity.plus
+        }
+    }
+
+    /// The lower one of both velocity bounds in the kernel's units.
+    pub(crate) const fn lower_velocity(&self) -> f64 {
+        self.velocity.lower()
     }
 
     /// The acceleration bound in the kernel's units.
@@ -149,10 +214,15 @@ impl Ramps {
             j: heading * start.jerk,
         };
         let goal = heading * goal;
+        let range = if heading < 0.0 {
+            self.velocity.mirrored()
+        } else {
+            self.velocity
+        };
         let mut ramp = match self.order {
-            Order::Two => self.second_order(state.v, goal, course),
-            Order::Three => self.third_order(state, goal, course),
-            Order::Four => self.fourth_order(state, goal, course),
+            Order::Two => self.second_order(state.v, goal, range.plus, course),
+            Order::Three => self.third_order(state, goal, range, course),
+            Order::Four => self.fourth_order(state, goal, range, course),
         };
         if heading < 0.0 {
             ramp.spans = ramp.spans.mirrored();
@@ -170,13 +240,15 @@ impl Ramps {
             ..
         } = start;
         let bounds = Bounds {
-            v: Sides::both(self.velocity),
+            v: self.velocity,
             a: Sides::both(self.acceleration),
         };
+        let coming = |v: f64| v.abs() <= self.velocity(v) * (1.0 + ON_LIMIT);
         let fits = self.order == Order::Three
             && self.acceleration == self.deceleration
             && a.abs() <= self.acceleration * (1.0 + ON_LIMIT)
-            && v.abs().max(Slope { v, a }.rest().abs()) <= self.velocity * (1.0 + ON_LIMIT);
+            && coming(v)
+            && coming(Slope { v, a }.rest());
         fits.then(|| third(p, v, a, target, &bounds))
     }
 
@@ -228,10 +300,9 @@ impl Ramps {
     }
 
     /// Order 2: one straight line, or two if the velocity has to come inside its limit first (R12).
-    fn second_order(&self, velocity: f64, goal: f64, course: Course) -> Ramp {
+    fn second_order(&self, velocity: f64, goal: f64, limit: f64, course: Course) -> Ramp {
         let mut spans = Spans::new();
         let sides = self.sides(goal, false);
-        let limit = self.velocity;
         let viable = velocity <= limit && velocity >= 0.0;
         let mut velocity = velocity;
         if velocity > limit * (1.0 + ON_LIMIT) {
@@ -257,7 +328,7 @@ impl Ramps {
     }
 
     /// Order 3: `(velocity, acceleration)` to `(goal, 0)` (R3).
-    fn third_order(&self, start: State, goal: f64, course: Course) -> Ramp {
+    fn third_order(&self, start: State, goal: f64, range: Sides, course: Course) -> Ramp {
         let start = Slope {
             v: start.v,
             a: start.a,
@@ -268,8 +339,8 @@ impl Ramps {
             brake_before: self.before.deceleration,
             jerk_before: self.before.input,
         };
-        let (lead, mut steps) = start.lead_in(goal, self.velocity, &bounds);
-        let viable = lead.is_empty() && goal >= 0.0 && start.is_viable(self.velocity);
+        let (lead, mut steps) = start.lead_in(goal, range, &bounds);
+        let viable = lead.is_empty() && goal >= 0.0 && start.is_viable(range.plus);
         let state = start.after_all(&lead);
         let dips = goal >= 0.0 && state.rest() < 0.0;
         let mut spans = Spans::new();
@@ -290,7 +361,7 @@ impl Ramps {
     }
 
     /// Order 4: `(velocity, acceleration, jerk)` to `(goal, 0, 0)` (R4 to R10).
-    fn fourth_order(&self, start: State, goal: f64, course: Course) -> Ramp {
+    fn fourth_order(&self, start: State, goal: f64, range: Sides, course: Course) -> Ramp {
         let may_turn = goal < 0.0 || course == Course::Free;
         let bounds = Box4 {
             a: Sides {
@@ -306,8 +377,8 @@ impl Ramps {
             v: self.sides(goal, dips),
             a: Sides::both(self.jerk),
         };
-        let low = if may_turn { -self.velocity } else { 0.0 };
-        let lead = inside::lead_in(start, goal, (low, self.velocity), &bounds, &own(true));
+        let low = if may_turn { -range.minus } else { 0.0 };
+        let lead = inside::lead_in(start, goal, (low, range), &bounds, &own(true));
         let dips = goal >= 0.0 && (lead.state.v < 0.0 || lead.rest < 0.0);
         let State { v, a, j } = lead.state;
         let mut spans = Spans::new();

@@ -2,6 +2,8 @@
 
 mod blend;
 mod chains;
+mod directions;
+mod ends;
 mod last;
 mod scans;
 mod shape;

@@ -1,0 +1,370 @@
+//! Moves that end with an acceleration.
+//!
+//! What stands here: the candidates. What verifies them is in [`ladder`](super::ladder). A way back in time is a way: seen
+//! from its end, and mirrored, a move begins in the end state with its acceleration turned round, and acceleration and
+//! deceleration change places. So the ramps that begin in any state serve for both ends. Equations (O16) to (O20) are in
+//! `docs/planner-online.md`. Everything is in the kernel's units, with positions counted from the start.
+
+use core::cell::Cell;
+
+use super::MAX_PIECES;
+use super::search::{CANDIDATE_SPANS, Candidate, PARTS, Search, follow, steady};
+use crate::kernel::{NOISE, ON_LIMIT, Point, Sides, Spans, zero};
+use crate::ramp::excess;
+use crate::ramp::path::{Path, Way};
+use crate::ramp::solve::{Course, RAMP_SPANS, Ramps, heading};
+use crate::{DirectedLimits, Limits, Order, Setpoint};
+
+/// Most spans of a candidate: a push, a cruise, and a last ramp that is a move of one order less.
+pub(super) const END_SPANS: usize = RAMP_SPANS + 1 + CANDIDATE_SPANS;
+
+/// Changes of sign that are looked into for one push: the end of the last ramp may jump, where there is none to be found.
+const CROSSINGS: u32 = 4;
+
+/// How far inside what is kept the nearest end acceleration stays, relative to it: on the border itself a limit would be kept
+/// to rounding only.
+const NEAREST: f64 = 1e-7;
+
+/// How often a velocity is halved on the last rung, and an end acceleration that is refused.
+const HALVINGS: u32 = 64;
+
+/// Spans of a whole move.
+pub(super) type Wide = Spans<END_SPANS>;
+
+/// A move to find.
+pub(super) struct Ends<'a> {
+    ramps: &'a Ramps,
+    /// The ramps of the way back.
+    back: Ramps,
+    target: f64,
+    velocity: f64,
+    acceleration: f64,
+    /// The velocity a push goes for in each direction.
+    top: Sides,
+    /// What the positions of start and target may be off by.
+    resolution: f64,
+    solves: Cell<u32>,
+    steps: Cell<u32>,
+}
+
+/// The last ramp of a move, from some state.
+struct Last {
+    spans: Candidate,
+    /// By how much it ends beyond the target.
+    beyond: f64,
+    /// What of that may be rounding.
+    noise: f64,
+}
+
+/// Whether a motion inside `limits` can come to the velocity and acceleration of `end`, without jerk, and go on from there.
+pub(super) fn is_kept(end: &Setpoint, limits: &DirectedLimits) -> bool {
+    let before = Setpoint {
+        acceleration: -end.acceleration,
+        ..*end
+    };
+    let Limits {
+        acceleration,
+        deceleration,
+        ..
+    } = limits.limits;
+    let back = DirectedLimits {
+        limits: Limits {
+            acceleration: deceleration,
+            deceleration: acceleration,
+            ..limits.limits
+        },
+        ..*limits
+    };
+    goes_on(end, limits) && goes_on(&before, &back)
+}
+
+/// Whether some ramp from a state keeps `limits`: the arrest, a stop, or one to a bound.
+fn goes_on(state: &Setpoint, limits: &DirectedLimits) -> bool {
+    let ramps = Ramps::new(limits, limits);
+    let start = ramps.state_inward(state);
+    let (low, high) = (-ramps.velocity(-1.0), ramps.velocity(1.0));
+    let arrested = ramps.arrested(&start).max(low).min(high);
+    [arrested, 0.0, low, high].into_iter().any(|goal| {
+        let heading = heading(&start, goal, ramps.lower_velocity(), ramps.order());
+        let ramp = ramps.ramp(&start, goal, heading, Course::Free);
+        let spans = ramps.scale().outward(&ramp.spans);
+        let path =
+            Path::<MAX_PIECES>::follow(ramps.order(), state, limits.limits.lower_acceleration(), spans);
+        excess::excess(&path, 0.0, None, limits).is_none()
+    })
+}
+
+/// The end acceleration nearest to that of `end` with which it is kept: its bound, or found by halving.
+pub(super) fn nearest_kept(end: &Setpoint, limits: &DirectedLimits) -> f64 {
+    let with = |acceleration: f64| Setpoint { acceleration, ..*end };
+    let Limits {
+        acceleration,
+        deceleration,
+        ..
+    } = limits.limits;
+    let bound = if end.velocity == 0.0 {
+        limits.limits.lower_acceleration()
+    } else if end.velocity * end.acceleration > 0.0 {
+        acceleration
+    } else {
+        deceleration
+    };
+    let most = end.acceleration.max(-bound).min(bound);
+    if is_kept(&with(most), limits) {
+        return most;
+    }
+    // A little inside, so that no rounding takes it out again.
+    let inside = DirectedLimits {
+        positive: limits.positive * (1.0 - ON_LIMIT),
+        negative: limits.negative * (1.0 - ON_LIMIT),
+        ..*limits
+    };
+    let (mut low, mut high) = (0.0, most);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if is_kept(&with(middle), &inside) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low * (1.0 - NEAREST)
+}
+
+impl<'a> Ends<'a> {
+    /// A search for moves of `target` that end with `velocity` and `acceleration`.
+    pub(super) const fn new(
+        ramps: &'a Ramps,
+        target: f64,
+        (velocity, acceleration): (f64, f64),
+        top: Sides,
+        resolution: f64,
+    ) -> Self {
+        Self {
+            ramps,
+            back: ramps.backwards(),
+            target,
+            velocity,
+            acceleration,
+            top,
+            resolution,
+            solves: Cell::new(0),
+            steps: Cell::new(0),
+        }
+    }
+
+    /// Ramps solved so far.
+    pub(super) const fn solves(&self) -> u32 {
+        self.solves.get()
+    }
+
+    /// Most steps one root took.
+    pub(super) const fn steps(&self) -> u32 {
+        self.steps.get()
+    }
+
+    /// The end state as the start of the way back (O16).
+    fn end(&self) -> Setpoint {
+        Setpoint {
+            velocity: self.velocity,
+            acceleration: -self.acceleration,
+            ..Setpoint::default()
+        }
+    }
+
+    /// The spans of a way back, forwards.
+    fn turned<const N: usize>(&self, spans: &Spans<N>) -> Spans<N> {
+        let is_odd = self.ramps.order() == Order::Three;
+        spans.backwards(if is_odd { 1.0 } else { -1.0 })
+    }
+
+    fn counted(&self, search: &Search<'_>) {
+        self.solves.set(self.solves.get().saturating_add(search.solves()));
+        self.steps.set(self.steps.get().max(search.steps()));
+    }
+
+    fn zero(&self, low: Point, high: Point, function: impl Fn(f64) -> Point) -> Point {
+        let (point, steps) = zero(low, high, function);
+        self.steps.set(self.steps.get().max(steps));
+        point
+    }
+
+    fn ramp(&self, ramps: &Ramps, start: &Setpoint, velocity: f64) -> Spans<RAMP_SPANS> {
+        self.solves.set(self.solves.get().saturating_add(1));
+        let heading = heading(start, velocity, ramps.lower_velocity(), ramps.order());
+        ramps.ramp(start, velocity, heading, Course::Free).spans
+    }
+
+    /// The whole move from a `start` of constant velocity: seen from its end, one that ends with that velocity (O17).
+    pub(super) fn of_steady_start(&self, start: &Setpoint) -> Candidate {
+        let search = Search::new(
+            &self.back,
+            self.target - start.position,
+            start.velocity,
+            self.top,
+            self.resolution,
+        );
+        let spans = search.push_then_stop(&self.end());
+        self.counted(&search);
+        self.turned(&spans)
+    }
+
+    /// The last ramp: a move of one order less, of the velocity to its end, which ends with the end acceleration (O18).
+    fn last(&self, start: &Setpoint) -> Last {
+        let range = self
+            .ramps
+            .accelerations(start.velocity, self.velocity, self.acceleration);
+        let ramps = self.ramps.of_velocity(range);
+        let resolution = NOISE * (start.velocity.abs() + self.velocity.abs());
+        let search = Search::new(&ramps, self.velocity, self.acceleration, range, resolution);
+        let spans = search.push_then_stop(&Setpoint {
+            position: start.velocity,
+            velocity: start.acceleration,
+            acceleration: start.jerk,
+            ..Setpoint::default()
+        });
+        self.counted(&search);
+        let end = follow(self.ramps, start, &spans);
+        let added_up = start.position.abs() + self.target.abs() + spans.duration() * start.velocity.abs();
+        Last {
+            beyond: end.position - self.target,
+            noise: NOISE * added_up,
+            spans,
+        }
+    }
+
+    /// Shows `see` the moves that push towards the bound of one `side`, then follow the last ramp to the target (O19).
+    pub(super) fn pushes(&self, start: &Setpoint, side: f64, mut see: impl FnMut(&Wide)) {
+        let top = side * if side < 0.0 { self.top.minus } else { self.top.plus };
+        let mut spans = Wide::new();
+        let ahead = |state: &Setpoint, at: f64| {
+            let last = self.last(state);
+            Point {
+                at,
+                value: side * last.beyond,
+                noise: last.noise,
+            }
+        };
+        let mut from = ahead(start, 0.0);
+        if from.value.abs() <= from.noise.max(self.resolution) {
+            spans.extend(&self.last(start).spans);
+            see(&spans);
+            return;
+        }
+        let push = self.ramp(self.ramps, start, top);
+        let mut way = Way::new(self.ramps.order(), start, self.ramps.lower());
+        let mut crossings = 0;
+        for span in push.split(PARTS) {
+            way.begin(span.input);
+            let after = |time: f64| {
+                let mut way = way;
+                way.go(time);
+                way.state
+            };
+            let to = ahead(&after(span.duration), span.duration);
+            if (from.value < 0.0) != (to.value < 0.0) && crossings < CROSSINGS {
+                crossings += 1;
+                let switch = self.zero(Point { at: 0.0, ..from }, to, |time| ahead(&after(time), time));
+                let mut whole = spans;
+                whole.push(switch.at, span.input);
+                whole.extend(&self.last(&after(switch.at)).spans);
+                see(&whole);
+            }
+            spans.push(span.duration, span.input);
+            way.go(span.duration);
+            from = to;
+        }
+        let state = steady(&way.state, top);
+        let last = self.last(&state);
+        let left = -side * last.beyond;
+        if left >= 0.0 {
+            spans.push(left / top.abs(), 0.0);
+            spans.extend(&last.spans);
+            see(&spans);
+        }
+    }
+
+    /// A ramp from `start` to a velocity, a cruise if that is a bound, and from it the way back from the end, turned (O20).
+    ///
+    /// The way of both ramps together changes with the velocity without a jump, so there is always one.
+    pub(super) fn two_phase(&self, start: &Setpoint) -> Wide {
+        let end = self.end();
+        let both = |velocity: f64| {
+            (
+                self.ramp(self.ramps, start, velocity),
+                self.ramp(&self.back, &end, velocity),
+            )
+        };
+        let beyond = |velocity: f64| {
+            let (first, last) = both(velocity);
+            let way = follow(self.ramps, start, &first).position + follow(&self.back, &end, &last).position;
+            let duration = first.duration() + last.duration();
+            let added_up = self.target.abs() + duration * velocity.abs();
+            Point {
+                at: velocity,
+                value: way - self.target,
+                noise: 0.25 * NOISE * added_up,
+            }
+        };
+        let (low, high) = (beyond(-self.top.minus), beyond(self.top.plus));
+        let peak = if high.value <= 0.0 {
+            high
+        } else if low.value >= 0.0 {
+            low
+        } else {
+            self.zero(low, high, beyond)
+        };
+        let is_bound = peak.at == high.at || peak.at == low.at;
+        let (first, last) = both(peak.at);
+        let mut spans = Wide::new();
+        spans.extend(&first);
+        if is_bound {
+            spans.push(peak.value.abs() / peak.at.abs(), 0.0);
+        }
+        spans.extend(&self.turned(&last));
+        spans
+    }
+
+    /// Acceleration and jerk to zero as soon as can be, then as from a constant velocity.
+    pub(super) fn arrest(&self, start: &Setpoint) -> Wide {
+        let (low, high) = (-self.ramps.velocity(-1.0), self.ramps.velocity(1.0));
+        let velocity = self.ramps.arrested(start).max(low).min(high);
+        let ramp = self.ramp(self.ramps, start, velocity);
+        let state = steady(&follow(self.ramps, start, &ramp), velocity);
+        let mut spans = Wide::new();
+        spans.extend(&ramp);
+        spans.extend(&self.of_steady_start(&state));
+        spans
+    }
+
+    /// To rest, and to the end by way of a velocity that is held for as long as it takes, found without a root as
+    /// (O15) is.
+    pub(super) fn rest_then_run_up(&self, start: &Setpoint) -> Wide {
+        let end = self.end();
+        let brake = self.ramp(self.ramps, start, 0.0);
+        let rest = steady(&follow(self.ramps, start, &brake), 0.0);
+        let direct = self.ramp(&self.back, &end, 0.0);
+        let ahead = self.target - rest.position - follow(&self.back, &end, &direct).position;
+        let side = if ahead < 0.0 { -1.0 } else { 1.0 };
+        let even = self.ramps.even();
+        let mut held = if side < 0.0 { self.top.minus } else { self.top.plus };
+        let mut spans = Wide::new();
+        spans.extend(&brake);
+        for _ in 0..HALVINGS {
+            let first = self.ramp(&even, &rest, side * held);
+            let last = self.ramp(&self.back, &end, side * held);
+            let reached = follow(&even, &rest, &first).position + follow(&self.back, &end, &last).position;
+            let left = side * (self.target - reached);
+            if left >= 0.0 {
+                spans.extend(&first);
+                spans.push(left / held, 0.0);
+                spans.extend(&self.turned(&last));
+                return spans;
+            }
+            held *= 0.5;
+        }
+        // What is left is rounding.
+        spans.extend(&self.turned(&direct));
+        spans
+    }
+}
