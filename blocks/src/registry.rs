@@ -52,6 +52,7 @@ macro_rules! for_every_block {
             multi_axis::mc_gear_in_pos::McGearInPos
             multi_axis::mc_phasing_absolute::McPhasingAbsolute
             multi_axis::mc_phasing_relative::McPhasingRelative
+            multi_axis::mc_combine_axes::McCombineAxes
             standard::r_trig::RTrig
             standard::f_trig::FTrig
             standard::sr::Sr
@@ -175,6 +176,7 @@ mod tests {
                     ("Master", "AXIS_REF")
                 }
                 "MC_GearOut" => ("Slave", "AXIS_REF"),
+                "MC_CombineAxes" => ("Master1", "AXIS_REF"),
                 _ => ("Axis", "AXIS_REF"),
             };
             assert_eq!(first, Some(expected), "{}", info.name);
@@ -182,8 +184,12 @@ mod tests {
                 .filter(|pin| pin.ty.iec_name() == "AXIS_REF")
                 .map(|pin| pin.name)
                 .collect();
-            let slave: &[&str] = if expected.0 == "Master" { &["Slave"] } else { &[] };
-            assert_eq!(others, slave, "{}", info.name);
+            let expected: &[&str] = match expected.0 {
+                "Master" => &["Slave"],
+                "Master1" => &["Master2", "Slave"],
+                _ => &[],
+            };
+            assert_eq!(others, expected, "{}", info.name);
             for pin in info.pins().filter(|pin| !pin.unit.is_empty()) {
                 assert_eq!(pin.ty.iec_name(), "LREAL", "{}.{}", info.name, pin.name);
             }
@@ -198,7 +204,7 @@ mod tests {
                 "MC_BUFFER_MODE" => (0..=5).collect(),
                 "MC_DIRECTION" => (0..=4).collect(),
                 "MC_SOURCE" | "MC_SYNC_MODE" => (0..=2).collect(),
-                "MC_EXECUTION_MODE" => (0..=1).collect(),
+                "MC_EXECUTION_MODE" | "MC_COMBINE_MODE" => (0..=1).collect(),
                 "MC_TRIGGER_REF" => (0..=3).collect(),
                 _ => panic!("state the numbers of {name} here"),
             }

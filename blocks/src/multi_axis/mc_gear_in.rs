@@ -3,7 +3,8 @@
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
 use standstill_axis::{
-    AxisId, BufferMode, Command, Dynamics, ErrorId, Master, Planner, Raw, Request, ValueSource, couple,
+    AxisId, BufferMode, Command, Dynamics, ErrorId, Followed, Master, Planner, Raw, Request, ValueSource,
+    couple,
 };
 use standstill_fb::{Block, Context, Group, Move, UpdateCore, pins};
 
@@ -23,7 +24,7 @@ pins! {
         RatioNumerator => ratio_numerator: i16 = 0, "";
         /// Denominator of the ratio, above 0.
         RatioDenominator => ratio_denominator: u16 = 0, "";
-        /// mcSetValue; other values of the master are not followed in this version.
+        /// mcSetValue, or mcActualValue for what the drive of the master tells, filtered.
         MasterValueSource => master_value_source: Raw<ValueSource> = Raw::new(1), "";
         /// Rate while the speed grows, until in gear; 0 takes the axis default.
         Acceleration => acceleration: f64 = 0.0, "u/s^2";
@@ -83,13 +84,15 @@ impl Block for McGearIn {
         let master = context.axes.get(inputs.master.index());
         let turn = master.and_then(|master| master.config().modulo);
         let values = || Command::GearIn {
-            master: Master {
-                axis: inputs.master,
-                turn,
+            followed: Followed {
+                master: Master {
+                    axis: inputs.master,
+                    turn,
+                },
+                numerator: inputs.ratio_numerator,
+                denominator: inputs.ratio_denominator.into(),
+                source: inputs.master_value_source,
             },
-            numerator: inputs.ratio_numerator,
-            denominator: inputs.ratio_denominator,
-            source: inputs.master_value_source,
             sync: None,
             dynamics: Dynamics {
                 velocity: 0.0,

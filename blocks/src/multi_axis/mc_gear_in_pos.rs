@@ -3,8 +3,8 @@
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
 use standstill_axis::{
-    AxisId, BufferMode, Command, Dynamics, ErrorId, Master, Planner, Raw, Request, SyncMode, SyncPoint,
-    ValueSource, couple,
+    AxisId, BufferMode, Command, Dynamics, ErrorId, Followed, Master, Planner, Raw, Request, SyncMode,
+    SyncPoint, ValueSource, couple,
 };
 use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
 
@@ -22,7 +22,7 @@ pins! {
         RatioNumerator => ratio_numerator: i16 = 0, "";
         /// Denominator of the ratio, above 0.
         RatioDenominator => ratio_denominator: u16 = 0, "";
-        /// mcSetValue; other values of the master are not followed in this version.
+        /// mcSetValue, or mcActualValue for what the drive of the master tells, filtered.
         MasterValueSource => master_value_source: Raw<ValueSource> = Raw::new(1), "";
         /// Place of the master at the sync point.
         MasterSyncPosition => master_sync_position: f64 = 0.0, "u";
@@ -92,13 +92,15 @@ impl Block for McGearInPos {
         let phase = self.core.scan(inputs.execute, context, |context, replaces| {
             let request = Request {
                 command: Command::GearIn {
-                    master: Master {
-                        axis: inputs.master,
-                        turn,
+                    followed: Followed {
+                        master: Master {
+                            axis: inputs.master,
+                            turn,
+                        },
+                        numerator: inputs.ratio_numerator,
+                        denominator: inputs.ratio_denominator.into(),
+                        source: inputs.master_value_source,
                     },
-                    numerator: inputs.ratio_numerator,
-                    denominator: inputs.ratio_denominator,
-                    source: inputs.master_value_source,
                     sync: Some(SyncPoint {
                         master: inputs.master_sync_position,
                         slave: inputs.slave_sync_position,

@@ -89,7 +89,7 @@ impl Block for McPhasingAbsolute {
         });
         let slave = context.axes.get(inputs.slave.index());
         if let Some(slave) = slave.filter(|_| phase.is_busy() || self.was_busy) {
-            self.shift = slave.phase();
+            self.shift = slave.phase_of(inputs.master);
         }
         self.was_busy = phase.is_busy();
         Outputs {

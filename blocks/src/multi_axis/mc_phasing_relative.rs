@@ -74,7 +74,7 @@ impl Block for McPhasingRelative {
         let start = &mut self.start;
         let phase = self.core.scan(inputs.execute, context, |context, _| {
             let (slave, scope) = context.axis(inputs.slave)?;
-            *start = slave.phase();
+            *start = slave.phase_of(inputs.master);
             let request = PhaseShift {
                 master: inputs.master,
                 shift: inputs.phase_shift,
@@ -92,7 +92,7 @@ impl Block for McPhasingRelative {
         });
         let slave = context.axes.get(inputs.slave.index());
         if let Some(slave) = slave.filter(|_| phase.is_busy() || self.was_busy) {
-            self.covered = slave.phase() - self.start;
+            self.covered = slave.phase_of(inputs.master) - self.start;
         }
         self.was_busy = phase.is_busy();
         Outputs {

@@ -1,5 +1,6 @@
 //! Blocks that couple axes.
 
+pub mod mc_combine_axes;
 pub mod mc_gear_in;
 pub mod mc_gear_in_pos;
 pub mod mc_gear_out;

@@ -114,7 +114,7 @@ impl Bench {
         for (index, pin) in block.info().pins().enumerate() {
             if let PinType::Axis(_) = pin.ty {
                 let axis = match axis.index() {
-                    at @ (0 | 1) if pin.name == "Master" => AxisId::new(1 - at as u16),
+                    at @ (0 | 1) if pin.name.starts_with("Master") => AxisId::new(1 - at as u16),
                     _ => axis,
                 };
                 block.set(index, Value::Axis(axis)).unwrap();

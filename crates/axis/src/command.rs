@@ -197,6 +197,16 @@ iec_enum! {
 }
 
 iec_enum! {
+    /// How MC_CombineAxes puts two masters together (MC_COMBINE_MODE, numbers in the standard's order).
+    CombineMode = "MC_COMBINE_MODE" {
+        /// The ways of both are added.
+        Add = "mcAddAxes", 0;
+        /// The way of the second is taken away from that of the first.
+        Subtract = "mcSubAxes", 1;
+    }
+}
+
+iec_enum! {
     /// What triggers a touch probe (MC_TRIGGER_REF, vendor specific): an edge at one of the probe inputs of the
     /// axis's drive.
     Trigger = "MC_TRIGGER_REF" {
@@ -333,21 +343,42 @@ pub enum Command {
     },
     /// MC_GearIn and MC_GearInPos: behind a master. Give it by [`couple`](crate::couple), which sees both axes.
     GearIn {
-        /// The master.
-        master: Master,
-        /// Way of the slave for one of the master, as a ratio: numerator, signed, 0 allowed.
-        numerator: i16,
-        /// Denominator, above 0.
-        denominator: u16,
-        /// Which values of the master are followed.
-        source: Raw<ValueSource>,
+        /// The master, and how it is followed.
+        followed: Followed,
         /// MC_GearInPos: the places that belong together; none for MC_GearIn, where they are those in which it comes into gear.
         sync: Option<SyncPoint>,
         /// Dynamic values until the slave is in gear. The velocity is read with a sync point only; 0 takes the axis limit.
         dynamics: Dynamics,
     },
+    /// MC_CombineAxes: behind two masters, whose geared ways are added. Give it by [`couple`](crate::couple).
+    CombineAxes {
+        /// The masters, and how each is followed.
+        masters: [Followed; 2],
+        /// Whether the way of the second is added or taken away.
+        mode: Raw<CombineMode>,
+    },
     /// MC_GearOut: no longer behind a master; the velocity is kept.
     GearOut,
+}
+
+/// How a master is followed: values as they stand at the pins, unchecked.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Followed {
+    /// The master.
+    pub master: Master,
+    /// Way of the slave for one of the master, as a ratio: numerator, signed, 0 allowed.
+    pub numerator: i16,
+    /// Denominator, above 0.
+    pub denominator: i32,
+    /// Which values of the master are followed.
+    pub source: Raw<ValueSource>,
+}
+
+impl Followed {
+    /// All but the master.
+    fn values(&self) -> [i32; 3] {
+        [self.numerator.into(), self.denominator, self.source.number()]
+    }
 }
 
 /// A master, as a command names it.
@@ -386,15 +417,19 @@ impl Dynamics {
 }
 
 impl Command {
-    /// Whether `other` has the same values, to the bit.
+    /// Whether `other` has the same values, to the bit; masters aside.
     pub fn is_same(&self, other: &Self) -> bool {
-        let sync = |command: &Self| match command {
-            Self::GearIn { sync, .. } => *sync,
-            _ => None,
+        let law = |command: &Self| match command {
+            Self::GearIn { followed, sync, .. } => ([followed.values(), [0; 3]], 0, *sync),
+            Self::CombineAxes { masters, mode } => {
+                let [first, second] = masters;
+                ([first.values(), second.values()], mode.number(), None)
+            }
+            _ => ([[0; 3]; 2], 0, None),
         };
         core::mem::discriminant(self) == core::mem::discriminant(other)
             && self.bits() == other.bits()
-            && sync(self) == sync(other)
+            && law(self) == law(other)
     }
 
     /// All its values: two numbers, the direction, the dynamic values.
@@ -434,19 +469,8 @@ impl Command {
             } => (*distance, 0.0, i32::from(*forward), dynamics),
             Self::Halt { dynamics } | Self::Stop { dynamics } => (0.0, 0.0, 0, dynamics),
             Self::Home { position } => (*position, 0.0, 0, &none),
-            Self::GearIn {
-                numerator,
-                denominator,
-                source,
-                dynamics,
-                ..
-            } => (
-                f64::from(*numerator),
-                f64::from(*denominator),
-                source.number(),
-                dynamics,
-            ),
-            Self::GearOut => (0.0, 0.0, 0, &none),
+            Self::GearIn { dynamics, .. } => (0.0, 0.0, 0, dynamics),
+            Self::CombineAxes { .. } | Self::GearOut => (0.0, 0.0, 0, &none),
         };
         ([first.to_bits(), second.to_bits()], direction, dynamics.bits())
     }

@@ -34,6 +34,9 @@ pub enum OnLimit {
     Lag,
     /// It is an axis error (420), while a stop still keeps the limits.
     Error,
+    /// Once it was in gear its master asks for no more than the slave has: every plan of the master keeps what the limits of
+    /// its slaves leave. What no plan of the master is made with (docs/coupling.md) makes it lag.
+    SlowMaster,
 }
 
 /// What a slave does when the set-point of its master is no longer the result of a plan.
@@ -46,8 +49,8 @@ pub enum OnMasterLost {
     Hold,
 }
 
-/// How an axis follows another one.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// How an axis follows another one, and how others follow its actual values.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Following {
     /// What it does when it cannot keep up.
     pub on_limit: OnLimit,
@@ -55,14 +58,30 @@ pub struct Following {
     pub max_deviation: Option<f64>,
     /// What it does when its master goes out of operation.
     pub on_master_lost: OnMasterLost,
+    /// As a master of actual values: scans of each of the four averages its slaves see them through, at most
+    /// [`ACTUAL_FILTER_MAX`]; 0 for no filter.
+    pub actual_filter: u32,
+    /// As a master of actual values: its slaves see it ahead by what the filter delays at its present velocity.
+    pub actual_lead: bool,
+}
+
+/// Longest average of the filter of actual values (scans). Its ring takes 16 bytes of every axis for each.
+pub const ACTUAL_FILTER_MAX: u32 = 64;
+
+impl Default for Following {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
 }
 
 impl Following {
-    /// It lags as far as it must; a lost master is an error.
+    /// It lags as far as it must; a lost master is an error; averages of 16 scans, without a lead.
     pub const DEFAULT: Self = Self {
         on_limit: OnLimit::Lag,
         max_deviation: None,
         on_master_lost: OnMasterLost::Error,
+        actual_filter: 16,
+        actual_lead: false,
     };
 }
 
@@ -265,6 +284,15 @@ impl AxisConfig {
                 return Err(ConfigError::SoftwareLimits { min, max });
             }
         }
+        let filter = self.following.actual_filter;
+        if filter > ACTUAL_FILTER_MAX {
+            return Err(ConfigError::ActualFilter { value: filter });
+        }
+        if filter == 0 && self.scaling.is_some() && self.limits.snap.is_finite() {
+            return Err(ConfigError::ActualFilterOff {
+                snap: self.limits.snap,
+            });
+        }
         if self.queue > QUEUE_MAX {
             return Err(ConfigError::Queue { value: self.queue });
         }
@@ -377,6 +405,16 @@ pub enum ConfigError {
         /// Length (u).
         value: f64,
     },
+    /// An average of actual values is longer than [`ACTUAL_FILTER_MAX`].
+    ActualFilter {
+        /// Scans asked for.
+        value: u32,
+    },
+    /// No filter on increments of an axis with a snap limit, which a single one exceeds.
+    ActualFilterOff {
+        /// The limit (u/s^4).
+        snap: f64,
+    },
     /// The queue is longer than [`QUEUE_MAX`].
     Queue {
         /// Places asked for.
@@ -444,6 +482,7 @@ impl ConfigError {
             Self::Modulo { .. } | Self::ModuloNotRational { .. } => "modulo",
             Self::PositionOutsideModulo { .. } => "position",
             Self::ModuloWithSoftwareLimits => "software_limits",
+            Self::ActualFilter { .. } | Self::ActualFilterOff { .. } => "coupling.actual_filter",
             Self::Queue { .. } => "queue",
             Self::OverrideMax { .. } => "override_max",
             Self::Profile { .. } => "profile",
@@ -489,6 +528,14 @@ impl fmt::Display for ConfigError {
             Self::ModuloNotRational { value } => write!(
                 f,
                 "modulo is {value:?}: with this scaling a turn is no fraction of increments with parts below 2^63; choose a unit of which a turn is a whole number"
+            ),
+            Self::ActualFilter { value } => write!(
+                f,
+                "coupling.actual_filter is {value} scans: at most {ACTUAL_FILTER_MAX} are averaged"
+            ),
+            Self::ActualFilterOff { snap } => write!(
+                f,
+                "coupling.actual_filter is 0 on an axis with scaling and a limits.snap of {snap:?}: a single increment is beyond that; give it some scans, 16 by default"
             ),
             Self::Queue { value } => write!(f, "queue is {value}: at most {QUEUE_MAX} commands can wait"),
             Self::OverrideMax { value } => write!(

@@ -3,8 +3,11 @@
 //! Masters move before their slaves, whatever their numbers and whichever block was called first. A ring is refused where it
 //! would close.
 
-use crate::axis::{Future, View};
-use crate::{Axis, AxisId, AxisState, Command, CommandId, ErrorId, Planner, QUEUE_MAX, Request, Scope};
+use crate::axis::{Future, Part, Seen, Values, View};
+use crate::{
+    Axis, AxisId, AxisState, Command, CommandId, ErrorId, Followed, Planner, QUEUE_MAX, Request, Scope,
+    ValueSource,
+};
 
 /// Gives `slave` a command that may couple it to a master; any other command is given as it is.
 ///
@@ -12,17 +15,25 @@ use crate::{Axis, AxisId, AxisState, Command, CommandId, ErrorId, Planner, QUEUE
 ///
 /// # Errors
 /// What [`Axis::command`] refuses; besides [`ErrorId::AxisUnknown`] if there is no such slave or master,
-/// [`ErrorId::CouplingRing`] if the master follows the slave, [`ErrorId::MasterLost`] if it is not in operation. Nothing changes
-/// then.
+/// [`ErrorId::CouplingRing`] if the master follows the slave, [`ErrorId::MasterLost`] if it is not in operation, for actual values
+/// if its drive tells none, [`ErrorId::MasterSourceInvalid`] if it has none that could be followed. Nothing changes then.
 pub fn couple<P: Planner>(
     axes: &mut [Axis<P>],
     slave: AxisId,
     request: &Request,
     scope: &mut Scope<'_>,
 ) -> Result<CommandId, ErrorId> {
+    let mut of = |pins: [&'static str; 2], followed: &Followed| {
+        let source = followed.source.get().unwrap_or(ValueSource::Set);
+        let values = (followed.master.axis, source);
+        obstacle(axes, slave, values).map(|error| (error, pins, values))
+    };
     let obstacle = match &request.command {
-        Command::GearIn { master, .. } => {
-            obstacle(axes, slave, master.axis).map(|error| (error, master.axis))
+        Command::GearIn { followed, .. } => of(["Master", "MasterValueSource"], followed),
+        Command::CombineAxes { masters, .. } => {
+            let [first, second] = masters;
+            of(["Master1", "MasterValueSourceM1"], first)
+                .or_else(|| of(["Master2", "MasterValueSourceM2"], second))
         }
         _ => None,
     };
@@ -35,23 +46,43 @@ pub fn couple<P: Planner>(
             | AxisState::ContinuousMotion
             | AxisState::SynchronizedMotion
     );
-    let obstacle = obstacle.filter(|(error, _)| takes || *error != ErrorId::MasterLost);
-    if let Some((error, master)) = obstacle {
-        axis.note_refusal("Master", f64::from(master.number()), f64::NAN, error, scope);
+    let obstacle = obstacle.filter(|(error, ..)| takes || *error != ErrorId::MasterLost);
+    if let Some((error, [master_pin, source_pin], (master, source))) = obstacle {
+        let (pin, value, limit) = match error {
+            ErrorId::MasterSourceInvalid => (source_pin, f64::from(source as i32), 1.0),
+            _ => (master_pin, f64::from(master.number()), f64::NAN),
+        };
+        axis.note_refusal(pin, value, limit, error, scope);
         return Err(error);
     }
     axis.command(request, scope)
 }
 
-/// Why `slave` can't follow `master` now.
-fn obstacle<P: Planner>(axes: &mut [Axis<P>], slave: AxisId, master: AxisId) -> Option<ErrorId> {
-    let Some(is_operating) = axes.get(master.index()).map(Axis::is_operating) else {
+/// Why `slave` can't follow these values of a master now.
+fn obstacle<P: Planner>(axes: &mut [Axis<P>], slave: AxisId, (master, source): Values) -> Option<ErrorId> {
+    let Some(axis) = axes.get(master.index()) else {
         return Some(ErrorId::AxisUnknown);
+    };
+    let (is_there, is_operating) = match source {
+        ValueSource::Actual => (axis.is_measured(), axis.fresh_position().is_ok()),
+        ValueSource::Set | ValueSource::Commanded => (true, axis.is_operating()),
     };
     if is_above(axes, slave, master) {
         return Some(ErrorId::CouplingRing);
     }
+    if !is_there {
+        return Some(ErrorId::MasterSourceInvalid);
+    }
     (!is_operating).then_some(ErrorId::MasterLost)
+}
+
+/// A master at the end of this scan, or before it moved in it.
+fn seen<P: Planner>(axes: &[Axis<P>], (master, source): Values, is_before: bool, scan: u64) -> Option<Seen> {
+    let axis = axes.get(master.index())?;
+    Some(match source {
+        ValueSource::Actual => axis.seen_actual(scan, is_before),
+        ValueSource::Set | ValueSource::Commanded => axis.seen(scan),
+    })
 }
 
 /// Whether `upper` is among `lower`, its masters, and theirs. A command that waits for a place of a master counts: its slave moves
@@ -91,13 +122,13 @@ fn is_above<P: Planner>(axes: &mut [Axis<P>], upper: AxisId, lower: AxisId) -> b
 pub(crate) fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     let highest = set_ranks(axes);
     for index in 0..axes.len() {
-        let see = |master: Option<AxisId>| Some(axes.get(master?.index())?.seen(scope.scan));
-        let seen = see(axes.get(index).and_then(Axis::master));
-        let awaited = see(axes.get(index).and_then(Axis::awaited_master));
+        let see = |values: Option<Values>| seen(axes, values?, true, scope.scan);
+        let [first, second] = axes.get(index).map_or([None; 2], Axis::followed_values).map(see);
+        let awaited = see(axes.get(index).and_then(Axis::awaited_values));
         let Some(axis) = axes.get_mut(index) else { continue };
         axis.note_source();
-        if let Some(seen) = seen {
-            axis.note_master(seen);
+        if let Some(seen) = first {
+            axis.note_masters([seen, second.unwrap_or_default()]);
         }
         if let Some(seen) = awaited {
             axis.note_awaited_master(seen);
@@ -109,6 +140,33 @@ pub(crate) fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
             if axes.get(index).is_some_and(|axis| axis.rank() == rank) {
                 bar_rings(axes, index);
                 advance_one(axes, index, scope);
+            }
+        }
+    }
+    slow_masters(axes, highest, scope);
+}
+
+/// What slaves leave of the limits of their masters, from the next motion step on: from the lowest slaves up, because what a
+/// slave has left counts for its master.
+///
+/// Cost: a look at each axis; where a slave slows its master, one for each rank, and where a bound changes that of an override.
+fn slow_masters<P: Planner>(axes: &mut [Axis<P>], highest: u16, scope: &mut Scope<'_>) {
+    if !axes.iter().any(Axis::may_bound) {
+        return;
+    }
+    for axis in axes.iter_mut() {
+        axis.begin_bound();
+    }
+    for rank in (0..=highest).rev() {
+        for index in 0..axes.len() {
+            let Some(axis) = axes.get_mut(index).filter(|axis| axis.rank() == rank) else {
+                continue;
+            };
+            axis.take_bound(scope);
+            for (master, bound) in axis.bounds_of_masters() {
+                if let Some(master) = axes.get_mut(master.index()) {
+                    master.lower_bound(&bound);
+                }
             }
         }
     }
@@ -149,8 +207,11 @@ fn bar_rings<P: Planner>(axes: &mut [Axis<P>], index: usize) {
     };
     let (slave, masters) = (axis.id(), axis.masters_of_waiting());
     let mut barred = [None; QUEUE_MAX];
-    for (error, master) in barred.iter_mut().zip(masters) {
-        *error = master.and_then(|master| obstacle(axes, slave, master));
+    for (error, masters) in barred.iter_mut().zip(masters) {
+        *error = masters
+            .into_iter()
+            .flatten()
+            .find_map(|master| obstacle(axes, slave, master));
     }
     if let Some(axis) = axes.get_mut(index) {
         axis.bar_waiting(&barred);
@@ -159,8 +220,9 @@ fn bar_rings<P: Planner>(axes: &mut [Axis<P>], index: usize) {
 
 fn advance_one<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope<'_>) {
     start_at_point(axes, index, scope);
-    if let Some(master) = axes.get(index).and_then(Axis::master) {
-        look(axes, index, master, scope, Axis::advance_behind);
+    let masters = axes.get(index).map_or([None; 2], Axis::followed_values);
+    if let [Some(first), second] = masters {
+        look(axes, index, (first, second), scope, Axis::advance_behind);
     } else if let Some(axis) = axes.get_mut(index) {
         axis.advance(scope);
     }
@@ -168,20 +230,19 @@ fn advance_one<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope
 
 /// What waits for a place of its master takes over when that is there, before the step of its slave.
 fn start_at_point<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope<'_>) {
-    let Some(id) = axes.get(index).and_then(Axis::awaited_master) else {
+    let Some(followed) = axes.get(index).and_then(Axis::awaited_values) else {
         return;
     };
-    let Some(master) = axes.get(id.index()) else {
+    let (Some(now), turn) = (seen(axes, followed, false, scope.scan), turn_of(axes, followed)) else {
         return;
     };
-    let (now, turn) = (master.seen(scope.scan), master.config().modulo);
     let Some(slave) = axes.get_mut(index) else { return };
     if !slave.reaches_start(&now, turn) {
         return;
     }
     let slave = slave.id();
-    match obstacle(axes, slave, id) {
-        None => look(axes, index, id, scope, Axis::start_at_point),
+    match obstacle(axes, slave, followed) {
+        None => look(axes, index, (followed, None), scope, Axis::start_at_point),
         Some(error) => {
             if let Some(axis) = axes.get_mut(index) {
                 axis.bar_awaited(error, scope);
@@ -190,35 +251,80 @@ fn start_at_point<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Sc
     }
 }
 
-/// Lets the axis at `index` act with a look at the master `id`.
+/// The length of a master's turn (u), if it has turns.
+fn turn_of<P: Planner>(axes: &[Axis<P>], (master, _): Values) -> Option<f64> {
+    axes.get(master.index())?.config().modulo
+}
+
+/// Lets the axis at `index` act with a look at these values of its masters.
 fn look<P: Planner>(
     axes: &mut [Axis<P>],
     index: usize,
-    id: AxisId,
+    (first, second): (Values, Option<Values>),
     scope: &mut Scope<'_>,
     act: impl FnOnce(&mut Axis<P>, &View<'_, P::Plan>, &mut Scope<'_>),
 ) {
-    let Some(master) = axes.get(id.index()) else {
+    let (Some(now), turn) = (seen(axes, first, false, scope.scan), turn_of(axes, first)) else {
         return;
     };
-    let (now, turn) = (master.seen(scope.scan), master.config().modulo);
-    let (root, factor, is_new) = root(axes, id);
-    // Two different axes: a ring was refused where it would have closed.
-    let Ok([slave, root_axis]) = axes.get_disjoint_mut([index, root]) else {
+    let seen_second = second.and_then(|second| seen(axes, second, false, scope.scan));
+    let first_root = root(axes, first);
+    let second_root = second.map(|second| root(axes, second));
+    let Some((before, rest)) = axes.split_at_mut_checked(index) else {
         return;
+    };
+    let Some((slave, after)) = rest.split_first_mut() else {
+        return;
+    };
+    // Never the slave: a ring was refused where it would have closed.
+    let part = |root: &Root| {
+        let own = before.get(root.axis);
+        let axis = own.or_else(|| after.get(root.axis.checked_sub(index)?.checked_sub(1)?));
+        axis.map_or(Part::NONE, |axis| Part {
+            root: root.axis,
+            factor: root.factor,
+            course: if root.is_actual {
+                axis.course_of_actual()
+            } else {
+                axis.course()
+            },
+        })
     };
     let future = Future {
-        root,
-        factor,
-        is_new,
-        course: root_axis.course(),
+        parts: [part(&first_root), second_root.as_ref().map_or(Part::NONE, part)],
+        is_new: first_root.is_new || second_root.is_some_and(|root| root.is_new),
     };
-    act(slave, &View { now, turn, future }, scope);
+    let view = View {
+        now,
+        turn,
+        second: seen_second,
+        future,
+    };
+    act(slave, &view, scope);
 }
 
-/// The axis whose plan a master follows, up the chain of those in gear; what the derivatives of that are multiplied by; and
-/// whether the step of this scan was another source's.
-fn root<P: Planner>(axes: &[Axis<P>], master: AxisId) -> (usize, f64, bool) {
+/// Whose plan a master follows.
+struct Root {
+    /// Its index.
+    axis: usize,
+    /// What the derivatives of that plan are multiplied by to be those of the master.
+    factor: f64,
+    /// The step of this scan was another source's.
+    is_new: bool,
+    /// Its actual values are followed, not its plan.
+    is_actual: bool,
+}
+
+/// The axis whose plan a master follows, up the chain of those in gear.
+fn root<P: Planner>(axes: &[Axis<P>], (master, source): Values) -> Root {
+    if source == ValueSource::Actual {
+        return Root {
+            axis: master.index(),
+            factor: 1.0,
+            is_new: false,
+            is_actual: true,
+        };
+    }
     let (mut at, mut factor, mut is_new) = (master, 1.0, false);
     for _ in 0..axes.len() {
         let Some(axis) = axes.get(at.index()) else { break };
@@ -229,5 +335,10 @@ fn root<P: Planner>(axes: &[Axis<P>], master: AxisId) -> (usize, f64, bool) {
         factor *= own;
         at = next;
     }
-    (at.index(), factor, is_new)
+    Root {
+        axis: at.index(),
+        factor,
+        is_new,
+        is_actual: false,
+    }
 }

@@ -145,14 +145,14 @@ error_ids! {
         "Give a denominator from 1; a RatioNumerator of 0 brings the slave to rest.";
     CouplingRing = 151, "Master is the slave itself, or an axis that follows it.",
         "Wire another axis to Master, or end the coupling that closes the ring first.";
-    SyncModeInvalid = 152, "SyncMode is a number that is not defined.",
+    SyncModeInvalid = 152, "SyncMode or CombineMode is a number that is not defined.",
         "Use mcShortest (0), mcCatchUp (1) or mcSlowDown (2).";
     SyncPositionInvalid = 156, "MasterSyncPosition, SlaveSyncPosition or MasterStartDistance is NaN or infinite, or on a modulo axis not in its first turn.",
         "Give finite positions; on a modulo axis at least 0 and less than the length of a turn, and a distance shorter than a turn.";
     CouplingRatioTooFine = 158, "Master and slave both have turns, and a turn of the one is no ratio of integers below 2^63 turns of the other.",
         "Give lengths of turns that have a common measure, such as 360 and 400, or a simpler ratio.";
-    MasterSourceInvalid = 159, "MasterValueSource is mcCommandedValue, which is no motion that could be followed.",
-        "Use mcSetValue (1).";
+    MasterSourceInvalid = 159, "MasterValueSource is mcCommandedValue, which is no motion that could be followed, or mcActualValue of a master that counts no increments, which the filter of actual values needs.",
+        "Use mcSetValue (1); for actual values give the master a scaling, or 0 as its coupling.actual_filter.";
     ProfileTableInvalid = 160, "A profile's table has no point after the start, more than 40, a DeltaTime that is not above 0 (the first may be 0) or that TimeScale makes less than 1e-9 of a cycle, or a value that is NaN or infinite.",
         "Give 1 to 40 points, each later than the one before; the record in the log names the point.";
     ProfileStartMismatch = 161, "The first point of a profile is for the start (DeltaTime 0), and the axis has another value there.",
@@ -227,7 +227,7 @@ error_ids! {
         "Check the home switch, its wiring and the edge in the homing of the axis.";
     DeviationTooLarge = 420, "The slave could not stay within its limits on the law of its master, or was further from it than the max_deviation of its coupling.",
         "Slow the master down or raise the limits of the slave; coupling.on_limit \"lag\" lets it catch up. Then call MC_Reset.";
-    MasterLost = 421, "The set-point of the master is not the result of a plan: it is switched off, has a fault of its power or drive, or is under a torque.",
+    MasterLost = 421, "The set-point of the master is not the result of a plan: it is switched off, has a fault of its power or drive, or is under a torque; or actual values are followed and the drive of the master tells none.",
         "Bring the master into operation before the slave is coupled, and stop the slave before the master is switched off; then call MC_Reset.";
 
     DriveFault = 501, "The drive reported a fault.",
@@ -250,10 +250,6 @@ error_ids! {
     FeedbackInvalid = 602, "The drive told a position or torque that is NaN or infinite, or a position that means an infinite velocity.",
         "Mend what makes such numbers, an encoder or a scaling in the drive's own code, then call MC_Reset.";
 
-    ActualMasterNotSupported = 704, "MasterValueSource is mcActualValue; this version follows set values.",
-        "Use mcSetValue (1).";
-    SlaveNotSuperimposed = 705, "The axis is the slave of a gear, and this version superimposes no motion on one.",
-        "Superimpose the motion on the master, or end the coupling with MC_GearOut first.";
 
     SetpointBroken = 901, "A plan gave a set-point that is not finite.",
         "This is a defect of standstill: please report the trace.";
@@ -270,6 +266,11 @@ pub const RETIRED: &[(u16, &str)] = &[
     (701, "Blending buffer modes were not supported."),
     (702, "ContinuousUpdate was not supported."),
     (703, "EnablePositive and EnableNegative were not supported."),
+    (704, "MasterValueSource mcActualValue was not supported."),
+    (
+        705,
+        "MC_MoveSuperimposed on the slave of a gear was not supported.",
+    ),
 ];
 
 // Deriving it needs an attribute on a variant that the table above writes.

@@ -31,12 +31,13 @@ pub use axis::{
     TouchProbe, Way, WorkKind,
 };
 pub use command::{
-    AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ExecutionMode, IecEnum, InstanceId, Master,
-    PhaseShift, QUEUE_MAX, Raw, Request, Superimpose, SyncMode, SyncPoint, Trigger, ValueSource,
+    AxisId, BufferMode, CombineMode, Command, CommandId, Direction, Dynamics, ExecutionMode, Followed,
+    IecEnum, InstanceId, Master, PhaseShift, QUEUE_MAX, Raw, Request, Superimpose, SyncMode, SyncPoint,
+    Trigger, ValueSource,
 };
 pub use config::{
-    AboveLimit, AxisConfig, ConfigError, Defaults, Following, InPosition, MODULO_MAX, OnLimit, OnMasterLost,
-    PowerOff, StartState,
+    ACTUAL_FILTER_MAX, AboveLimit, AxisConfig, ConfigError, Defaults, Following, InPosition, MODULO_MAX,
+    OnLimit, OnMasterLost, PowerOff, StartState,
 };
 pub use couple::couple;
 pub use drive::{

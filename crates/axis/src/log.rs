@@ -89,6 +89,15 @@ pub enum Event {
         /// The value used instead.
         limit: f64,
     },
+    /// A value above what the limits of slaves leave was lowered to it (on_limit slow_master).
+    Slowed {
+        /// IEC name of the pin.
+        pin: &'static str,
+        /// What it would be without the slaves.
+        value: f64,
+        /// What is used instead.
+        limit: f64,
+    },
     /// The start state forces the plan out of its limits by this much.
     Unavoidable(Excess),
     /// The coordinates were moved: from this scan on the same place is called this much more (u). No motion.
@@ -125,7 +134,7 @@ pub enum Event {
         /// Which.
         master: AxisId,
         /// Way of the slave for one of the master: numerator.
-        numerator: i16,
+        numerator: i32,
         /// Denominator.
         denominator: u16,
     },

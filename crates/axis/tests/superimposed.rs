@@ -4,8 +4,10 @@
 //! Every case runs two axes with the same commands; one of them is also given superimposed ones, at random
 //! times, in both directions, halted or given again on the way.
 
+mod differences;
 mod draw;
 
+use differences::Seen;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Fate, Limits,
     Log, Plan, Raw, Request, Scope, Setpoint, Standard, StartState, Superimpose, steps,
@@ -24,39 +26,6 @@ fn axis(limits: Limits) -> Axis {
         ..AxisConfig::new(limits)
     };
     Axis::new(AxisId::new(0), config, Standard::new(CYCLE)).unwrap()
-}
-
-/// The last published positions, newest first, and what they say of the derivatives.
-struct Seen([f64; 5]);
-
-impl Seen {
-    fn check(&mut self, now: &Setpoint, limits: &Limits, what: &str) {
-        self.0.rotate_right(1);
-        self.0[0] = now.position;
-        let acceleration = limits.acceleration.max(limits.deceleration);
-        let bounds = [limits.velocity, acceleration, limits.jerk, limits.snap];
-        let derivatives = [now.velocity, now.acceleration, now.jerk, now.snap];
-        let mut differences = self.0;
-        // How far f64 positions resolve a difference of each order.
-        let mut grain = 4.0 * f64::EPSILON * self.0.iter().fold(1.0, |most: f64, p| most.max(p.abs()));
-        for (order, (bound, derivative)) in bounds.iter().zip(derivatives).enumerate() {
-            assert!(
-                derivative.abs() <= bound * (1.0 + 1e-9),
-                "{what}: derivative {} is {derivative}, limit {bound}",
-                order + 1
-            );
-            for place in 0..4 - order {
-                differences[place] = (differences[place] - differences[place + 1]) / CYCLE;
-            }
-            grain *= 2.0 / CYCLE;
-            assert!(
-                differences[0].abs() <= bound * (1.0 + 1e-9) + grain,
-                "{what}: difference {} is {}, limit {bound}",
-                order + 1,
-                differences[0]
-            );
-        }
-    }
 }
 
 fn bits(setpoint: &Setpoint) -> [u64; 4] {
@@ -150,7 +119,7 @@ fn one_on_one(seed: u64) {
     let (with, without) = case.command(&Request::aborting(base));
     let at = case.random.below(150);
     let mut added = None;
-    let mut seen = Seen([0.0; 5]);
+    let mut seen = Seen::new(CYCLE);
     for scan in 0..MOST_SCANS {
         case.scan = scan;
         if scan == at {
@@ -207,7 +176,7 @@ fn one_on_one(seed: u64) {
 /// limits, nothing fails, and everything comes to an end.
 fn many_on_many(seed: u64) {
     let mut case = Case::new(seed);
-    let mut seen = Seen([0.0; 5]);
+    let mut seen = Seen::new(CYCLE);
     let (mut last, mut halted) = (None, false);
     for scan in 0..MOST_SCANS {
         case.scan = scan;

@@ -27,7 +27,7 @@ pub const FIELDS: [(&str, &str, &str, usize); 11] = [
         "i32",
         "1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position, 8 planned \
          to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault, 14 orphaned, 15 coupled, 16 approaching \
-         the law of a gear, 17 in gear, 18 no longer in gear.",
+         the law of a gear, 17 in gear, 18 no longer in gear, 19 in sync late, 20 phase shift planned, 21 lowered to what a slave can follow.",
         24,
     ),
     ("error_id", "u32", "ErrorID, 0 without one.", 28),
@@ -182,6 +182,11 @@ impl FlatRecord {
                 record.count = scans.into();
                 record.value = to;
             }
+            Event::Slowed { pin, value, limit } => {
+                record.event = 21;
+                (record.value, record.limit) = (value, limit);
+                record.name = pin;
+            }
             Event::SyncLate { by } => {
                 record.event = 19;
                 record.value = by;
@@ -288,6 +293,7 @@ mod tests {
             ),
             (E::Clamped { pin, value, limit }, FlatRecord { event: 3, value, limit, name: pin, ..none }),
             (E::Raised { pin, value, limit }, FlatRecord { event: 4, value, limit, name: pin, ..none }),
+            (E::Slowed { pin, value, limit }, FlatRecord { event: 21, value, limit, name: pin, ..none }),
             (
                 E::Unavoidable(Excess { velocity: 1.0, acceleration: 2.0, jerk: 4.0 }),
                 FlatRecord { event: 5, value: 1.0, limit: 2.0, third: 4.0, ..none },

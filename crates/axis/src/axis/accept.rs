@@ -257,19 +257,21 @@ impl<P: Planner> Axis<P> {
                 Ok((Work::Home(position), limits))
             }
             Command::GearIn {
-                master,
-                numerator,
-                denominator,
-                source,
+                ref followed,
                 sync,
                 ref dynamics,
             } => {
-                let gearing = self.check_gear(master, (numerator, denominator), source, sync, scope)?;
+                let gearing = self.check_gear(followed, sync, scope)?;
                 let limits = match sync {
                     Some(_) if dynamics.velocity != 0.0 => self.positioning(dynamics, scope)?,
                     _ => self.resolve(dynamics, scope)?,
                 };
                 Ok((Work::Gear(gearing), limits))
+            }
+            Command::CombineAxes { ref masters, mode } => {
+                let gearing = self.check_combination(masters, mode, scope)?;
+                // The block has no dynamic values.
+                Ok((Work::Gear(gearing), self.parameters.limits))
             }
             Command::GearOut => Ok(self.release()),
         }
@@ -492,6 +494,7 @@ impl<P: Planner> Axis<P> {
     ) {
         self.enter(entry.work.manner().start);
         self.before = before;
+        self.record_slowed(&entry, &mut scope.with(entry.instance));
         self.adopt(entry, motion, scope);
         if matches!(entry.work, Work::Home(_)) {
             self.begin_homing();

@@ -68,10 +68,10 @@ impl<P: Planner> Axis<P> {
         // is worth exceeding a limit of the axis.
         let planned = planned.ok().flatten();
         planned
-            .filter(|plan| entry.passage.wanted <= 0.0 || self.beyond_axis(plan).is_none())
+            .filter(|plan| entry.passage.wanted <= 0.0 || self.beyond_bound(plan).is_none())
             .filter(|plan| {
                 let end = plan.at(u64::from(plan.scans())).velocity.abs();
-                let most = self.config.limits.velocity * (1.0 + ROUNDING);
+                let most = self.slowed(&self.config.limits).velocity * (1.0 + ROUNDING);
                 end <= if entry.passage.wanted > 0.0 { most } else { 0.0 }
             })
             .filter(|plan| entry.passage.wanted <= 0.0 || self.is_worth_it(entry, start, end, before, plan))

@@ -2,7 +2,7 @@
 
 use crate::{
     AxisEvent, AxisId, BufferMode, Command, CommandId, Direction, ErrorId, InstanceId, Parameter,
-    ParameterValue, SyncMode,
+    ParameterValue, SyncMode, ValueSource,
 };
 use standstill_planner::{Field, Gear, Limits, Passage, PlanError, ProfileKind};
 
@@ -83,13 +83,25 @@ pub(super) enum Work {
     Write(Write),
 }
 
-/// How a slave follows which master.
+/// How a slave follows which master, or which two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gearing {
     pub master: AxisId,
+    /// Which values of it are followed: set or actual ones.
+    pub source: ValueSource,
     pub gear: Gear,
+    /// MC_CombineAxes: the second master, whose way is added.
+    pub second: Option<Second>,
     /// The places that belong together, if they are given; else those in which it comes into gear.
     pub sync: Option<Sync>,
+}
+
+/// How the second one of two masters is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Second {
+    pub master: AxisId,
+    pub source: ValueSource,
+    pub gear: Gear,
 }
 
 /// A sync point, checked.
@@ -516,6 +528,7 @@ pub(super) fn direction_of(command: &Command) -> Option<Direction> {
         | Command::Stop { .. }
         | Command::Home { .. }
         | Command::GearIn { .. }
+        | Command::CombineAxes { .. }
         | Command::GearOut => None,
     }
 }

@@ -140,6 +140,8 @@ impl<P: Planner> Axis<P> {
             let (_, in_turn) = split(self.feedback.position(), modulo.length);
             self.feedback.call(in_turn);
         }
+        let turn = self.config.modulo;
+        self.measured.call(self.feedback.position(), by, turn);
         let following = matches!(self.motion, Motion::Follow);
         if following {
             self.setpoint = Setpoint::at_rest(self.feedback.position());

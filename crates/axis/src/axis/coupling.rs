@@ -1,4 +1,4 @@
-//! Behind a master: MC_GearIn and MC_GearOut on the slave's side.
+//! Behind a master, or two: MC_GearIn, MC_CombineAxes and MC_GearOut on the slave's side.
 //!
 //! Once in gear the set-point *is* the law, a function of the master's place in the same scan
 //! ([`Gear`](standstill_planner::Gear)); InGear is that state and no comparison. Until then, and after the slave could not
@@ -12,6 +12,7 @@
 //! | [`follow`] | the motion step of a slave |
 //! | [`needs`] | what a step from one set-point to the next needs of the limits |
 //! | [`approach`] | the rungs: how a slave comes onto the law |
+//! | [`bound`] | what the limits of slaves leave to their master |
 //! | [`phasing`] | a shift between the master and what the slave sees of it |
 //! | [`sync`] | MC_GearInPos: a law that is given, and a start that waits for a place of the master |
 //!
@@ -19,22 +20,30 @@
 //! docs/coupling.md.
 
 mod approach;
+mod bound;
 mod follow;
 mod needs;
 mod phasing;
 mod sync;
 mod view;
 
-use super::commands::{Entry, Gearing, Sync, Work};
+use super::commands::{Entry, Gearing, Second, Sync, Work};
 use super::{Axis, Motion};
 use crate::{
-    Approach, AxisId, ErrorId, Event, Master, QUEUE_MAX, Raw, Scope, SyncMode, SyncPoint, ValueSource,
+    Approach, AxisId, CombineMode, ErrorId, Event, Followed, QUEUE_MAX, Raw, Scope, SyncMode, SyncPoint,
+    ValueSource,
 };
+pub(super) use bound::Bound;
 pub(super) use phasing::Phasing;
 use standstill_planner::{Anchor, Gear, Limits, Place, Planner, Setpoint};
 pub(super) use sync::Awaited;
+pub(super) use view::Kind;
+use view::SeenBoth;
 pub(super) use view::Source;
-pub(crate) use view::{Future, Seen, View};
+pub(crate) use view::{Future, Part, Seen, View};
+
+/// A master, and which of its values are followed.
+pub(crate) type Values = (AxisId, ValueSource);
 
 /// How a slave that is not in gear comes there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +56,8 @@ enum Rung {
     Own,
     /// A plan beside the law through this anchor.
     BesideLaw(Anchor),
+    /// The same beside the law of measured values, within this room.
+    BesideMeasured { anchor: Anchor, room: Limits },
     /// The master went out of operation: the slave rests until a block couples it anew.
     Lost,
     /// A plan beside a straight line, onto which the law leads in so many scans from the start of the plan: its place then and
@@ -63,9 +74,48 @@ pub struct Coupled {
     pub deviation: f64,
     /// By how much the master is seen further on than it is (u of the master).
     pub phase: f64,
+    /// The second master of MC_CombineAxes, and by how much that is seen further on.
+    pub second: Option<(AxisId, f64)>,
+    /// What was superimposed on the law since it lies where it does (u).
+    pub superimposed: f64,
 }
 
-/// How the owner follows its master.
+/// The names of the pins that say how a master is followed.
+struct LegPins {
+    master: &'static str,
+    numerator: &'static str,
+    denominator: &'static str,
+    source: &'static str,
+}
+
+const GEAR_PINS: LegPins = LegPins {
+    master: "Master",
+    numerator: "RatioNumerator",
+    denominator: "RatioDenominator",
+    source: "MasterValueSource",
+};
+
+const COMBINED_PINS: [LegPins; 2] = [
+    LegPins {
+        master: "Master1",
+        numerator: "GearRatioNumeratorM1",
+        denominator: "GearRatioDenominatorM1",
+        source: "MasterValueSourceM1",
+    },
+    LegPins {
+        master: "Master2",
+        numerator: "GearRatioNumeratorM2",
+        denominator: "GearRatioDenominatorM2",
+        source: "MasterValueSourceM2",
+    },
+];
+
+/// Which values of a master are followed; undefined ones were refused.
+fn source_of(followed: &Followed) -> ValueSource {
+    followed.source.get().unwrap_or(ValueSource::Set)
+}
+
+/// How the owner follows its master, or its two masters.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Coupling {
     gearing: Gearing,
@@ -73,10 +123,12 @@ pub(super) struct Coupling {
     anchor: Option<Anchor>,
     /// It has been in gear.
     was_in_gear: bool,
+    /// It was in gear when the same gear was commanded once more, and no motion step has been since.
+    is_kept: bool,
     rung: Rung,
-    /// The master at the end of the scan before, in its coordinates of now.
-    was: Seen,
-    /// What was known of its way ahead.
+    /// The masters at the end of the scan before, in their coordinates of now.
+    was: SeenBoth,
+    /// What was known of their way ahead.
     known: view::Known,
     /// Scans until the way onto the law is looked for again; the largest number for never.
     left: u64,
@@ -88,9 +140,68 @@ pub(super) struct Coupling {
     moves: u32,
     /// By how much the slave is off the law (u); 0 in gear, and before it was there.
     deviation: f64,
+    /// Its master keeps the limits of the slave.
+    slows: bool,
+    /// What was superimposed on the law, less the place of the layer that is added to it (u).
+    lead: f64,
+}
+
+impl Gearing {
+    /// The masters.
+    pub(super) fn masters(&self) -> [Option<AxisId>; 2] {
+        self.values().map(|values| values.map(|(master, _)| master))
+    }
+
+    /// The masters, and which values of each are followed.
+    fn values(&self) -> [Option<Values>; 2] {
+        let second = self.second.map(|second| (second.master, second.source));
+        [Some((self.master, self.source)), second]
+    }
+
+    /// The masters, each with its gear.
+    fn gears(&self) -> [Option<(AxisId, Gear)>; 2] {
+        let second = self.second.map(|second| (second.master, second.gear));
+        [Some((self.master, self.gear)), second]
+    }
+
+    /// Where the slave is for masters that are there.
+    pub(super) fn slave(&self, anchor: &Anchor, masters: [Place; 2]) -> Place {
+        match &self.second {
+            None => self.gear.slave(anchor, masters[0]),
+            Some(second) => self.gear.slave_of_two(&second.gear, anchor, masters),
+        }
+    }
+
+    /// The slave's derivative for those of the masters.
+    pub(super) fn derivative(&self, of_masters: [f64; 2]) -> f64 {
+        let first = self.gear.derivative(of_masters[0]);
+        match &self.second {
+            None => first,
+            Some(second) => first + second.gear.derivative(of_masters[1]),
+        }
+    }
+
+    /// What a derivative of the master of this number is multiplied by to be its part of that of the slave; `by` comes before.
+    pub(super) fn factor(&self, leg: usize, by: f64) -> f64 {
+        match (&self.second, leg) {
+            (_, 0) => self.gear.derivative(by),
+            (Some(second), _) => second.gear.derivative(by),
+            (None, _) => 0.0,
+        }
+    }
 }
 
 impl Coupling {
+    /// What is added from now on moves the law on from where it is: the layer is at `place` (u).
+    pub(super) fn lay_layer(&mut self, place: f64) {
+        self.lead = self.superimposed() - place;
+    }
+
+    /// What was superimposed on the law (u).
+    fn superimposed(&self) -> f64 {
+        self.anchor.map_or(0.0, |anchor| anchor.slave.phase)
+    }
+
     /// It is given a sync point, and not to be faster than there.
     fn goes_slowly(&self) -> bool {
         let slow = |sync: Sync| sync.mode == SyncMode::SlowDown;
@@ -107,14 +218,17 @@ impl Coupling {
             gearing,
             anchor: None,
             was_in_gear: false,
+            is_kept: false,
             rung: Rung::Due,
-            was: Seen::default(),
+            was: SeenBoth::default(),
             known: view::Known::default(),
             left: u64::MAX,
             told: None,
             limits,
             moves,
             deviation: 0.0,
+            slows: false,
+            lead: 0.0,
         }
     }
 }
@@ -138,20 +252,48 @@ impl<P: Planner> Axis<P> {
         self.coupling.as_ref().map(|coupling| Coupled {
             master: coupling.gearing.master,
             deviation: coupling.deviation,
-            phase: self.phase(),
+            phase: self.phases()[0],
+            second: coupling
+                .gearing
+                .second
+                .map(|second| (second.master, self.phases()[1])),
+            superimposed: coupling.superimposed(),
         })
     }
 
-    /// The master the owner follows.
+    /// The master the owner follows, the first one of two.
     pub fn master(&self) -> Option<AxisId> {
-        self.coupling.as_ref().map(|coupling| coupling.gearing.master)
+        self.followed()[0]
     }
 
-    /// The master the owner follows, and the ratio: numerator and denominator.
-    pub fn gear(&self) -> Option<(AxisId, i16, u16)> {
-        let gearing = self.coupling.as_ref()?.gearing;
-        let (numerator, denominator) = gearing.gear.ratio();
-        Some((gearing.master, numerator, denominator))
+    /// The masters the owner follows.
+    pub fn followed(&self) -> [Option<AxisId>; 2] {
+        let coupling = self.coupling.as_ref();
+        coupling.map_or([None; 2], |coupling| coupling.gearing.masters())
+    }
+
+    /// The masters the owner follows, and which values of each.
+    pub(crate) fn followed_values(&self) -> [Option<Values>; 2] {
+        let coupling = self.coupling.as_ref();
+        coupling.map_or([None; 2], |coupling| coupling.gearing.values())
+    }
+
+    /// The owner follows actual values of a master, not where that is to be.
+    pub fn follows_actual(&self) -> bool {
+        let is_actual = |(_, source): (AxisId, ValueSource)| source == ValueSource::Actual;
+        self.followed_values().into_iter().flatten().any(is_actual)
+    }
+
+    /// The masters the owner follows, each with its ratio: numerator, below 0 also where its way is taken away, and denominator.
+    pub fn gears(&self) -> [Option<(AxisId, i32, u16)>; 2] {
+        let Some(coupling) = &self.coupling else {
+            return [None; 2];
+        };
+        let ratio = |(master, gear): (AxisId, Gear)| {
+            let (numerator, denominator) = gear.ratio();
+            (master, numerator, denominator)
+        };
+        coupling.gearing.gears().map(|leg| leg.map(ratio))
     }
 
     /// The master went out of operation, and the slave rests until a block couples it anew.
@@ -173,60 +315,93 @@ impl<P: Planner> Axis<P> {
     /// The values at the pins of MC_GearIn and MC_GearInPos that say which law holds.
     pub(super) fn check_gear(
         &self,
-        master: Master,
-        (numerator, denominator): (i16, u16),
-        source: Raw<ValueSource>,
+        followed: &Followed,
         sync: Option<SyncPoint>,
         scope: &mut Scope<'_>,
     ) -> Result<Gearing, ErrorId> {
-        let mut refuse = |pin, value: f64, limit, error| Err(self.refuse(pin, value, limit, error, scope));
-        let number = f64::from(master.axis.number());
-        if master.axis == self.id {
-            return refuse("Master", number, f64::NAN, ErrorId::CouplingRing);
-        }
-        if denominator == 0 {
-            return refuse("RatioDenominator", 0.0, 1.0, ErrorId::RatioInvalid);
-        }
-        let number = f64::from(source.number());
-        match source.get() {
-            Some(ValueSource::Set) => {}
-            Some(ValueSource::Commanded) => {
-                return refuse("MasterValueSource", number, 1.0, ErrorId::MasterSourceInvalid);
-            }
-            Some(ValueSource::Actual) => {
-                return refuse(
-                    "MasterValueSource",
-                    number,
-                    1.0,
-                    ErrorId::ActualMasterNotSupported,
-                );
-            }
-            None => return refuse("MasterValueSource", number, 2.0, ErrorId::SourceInvalid),
-        }
-        let turn = self.modulo.as_ref().map(|modulo| modulo.length);
-        let Some(gear) = Gear::new(numerator, denominator, master.turn, turn) else {
-            let numerator = f64::from(numerator);
-            return refuse(
-                "RatioNumerator",
-                numerator,
-                f64::NAN,
-                ErrorId::CouplingRatioTooFine,
-            );
-        };
+        let gear = self.check_leg(followed, &GEAR_PINS, scope)?;
         let sync = match sync {
-            Some(point) => Some(self.check_sync(&point, master.turn, scope)?),
+            Some(point) => Some(self.check_sync(&point, followed.master.turn, scope)?),
             None => None,
         };
         Ok(Gearing {
-            master: master.axis,
+            master: followed.master.axis,
+            source: source_of(followed),
             gear,
+            second: None,
             sync,
         })
     }
 
+    /// The values at the pins of MC_CombineAxes.
+    pub(super) fn check_combination(
+        &self,
+        masters: &[Followed; 2],
+        mode: Raw<CombineMode>,
+        scope: &mut Scope<'_>,
+    ) -> Result<Gearing, ErrorId> {
+        let [first, second] = masters;
+        let gear = self.check_leg(first, &COMBINED_PINS[0], scope)?;
+        let second_gear = self.check_leg(second, &COMBINED_PINS[1], scope)?;
+        let second_gear = match mode.get() {
+            Some(CombineMode::Add) => second_gear,
+            Some(CombineMode::Subtract) => second_gear.reversed(),
+            None => {
+                let number = f64::from(mode.number());
+                return Err(self.refuse("CombineMode", number, 1.0, ErrorId::SyncModeInvalid, scope));
+            }
+        };
+        Ok(Gearing {
+            master: first.master.axis,
+            source: source_of(first),
+            gear,
+            second: Some(Second {
+                master: second.master.axis,
+                source: source_of(second),
+                gear: second_gear,
+            }),
+            sync: None,
+        })
+    }
+
+    /// The values at the pins for one master.
+    fn check_leg(&self, followed: &Followed, pins: &LegPins, scope: &mut Scope<'_>) -> Result<Gear, ErrorId> {
+        let Followed {
+            master,
+            numerator,
+            denominator,
+            source,
+        } = *followed;
+        let mut refuse = |pin, value: f64, limit, error| Err(self.refuse(pin, value, limit, error, scope));
+        if master.axis == self.id {
+            let number = f64::from(master.axis.number());
+            return refuse(pins.master, number, f64::NAN, ErrorId::CouplingRing);
+        }
+        let Some(positive) = u16::try_from(denominator).ok().filter(|value| *value > 0) else {
+            let denominator = f64::from(denominator);
+            return refuse(pins.denominator, denominator, 1.0, ErrorId::RatioInvalid);
+        };
+        let number = f64::from(source.number());
+        match source.get() {
+            Some(ValueSource::Set | ValueSource::Actual) => {}
+            Some(ValueSource::Commanded) => {
+                return refuse(pins.source, number, 1.0, ErrorId::MasterSourceInvalid);
+            }
+            None => return refuse(pins.source, number, 2.0, ErrorId::SourceInvalid),
+        }
+        let turn = self.modulo.as_ref().map(|modulo| modulo.length);
+        match Gear::new(numerator, positive, master.turn, turn) {
+            Some(gear) => Ok(gear),
+            None => {
+                let numerator = f64::from(numerator);
+                refuse(pins.numerator, numerator, f64::NAN, ErrorId::CouplingRatioTooFine)
+            }
+        }
+    }
+
     /// MC_GearOut: on with the velocity that is left when acceleration and jerk are gone.
     pub(super) fn release(&self) -> (Work, Limits) {
-        let limits = self.parameters.limits;
+        let limits = self.slowed(&self.parameters.limits);
         let velocity = if self.is_paused() {
             0.0
         } else {
@@ -240,7 +415,7 @@ impl<P: Planner> Axis<P> {
         if !matches!(self.motion, Motion::Geared | Motion::Closing { .. }) {
             return;
         }
-        let limits = self.parameters.limits;
+        let limits = self.slowed(&self.parameters.limits);
         let velocity = self.planner.coasting(&self.setpoint, &limits);
         let ramp = self.planner.ramp_to(&self.setpoint, velocity, &limits, before);
         self.motion = ramp.map_or(Motion::Hold, Motion::along);
@@ -267,10 +442,12 @@ impl<P: Planner> Axis<P> {
     /// The present coupling, if `entry` is to go on in it: the same gear to the same master, in gear.
     pub(super) fn coupling_kept(&self, entry: &Entry) -> Option<Coupling> {
         let kept = self.coupling.filter(|coupling| {
-            coupling.rung == Rung::Locked && Work::Gear(coupling.gearing) == entry.work && !self.is_paused()
+            let is_in_gear = coupling.rung == Rung::Locked || coupling.is_kept;
+            is_in_gear && Work::Gear(coupling.gearing) == entry.work && !self.is_paused()
         });
         kept.map(|coupling| Coupling {
             rung: Rung::Due,
+            is_kept: true,
             ..coupling
         })
     }
@@ -281,15 +458,17 @@ impl<P: Planner> Axis<P> {
         self.is_bound = true;
         let known = self.coupling.as_ref().map(|coupling| coupling.gearing);
         if known != Some(gearing) {
-            let (numerator, denominator) = gearing.gear.ratio();
-            let event = Event::Coupled {
-                master: gearing.master,
-                numerator,
-                denominator,
-            };
-            self.record(event, &mut scope.with(entry.instance));
+            for (master, gear) in gearing.gears().into_iter().flatten() {
+                let (numerator, denominator) = gear.ratio();
+                let event = Event::Coupled {
+                    master,
+                    numerator,
+                    denominator,
+                };
+                self.record(event, &mut scope.with(entry.instance));
+            }
         }
-        let (limits, moves) = (self.parameters.limits, self.frame.moves());
+        let (limits, moves) = (self.slowed(&self.parameters.limits), self.frame.moves());
         let coupling = self
             .coupling
             .get_or_insert_with(|| Coupling::new(gearing, limits, moves));
@@ -298,6 +477,7 @@ impl<P: Planner> Axis<P> {
             coupling.gearing = gearing;
             coupling.anchor = None;
             coupling.was_in_gear = false;
+            coupling.is_kept = false;
             coupling.deviation = 0.0;
         }
         // Where the master was lost another ratio is no wish to move again.
@@ -343,7 +523,8 @@ impl<P: Planner> Axis<P> {
 
     /// Whom it follows, and for whose place a command of it waits.
     pub(crate) fn masters(&self) -> impl Iterator<Item = AxisId> + use<P> {
-        [self.master(), self.awaited_master()].into_iter().flatten()
+        let [first, second] = self.followed();
+        [first, second, self.awaited_master()].into_iter().flatten()
     }
 
     /// A command that follows a master waits.
@@ -352,14 +533,15 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The masters of commands that wait, in order.
-    pub(crate) fn masters_of_waiting(&mut self) -> [Option<AxisId>; QUEUE_MAX] {
-        let mut masters = [None; QUEUE_MAX];
-        for (master, entry) in masters.iter_mut().zip(self.queue.iter()) {
+    pub(crate) fn masters_of_waiting(&mut self) -> [[Option<Values>; 2]; QUEUE_MAX] {
+        let mut masters = [[None; 2]; QUEUE_MAX];
+        for (masters, entry) in masters.iter_mut().zip(self.queue.iter()) {
             if let Work::Gear(gearing) = entry.work {
-                *master = Some(gearing.master);
+                *masters = gearing.values();
             }
         }
-        self.is_bound = self.is_coupled() || self.awaited.is_some() || masters.iter().any(Option::is_some);
+        let waits = masters.iter().flatten().any(Option::is_some);
+        self.is_bound = self.is_coupled() || self.awaited.is_some() || waits;
         masters
     }
 

@@ -118,9 +118,18 @@ impl<P: Planner> Axis<P> {
         Ok(())
     }
 
-    /// What the override makes of `entry`.
+    /// What the override makes of `entry`, and what slaves leave of that.
     pub(super) fn override_entry(&self, entry: &mut Entry) {
+        self.scale_entry(entry);
+        self.bound_entry(entry);
+    }
+
+    /// What the override makes of `entry`, slaves aside.
+    pub(super) fn scale_entry(&self, entry: &mut Entry) {
         if !entry.work.manner().overridden {
+            if Self::has_bound(&entry.work) {
+                entry.limits = entry.asked.limits;
+            }
             return;
         }
         let (factors, axis) = (&self.factors, &self.parameters.limits);
@@ -132,7 +141,7 @@ impl<P: Planner> Axis<P> {
         entry.halted = factors.halt();
     }
 
-    fn override_queue(&mut self) {
+    pub(super) fn override_queue(&mut self) {
         let mut queue = self.queue;
         for entry in queue.iter_mut() {
             self.override_entry(entry);

@@ -147,8 +147,8 @@ impl<P: Planner> Axis<P> {
             Phase::Creep | Phase::Pulse => homing.creep.unwrap_or(homing.velocity),
             Phase::Idle | Phase::Found | Phase::Drive | Phase::Named | Phase::Return => return None,
         };
-        // The application may have lowered the limit since.
-        let speed = speed.min(self.parameters.limits.velocity);
+        // The application may have lowered the limit since, or a slave.
+        let speed = speed.min(self.slowed(&self.parameters.limits).velocity);
         Some(if search.up { speed } else { -speed })
     }
 
@@ -361,6 +361,13 @@ impl<P: Planner> Axis<P> {
         match planned {
             Ok(plan) => self.adopt(owner, Motion::along(plan), scope),
             Err(error) => self.trip(refusal(error), 0, Reaction::Ramp, scope),
+        }
+    }
+
+    /// The search goes on within the limits that its owner has now.
+    pub(super) fn search_on(&mut self, scope: &mut Scope<'_>) {
+        if self.velocity_of(&self.homing).is_some() {
+            self.go_on(self.homing.phase, self.homing.up, scope);
         }
     }
 

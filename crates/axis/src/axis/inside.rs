@@ -19,10 +19,16 @@ impl<P: Planner> Axis<P> {
         plan.excess_over(&self.config.limits)
     }
 
+    /// The same, and of what slaves leave of the axis limits.
+    pub(super) fn beyond_bound(&self, plan: &P::Plan) -> Option<Excess> {
+        plan.excess()?;
+        plan.excess_over(&self.slowed(&self.config.limits))
+    }
+
     /// The same for a motion.
     pub(super) fn excess_of(&self, motion: &Motion<P::Plan>) -> Option<Excess> {
         match motion {
-            Motion::Run { plan, .. } => self.beyond_axis(plan),
+            Motion::Run { plan, .. } => self.beyond_bound(plan),
             Motion::Hold
             | Motion::Follow
             | Motion::Torque { .. }
@@ -59,7 +65,8 @@ impl<P: Planner> Axis<P> {
         (start, before): (&Setpoint, &Limits),
     ) -> Result<Motion<P::Plan>, ErrorId> {
         let mut kept = motion;
-        for limits in self.higher(&entry.limits, before) {
+        let axis = self.slowed(&self.config.limits);
+        for limits in self.higher(&entry.limits, before, &axis) {
             let raised = Entry { limits, ..*entry };
             let motion = match self.plan_from(&raised, start, before) {
                 Ok(motion) => motion,
@@ -82,17 +89,18 @@ impl<P: Planner> Axis<P> {
         Ok(kept)
     }
 
-    /// The same for a ramp to rest nobody commanded.
-    pub(super) fn stopped_inside(&self, plan: P::Plan, limits: &mut Limits) -> P::Plan {
-        let Some(mut excess) = self.beyond_axis(&plan) else {
+    /// The same for a ramp to rest nobody commanded, on an axis that has limits of `axis`.
+    pub(super) fn stopped_inside(&self, plan: P::Plan, limits: &mut Limits, axis: &Limits) -> P::Plan {
+        let beyond = |plan: &P::Plan| plan.excess().and_then(|_| plan.excess_over(axis));
+        let Some(mut excess) = beyond(&plan) else {
             return plan;
         };
         let mut kept = plan;
-        for higher in self.higher(limits, &self.in_force) {
+        for higher in self.higher(limits, &self.in_force, axis) {
             let Ok(plan) = self.planner.ramp_to(&self.setpoint, 0.0, &higher, &self.in_force) else {
                 continue;
             };
-            let left = self.beyond_axis(&plan);
+            let left = beyond(&plan);
             if is_less(left, &excess) {
                 (kept, *limits) = (plan, higher);
                 match left {
@@ -104,9 +112,8 @@ impl<P: Planner> Axis<P> {
         kept
     }
 
-    /// Jerk and snap as they were before, then those of the axis with its accelerations, too.
-    pub(super) fn higher(&self, limits: &Limits, before: &Limits) -> [Limits; 2] {
-        let axis = &self.config.limits;
+    /// Jerk and snap as they were before, then those of the `axis` with its accelerations, too.
+    pub(super) fn higher(&self, limits: &Limits, before: &Limits, axis: &Limits) -> [Limits; 2] {
         [
             Limits {
                 jerk: limits.jerk.max(before.jerk),

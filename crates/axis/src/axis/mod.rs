@@ -10,6 +10,7 @@
 //! | [`feedback`] | actual positions, and which can be compared |
 //! | [`frame`] | what positions are called, for the drive and since when |
 //! | [`modulo`] | turns, and the way round |
+//! | [`measured`] | actual positions as slaves see them: filtered |
 //!
 //! What it decides has a file for each subject:
 //!
@@ -38,6 +39,7 @@ mod homing;
 mod inside;
 mod jog;
 mod limit_switches;
+mod measured;
 mod modulo;
 mod outputs;
 mod parameters;
@@ -67,7 +69,7 @@ use crate::{
 pub use commands::WorkKind;
 use commands::{Ending, Entry, Work};
 pub use coupling::Coupled;
-pub(crate) use coupling::{Future, View};
+pub(crate) use coupling::{Future, Part, Seen, Values, View};
 pub use factors::Factors;
 use feedback::Feedback;
 use frame::Frame;
@@ -285,6 +287,8 @@ pub struct Axis<P: Planner = Standard> {
     is_bound: bool,
     /// Where its set-point comes from in this scan, where some axis may follow another.
     source: coupling::Source,
+    /// What its slaves leave of its limits.
+    bound: coupling::Bound,
     /// How many masters stand above it.
     rank: u16,
     /// Reached in the search for a ring that is under way.
@@ -316,6 +320,8 @@ pub struct Axis<P: Planner = Standard> {
     replan_due: bool,
     /// How little there is to look after in a scan.
     calm: Calm,
+    /// Its actual positions as slaves see them.
+    measured: measured::Measured,
 }
 
 impl<P: Planner> Axis<P> {
@@ -356,6 +362,7 @@ impl<P: Planner> Axis<P> {
             awaited: None,
             is_bound: false,
             source: coupling::Source::default(),
+            bound: coupling::Bound::default(),
             rank: 0,
             is_above: false,
             stop_held: false,
@@ -375,6 +382,7 @@ impl<P: Planner> Axis<P> {
             arrival: supervision::Arrival::default(),
             replan_due: false,
             calm: Calm::No,
+            measured: measured::Measured::new(&config),
         })
     }
 

@@ -79,7 +79,7 @@ impl<P: Planner> Axis<P> {
             return Ok(());
         }
         let limits = if entry.paused {
-            self.stop_limits()
+            self.slowed(&self.stop_limits())
         } else {
             entry.limits
         };
@@ -109,7 +109,7 @@ impl<P: Planner> Axis<P> {
 
     /// Why a motion in progress is barred.
     fn barred_now(&self) -> Option<ErrorId> {
-        let limits = self.stop_limits();
+        let limits = self.slowed(&self.stop_limits());
         let owner = match (&self.motion, &self.owner) {
             (Motion::Run { plan, elapsed, .. } | Motion::Torque { plan, elapsed, .. }, Some(owner))
                 if owner.work.manner().barred && !owner.paused =>
@@ -160,7 +160,7 @@ impl<P: Planner> Axis<P> {
                 ..self.setpoint
             });
         }
-        let (start, limits) = (self.base(), self.stop_limits());
+        let (start, limits) = (self.base(), self.slowed(&self.stop_limits()));
         self.motion = match self.planner.ramp_to(&start, 0.0, &limits, &self.in_force) {
             Ok(plan) if !start.is_at_rest() => {
                 if let Some(excess) = self.beyond_axis(&plan) {

@@ -9,7 +9,7 @@ use crate::{
     AxisEvent, AxisState, CommandId, Comms, DriveFeedback, DrivePosition, DriveRequest, ErrorId, Event, Fate,
     PowerOff, Scope,
 };
-use standstill_planner::Planner;
+use standstill_planner::{Limits, Planner};
 
 /// The longest step (u) of the actual position that a calm axis takes without looking whether its velocity is a number; with any
 /// cycle from a nanosecond on it is. NaN and infinity are no such step.
@@ -49,6 +49,9 @@ impl<P: Planner> Axis<P> {
             && self.latch_usual(feedback.position)
         {
             debug_assert_eq!(self.calm, self.calmness());
+            if self.is_measured() {
+                self.measure_actual(Some(feedback.position));
+            }
             self.signals = feedback.signals;
             self.power.latch_voltage(feedback.voltage);
         } else {
@@ -153,6 +156,10 @@ impl<P: Planner> Axis<P> {
         } else {
             feedback.comms
         };
+        if self.is_measured() {
+            let is_fresh = comms == Comms::Ok;
+            self.measure_actual(is_fresh.then_some(feedback.position));
+        }
         self.power.latch(feedback, comms);
         if let Err(error) = self.fresh_position() {
             // A stage that was asked to go off while nothing tells whether it has counts as off: before it is enabled again
@@ -290,7 +297,10 @@ impl<P: Planner> Axis<P> {
         self.end_all(Fate::Aborted, Fate::Aborted);
         self.power.go_off();
         match self.config.on_power_off {
-            PowerOff::Ramp => self.ramp_down(scope),
+            PowerOff::Ramp => {
+                let (stop, axis) = (self.slowed(&self.stop_limits()), self.slowed(&self.config.limits));
+                self.ramp_down(stop, &axis, scope);
+            }
             PowerOff::Coast | PowerOff::Drive => self.motion = Motion::Follow,
         }
         if self.state != AxisState::Standstill {
@@ -298,8 +308,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Plans a ramp to rest with the stop dynamics.
-    pub(super) fn ramp_down(&mut self, scope: &mut Scope<'_>) {
+    /// Plans a ramp to rest within `limits`, or more of those of the `axis` where it could not be kept inside them.
+    fn ramp_down(&mut self, mut limits: Limits, axis: &Limits, scope: &mut Scope<'_>) {
         // Nothing stops sooner than this.
         self.watched = false;
         // Only a plan leaves a set-point that is not at rest.
@@ -307,10 +317,9 @@ impl<P: Planner> Axis<P> {
             self.motion = Motion::Hold;
             return;
         }
-        let mut limits = self.stop_limits();
         self.motion = match self.planner.ramp_to(&self.setpoint, 0.0, &limits, &self.in_force) {
             Ok(plan) => {
-                let plan = self.stopped_inside(plan, &mut limits);
+                let plan = self.stopped_inside(plan, &mut limits, axis);
                 if let Some(excess) = self.beyond_axis(&plan) {
                     self.record(Event::Unavoidable(excess), scope);
                 }
@@ -346,7 +355,10 @@ impl<P: Planner> Axis<P> {
         self.error_code = code;
         self.power.end_going_off();
         match reaction {
-            Reaction::Ramp if self.power.is_on() && !self.moves_itself() => self.ramp_down(scope),
+            // A fault does not look at slaves.
+            Reaction::Ramp if self.power.is_on() && !self.moves_itself() => {
+                self.ramp_down(self.stop_limits(), &{ self.config.limits }, scope);
+            }
             Reaction::Ramp | Reaction::Follow => self.motion = Motion::Follow,
         }
         self.enter(AxisEvent::Fault);

@@ -190,7 +190,8 @@ impl<P: Planner> Axis<P> {
             since: 0.0,
             time_scale: profile.time_scale,
         };
-        let mut entry = Entry::new(self.new_id(), scope.instance, work, self.parameters.limits, mode);
+        let limits = self.slowed(&self.parameters.limits);
+        let mut entry = Entry::new(self.new_id(), scope.instance, work, limits, mode);
         match start {
             Start::Wait => {
                 self.looked_at(profile, scope)?;
@@ -276,7 +277,7 @@ impl<P: Planner> Axis<P> {
             since: since + *elapsed as f64 * self.planner.cycle() / time_scale,
             time_scale: profile.time_scale,
         };
-        owner.limits = self.parameters.limits;
+        owner.limits = self.slowed(&self.parameters.limits);
         let motion = self.plan_profile(&mut owner, profile, scope)?;
         self.before = self.limits_before(&owner.limits);
         self.adopt(owner, motion, scope);
@@ -300,7 +301,7 @@ impl<P: Planner> Axis<P> {
         } else {
             self.go_on_alone(&before);
         }
-        next.limits = self.parameters.limits;
+        next.limits = self.slowed(&self.parameters.limits);
         self.in_force = before;
         self.watched = self.needs_watching(&next);
         // From rest it may still come to nothing, and no arrow leads from ContinuousMotion to Standstill.

@@ -83,6 +83,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn rename_actual(&mut self, old: f64, name: f64) {
         self.stir();
         self.feedback.rename(old, name);
+        self.measured.shift(old, name);
     }
 
     /// The actual position (u) if it is fresh.

@@ -154,11 +154,16 @@ impl<P: Planner> Axis<P> {
         Some(self.limits_in_state(&self.base(), &self.in_force, &self.before))
     }
 
-    /// `own` limits of a motion in `state`, and those `before` until it is inside. Cost: at most one ramp.
+    /// `own` limits of a motion in `state`, and those `before` until it is inside, but no more of them than slaves leave if that
+    /// is enough. Cost: at most one ramp, with slaves two.
     pub(super) fn limits_in_state(&self, state: &Setpoint, own: &Limits, before: &Limits) -> Limits {
         let wider = own.or_larger(before);
         if wider == *own || self.is_inside(state, own) {
-            *own
+            return *own;
+        }
+        let slowed = self.slowed(&wider);
+        if slowed != wider && self.is_inside(state, &slowed) {
+            slowed
         } else {
             wider
         }

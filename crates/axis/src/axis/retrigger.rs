@@ -126,6 +126,7 @@ impl<P: Planner> Axis<P> {
 
     /// The axis comes to rest by `halt`, which no block follows.
     fn halt_alone(&mut self, mut halt: Entry, scope: &mut Scope<'_>) {
+        self.bound_entry(&mut halt);
         let before = self.limits_before(&halt.limits);
         let planned = match self.plan_next(&mut halt) {
             Ok(Some(motion)) => Ok(motion),

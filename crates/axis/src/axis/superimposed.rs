@@ -7,6 +7,7 @@
 //! Source: PLCopen Motion Control Part 1, sections MC_MoveSuperimposed and MC_HaltSuperimposed; R51, R64 to
 //! R66, S9, V14, V14a.
 
+mod behind;
 mod plan;
 mod update;
 
@@ -121,6 +122,11 @@ impl<P: Plan> Layer<P> {
         matches!(self.motion, Motion::Run { .. })
     }
 
+    /// The limits of what is being added.
+    pub fn limits_in_motion(&self) -> Option<&Limits> {
+        self.moves().then_some(&self.in_force)
+    }
+
     /// Whether something is yet to be added. A halt that finds nothing in motion adds nothing.
     fn is_busy(&self) -> bool {
         self.moves() || matches!(&self.command, Some(command) if command.adds != Adds::Halt)
@@ -218,9 +224,14 @@ impl<P: Planner> Axis<P> {
             .unwrap_or_else(|| Layer::on(self.setpoint, &self.config.limits));
         let id = self.new_id();
         let command = self.added(id, layer.added.position, &layer, request, scope)?;
-        let proposed = self
-            .propose(&layer, &command)
-            .map_err(|error| self.refuse("Distance", request.distance, f64::NAN, error, scope))?;
+        let refuse = |error| self.refuse("Distance", request.distance, f64::NAN, error, scope);
+        if self.is_coupled() {
+            self.propose_alone(&layer, &command).map_err(refuse)?;
+            self.end_superimposed_command(Fate::Aborted);
+            self.await_room(layer, command);
+            return Ok(id);
+        }
+        let proposed = self.propose(&layer, &command).map_err(refuse)?;
         if self.state == AxisState::Standstill {
             self.enter(AxisEvent::StartDiscrete);
         }
@@ -260,14 +271,15 @@ impl<P: Planner> Axis<P> {
         dynamics: &crate::Dynamics,
         scope: &mut Scope<'_>,
     ) -> Result<CommandId, ErrorId> {
-        let limits = self.resolve(dynamics, scope)?;
+        let asked = self.resolve(dynamics, scope)?;
+        let limits = self.slowed(&asked);
         let layer = self.layer.unwrap_or_else(|| Layer::on(self.setpoint, &limits));
         let command = Added {
             id: self.new_id(),
             instance: scope.instance,
             adds: Adds::Halt,
             limits,
-            asked: limits,
+            asked,
             halting: false,
             progress: if layer.moves() {
                 Progress::Waits
@@ -276,6 +288,11 @@ impl<P: Planner> Axis<P> {
             },
             orphaned: false,
         };
+        if self.is_coupled() {
+            self.end_superimposed_command(Fate::Aborted);
+            self.await_room(layer, command);
+            return Ok(command.id);
+        }
         let proposed = if layer.moves() {
             self.propose(&layer, &command)
                 .map_err(|error| self.refuse("Deceleration", limits.deceleration, f64::NAN, error, scope))?
@@ -338,7 +355,7 @@ impl<P: Planner> Axis<P> {
             AxisState::Stopping => Err(ErrorId::InStopping),
             AxisState::Homing => Err(ErrorId::InHoming),
             _ if matches!(self.motion, Motion::Torque { .. }) => Err(ErrorId::TorqueControls),
-            _ if self.is_coupled() => Err(ErrorId::SlaveNotSuperimposed),
+            _ if self.has_lost_master() => Err(ErrorId::MasterLost),
             AxisState::Standstill
             | AxisState::DiscreteMotion
             | AxisState::ContinuousMotion
@@ -356,6 +373,8 @@ impl<P: Planner> Axis<P> {
                 .as_ref()
                 .and_then(|owner| owner.end)
                 .unwrap_or(f64::NAN),
+            // Behind a master it has no end of its own.
+            _ if self.is_coupled() => f64::NAN,
             (Motion::Run { plan, .. }, _) => plan.at(u64::from(plan.scans())).position,
             (_, _) => layer.base.position,
         }
@@ -433,7 +452,7 @@ impl<P: Planner> Axis<P> {
         let Some(layer) = &mut self.layer else { return };
         layer.base = match &mut self.motion {
             Motion::Follow => Setpoint::at_rest(self.feedback.position()),
-            // Nothing is superimposed on what is behind a master.
+            // What is superimposed on a law is added in the step behind the master.
             Motion::Hold | Motion::Torque { .. } | Motion::Geared | Motion::Closing { .. } => {
                 Setpoint::at_rest(layer.base.position)
             }
@@ -512,7 +531,7 @@ impl<P: Planner> Axis<P> {
     /// What is superimposed comes to rest with the stop dynamics; what is left of its distance waits.
     #[cold]
     pub(super) fn brake_superimposed(&mut self) {
-        let limits = self.stop_limits();
+        let limits = self.slowed(&self.stop_limits());
         let Some(layer) = &mut self.layer else { return };
         let planned = self.planner.ramp_to(&layer.added, 0.0, &limits, &layer.in_force);
         if let (Ok(plan), Some(command)) = (planned, &mut layer.command) {

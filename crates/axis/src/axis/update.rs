@@ -54,7 +54,9 @@ impl<P: Planner> Axis<P> {
         } else {
             self.replan(owner, scope)
         };
-        planned.map_err(|error| self.refuse_plan(&owner, error, scope))
+        planned.map_err(|error| self.refuse_plan(&owner, error, scope))?;
+        self.record_slowed(&owner, scope);
+        Ok(())
     }
 
     fn update_waiting(
@@ -98,7 +100,7 @@ impl<P: Planner> Axis<P> {
         };
         let is_same_kind = match (work, entry.work) {
             // Another master is another coupling.
-            (Work::Gear(new), Work::Gear(old)) => new.master == old.master,
+            (Work::Gear(new), Work::Gear(old)) => new.masters() == old.masters(),
             (new, old) => mem::discriminant(&new) == mem::discriminant(&old),
         };
         Ok((is_same_kind && work.manner().updated).then_some((work, limits)))

@@ -15,13 +15,12 @@ use super::super::supervision::Arrival;
 use super::super::{Axis, Motion};
 use super::follow::{Beyond, ROUNDING, off};
 use super::needs::RESOLVED;
-use super::view::{Course, View};
+use super::view::{Kind, UNKNOWN, View, anchor_at};
 use super::{Coupling, Rung};
 use crate::{Approach, ErrorId, Event, Fate, Scope};
-use standstill_planner::{Anchor, Limits, MoveProfile, Place, Plan, Planner, Setpoint};
-
-/// Scans after which the way is looked for again while what the master does next is not known.
-const UNKNOWN: u64 = 16;
+use standstill_planner::{
+    Anchor, DirectedLimits, Excess, Lead, Leads, Limits, MoveProfile, Place, Plan, Planner, Setpoint,
+};
 
 /// A velocity left beside that of a line must be at least this part of the limit.
 const LEAST: f64 = 1e-6;
@@ -36,6 +35,13 @@ struct Stretch {
     velocity: f64,
     /// Where a line of that velocity through it is now (u), in the turn the slave is in.
     now: f64,
+}
+
+/// The speeds (u/s) a slave may have beside a line: the way the line goes, and against it.
+#[derive(Clone, Copy)]
+struct Room {
+    along: f64,
+    against: f64,
 }
 
 /// A way onto the law.
@@ -66,19 +72,17 @@ impl<P: Planner> Axis<P> {
             return;
         };
         let was_locked = coupling.rung == Rung::Locked;
-        let anchor = coupling.anchor.unwrap_or(Anchor {
-            master: coupling.was.place,
-            slave: self.place(),
-        });
+        let here = anchor_at(&coupling.was, self.place());
+        let anchor = coupling.anchor.unwrap_or(here);
         let (_, law) = coupling.law(&anchor, &coupling.was);
         let difference = self.difference(coupling, &anchor);
         if difference.is_at_rest() && difference.position == 0.0 {
             // What was not on the law may not have been held against a plan of the master that is over now.
             let was_on_law = coupling.anchor.is_some();
-            let is_seen = match view.future.course {
-                Course::Still => law.is_at_rest(),
-                Course::Plan(..) => !view.future.is_late(),
-                Course::Unknown => true,
+            let is_seen = match view.future.kind() {
+                Kind::Still => law.is_at_rest(),
+                Kind::Plan => !view.future.is_late(),
+                Kind::Unknown | Kind::Measured | Kind::NotSeen => true,
             };
             if may_lock && (was_on_law || is_seen) && self.law_fits(view, false) {
                 if !was_locked {
@@ -97,6 +101,13 @@ impl<P: Planner> Axis<P> {
             Ok(mut way) => {
                 if view.future.is_late() {
                     way.left = 0;
+                }
+                let told = self.coupling.as_mut().and_then(|coupling| coupling.told.as_mut());
+                if let (Some((name, velocity)), Some(_)) = (told, view.future.measured())
+                    && *name == way.name
+                {
+                    // It is another one each time.
+                    *velocity = way.velocity;
                 }
                 self.take_way(way, before, scope);
             }
@@ -134,7 +145,7 @@ impl<P: Planner> Axis<P> {
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let (place, law) = coupling.law(&anchor, &coupling.was);
-        let (place_now, _) = coupling.law(&anchor, &view.now);
+        let (place_now, _) = coupling.law(&anchor, &view.seen());
         let step = off(place_now, place, length);
         let stretch = self.next_stretch(view, here.position - difference.position, step);
         let mut limits = self.limits_of_approach(owner);
@@ -144,12 +155,20 @@ impl<P: Planner> Axis<P> {
             if coupling.goes_slowly() && velocity != 0.0 {
                 limits.velocity = limits.velocity.min(velocity.abs());
             }
-            if let (Some(stretch), Course::Plan(..)) = (&stretch, view.future.course) {
+            if let (Some(stretch), Kind::Plan) = (&stretch, view.future.kind()) {
                 self.is_in_reach(stretch, &limits)?;
             }
         }
-        let onto = stretch.and_then(|stretch| self.onto(owner, view, &stretch, &limits, &before));
-        let soonest = onto.as_ref().map_or(u64::MAX, |way| way.lock);
+        let mut onto = stretch.and_then(|stretch| self.onto(owner, view, &stretch, &limits, &before));
+        let mut soonest = onto.as_ref().map_or(u64::MAX, |way| way.lock);
+        if let (Some(way), Some(scans)) = (&mut onto, view.future.measured()) {
+            // The line is as good a guess as any, and only leads near the law: the last bit of the way goes beside it. One that
+            // waits for its sync point does so at rest beside the line, not beside a law that trembles.
+            (way.lock, way.left) = (scans_of(&way.motion), scans);
+            let near = 2 * scans;
+            let waits = coupling.is_syncing() && difference.position * velocity > 0.0 && way.lock > near;
+            soonest = if waits { 0 } else { way.lock.saturating_add(near) };
+        }
         let beside = self
             .beside_law(view, anchor, difference, velocity, &limits)
             .filter(|way| way.lock < soonest);
@@ -161,7 +180,7 @@ impl<P: Planner> Axis<P> {
 
     /// The limits of the owner on its way onto the law.
     pub(super) fn limits_of_approach(&self, owner: &Entry) -> Limits {
-        let (asked, axis) = (&owner.limits, &self.parameters.limits);
+        let (asked, axis) = (&owner.limits, &self.slowed(&self.parameters.limits));
         // The Velocity of MC_GearInPos is one for the way to its sync point.
         let is_synced = |coupling: &Coupling| coupling.gearing.sync.is_some() && coupling.was_in_gear;
         let velocity = if self.coupling.as_ref().is_some_and(is_synced) {
@@ -182,10 +201,8 @@ impl<P: Planner> Axis<P> {
     /// moved by `step` (u) in this scan.
     fn next_stretch(&self, view: &View<'_, P::Plan>, on_law: f64, step: f64) -> Option<Stretch> {
         let coupling = self.coupling.as_ref()?;
-        let gear = &coupling.gearing.gear;
-        let factor = coupling.factor(&view.future);
         let cycle = self.planner.cycle();
-        if factor == 0.0 || matches!(view.future.course, Course::Still) {
+        if coupling.stands(&view.future) || view.future.kind() == Kind::Still {
             return Some(Stretch {
                 begin: 0,
                 end: u64::MAX,
@@ -193,29 +210,46 @@ impl<P: Planner> Axis<P> {
                 now: on_law + step,
             });
         }
-        let velocity = gear.derivative(view.now.at.velocity);
+        let velocity = coupling
+            .gearing
+            .derivative(view.seen().map(|seen| seen.at.velocity));
         let unknown = Stretch {
             begin: 0,
             end: UNKNOWN,
             velocity,
             now: on_law + (step - velocity * cycle),
         };
-        let Some((plan, from, late)) = view.future.plan() else {
+        let Some(leads) = coupling.leads(&view.future) else {
             return Some(unknown);
         };
-        let Some((begin, end)) = self.planner.stretch((plan, from)) else {
+        let Some((begin, end)) = self.planner.stretch(&leads) else {
             return Some(unknown);
         };
-        let velocity = gear.derivative(view.future.factor * plan.at(begin).velocity);
-        let scans = |at: u64| at.saturating_sub(from).saturating_add(late);
+        let late = u64::from(view.future.is_late());
+        // What all plans come to together, each geared.
+        let sum = |of: &dyn Fn(&Lead<'_, P::Plan>) -> f64| {
+            let [first, second] = &leads;
+            let [first_part, second_part] = &view.future.parts;
+            let of_lead = |lead: &Option<Lead<'_, P::Plan>>| lead.as_ref().map_or(0.0, of);
+            coupling.gearing.derivative([
+                of_lead(first) * first_part.factor,
+                of_lead(second) * second_part.factor,
+            ])
+        };
+        let velocity = sum(&|lead| lead.plan.at(lead.elapsed.saturating_add(begin)).velocity);
         // By how much the law comes further than the line on its way there.
-        let way = factor * (plan.at(begin).position - plan.at(from).position);
+        let way = leads.iter().flatten().map(|lead| {
+            let at = |scan| lead.plan.at(scan).position;
+            lead.factor * (at(lead.elapsed.saturating_add(begin)) - at(lead.elapsed))
+        });
+        let way = way.fold(0.0, |sum, way| sum + way);
         let way = if late > 0 { way + step } else { way };
+        let begin = begin.saturating_add(late);
         Some(Stretch {
-            begin: scans(begin),
-            end: if end == u64::MAX { end } else { scans(end) },
+            begin,
+            end: end.saturating_add(late),
             velocity,
-            now: on_law + (way - velocity * (scans(begin) as f64 * cycle)),
+            now: on_law + (way - velocity * (begin as f64 * cycle)),
         })
     }
 
@@ -276,7 +310,7 @@ impl<P: Planner> Axis<P> {
         let anchor = coupling.anchor?;
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
-        let (law, _) = coupling.law(&anchor, &view.now);
+        let (law, _) = coupling.law(&anchor, &view.seen());
         let target = (law.turns.wrapping_sub(here.turns)) as f64 * length + law.position;
         let start = Setpoint {
             position: here.position,
@@ -319,7 +353,7 @@ impl<P: Planner> Axis<P> {
         }
         let coupling = self.coupling.as_ref()?;
         let is_syncing = coupling.is_syncing();
-        if is_syncing && matches!(view.future.course, Course::Still) {
+        if is_syncing && view.future.kind() == Kind::Still {
             return self.onto_rest(view, limits, before);
         }
         let (motion, rung, limits) = if coupling.anchor.is_none() {
@@ -329,16 +363,26 @@ impl<P: Planner> Axis<P> {
             let here = self.place();
             let start = self.beside_stretch(stretch);
             let line = stretch.velocity.abs();
-            // Ahead of the line the slave lets it come, and does not go to meet it.
-            let waits = is_syncing
-                && line != 0.0
+            let is_ahead = line > LEAST * limits.velocity
                 && self
                     .stop_ahead(&start, stretch.velocity, limits)
                     .is_some_and(|ahead| ahead > 0.0);
-            let room = |limits: &Limits| if waits { line } else { limits.velocity - line };
-            if room(limits) <= LEAST * limits.velocity {
+            // Ahead of the line the slave lets it come. On its way to a sync point it does not go to meet it, later it does:
+            // against the line it may be faster beside it than with it.
+            let waits = is_syncing && is_ahead;
+            let along = |limits: &Limits| if waits { line } else { limits.velocity - line };
+            if along(limits) <= LEAST * limits.velocity {
                 return None;
             }
+            let meets = is_ahead && !is_syncing;
+            let room = |limits: &Limits| Room {
+                along: along(limits),
+                against: if meets {
+                    limits.velocity + line
+                } else {
+                    along(limits)
+                },
+            };
             let (plan, limits) = self.beside_line(&start, stretch.velocity, room, limits, before)?;
             let rung = Rung::BesideLine {
                 start: Place {
@@ -369,7 +413,7 @@ impl<P: Planner> Axis<P> {
         &self,
         start: &Setpoint,
         velocity: f64,
-        room: impl Fn(&Limits) -> f64,
+        room: impl Fn(&Limits) -> Room,
         limits: &Limits,
         before: &Limits,
     ) -> Option<(P::Plan, Limits)> {
@@ -383,26 +427,51 @@ impl<P: Planner> Axis<P> {
                 ..*limits
             }
         };
-        let axis = &self.config.limits;
+        let axis = &self.slowed(&self.config.limits);
         let steady = Setpoint {
             velocity,
             ..Setpoint::at_rest(0.0)
         };
         let line = self.planner.ramp_to(&steady, velocity, axis, axis).ok()?;
+        let line = [
+            Some(Lead {
+                plan: &line,
+                elapsed: 0,
+                factor: 1.0,
+            }),
+            None,
+        ];
         [*limits]
             .into_iter()
-            .chain(self.higher(limits, before))
+            .chain(self.higher(limits, before, axis))
             .find_map(|limits| {
-                let own = beside(&limits, room(&limits));
+                let Room { along, against } = room(&limits);
                 let wider = before.or_larger(&limits);
-                let wider = beside(&wider, wider.velocity + velocity.abs());
-                let plan = self
-                    .planner
-                    .move_to(MoveProfile::Online, start, 0.0, &own, &wider)
-                    .ok()?;
+                let wider = beside(&wider, wider.velocity + velocity.abs()).into();
+                let plan = |against| {
+                    let (positive, negative) = if velocity < 0.0 {
+                        (against, along)
+                    } else {
+                        (along, against)
+                    };
+                    let own = DirectedLimits {
+                        positive,
+                        negative,
+                        limits: beside(&limits, limits.velocity),
+                    };
+                    self.planner.move_by_direction(start, 0.0, &own, &wider).ok()
+                };
+                let first = plan(along)?;
+                // More room against the line is of use where all of the other is.
+                let uses_all = |peaks: Setpoint| peaks.velocity >= along * (1.0 - LEAST);
+                let plan = if against > along && self.planner.peaks((&first, 0)).is_some_and(uses_all) {
+                    plan(against)?
+                } else {
+                    first
+                };
                 let both = Some((&plan, 0));
                 self.planner
-                    .fits_behind((&line, 0), 1.0, &self.setpoint, both, axis)
+                    .fits_behind(&line, &self.setpoint, both, axis)
                     .then_some((plan, limits))
             })
     }
@@ -419,17 +488,17 @@ impl<P: Planner> Axis<P> {
         if difference.is_at_rest() && difference.position == 0.0 {
             return None;
         }
+        if view.future.measured().is_some() {
+            return self.beside_measured(view, anchor, difference, line, limits);
+        }
         let coupling = self.coupling.as_ref()?;
-        let factor = coupling.factor(&view.future);
         // The step of a plan that ended in this scan can't be looked at any more.
-        let (plan, from, 0) = view.future.plan()? else {
-            return None;
-        };
+        let leads = coupling.leads(&view.future).filter(|_| !view.future.is_late())?;
         let to_place = coupling.anchor.is_some();
         let is_syncing = coupling.is_syncing();
         // On its way to a sync point the slave goes against the line no faster than it does already.
         let turns = |beside: &P::Plan| {
-            let found = self.planner.velocities_behind((plan, from), factor, (beside, 0));
+            let found = self.planner.velocities_behind(&leads, (beside, 0));
             let (against, start) = match found {
                 Some((lowest, _)) if line > 0.0 => (-lowest, -self.setpoint.velocity),
                 Some((_, highest)) if line < 0.0 => (highest, self.setpoint.velocity),
@@ -446,15 +515,14 @@ impl<P: Planner> Axis<P> {
             };
             let planned = planned.ok().filter(|beside| {
                 let beside = Some((beside, 0));
-                self.planner
-                    .fits_behind((plan, from), factor, &self.setpoint, beside, limits)
+                self.planner.fits_behind(&leads, &self.setpoint, beside, limits)
             });
             planned.filter(|beside| !(is_syncing && turns(beside)))
         };
         let asked = attempt(limits);
         let planned = match asked {
             Some(planned) => planned,
-            None => attempt(&self.room_beside((plan, from), factor, limits)?)?,
+            None => attempt(&self.room_beside(&leads, limits)?)?,
         };
         let lock = u64::from(planned.scans());
         Some(Way {
@@ -468,27 +536,80 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// What the law leaves of `limits` whatever is added when; none where it leaves nothing.
-    pub(super) fn room_beside(&self, rest: (&P::Plan, u64), factor: f64, limits: &Limits) -> Option<Limits> {
-        let factor = factor.abs();
-        if factor == 0.0 {
+    /// The same beside a law of measured values, with half of what that leaves now. Each step is looked at before it is made; none
+    /// again where that was not enough just now.
+    fn beside_measured(
+        &self,
+        view: &View<'_, P::Plan>,
+        anchor: Anchor,
+        difference: &Setpoint,
+        line: f64,
+        limits: &Limits,
+    ) -> Option<Way<P::Plan>> {
+        let coupling = self.coupling.as_ref()?;
+        if matches!(coupling.rung, Rung::BesideMeasured { .. }) || !self.is_told_finely(view) {
             return None;
         }
-        let scaled = |limits: &Limits, by: f64| Limits {
-            velocity: limits.velocity * by,
-            acceleration: limits.acceleration * by,
-            deceleration: limits.deceleration * by,
-            jerk: limits.jerk * by,
-            snap: limits.snap * by,
+        let mut room = self.room_now(view, limits)?;
+        // One that is ahead on its way to a sync point waits, and does not go to meet the law.
+        if coupling.is_syncing() && difference.position * line > 0.0 {
+            room.velocity = room.velocity.min(line.abs());
+        }
+        let planned = if coupling.anchor.is_some() {
+            self.planner
+                .move_to(MoveProfile::Online, difference, 0.0, &room, &room)
+        } else {
+            self.planner.ramp_to(difference, 0.0, &room, &room)
         };
-        let room = scaled(&self.planner.room(rest, &scaled(limits, 1.0 / factor)), factor);
+        let planned = planned.ok()?;
+        // Outside the room it could be anywhere between two scans.
+        let leaves = |excess: Excess| excess.acceleration > 0.0 || excess.jerk > 0.0;
+        if planned.excess().is_some_and(leaves) {
+            return None;
+        }
+        Some(Way {
+            motion: closing(planned),
+            rung: Rung::BesideMeasured { anchor, room },
+            lock: u64::from(planned.scans()),
+            left: u64::MAX,
+            name: Approach::Difference,
+            velocity: difference.velocity,
+            limits: *limits,
+        })
+    }
+
+    /// Half of what the law leaves of `limits` in this scan; none where it leaves nothing.
+    pub(in crate::axis) fn room_now(&self, view: &View<'_, P::Plan>, limits: &Limits) -> Option<Limits> {
+        let coupling = self.coupling.as_ref()?;
+        let (_, law) = coupling.law(&coupling.anchor.unwrap_or_default(), &view.seen());
+        let half = |limit: f64, used: f64| 0.5 * (limit - used.abs());
+        let rate = half(limits.lower_acceleration(), law.acceleration);
+        let room = Limits {
+            velocity: half(limits.velocity, law.velocity),
+            acceleration: rate,
+            deceleration: rate,
+            jerk: half(limits.jerk, law.jerk),
+            snap: half(limits.snap, law.snap),
+        };
+        let least = room.velocity.min(rate).min(room.jerk).min(room.snap);
+        (least > LEAST * limits.velocity).then_some(room)
+    }
+
+    /// What the law leaves of `limits` whatever is added when; none where it leaves nothing.
+    pub(in crate::axis) fn room_beside(&self, leads: &Leads<'_, P::Plan>, limits: &Limits) -> Option<Limits> {
+        let mut room = *limits;
+        for lead in leads.iter().flatten() {
+            let factor = lead.factor.abs();
+            let rest = (lead.plan, lead.elapsed);
+            room = self.planner.room(rest, &room.times(1.0 / factor)).times(factor);
+        }
         let least = room
             .velocity
             .min(room.acceleration)
             .min(room.deceleration)
             .min(room.jerk)
             .min(room.snap);
-        (least > 0.0).then_some(room)
+        (least > 0.0 && leads.iter().any(Option::is_some)).then_some(room)
     }
 
     /// As fast as it may, the way the law leads.
@@ -504,11 +625,16 @@ impl<P: Planner> Axis<P> {
         let most = self.limits_of_approach(owner).velocity;
         let goal = if velocity < 0.0 { -most } else { most };
         let (motion, limits) = self.to_velocity(owner, goal)?;
-        let left = match view.future.plan() {
-            Some((plan, from, late)) => {
-                let switch = self.planner.next_switch((plan, from));
-                let scans = switch.saturating_sub(from).saturating_add(late);
-                if switch > from { scans } else { u64::MAX }
+        let coupling = self.coupling.as_ref();
+        let left = match coupling.and_then(|coupling| coupling.leads(&view.future)) {
+            Some(leads) => {
+                let late = u64::from(view.future.is_late());
+                let next = leads.iter().flatten().filter_map(|lead| {
+                    let switch = self.planner.next_switch((lead.plan, lead.elapsed));
+                    let scans = switch.saturating_sub(lead.elapsed);
+                    (scans > 0).then_some(scans.saturating_add(late))
+                });
+                next.min().unwrap_or(u64::MAX)
             }
             None => UNKNOWN,
         };
@@ -623,18 +749,35 @@ impl<P: Planner> Axis<P> {
 
     /// What the law asks for beyond the limits in the master's plan: its name, the value and the limit.
     fn reason(&self, view: &View<'_, P::Plan>) -> Option<Beyond> {
+        self.reason_beside(view, &Setpoint::default())
+    }
+
+    /// The same with what may be `beside` it at most.
+    pub(in crate::axis) fn reason_beside(
+        &self,
+        view: &View<'_, P::Plan>,
+        beside: &Setpoint,
+    ) -> Option<Beyond> {
         let coupling = self.coupling.as_ref()?;
-        let factor = coupling.factor(&view.future).abs();
-        let (plan, from, _) = view.future.plan()?;
-        let peaks = self.planner.peaks((plan, from))?;
+        let mut peaks = Setpoint::default();
+        for lead in coupling.leads(&view.future)?.iter().flatten() {
+            let own = self.planner.peaks((lead.plan, lead.elapsed))?;
+            peaks = peaks.plus(&own.times(lead.factor.abs()));
+        }
         let limits = &coupling.limits;
+        let acceleration = limits.lower_acceleration();
         let told = [
-            ("velocity", peaks.velocity, limits.velocity),
-            ("acceleration", peaks.acceleration, limits.lower_acceleration()),
-            ("jerk", peaks.jerk, limits.jerk),
-            ("snap", peaks.snap, limits.snap),
+            ("velocity", peaks.velocity, beside.velocity, limits.velocity),
+            (
+                "acceleration",
+                peaks.acceleration,
+                beside.acceleration,
+                acceleration,
+            ),
+            ("jerk", peaks.jerk, beside.jerk, limits.jerk),
+            ("snap", peaks.snap, beside.snap, limits.snap),
         ];
-        let told = told.map(|(what, peak, limit)| (what, factor * peak, limit));
+        let told = told.map(|(what, peak, beside, limit)| (what, peak + beside, limit));
         told.into_iter()
             .find(|(_, value, limit)| *value > limit * (1.0 + 1e-9))
     }

@@ -3,36 +3,50 @@
 use super::super::guard::LAST_SCAN;
 use super::super::power::Reaction;
 use super::super::{Axis, Motion};
-use super::needs::{DERIVATIVES, RESOLVED, Step};
-use super::view::{Course, Future, Seen, View};
+use super::needs::{DERIVATIVES, Piece, RESOLVED, Step};
+use super::view::{Future, Kind, Seen, SeenBoth, View, anchor_at};
 use super::{Coupling, Rung};
 use crate::{ErrorId, Event, Fate, OnLimit, OnMasterLost, Scope};
-use standstill_planner::{Anchor, Limits, Place, Plan, Planner, Setpoint};
+use standstill_planner::{Anchor, Leads, Limits, Place, Plan, Planner, Setpoint};
 
 /// How far a limit may be exceeded, relative to it: rounding (contract: limits hold to 1e-9).
 pub(super) const ROUNDING: f64 = 1e-9;
 
 /// What of a motion is beyond a limit: its name, its value and the limit.
-pub(super) type Beyond = (&'static str, f64, f64);
+pub(in crate::axis) type Beyond = (&'static str, f64, f64);
 
 impl Coupling {
-    /// Where the law is for a master that is there, and how it moves.
-    pub(super) fn law(&self, anchor: &Anchor, seen: &Seen) -> (Place, Setpoint) {
-        let gear = &self.gearing.gear;
-        let (slave, master) = (gear.slave(anchor, seen.place), &seen.at);
+    /// Where the law is for masters that are there, and how it moves.
+    pub(super) fn law(&self, anchor: &Anchor, seen: &SeenBoth) -> (Place, Setpoint) {
+        let slave = self.gearing.slave(anchor, seen.map(|seen| seen.place));
+        let derivative =
+            |of: fn(&Setpoint) -> f64| self.gearing.derivative([of(&seen[0].at), of(&seen[1].at)]);
         let state = Setpoint {
             position: slave.position,
-            velocity: gear.derivative(master.velocity),
-            acceleration: gear.derivative(master.acceleration),
-            jerk: gear.derivative(master.jerk),
-            snap: gear.derivative(master.snap),
+            velocity: derivative(|at| at.velocity),
+            acceleration: derivative(|at| at.acceleration),
+            jerk: derivative(|at| at.jerk),
+            snap: derivative(|at| at.snap),
         };
         (slave, state)
     }
 
-    /// What the derivatives of the plan ahead are multiplied by to be those of the law.
-    pub(super) fn factor<Q>(&self, future: &Future<'_, Q>) -> f64 {
-        self.gearing.gear.derivative(future.factor)
+    /// How large (u of the slave) the places of its masters are that the law is made of.
+    fn size_of_masters(&self, seen: &SeenBoth) -> f64 {
+        let [first, second] = seen;
+        let part = |leg, seen: &Seen| self.gearing.factor(leg, seen.at.position).abs();
+        part(0, first) + part(1, second)
+    }
+
+    /// Whatever the masters do, the law does not move.
+    pub(super) fn stands<Q>(&self, future: &Future<'_, Q>) -> bool {
+        let [first, second] = &future.parts;
+        self.gearing.factor(0, first.factor) == 0.0 && self.gearing.factor(1, second.factor) == 0.0
+    }
+
+    /// The plans of the masters, as the slave sees them; `None` where they are not known.
+    pub(super) fn leads<'a, Q: Plan>(&self, future: &Future<'a, Q>) -> Option<Leads<'a, Q>> {
+        future.leads(|leg, factor| self.gearing.factor(leg, factor))
     }
 }
 
@@ -48,9 +62,8 @@ impl<P: Planner> Axis<P> {
         if !self.is_coupled() {
             return self.advance(scope);
         }
-        // A halt of what is superimposed finds nothing.
-        self.end_superimposed(Fate::Done);
-        if !view.now.is_operating && !self.has_lost_master() {
+        self.end_idle_halt();
+        if !view.is_operating() && !self.has_lost_master() {
             match self.config.following.on_master_lost {
                 OnMasterLost::Error => {
                     self.fail(ErrorId::MasterLost, scope);
@@ -76,15 +89,21 @@ impl<P: Planner> Axis<P> {
             }
         }
         // A slave that must not lag is in gear until it can't be.
-        let stays = self.rung() == Some(Rung::Locked) && self.config.following.on_limit == OnLimit::Error;
+        let stays = self.config.following.on_limit == OnLimit::Error;
+        self.superimpose_behind(view, is_new, !stays, scope);
+        let stays = self.rung() == Some(Rung::Locked) && (stays || self.adds_motion());
         if (is_new && !stays) || self.rung() == Some(Rung::Due) {
             self.lay_law(view);
             self.approach(view, true, scope);
+            if let Some(coupling) = &mut self.coupling {
+                coupling.is_kept = false;
+            }
             self.note_source();
         }
         if self.is_coupled() {
             self.step_behind(view, scope);
         }
+        self.note_own_part();
         if self.is_in_gear() && !self.queue.is_empty() {
             self.hand_over(self.setpoint.position, scope);
         }
@@ -102,34 +121,37 @@ impl<P: Planner> Axis<P> {
         let Some(coupling) = &mut self.coupling else {
             return;
         };
-        // What moved in the motion step itself was not seen before it.
-        let late = view.now.moved - coupling.was.moved;
-        coupling.was.place.position += late;
-        coupling.was.at.position += late;
-        let master_moved = view.now.moved != 0.0;
+        let now = view.seen();
+        for (was, now) in coupling.was.iter_mut().zip(&now) {
+            // What moved in the motion step itself was not seen before it.
+            let late = now.moved - was.moved;
+            was.place.position += late;
+            was.at.position += late;
+        }
+        let masters_moved = now.iter().any(|seen| seen.moved != 0.0);
         let slave_moved = coupling.moves != moves;
         coupling.moves = moves;
-        if !master_moved && !slave_moved {
+        if !masters_moved && !slave_moved {
             return;
         }
         let own = if slave_moved { own } else { 0.0 };
+        let added = self.layer.as_ref().map_or(0.0, |layer| layer.added.position);
         let shift = |anchor: &mut Anchor| {
-            anchor.master.position += view.now.moved;
+            anchor.master.position += now[0].moved;
+            anchor.second.position += now[1].moved;
             anchor.slave.position += own;
         };
         match &mut coupling.rung {
             Rung::BesideLine { start, .. } => start.position += own,
-            Rung::BesideLaw(anchor) => shift(anchor),
+            Rung::BesideLaw(anchor) | Rung::BesideMeasured { anchor, .. } => shift(anchor),
             Rung::Due | Rung::Locked | Rung::Own | Rung::Lost => {}
         }
         let Some(anchor) = &mut coupling.anchor else {
             return;
         };
         if coupling.rung == Rung::Locked {
-            *anchor = Anchor {
-                master: coupling.was.place,
-                slave: here,
-            };
+            *anchor = anchor_at(&coupling.was, here);
+            coupling.lay_layer(added);
         } else {
             shift(anchor);
         }
@@ -138,7 +160,7 @@ impl<P: Planner> Axis<P> {
     /// Notes what the master does next. Returns whether that, or a limit, is another one than in the scan before, or the way
     /// onto the law is to be looked for again.
     fn look_ahead(&mut self, view: &View<'_, P::Plan>) -> bool {
-        let limits = self.parameters.limits;
+        let limits = self.slowed(&self.parameters.limits);
         let Some(coupling) = &mut self.coupling else {
             return false;
         };
@@ -168,11 +190,23 @@ impl<P: Planner> Axis<P> {
 
     /// In gear: the set-point is the law.
     fn step_in_gear(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let added = self.next_added();
         let Some(coupling) = &self.coupling else { return };
-        let Some(anchor) = coupling.anchor else { return };
+        let Some(mut anchor) = coupling.anchor else { return };
         let limits = coupling.limits;
-        let (place, next) = coupling.law(&anchor, &view.now);
-        if let Some(reason) = self.beyond(Some(place), &next, &limits, self.rough(view, &next)) {
+        if let Some(added) = &added {
+            anchor.slave.phase = coupling.lead + added.position;
+        }
+        let (place, law) = coupling.law(&anchor, &view.seen());
+        let next = added.map_or(law, |added| Setpoint {
+            position: law.position,
+            ..law.plus(&added)
+        });
+        // What is added to a law that stands was held against the limits before.
+        let stands = self.law_stands(view);
+        let rough = self.rough(view, &law).filter(|_| added.is_none() || !stands);
+        let reason = self.beyond(Some(place), &next, &limits, rough);
+        if let Some(reason) = reason.or_else(|| self.beyond_on_the_way(&anchor, view, &limits)) {
             self.lose_gear(reason, scope);
             if self.config.following.on_limit == OnLimit::Error {
                 return self.fail(ErrorId::DeviationTooLarge, scope);
@@ -186,6 +220,42 @@ impl<P: Planner> Axis<P> {
         self.in_force = limits;
         self.before = limits;
         self.publish_behind(place, next, scope);
+        if let (true, Some(added), Some(coupling)) = (self.is_on_law(), added, &mut self.coupling) {
+            coupling.anchor = Some(anchor);
+            self.note_added(added);
+        }
+    }
+
+    /// In gear, so that the next set-point is the law.
+    pub(in crate::axis) fn is_on_law(&self) -> bool {
+        self.rung() == Some(Rung::Locked) && matches!(self.motion, Motion::Geared)
+    }
+
+    /// The masters have not moved in this scan, and will not as far as is known.
+    pub(in crate::axis) fn law_stands(&self, view: &View<'_, P::Plan>) -> bool {
+        let Some(coupling) = &self.coupling else {
+            return false;
+        };
+        let mut both = coupling.was.iter().zip(view.seen());
+        view.future.kind() == Kind::Still
+            && both.all(|(was, now)| was.place == now.place && was.at.is_at_rest())
+    }
+
+    /// The plans ahead, as the law has them; `None` while it rests or is not known.
+    pub(in crate::axis) fn leads_of_law<'a>(&self, view: &View<'a, P::Plan>) -> Option<Leads<'a, P::Plan>> {
+        let leads = self.coupling.as_ref()?.leads(&view.future)?;
+        leads.iter().any(Option::is_some).then_some(leads)
+    }
+
+    /// How the law moves at the end of the scan before, and at the end of this one.
+    pub(in crate::axis) fn law_before_and_now(
+        &self,
+        view: &View<'_, P::Plan>,
+    ) -> Option<(Setpoint, Setpoint)> {
+        let coupling = self.coupling.as_ref()?;
+        let anchor = coupling.anchor?;
+        let law = |seen| coupling.law(&anchor, seen).1;
+        Some((law(&coupling.was), law(&view.seen())))
     }
 
     /// Beside the law, or beside the line that it leads onto.
@@ -203,10 +273,10 @@ impl<P: Planner> Axis<P> {
         let Some(coupling) = &self.coupling else { return };
         let (rung, known) = (coupling.rung, coupling.anchor);
         let anchor = match (rung, known) {
-            (Rung::BesideLaw(anchor), _) | (_, Some(anchor)) => anchor,
+            (Rung::BesideLaw(anchor) | Rung::BesideMeasured { anchor, .. }, _) | (_, Some(anchor)) => anchor,
             (_, None) => return self.publish_behind(here, self.setpoint, scope),
         };
-        let (law_place, law) = coupling.law(&anchor, &view.now);
+        let (law_place, law) = coupling.law(&anchor, &view.seen());
         let (frame_place, frame, arrives) = match rung {
             Rung::BesideLine {
                 start,
@@ -226,8 +296,23 @@ impl<P: Planner> Axis<P> {
             position: frame.position + goal,
             ..frame
         };
-        let arrives = arrives && self.law_fits(view, true);
         let next = frame.plus(&beside);
+        if let Rung::BesideMeasured { anchor, room } = rung {
+            let place = Place {
+                position: next.position,
+                ..frame_place
+            };
+            let in_force = &self.in_force;
+            let leaves_room = self.leaves_room(&anchor, view, &room, &next);
+            if !leaves_room || self.beyond(Some(place), &next, in_force, Some(false)).is_some() {
+                self.approach(view, false, scope);
+                if self.is_coupled() {
+                    self.step_behind(view, scope);
+                }
+                return;
+            }
+        }
+        let arrives = arrives && self.law_fits(view, true);
         if arrives && known.is_some() && self.is_on(&end, frame_place, &law, law_place) {
             // The snap is that of the way here.
             let snap = next.snap;
@@ -236,9 +321,8 @@ impl<P: Planner> Axis<P> {
         }
         self.publish_behind(frame_place, next, scope);
         if arrives && known.is_none() {
-            let slave = self.place();
-            let master = view.now.place;
-            self.lock_unless_stopped(Anchor { master, slave }, view, scope);
+            let anchor = anchor_at(&view.seen(), self.place());
+            self.lock_unless_stopped(anchor, view, scope);
         }
     }
 
@@ -271,11 +355,8 @@ impl<P: Planner> Axis<P> {
         if coupling.anchor.is_some() || coupling.rung != Rung::Own || !is_at_goal || self.is_paused() {
             return;
         }
-        let anchor = Anchor {
-            master: view.now.place,
-            slave: self.place(),
-        };
-        let (_, law) = coupling.law(&anchor, &view.now);
+        let anchor = anchor_at(&view.seen(), self.place());
+        let (_, law) = coupling.law(&anchor, &view.seen());
         let is_even = law.acceleration == 0.0 && law.jerk == 0.0;
         if is_even && self.law_is_near(&self.setpoint, &law) && self.law_fits(view, true) {
             self.lock(anchor, view, scope);
@@ -293,34 +374,99 @@ impl<P: Planner> Axis<P> {
         let Some(coupling) = &self.coupling else {
             return false;
         };
-        let factor = coupling.factor(&view.future);
-        let anchor = coupling.anchor.unwrap_or_default();
-        let (_, after) = coupling.law(&anchor, &view.now);
-        let (_, before) = coupling.law(&anchor, &coupling.was);
-        // A plan that began and ended within this scan was never looked at.
-        if view.future.is_late() && self.beyond_now(view).is_some() {
+        if !self.is_told_finely(view) {
             return false;
         }
-        match view.future.plan() {
-            _ if factor == 0.0 => true,
-            Some((plan, from, late)) => {
-                let (from, now) = match (is_over, late) {
-                    (_, 1) => (from, &after),
-                    (true, _) => (from.saturating_add(1), &after),
-                    (false, _) => (from, &before),
-                };
-                self.planner
-                    .fits_behind((plan, from), factor, now, None, &coupling.limits)
+        let anchor = coupling.anchor.unwrap_or_default();
+        let (_, after) = coupling.law(&anchor, &view.seen());
+        let (_, before) = coupling.law(&anchor, &coupling.was);
+        let is_late = view.future.is_late();
+        // A plan that began and ended within this scan was never looked at.
+        if is_late && self.beyond_now(view).is_some() {
+            return false;
+        }
+        match coupling.leads(&view.future) {
+            _ if coupling.stands(&view.future) => true,
+            Some(mut leads) => {
+                let now = if is_late || is_over { &after } else { &before };
+                if is_over && !is_late {
+                    for lead in leads.iter_mut().flatten() {
+                        lead.elapsed = lead.elapsed.saturating_add(1);
+                    }
+                }
+                self.planner.fits_behind(&leads, now, None, &coupling.limits)
             }
             None => self.beyond_now(view).is_none(),
         }
+    }
+
+    /// What of the law of measured values is beyond the limits between the ends of the last two scans, which are not.
+    fn beyond_on_the_way(
+        &self,
+        anchor: &Anchor,
+        view: &View<'_, P::Plan>,
+        limits: &Limits,
+    ) -> Option<Beyond> {
+        let coupling = self.coupling.as_ref().filter(|_| self.follows_actual())?;
+        let (_, from) = coupling.law(anchor, &coupling.was);
+        let (_, to) = coupling.law(anchor, &view.seen());
+        let peaks = Piece::between(&from, &to, self.planner.cycle()).peaks();
+        // What is superimposed may take its limits whenever it likes.
+        let most = self.layer.as_ref().and_then(|layer| layer.limits_in_motion());
+        let added = |of: fn(&Limits) -> f64| most.map_or(0.0, of);
+        let steepest = |limits: &Limits| limits.acceleration.max(limits.deceleration);
+        let told = [
+            (
+                "velocity",
+                peaks.velocity + added(|limits| limits.velocity),
+                limits.velocity,
+            ),
+            (
+                "acceleration",
+                peaks.acceleration + added(steepest),
+                steepest(limits),
+            ),
+            ("jerk", peaks.jerk + added(|limits| limits.jerk), limits.jerk),
+            ("snap", peaks.snap + added(|limits| limits.snap), limits.snap),
+        ];
+        told.into_iter()
+            .find(|(_, value, limit)| !(*value <= limit * (1.0 + ROUNDING)))
+    }
+
+    /// Whether the law of measured values left a plan this `room` beside it all along this scan, at whose end both together are at
+    /// `next`.
+    fn leaves_room(&self, anchor: &Anchor, view: &View<'_, P::Plan>, room: &Limits, next: &Setpoint) -> bool {
+        let Some(coupling) = &self.coupling else {
+            return false;
+        };
+        let (limits, cycle) = (&self.in_force, self.planner.cycle());
+        let (_, from) = coupling.law(anchor, &coupling.was);
+        let (_, to) = coupling.law(anchor, &view.seen());
+        let peaks = Piece::between(&from, &to, cycle).peaks();
+        let rate = limits.lower_acceleration();
+        // Between two velocities a scan apart.
+        let fastest = 0.5 * (self.setpoint.velocity + next.velocity).abs() + 0.5 * rate * cycle;
+        fastest <= limits.velocity
+            && peaks.acceleration + room.acceleration <= rate
+            && peaks.jerk + room.jerk <= limits.jerk
+            && peaks.snap + room.snap <= limits.snap
+    }
+
+    /// Whether measured places are told so finely that what numbers round off is no step of the slave. Only jumps lead so far.
+    pub(super) fn is_told_finely(&self, view: &View<'_, P::Plan>) -> bool {
+        let Some(coupling) = self.coupling.as_ref().filter(|_| self.follows_actual()) else {
+            return true;
+        };
+        let numbers = coupling.size_of_masters(&view.seen()) + self.setpoint.position.abs();
+        let rounded = 8.0 * f64::EPSILON * numbers;
+        rounded <= LAST_SCAN * self.parameters.limits.velocity * self.planner.cycle()
     }
 
     /// What the law asks for beyond the limits in this scan, where nothing is known of what comes.
     pub(super) fn beyond_now(&self, view: &View<'_, P::Plan>) -> Option<Beyond> {
         let coupling = self.coupling.as_ref()?;
         let anchor = coupling.anchor.unwrap_or_default();
-        let (place, law) = coupling.law(&anchor, &view.now);
+        let (place, law) = coupling.law(&anchor, &view.seen());
         let place = coupling.anchor.map(|_| place);
         self.beyond(place, &law, &coupling.limits, self.rough(view, &law))
     }
@@ -328,13 +474,15 @@ impl<P: Planner> Axis<P> {
     /// `Some` where this step was not held against the limits before: the slave stays in gear as long as it can, or nothing is known of what the master does next, or not until
     /// now, or it stands, maybe since a plan of one scan. `Some(TRUE)` if it does that less smoothly than the slave may.
     fn rough(&self, view: &View<'_, P::Plan>, law: &Setpoint) -> Option<bool> {
-        let degree = self.parameters.limits.order().degree();
-        let is_rough = view.now.degree < degree && law.acceleration != 0.0;
-        match view.future.course {
+        let degree = self.slowed(&self.parameters.limits).order().degree();
+        let is_rough = view.degree() < degree && law.acceleration != 0.0;
+        match view.future.kind() {
+            // What they do was planned for this slave.
+            _ if self.slows_master() && view.keeps_bound() => None,
             _ if self.config.following.on_limit == OnLimit::Error => Some(is_rough),
-            Course::Unknown | Course::Still => Some(is_rough),
-            Course::Plan(..) if view.future.is_late() => Some(false),
-            Course::Plan(..) => None,
+            Kind::Unknown | Kind::Measured | Kind::Still | Kind::NotSeen => Some(is_rough),
+            Kind::Plan if view.future.is_late() => Some(false),
+            Kind::Plan => None,
         }
     }
 
@@ -356,8 +504,9 @@ impl<P: Planner> Axis<P> {
     }
 
     /// No longer in gear: the law asks for `value` of what may be at most `limit`.
-    pub(super) fn lose_gear(&mut self, (what, value, limit): Beyond, scope: &mut Scope<'_>) {
+    pub(in crate::axis) fn lose_gear(&mut self, (what, value, limit): Beyond, scope: &mut Scope<'_>) {
         self.leave_law();
+        self.rest_superimposed();
         self.stir();
         let event = Event::GearLost { what, value, limit };
         self.record(event, &mut self.owner_scope(scope));
@@ -390,14 +539,15 @@ impl<P: Planner> Axis<P> {
             return found;
         };
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
-        let master = self.coupling.as_ref().map_or(0.0, |coupling| {
-            coupling.gearing.gear.derivative(coupling.was.at.position)
-        });
+        let masters = self
+            .coupling
+            .as_ref()
+            .map_or(0.0, |coupling| coupling.size_of_masters(&coupling.was));
         let step = Step {
             last: &self.setpoint,
             next,
             way: place.map(|place| off(place, self.place(), length)),
-            coarsest: length + master.abs(),
+            coarsest: length + masters,
             cycle: self.planner.cycle(),
         };
         let needed = step.needs();
@@ -485,6 +635,7 @@ impl<P: Planner> Axis<P> {
     #[cold]
     fn hold_without_master(&mut self, scope: &mut Scope<'_>) {
         self.pause(ErrorId::MasterLost, scope);
+        self.end_superimposed(Fate::Aborted);
         self.end_phasing();
         if let Some(coupling) = &mut self.coupling {
             coupling.rung = Rung::Lost;
@@ -502,7 +653,7 @@ impl<P: Planner> Axis<P> {
         };
         coupling.deviation = match (coupling.rung, &coupling.anchor) {
             (Rung::Locked, _) | (_, None) => 0.0,
-            (_, Some(anchor)) => off(here, coupling.gearing.gear.slave(anchor, view.now.place), length),
+            (_, Some(anchor)) => off(here, coupling.law(anchor, &view.seen()).0, length),
         };
         let most = self
             .config

@@ -1,6 +1,6 @@
 //! What a step from one set-point to the next needs of the limits, whatever the motion between them is.
 
-use standstill_planner::Setpoint;
+use standstill_planner::{Limits, Setpoint};
 
 /// What [`Step::needs`] tells, in its order.
 pub(super) const DERIVATIVES: [&str; 4] = ["velocity", "acceleration", "jerk", "snap"];
@@ -61,6 +61,66 @@ impl Step<'_> {
                     thrice,
                 )),
         ]
+    }
+}
+
+/// A scan of constant snap, from a state on: velocity, acceleration, jerk and snap.
+pub(super) struct Piece {
+    velocity: f64,
+    acceleration: f64,
+    jerk: f64,
+    snap: f64,
+    /// The jerk at its end.
+    last_jerk: f64,
+    /// Velocity and acceleration at its end.
+    last: (f64, f64),
+    cycle: f64,
+}
+
+impl Piece {
+    /// The piece of constant snap between two states a scan apart.
+    pub(super) fn between(from: &Setpoint, to: &Setpoint, cycle: f64) -> Self {
+        Self {
+            velocity: from.velocity,
+            acceleration: from.acceleration,
+            jerk: from.jerk,
+            snap: (to.jerk - from.jerk) / cycle,
+            last_jerk: to.jerk,
+            last: (to.velocity, to.acceleration),
+            cycle,
+        }
+    }
+
+    /// The largest magnitudes along it.
+    pub(super) fn peaks(&self) -> Limits {
+        let (velocity, acceleration, jerk, snap) = (self.velocity, self.acceleration, self.jerk, self.snap);
+        let mut most = Limits {
+            velocity: velocity.abs().max(self.last.0.abs()),
+            acceleration: acceleration.abs().max(self.last.1.abs()),
+            deceleration: 0.0,
+            jerk: jerk.abs().max(self.last_jerk.abs()),
+            snap: snap.abs(),
+        };
+        let is_inside = |time: f64| time > 0.0 && time < self.cycle;
+        // Where the jerk is 0.
+        let turn = -jerk / snap;
+        if is_inside(turn) {
+            let peak = acceleration + 0.5 * jerk * turn;
+            most.acceleration = most.acceleration.max(peak.abs());
+        }
+        // Where the acceleration is 0: roots of a quadratic, without taking a small difference of large numbers.
+        let discriminant = jerk * jerk - 2.0 * snap * acceleration;
+        if discriminant >= 0.0 {
+            let root = -(jerk + standstill_planner::math::sqrt(discriminant).copysign(jerk));
+            for time in [root / snap, 2.0 * acceleration / root] {
+                if is_inside(time) {
+                    let peak = velocity + time * (acceleration + time * (0.5 * jerk + time * snap / 6.0));
+                    most.velocity = most.velocity.max(peak.abs());
+                }
+            }
+        }
+        most.deceleration = most.acceleration;
+        most
     }
 }
 

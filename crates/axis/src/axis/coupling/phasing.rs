@@ -10,8 +10,8 @@
 use super::super::Axis;
 use super::super::commands::{Entry, Work, refusal};
 use super::Rung;
-use super::view::{Course, Seen, View};
-use crate::{BufferMode, CommandId, ErrorId, Event, Fate, InstanceId, PhaseShift, Scope};
+use super::view::{Course, Kind, Seen, View};
+use crate::{AxisId, BufferMode, CommandId, ErrorId, Event, Fate, InstanceId, PhaseShift, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 /// How a shift is to change.
@@ -35,26 +35,33 @@ struct Moving<Plan> {
     elapsed: u64,
     scans: u64,
     limits: Limits,
+    /// The same, or those of the shifts before it that it took over from in motion.
+    most: Limits,
 }
 
-/// The shift between a master and what its slave sees of it.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::axis) struct Phasing<Plan> {
+/// The shift between one master and what its slave sees of it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Leg {
     /// The shift (u of the master), and how it moves.
     now: Setpoint,
-    motion: Option<Moving<Plan>>,
     command: Option<Shift>,
     /// One that is to follow it.
     next: Option<Shift>,
 }
 
+/// The shifts between masters and what their slave sees of them.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::axis) struct Phasing<Plan> {
+    legs: [Leg; 2],
+    /// The shift that moves, one at a time, and of which master.
+    motion: Option<(usize, Moving<Plan>)>,
+}
+
 impl<Plan> Default for Phasing<Plan> {
     fn default() -> Self {
         Self {
-            now: Setpoint::default(),
+            legs: [Leg::default(); 2],
             motion: None,
-            command: None,
-            next: None,
         }
     }
 }
@@ -62,14 +69,15 @@ impl<Plan> Default for Phasing<Plan> {
 impl<Plan> Phasing<Plan> {
     /// There is no shift, and none is asked for.
     fn is_none(&self) -> bool {
-        self.command.is_none() && self.motion.is_none() && self.now.position == 0.0
+        let rests = |leg: &Leg| leg.command.is_none() && leg.now.position == 0.0;
+        self.motion.is_none() && self.legs.iter().all(rests)
     }
 
-    fn holds(&self, id: CommandId) -> bool {
-        [&self.command, &self.next]
-            .into_iter()
+    fn shifts(&self) -> impl Iterator<Item = &Shift> {
+        self.legs
+            .iter()
+            .flat_map(|leg| [&leg.command, &leg.next])
             .flatten()
-            .any(|shift| shift.id == id)
     }
 }
 
@@ -87,9 +95,17 @@ impl Seen {
 }
 
 impl<P: Planner> Axis<P> {
-    /// By how much the slave sees its master ahead of where it is (u of the master); 0 without a coupling.
-    pub fn phase(&self) -> f64 {
-        self.phasing.now.position
+    /// By how much the slave sees this master ahead of where it is (u of the master); 0 where it does not follow it.
+    pub fn phase_of(&self, master: AxisId) -> f64 {
+        let mut phases = self.followed().into_iter().zip(self.phases());
+        phases
+            .find(|(followed, _)| *followed == Some(master))
+            .map_or(0.0, |(_, phase)| phase)
+    }
+
+    /// By how much the slave sees each of its masters ahead of where it is (u of the master); 0 without.
+    pub fn phases(&self) -> [f64; 2] {
+        self.phasing.legs.map(|leg| leg.now.position)
     }
 
     /// MC_PhasingAbsolute, MC_PhasingRelative: what the slave sees of its master is shifted. Nothing is planned here: in the motion
@@ -105,10 +121,12 @@ impl<P: Planner> Axis<P> {
         };
         self.finite("PhaseShift", request.shift, scope)?;
         let limits = self.limits_of_shift(request, scope)?;
-        if self.master() != Some(request.master) || self.has_lost_master() {
+        let is_asked = |master: &Option<AxisId>| *master == Some(request.master);
+        let leg = self.followed().iter().position(is_asked);
+        let Some(leg) = leg.filter(|_| !self.has_lost_master()) else {
             let master = f64::from(request.master.number());
             return Err(self.refuse("Master", master, f64::NAN, ErrorId::NotCoupled, scope));
-        }
+        };
         let shift = Shift {
             id: self.new_id(),
             instance: scope.instance,
@@ -118,15 +136,19 @@ impl<P: Planner> Axis<P> {
             runs: false,
         };
         if mode == BufferMode::Aborting {
-            self.end_shifts(Fate::Aborted);
-            self.phasing.command = Some(shift);
-        } else if self.phasing.command.is_none() {
-            self.phasing.command = Some(shift);
-        } else if self.phasing.next.is_none() {
-            self.phasing.next = Some(shift);
-        } else {
-            let number = f64::from(mode as i32);
-            return Err(self.refuse("BufferMode", number, f64::NAN, ErrorId::BufferFull, scope));
+            self.end_shifts(leg, Fate::Aborted);
+        }
+        if let Some(leg) = self.phasing.legs.get_mut(leg) {
+            let slot = if leg.command.is_none() {
+                &mut leg.command
+            } else {
+                &mut leg.next
+            };
+            if slot.is_some() {
+                let number = f64::from(mode as i32);
+                return Err(self.refuse("BufferMode", number, f64::NAN, ErrorId::BufferFull, scope));
+            }
+            *slot = Some(shift);
         }
         Ok(shift.id)
     }
@@ -167,50 +189,56 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// The commands for the shift have ended; it stays as it is.
-    fn end_shifts(&mut self, fate: Fate) {
-        let ended = [self.phasing.command.take(), self.phasing.next.take()];
+    /// The commands for the shift of the master of this number have ended; it stays as it is.
+    fn end_shifts(&mut self, leg: usize, fate: Fate) {
+        let Some(leg) = self.phasing.legs.get_mut(leg) else {
+            return;
+        };
+        let ended = [leg.command.take(), leg.next.take()];
         for shift in ended.into_iter().flatten() {
             self.decide(shift.id, fate);
         }
     }
 
-    /// The coupling has ended, and with it the shift.
+    /// The coupling has ended, and with it the shifts.
     pub(in crate::axis) fn end_phasing(&mut self) {
-        self.end_shifts(Fate::Aborted);
+        for leg in 0..self.phasing.legs.len() {
+            self.end_shifts(leg, Fate::Aborted);
+        }
         self.phasing = Phasing::default();
     }
 
-    /// The shift, if it goes on with `entry`, which takes over: behind the same master.
+    /// The shifts, if they go on with `entry`, which takes over: behind the same masters.
     pub(in crate::axis) fn lend_phasing(&mut self, entry: &Entry) -> Phasing<P::Plan> {
         match entry.work {
-            Work::Gear(gearing) if self.master() == Some(gearing.master) => {
-                core::mem::take(&mut self.phasing)
-            }
+            Work::Gear(gearing) if self.followed() == gearing.masters() => core::mem::take(&mut self.phasing),
             _ => Phasing::default(),
         }
     }
 
     /// What became of command `id`, if it is one for the shift in progress.
     pub(in crate::axis) fn phasing_fate(&self, id: CommandId) -> Option<Fate> {
-        let phasing = &self.phasing;
-        let runs = phasing.command.is_some_and(|shift| shift.id == id && shift.runs);
-        let fate = if runs {
+        let shift = self.phasing.shifts().find(|shift| shift.id == id)?;
+        Some(if shift.runs {
             Fate::Active { reached: false }
         } else {
             Fate::Waiting
-        };
-        phasing.holds(id).then_some(fate)
+        })
     }
 
     /// If command `id` waits for its turn or for room, it is taken out. Returns whether that is so.
     pub(in crate::axis) fn withdraw_shift(&mut self, id: CommandId) -> bool {
         let waits = |shift: &mut Shift| shift.id == id && !shift.runs;
-        let taken = self.phasing.command.take_if(waits).is_some();
-        let taken = taken || self.phasing.next.take_if(waits).is_some();
+        let mut taken = false;
+        for leg in &mut self.phasing.legs {
+            let is_here = leg.command.take_if(waits).is_some() || leg.next.take_if(waits).is_some();
+            if is_here {
+                leg.command = leg.command.or_else(|| leg.next.take());
+            }
+            taken |= is_here;
+        }
         if taken {
             self.decide(id, Fate::Aborted);
-            self.phasing.command = self.phasing.command.or_else(|| self.phasing.next.take());
         }
         taken
     }
@@ -220,14 +248,23 @@ impl<P: Planner> Axis<P> {
         self.phasing.motion.is_some()
     }
 
-    /// The shift as it is now.
-    pub(super) fn phase_now(&self) -> &Setpoint {
-        &self.phasing.now
+    /// The most that a shift of the master of this number takes that is changing (u of the master).
+    pub(super) fn taken_by_shift(&self, leg: usize) -> Option<&Limits> {
+        let motion = self.phasing.motion.as_ref();
+        motion
+            .filter(|(moves, _)| *moves == leg)
+            .map(|(_, moving)| &moving.most)
     }
 
-    /// The master as this slave sees it in this scan: the shift goes on by a scan.
+    /// The shifts as they are now.
+    pub(super) fn phases_now(&self) -> [&Setpoint; 2] {
+        let [first, second] = &self.phasing.legs;
+        [&first.now, &second.now]
+    }
+
+    /// The masters as this slave sees them in this scan: a shift that moves goes on by a scan.
     ///
-    /// Cost: where a command for the shift waits, a look along the master's plan and a plan.
+    /// Cost: where a command for a shift waits, a look along the masters' plans and a plan.
     pub(super) fn shifted_view<'v>(
         &mut self,
         view: &View<'v, P::Plan>,
@@ -236,45 +273,73 @@ impl<P: Planner> Axis<P> {
         if self.phasing.is_none() {
             return *view;
         }
-        self.begin_shift(view, scope);
-        let mut shifted = *view;
-        if let Some(moving) = &mut self.phasing.motion {
-            moving.elapsed = moving.elapsed.wrapping_add(1);
-            self.phasing.now = moving.plan.next(moving.elapsed);
-            shifted.future.course = Course::Unknown;
-            if moving.elapsed >= moving.scans {
-                self.phasing.motion = None;
-                self.complete_shift();
-            }
-        } else {
-            // What brought it to rest is over.
-            self.phasing.now = Setpoint::at_rest(self.phasing.now.position);
+        for leg in 0..self.phasing.legs.len() {
+            self.begin_shift(leg, view, scope);
         }
-        shifted.now = view.now.shifted(&self.phasing.now);
+        let mut shifted = *view;
+        for leg in &mut self.phasing.legs {
+            // What brought it to rest is over.
+            leg.now = Setpoint::at_rest(leg.now.position);
+        }
+        if let Some((leg, moving)) = &mut self.phasing.motion {
+            let leg = *leg;
+            moving.elapsed = moving.elapsed.wrapping_add(1);
+            let now = moving.plan.next(moving.elapsed);
+            let is_over = moving.elapsed >= moving.scans;
+            if let (Some(shift), Some(part)) =
+                (self.phasing.legs.get_mut(leg), shifted.future.parts.get_mut(leg))
+            {
+                shift.now = now;
+                if !matches!(part.course, Course::Measured(_)) {
+                    part.course = Course::Unknown;
+                }
+            }
+            if is_over {
+                self.phasing.motion = None;
+                self.complete_shift(leg);
+            }
+        }
+        let [by, by_second] = self.phases_now();
+        shifted.now = view.now.shifted(by);
+        shifted.second = view.second.map(|seen| seen.shifted(by_second));
         shifted
     }
 
-    fn complete_shift(&mut self) {
-        if let Some(done) = self.phasing.command.take_if(|shift| shift.runs) {
+    fn complete_shift(&mut self, leg: usize) {
+        let Some(leg) = self.phasing.legs.get_mut(leg) else {
+            return;
+        };
+        if let Some(done) = leg.command.take_if(|shift| shift.runs) {
+            leg.command = leg.next.take();
             self.decide(done.id, Fate::Done);
-            self.phasing.command = self.phasing.next.take();
         }
     }
 
     /// The command that waits for room begins, if there is some.
-    fn begin_shift(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        let Some(mut shift) = self.phasing.command.filter(|shift| !shift.runs) else {
+    fn begin_shift(&mut self, leg: usize, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let Some(Leg { now, command, .. }) = self.phasing.legs.get(leg).copied() else {
             return;
         };
-        let Some(room) = self.room_for_shift(view) else {
+        let Some(mut shift) = command.filter(|shift| !shift.runs) else {
             return;
         };
-        let now = self.phasing.now;
+        // One at a time.
+        if self
+            .phasing
+            .motion
+            .as_ref()
+            .is_some_and(|(moves, _)| *moves != leg)
+        {
+            return;
+        }
+        let Some(room) = self.room_for_shift(leg, view) else {
+            return;
+        };
         let from = if shift.is_relative { now.position } else { 0.0 };
         let target = from + shift.shift;
         let asked = &shift.limits;
         let rate = asked.lower_acceleration().min(room.lower_acceleration());
-        let limits = Limits {
+        let mut limits = Limits {
             velocity: asked.velocity.min(room.velocity),
             acceleration: rate,
             deceleration: rate,
@@ -285,52 +350,72 @@ impl<P: Planner> Axis<P> {
             .phasing
             .motion
             .as_ref()
-            .map_or(limits, |moving| moving.limits);
+            .map_or(limits, |(_, moving)| moving.limits);
         let scope = &mut scope.with(shift.instance);
-        let planned = self
-            .planner
-            .move_to(self.config.profile, &now, target, &limits, &before);
+        let plan = |limits: &Limits| {
+            self.planner
+                .move_to(self.config.profile, &now, target, limits, &before)
+        };
+        let mut planned = plan(&limits);
+        let most = self.phasing.motion.as_ref().map(|(_, moving)| moving.most);
+        if let (Ok(slow), Some(most), true) = (&planned, &most, self.slows_master())
+            && slow.excess().is_some()
+        {
+            // With rates that low it would overrun what the master leaves it.
+            limits = Limits {
+                velocity: limits.velocity,
+                acceleration: limits.acceleration.max(most.acceleration),
+                deceleration: limits.deceleration.max(most.deceleration),
+                jerk: limits.jerk.max(most.jerk),
+                snap: limits.snap.max(most.snap),
+            };
+            planned = plan(&limits);
+        }
+        let is_planned = planned.is_ok();
         match planned {
             Ok(plan) => {
                 let scans = plan.scans();
                 shift.runs = true;
-                self.phasing.command = Some(shift);
-                self.phasing.motion = Some(Moving {
+                let moving = Moving {
                     plan,
                     elapsed: 0,
                     scans: scans.into(),
                     limits,
-                });
+                    most: most.map_or(limits, |before| limits.or_larger(&before)),
+                };
+                self.phasing.motion = Some((leg, moving));
                 self.record(Event::Phasing { to: target, scans }, scope);
             }
             Err(error) => {
                 let error = self.refuse("PhaseShift", shift.shift, f64::NAN, refusal(error), scope);
-                self.phasing.command = self.phasing.next.take();
                 self.decide(shift.id, Fate::Failed(error));
             }
+        }
+        if let Some(leg) = self.phasing.legs.get_mut(leg) {
+            leg.command = if is_planned { Some(shift) } else { leg.next.take() };
         }
     }
 
     /// What the law leaves of the slave's limits, in units of the master; none while it leaves nothing, or while the slave is not
     /// in gear or what the master does next is not known.
-    fn room_for_shift(&self, view: &View<'_, P::Plan>) -> Option<Limits> {
+    fn room_for_shift(&self, leg: usize, view: &View<'_, P::Plan>) -> Option<Limits> {
         let coupling = self.coupling.as_ref()?;
-        if coupling.rung != Rung::Locked {
+        if coupling.rung != Rung::Locked || self.adds_motion() {
             return None;
         }
-        let limits = &self.parameters.limits;
-        let ratio = coupling.gearing.gear.derivative(1.0).abs();
+        let limits = &self.slowed(&self.parameters.limits);
+        let ratio = coupling.gearing.factor(leg, 1.0).abs();
         if ratio == 0.0 {
             return Some(*limits);
         }
-        let room = match view.future.course {
-            Course::Still => *limits,
-            Course::Plan(..) => {
-                let (plan, from, _) = view.future.plan()?;
-                self.room_beside((plan, from), coupling.factor(&view.future), limits)?
-            }
-            Course::Unknown => return None,
+        let room = match view.future.kind() {
+            // A master's step in this scan was of another plan, which has left it less room.
+            _ if self.slows_master() && (view.future.is_new || view.future.is_late()) => return None,
+            Kind::Still => *limits,
+            Kind::Measured => self.room_now(view, limits)?,
+            _ => self.room_beside(&coupling.leads(&view.future)?, limits)?,
         };
+        let room = self.share_of_shift(room, limits);
         Some(Limits {
             velocity: room.velocity / ratio,
             acceleration: room.acceleration / ratio,

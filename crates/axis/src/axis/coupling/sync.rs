@@ -8,7 +8,7 @@
 use super::super::commands::{Entry, Gearing, Sync, Work};
 use super::super::{Axis, Motion};
 use super::view::{Seen, View};
-use super::{Coupling, Rung};
+use super::{Coupling, Rung, Values};
 use crate::{AxisId, BufferMode, CommandId, ErrorId, Event, Fate, Scope, SyncMode, SyncPoint};
 use standstill_planner::turns::split;
 use standstill_planner::{Anchor, Limits, Place, Plan, Planner};
@@ -158,6 +158,12 @@ impl<P: Planner> Axis<P> {
         self.awaited.as_ref().map(|awaited| awaited.gearing.master)
     }
 
+    /// The same, and which values of it.
+    pub(crate) fn awaited_values(&self) -> Option<Values> {
+        let gearing = self.awaited.as_ref()?.gearing;
+        Some((gearing.master, gearing.source))
+    }
+
     /// Before any axis has moved in this scan: the master whose place a command waits for is there.
     pub(crate) fn note_awaited_master(&mut self, seen: Seen) {
         if let Some(awaited) = &mut self.awaited {
@@ -184,15 +190,15 @@ impl<P: Planner> Axis<P> {
         else {
             return;
         };
-        let is_same_master = self.master() == Some(gearing.master);
+        let is_same_master = self.followed() == gearing.masters();
         let seen = if is_same_master {
-            was.shifted(self.phase_now())
+            was.shifted(self.phases_now()[0])
         } else {
             was
         };
         let coupling = Coupling {
-            was: seen,
-            ..Coupling::new(gearing, self.parameters.limits, self.frame.moves())
+            was: [seen, Seen::default()],
+            ..Coupling::new(gearing, self.slowed(&self.parameters.limits), self.frame.moves())
         };
         let own = self.coupling.replace(coupling);
         let found = self.way_at_start(&entry, view);
@@ -206,7 +212,7 @@ impl<P: Planner> Axis<P> {
         self.end_all(Fate::Aborted, Fate::Aborted);
         self.phasing = phasing;
         self.begin(entry, Motion::Geared, before, scope);
-        self.note_master(was);
+        self.note_masters([was, Seen::default()]);
     }
 
     /// What waits for a place of its master can't follow it: it fails, and what owns the axis goes on.
@@ -274,7 +280,7 @@ impl<P: Planner> Axis<P> {
         let Some(coupling) = &self.coupling else {
             return 0.0;
         };
-        let was = coupling.was.place;
+        let was = coupling.was[0].place;
         let turns = anchor.master.turns.wrapping_sub(was.turns) as f64;
         turns * view.turn.unwrap_or(0.0) + (anchor.master.position - was.position) - was.phase
     }
@@ -285,10 +291,11 @@ impl<P: Planner> Axis<P> {
         match view.future.plan() {
             Some((plan, from, late)) => {
                 let to = from.saturating_add(scans.saturating_sub(late));
-                let way = view.future.factor * (plan.at(to).position - plan.at(from).position);
+                let way = view.future.parts[0].factor * (plan.at(to).position - plan.at(from).position);
                 let first = self.coupling.as_ref().map_or(0.0, |coupling| {
-                    let turns = view.now.place.turns.wrapping_sub(coupling.was.place.turns) as f64;
-                    turns * view.turn.unwrap_or(0.0) + (view.now.place.position - coupling.was.place.position)
+                    let turns = view.now.place.turns.wrapping_sub(coupling.was[0].place.turns) as f64;
+                    turns * view.turn.unwrap_or(0.0)
+                        + (view.now.place.position - coupling.was[0].place.position)
                 });
                 if late > 0 { way + first } else { way }
             }
@@ -333,8 +340,9 @@ impl<P: Planner> Axis<P> {
             ..Place::default()
         };
         let mut anchor = Anchor {
-            master: place(master_turn(&sync, &coupling.was, view), sync.master),
+            master: place(master_turn(&sync, &coupling.was[0], view), sync.master),
             slave: place(0, sync.slave),
+            ..Anchor::default()
         };
         if let Some(length) = self.modulo.as_ref().map(|modulo| modulo.length) {
             anchor.slave.turns = self.slave_turn(&sync, &anchor, length, view);

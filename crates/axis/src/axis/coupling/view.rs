@@ -2,7 +2,7 @@
 
 use super::super::{Axis, Motion};
 use super::Rung;
-use standstill_planner::{Place, Plan, Planner, Setpoint};
+use standstill_planner::{Anchor, Lead, Leads, Place, Plan, Planner, Setpoint};
 
 /// A master at the end of a motion step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,27 +16,60 @@ pub(crate) struct Seen {
     pub is_operating: bool,
     /// How smooth its motions are: 2, 3 or 4.
     pub degree: usize,
+    /// Its motion was planned within what its slaves leave of its limits.
+    pub keeps_bound: bool,
 }
 
-/// A master in its slave's motion step, after its own.
+/// The masters of a slave as they are seen: a second one only where it has two.
+pub(crate) type SeenBoth = [Seen; 2];
+
+/// The law that holds when the masters are as `seen` and the slave is there.
+pub(super) fn anchor_at(seen: &SeenBoth, slave: Place) -> Anchor {
+    Anchor {
+        master: seen[0].place,
+        second: seen[1].place,
+        slave,
+    }
+}
+
+/// The masters in their slave's motion step, after their own.
 #[derive(Clone, Copy)]
 pub(crate) struct View<'a, Plan> {
+    /// The first master, or the only one.
     pub now: Seen,
     /// The length of its turn (u), if it has turns.
     pub turn: Option<f64>,
+    /// The second master of two.
+    pub second: Option<Seen>,
     pub future: Future<'a, Plan>,
 }
 
-/// What the master does next, as far as is known.
+/// What the masters do next, as far as is known.
 #[derive(Clone, Copy)]
 pub(crate) struct Future<'a, Plan> {
+    /// Of each master; of the second one nothing where there is none.
+    pub parts: [Part<'a, Plan>; 2],
+    /// It holds from the end of this scan on: the step of a master in this scan came from something else.
+    pub is_new: bool,
+}
+
+/// What a master does next, as far as is known.
+#[derive(Clone, Copy)]
+pub(crate) struct Part<'a, Plan> {
     /// The axis whose plan it is: the master, or the first one of a chain in gear.
     pub root: usize,
     /// What the derivatives of the plan are multiplied by to be those of the master.
     pub factor: f64,
-    /// It holds from the end of this scan on: the master's step in this scan came from something else.
-    pub is_new: bool,
     pub course: Course<'a, Plan>,
+}
+
+impl<Plan> Part<'_, Plan> {
+    /// Of a master that there is not.
+    pub(crate) const NONE: Self = Self {
+        root: usize::MAX,
+        factor: 0.0,
+        course: Course::Still,
+    };
 }
 
 /// What an axis does next.
@@ -48,7 +81,12 @@ pub(crate) enum Course<'a, Plan> {
     Plan(&'a Plan, u64),
     /// Not known: more than one plan at once, or a curve.
     Unknown,
+    /// Measured values: not known, and never quite even. The way onto the law is looked for again after so many scans.
+    Measured(u64),
 }
+
+/// Scans after which the way is looked for again while what the master does next is not known.
+pub(super) const UNKNOWN: u64 = 16;
 
 /// Where the set-points of an axis come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -64,19 +102,23 @@ pub(crate) enum Source {
     Other,
 }
 
-/// What kind of course it was.
+/// What kind of course it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum Kind {
+pub(in crate::axis) enum Kind {
     #[default]
     NotSeen,
     Still,
     Plan,
     Unknown,
+    Measured,
 }
 
-/// What a slave remembers of a future, to see that it is another one.
+/// What a slave remembers of what its masters do next, to see that it is something else.
+pub(super) type Known = [KnownPart; 2];
+
+/// What it remembers of one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Known {
+pub(super) struct KnownPart {
     root: usize,
     factor: f64,
     kind: Kind,
@@ -85,9 +127,9 @@ pub(super) struct Known {
     end: (f64, f64),
 }
 
-impl<'a, P: Plan> Future<'a, P> {
+impl<'a, P: Plan> Part<'a, P> {
     /// What is known of it now, and whether it goes on from what was `known` in the scan before.
-    pub(super) fn compare(&self, known: &Known) -> (Known, bool) {
+    fn compare(&self, known: &KnownPart) -> (KnownPart, bool) {
         let (kind, elapsed, end) = match self.course {
             Course::Still => (Kind::Still, 0, (0.0, 0.0)),
             // A plan in progress is told by its scans; only one that has just begun could be taken for another.
@@ -97,15 +139,16 @@ impl<'a, P: Plan> Future<'a, P> {
                 (Kind::Plan, elapsed, (end.position, end.velocity))
             }
             Course::Unknown => (Kind::Unknown, 0, (0.0, 0.0)),
+            Course::Measured(_) => (Kind::Measured, 0, (0.0, 0.0)),
         };
-        let now = Known {
+        let now = KnownPart {
             root: self.root,
             factor: self.factor,
             kind,
             elapsed,
             end,
         };
-        let expected = Known {
+        let expected = KnownPart {
             elapsed: if kind == Kind::Plan {
                 known.elapsed.wrapping_add(1)
             } else {
@@ -115,21 +158,108 @@ impl<'a, P: Plan> Future<'a, P> {
         };
         (now, now == expected)
     }
+}
 
-    /// Its plan from the end of the scan before on: the scans after its start, and how many scans later than that it begins,
-    /// which is 1 for one that the master's step in this scan was not of.
-    pub(super) fn plan(&self) -> Option<(&'a P, u64, u64)> {
-        match self.course {
-            Course::Plan(plan, elapsed) if self.is_new => Some((plan, elapsed, 1)),
-            Course::Plan(plan, 0) => Some((plan, 0, 1)),
-            Course::Plan(plan, elapsed) => Some((plan, elapsed - 1, 0)),
-            Course::Still | Course::Unknown => None,
+impl<'a, P: Plan> Future<'a, P> {
+    /// What is known of it now, and whether it goes on from what was `known` in the scan before.
+    pub(super) fn compare(&self, known: &Known) -> (Known, bool) {
+        let [first, second] = &self.parts;
+        let (first, goes_on) = first.compare(&known[0]);
+        let (second, second_goes_on) = second.compare(&known[1]);
+        ([first, second], goes_on && second_goes_on)
+    }
+
+    /// What kind of course the masters take together.
+    pub(in crate::axis) fn kind(&self) -> Kind {
+        let kind = |part: &Part<'_, P>| match part.course {
+            Course::Still => Kind::Still,
+            Course::Plan(..) => Kind::Plan,
+            Course::Unknown => Kind::Unknown,
+            Course::Measured(_) => Kind::Measured,
+        };
+        match [kind(&self.parts[0]), kind(&self.parts[1])] {
+            [Kind::Unknown, _] | [_, Kind::Unknown] => Kind::Unknown,
+            [Kind::Measured, _] | [_, Kind::Measured] => Kind::Measured,
+            [Kind::Plan, _] | [_, Kind::Plan] => Kind::Plan,
+            _ => Kind::Still,
         }
     }
 
-    /// It is a plan that the master's step in this scan was not of.
-    pub(super) fn is_late(&self) -> bool {
-        matches!(self.plan(), Some((_, _, 1)))
+    /// The values of the masters are measured: after how many scans the way onto their law is looked for again.
+    pub(super) fn measured(&self) -> Option<u64> {
+        let scans = |part: &Part<'_, P>| match part.course {
+            Course::Measured(scans) => Some(scans),
+            Course::Still | Course::Plan(..) | Course::Unknown => None,
+        };
+        let scans = self.parts.iter().filter_map(scans).max();
+        scans.filter(|_| self.kind() == Kind::Measured)
+    }
+
+    /// It has a plan that the master's step in this scan was not of.
+    pub(in crate::axis) fn is_late(&self) -> bool {
+        let plans = self.parts.iter().map(|part| &part.course);
+        let is_late = |course: &Course<'_, P>| match course {
+            Course::Plan(_, elapsed) => self.is_new || *elapsed == 0,
+            Course::Still | Course::Unknown | Course::Measured(_) => false,
+        };
+        self.kind() == Kind::Plan && plans.into_iter().any(is_late)
+    }
+
+    /// The plans of the masters from the end of the scan before on, or from the end of this one if they are late: each with the
+    /// factor that `geared` gives for it and its number. Nothing of a master that stands, nor of one that is geared by 0.
+    pub(super) fn leads(&self, geared: impl Fn(usize, f64) -> f64) -> Option<Leads<'a, P>> {
+        let is_late = self.is_late();
+        let mut leads = [None; 2];
+        for (leg, (lead, part)) in leads.iter_mut().zip(&self.parts).enumerate() {
+            let Course::Plan(plan, elapsed) = part.course else {
+                continue;
+            };
+            let factor = geared(leg, part.factor);
+            *lead = (factor != 0.0).then_some(Lead {
+                plan,
+                elapsed: if is_late {
+                    elapsed
+                } else {
+                    elapsed.saturating_sub(1)
+                },
+                factor,
+            });
+        }
+        (self.kind() == Kind::Plan).then_some(leads)
+    }
+
+    /// The plan of the first master from the end of the scan before on: the scans after its start, and how many scans later than
+    /// that it begins, which is 1 for one that the master's step in this scan was not of.
+    pub(super) fn plan(&self) -> Option<(&'a P, u64, u64)> {
+        match self.parts[0].course {
+            Course::Plan(plan, elapsed) if self.is_new => Some((plan, elapsed, 1)),
+            Course::Plan(plan, 0) => Some((plan, 0, 1)),
+            Course::Plan(plan, elapsed) => Some((plan, elapsed - 1, 0)),
+            Course::Still | Course::Unknown | Course::Measured(_) => None,
+        }
+    }
+}
+
+impl<Plan> View<'_, Plan> {
+    /// Both masters as they are.
+    pub(super) fn seen(&self) -> SeenBoth {
+        [self.now, self.second.unwrap_or_default()]
+    }
+
+    /// All masters are in operation.
+    pub(super) fn is_operating(&self) -> bool {
+        self.now.is_operating && self.second.is_none_or(|seen| seen.is_operating)
+    }
+
+    /// The motions of all masters were planned within what their slaves leave of their limits.
+    pub(super) fn keeps_bound(&self) -> bool {
+        self.now.keeps_bound && self.second.is_none_or(|seen| seen.keeps_bound)
+    }
+
+    /// How smooth the motions of the masters are: 2, 3 or 4.
+    pub(super) fn degree(&self) -> usize {
+        let second = self.second.map_or(usize::MAX, |seen| seen.degree);
+        self.now.degree.min(second)
     }
 }
 
@@ -164,7 +294,8 @@ impl<P: Planner> Axis<P> {
             },
             moved: self.coordinates_moved(scan),
             is_operating: self.is_operating(),
-            degree: self.config.limits.order().degree(),
+            degree: self.slowed(&self.config.limits).order().degree(),
+            keeps_bound: self.keeps_bound(),
         }
     }
 
@@ -179,6 +310,8 @@ impl<P: Planner> Axis<P> {
             _ if self.layer.is_some() => Course::Unknown,
             Motion::Hold => Course::Still,
             Motion::Run { plan, elapsed, .. } => Course::Plan(plan, *elapsed),
+            // In gear behind measured values it is no more even than those.
+            Motion::Geared if self.follows_actual() => Course::Measured(UNKNOWN),
             Motion::Follow | Motion::Torque { .. } | Motion::Geared | Motion::Closing { .. } => {
                 Course::Unknown
             }
@@ -191,7 +324,7 @@ impl<P: Planner> Axis<P> {
             Course::Still => Source::None,
             Course::Plan(..) => Source::Plan,
             Course::Unknown if self.factor_in_gear().is_some() => Source::Gear,
-            Course::Unknown => Source::Other,
+            Course::Unknown | Course::Measured(_) => Source::Other,
         }
     }
 
@@ -205,16 +338,28 @@ impl<P: Planner> Axis<P> {
         self.source != self.source()
     }
 
-    /// In gear it does what its master does, its derivatives times this.
+    /// What its actual values do next.
+    pub(crate) fn course_of_actual(&self) -> Course<'_, P::Plan> {
+        if self.is_measured_still() {
+            Course::Still
+        } else {
+            Course::Measured(UNKNOWN.max(self.filter_scans().into()))
+        }
+    }
+
+    /// In gear it does what the plan of its master does, its derivatives times this.
     pub(crate) fn factor_in_gear(&self) -> Option<f64> {
-        let coupling = self.coupling.as_ref()?;
-        (coupling.rung == Rung::Locked && matches!(self.motion, Motion::Geared) && !self.is_phasing())
+        let coupling = self.coupling.as_ref().filter(|_| !self.follows_actual())?;
+        let follows_one = coupling.gearing.second.is_none() && !self.is_phasing() && !self.adds_motion();
+        (coupling.rung == Rung::Locked && matches!(self.motion, Motion::Geared) && follows_one)
             .then(|| coupling.gearing.gear.derivative(1.0))
     }
 
-    /// Before any axis has moved in this scan: its master is there.
-    pub(crate) fn note_master(&mut self, seen: Seen) {
-        let seen = seen.shifted(self.phase_now());
+    /// Before any axis has moved in this scan: its masters are there.
+    pub(crate) fn note_masters(&mut self, seen: SeenBoth) {
+        let [first, second] = seen;
+        let [by, by_second] = self.phases_now();
+        let seen = [first.shifted(by), second.shifted(by_second)];
         if let Some(coupling) = &mut self.coupling {
             coupling.was = seen;
         }

@@ -80,6 +80,7 @@ impl<P: Planner> Axis<P> {
         self.tell_moved(step, &mut self.owner_scope(scope));
         self.frame.count_move();
         self.feedback = Feedback::new(actual);
+        self.measured.rename();
         self.setpoint = Setpoint::at_rest(actual);
         self.motion = Motion::Follow;
     }

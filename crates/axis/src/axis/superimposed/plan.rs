@@ -14,8 +14,8 @@ const SLOWER: [f64; PROPOSALS - 3] = [0.75, 0.5, 0.25, 0.125];
 
 /// A motion that fits.
 pub(super) struct Proposal<Plan> {
-    plan: Plan,
-    limits: Limits,
+    pub plan: Plan,
+    pub limits: Limits,
     /// It is not the one asked for.
     lowered: bool,
 }
@@ -25,10 +25,10 @@ fn min(a: f64, b: f64) -> f64 {
 }
 
 /// What the owner's motion leaves free all the time.
-struct Room {
-    limits: Limits,
+pub(super) struct Room {
+    pub limits: Limits,
     /// It goes on as it is: what it leaves now is all there will be.
-    endless: bool,
+    pub endless: bool,
 }
 
 impl Room {
@@ -114,17 +114,9 @@ impl<P: Planner> Axis<P> {
         layer: &Layer<P::Plan>,
         command: &Added,
     ) -> Result<Option<Proposal<P::Plan>>, ErrorId> {
-        let axis = &self.config.limits;
-        if command.halting && !layer.moves() {
-            return Ok(None);
-        }
-        if let (Adds::Distance { target, .. }, false) = (command.adds, layer.moves())
-            && let Some(error) = self.way_barred(target - layer.added.position)
-        {
-            return Err(error);
-        }
+        let axis = &self.slowed(&self.config.limits);
         let base = self.rest_of_base();
-        let room = Room {
+        let room = || Room {
             limits: base.map_or(*axis, |rest| self.planner.room(rest, axis)),
             endless: base.is_some_and(|(plan, _)| plan.at(u64::from(plan.scans())).velocity != 0.0),
         };
@@ -133,6 +125,28 @@ impl<P: Planner> Axis<P> {
         let still = Setpoint::at_rest(layer.base.position);
         let hold = range.and_then(|_| self.planner.ramp_to(&still, 0.0, axis, axis).ok());
         let base = base.or(hold.as_ref().map(|plan| (plan, 0)));
+        self.propose_within(layer, command, room, |plan| {
+            base.is_none_or(|rest| self.planner.fits(rest, (plan, 0), axis, range))
+        })
+    }
+
+    /// The same over whatever leaves this `room` all the time, and that a motion `fits` or not.
+    pub(super) fn propose_within(
+        &self,
+        layer: &Layer<P::Plan>,
+        command: &Added,
+        room: impl FnOnce() -> Room,
+        fits: impl Fn(&P::Plan) -> bool,
+    ) -> Result<Option<Proposal<P::Plan>>, ErrorId> {
+        if command.halting && !layer.moves() {
+            return Ok(None);
+        }
+        if let (Adds::Distance { target, .. }, false) = (command.adds, layer.moves())
+            && let Some(error) = self.way_barred(target - layer.added.position)
+        {
+            return Err(error);
+        }
+        let room = room();
         let moving = self.limits_in_state(&layer.added, &layer.in_force, &layer.before);
         let mut last = None;
         for index in 0..PROPOSALS {
@@ -164,9 +178,7 @@ impl<P: Planner> Axis<P> {
                     // Alone it exceeds the axis limits only where it takes over from a motion in a way that
                     // its own limits are too low for. That motion may go on instead.
                     let motion = Motion::along(plan);
-                    let fits = !self.exceeds(&motion)
-                        && base.is_none_or(|rest| self.planner.fits(rest, (&plan, 0), axis, range));
-                    if fits {
+                    if !self.exceeds(&motion) && fits(&plan) {
                         return Ok(Some(Proposal {
                             plan,
                             limits,
@@ -263,7 +275,7 @@ impl<P: Planner> Axis<P> {
         else {
             return;
         };
-        command.limits = self.factors.of(&command.asked, &self.parameters.limits);
+        command.limits = self.slowed(&self.factors.of(&command.asked, &self.parameters.limits));
         command.halting = self.factors.halt();
         if command.halting {
             command.wait();
@@ -279,6 +291,10 @@ impl<P: Planner> Axis<P> {
     pub(super) fn try_again(&mut self, scope: &mut Scope<'_>) {
         let Some(layer) = &self.layer else { return };
         let Some(command) = &layer.command else { return };
+        if self.is_coupled() {
+            // Its own motion step decides.
+            return;
+        }
         let due = match &self.motion {
             Motion::Run { elapsed, .. } => *elapsed >= layer.retry,
             _ => true,
@@ -300,7 +316,7 @@ impl<P: Planner> Axis<P> {
         let Some(layer) = self.layer.as_ref().filter(|layer| layer.moves()) else {
             return *base.unwrap_or(own);
         };
-        let (axis, added) = (&self.config.limits, &layer.in_force);
+        let (axis, added) = (&self.slowed(&self.config.limits), &layer.in_force);
         let both = |of: fn(&Limits) -> f64| min(of(axis), of(added) + base.map_or(0.0, of));
         Limits {
             velocity: both(|limits| limits.velocity),
@@ -355,7 +371,7 @@ impl<P: Planner> Axis<P> {
             position: self.setpoint.position,
             ..layer.base
         };
-        let in_force = if matches!(self.motion, Motion::Run { .. }) {
+        let in_force = if matches!(self.motion, Motion::Run { .. } | Motion::Geared) {
             self.in_force
         } else {
             entry.limits
@@ -394,7 +410,7 @@ impl<P: Planner> Axis<P> {
         else {
             return true;
         };
-        let (axis, range) = (&self.config.limits, self.range(layer.taken));
+        let (axis, range) = (&self.slowed(&self.config.limits), self.range(layer.taken));
         self.planner.fits((plan, 0), (added, *elapsed), axis, range)
     }
 

@@ -30,9 +30,13 @@ impl<P: Planner> Axis<P> {
             return Ok(());
         };
         let command = self.added(id, origin, &layer, request, scope)?;
-        let proposed = self
-            .propose(&layer, &command)
-            .map_err(|error| self.refuse("Distance", request.distance, f64::NAN, error, scope))?;
+        let refuse = |error| self.refuse("Distance", request.distance, f64::NAN, error, scope);
+        if self.is_coupled() {
+            self.propose_alone(&layer, &command).map_err(refuse)?;
+            self.await_room(layer, command);
+            return Ok(());
+        }
+        let proposed = self.propose(&layer, &command).map_err(refuse)?;
         layer.command = Some(command);
         layer.try_soon();
         self.stir();
@@ -63,6 +67,8 @@ impl<P: Planner> Axis<P> {
             let limit = self.broken_software_limit(end);
             self.refuse("Distance", distance, limit, error, scope)
         })?;
+        let limits = self.factors.of(&asked, &self.parameters.limits);
+        self.record_slowed_pins("VelocityDiff", &limits, scope);
         Ok(Added {
             id,
             instance: scope.instance,
@@ -71,7 +77,7 @@ impl<P: Planner> Axis<P> {
                 origin,
                 target,
             },
-            limits: self.factors.of(&asked, &self.parameters.limits),
+            limits: self.slowed(&limits),
             asked,
             halting: self.factors.halt(),
             progress: Progress::Waits,

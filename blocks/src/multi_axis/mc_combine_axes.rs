@@ -1,0 +1,131 @@
+//! `MC_CombineAxes`: a slave follows two masters, whose ways are added.
+//!
+//! Source: PLCopen Motion Control Part 1, section of that name.
+
+use standstill_axis::{
+    AxisId, BufferMode, CombineMode, Command, ErrorId, Followed, Master, Planner, Raw, Request, ValueSource,
+    couple,
+};
+use standstill_fb::{Block, Context, Group, Move, UpdateCore, pins};
+
+pins! {
+    in_outs {
+        /// The first axis to follow.
+        Master1 => master1: AxisId;
+        /// The second axis to follow; it may be the same one.
+        Master2 => master2: AxisId;
+        /// The axis that follows.
+        Slave => slave: AxisId;
+    }
+    inputs {
+        /// A rising edge couples the axes with the values of that call.
+        Execute => execute: bool = false, "";
+        /// Changed inputs hold for the coupling in progress while TRUE, if it was TRUE at the rising edge.
+        ContinuousUpdate => continuous_update: bool = false, "";
+        /// mcAddAxes: the ways of both masters are added; mcSubAxes: that of the second is taken away.
+        CombineMode => combine_mode: Raw<CombineMode> = Raw::new(0), "";
+        /// Way of the slave for one of the first master, as a ratio: numerator, signed, 0 allowed.
+        GearRatioNumeratorM1 => gear_ratio_numerator_m1: i16 = 1, "";
+        /// Denominator of that ratio, above 0.
+        GearRatioDenominatorM1 => gear_ratio_denominator_m1: i16 = 1, "";
+        /// Way of the slave for one of the second master: numerator, signed, 0 allowed.
+        GearRatioNumeratorM2 => gear_ratio_numerator_m2: i16 = 1, "";
+        /// Denominator of that ratio, above 0.
+        GearRatioDenominatorM2 => gear_ratio_denominator_m2: i16 = 1, "";
+        /// Which values of the first master are followed.
+        MasterValueSourceM1 => master_value_source_m1: Raw<ValueSource> = Raw::new(1), "";
+        /// Which values of the second master are followed.
+        MasterValueSourceM2 => master_value_source_m2: Raw<ValueSource> = Raw::new(1), "";
+        /// How the command follows the one before it.
+        BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
+    }
+    vendor_inputs {}
+    outputs {
+        /// The set position of the slave is the one the masters ask for.
+        InSync => in_sync: bool, "";
+        /// Not finished.
+        Busy => busy: bool, "";
+        /// The block controls the slave.
+        Active => active: bool, "";
+        /// Interrupted by another command.
+        CommandAborted => command_aborted: bool, "";
+        /// Refused, or ended by an error.
+        Error => error: bool, "";
+        /// Why; 0 without an error.
+        ErrorID => error_id: ErrorId, "";
+    }
+    vendor_outputs {
+        /// How far the slave is from where the masters ask it to be, once it was in sync; 0 in sync.
+        Deviation => deviation: f64, "u";
+        /// A master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost).
+        MasterLost => master_lost: bool, "";
+    }
+}
+
+/// State kept between calls.
+#[doc(alias = "MC_CombineAxes")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct McCombineAxes {
+    core: UpdateCore<Command>,
+}
+
+impl Block for McCombineAxes {
+    const NAME: &'static str = "MC_CombineAxes";
+    const GROUP: Group = Group::MultiAxis;
+    const DOC: &'static str = "Lets one axis follow two others at once: their ways are added, or subtracted.";
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+
+    fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
+        let pins = Move {
+            axis: inputs.slave,
+            execute: inputs.execute,
+            continuous_update: inputs.continuous_update,
+        };
+        let turn = |axis: AxisId| context.axes.get(axis.index())?.config().modulo;
+        let first = Followed {
+            master: Master {
+                axis: inputs.master1,
+                turn: turn(inputs.master1),
+            },
+            numerator: inputs.gear_ratio_numerator_m1,
+            denominator: inputs.gear_ratio_denominator_m1.into(),
+            source: inputs.master_value_source_m1,
+        };
+        let second = Followed {
+            master: Master {
+                axis: inputs.master2,
+                turn: turn(inputs.master2),
+            },
+            numerator: inputs.gear_ratio_numerator_m2,
+            denominator: inputs.gear_ratio_denominator_m2.into(),
+            source: inputs.master_value_source_m2,
+        };
+        let values = || Command::CombineAxes {
+            masters: [first, second],
+            mode: inputs.combine_mode,
+        };
+        let phase = self
+            .core
+            .scan_among(pins, context, values, |context, command, replaces| {
+                let request = Request {
+                    command,
+                    buffer_mode: inputs.buffer_mode,
+                    replaces,
+                };
+                couple(context.axes, inputs.slave, &request, &mut context.scope)
+            });
+        let slave = context.axes.get(inputs.slave.index());
+        let slave = slave.filter(|_| phase.is_active());
+        Outputs {
+            in_sync: phase.is_reached(),
+            busy: phase.is_busy(),
+            active: phase.is_active(),
+            command_aborted: phase.is_aborted(),
+            error: phase.is_error(),
+            error_id: phase.error_id(),
+            deviation: slave.map_or(0.0, |slave| slave.deviation()),
+            master_lost: slave.is_some_and(|slave| slave.has_lost_master()),
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! What the limits of slaves leave to their master (`on_limit` `slow_master`).
+//!
+//! Collected at the end of each motion step, from the lowest slaves up, and in force from there on: for whatever is commanded
+//! to the master, for what waits, and for the motion in progress, which is planned anew from its state as by an override. Only
+//! the ramp of a fault does not look at slaves.
+//!
+//! A bound lasts from the first scan in gear to the end of the coupling, also while the slave lags or comes onto another ratio.
+
+use super::super::commands::{Entry, REST, Work};
+use super::super::{Axis, Motion};
+use super::Rung;
+use crate::{AxisId, Event, OnLimit, Scope};
+use standstill_planner::{Gear, Limits, Planner};
+
+/// Of the room a shift between master and slave may take this much, so that the master can always move.
+const SHARE: f64 = 0.5;
+
+/// And this much of what the master leaves it now, so that the master's motion stays inside the rest whatever is rounded.
+const NEARLY_ALL: f64 = 1023.0 / 1024.0;
+
+/// What slaves leave of the limits of an axis.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::axis) struct Bound {
+    /// In force.
+    now: Limits,
+    /// As found so far in this motion step.
+    next: Limits,
+}
+
+impl Default for Bound {
+    /// There are no slaves.
+    fn default() -> Self {
+        Self {
+            now: Limits::NONE,
+            next: Limits::NONE,
+        }
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// What slaves leave of `limits`.
+    pub(in crate::axis) fn slowed(&self, limits: &Limits) -> Limits {
+        limits.or_smaller(&self.bound.now)
+    }
+
+    /// Lowers what `entry` asks for to what slaves leave. What is behind a master, keeps its times or is no motion has no
+    /// limits to be lowered here.
+    pub(in crate::axis) fn bound_entry(&self, entry: &mut Entry) {
+        if !Self::has_bound(&entry.work) {
+            return;
+        }
+        entry.limits = self.slowed(&entry.limits);
+        let (velocity, most) = (entry.work.manner().velocity, self.bound.now.velocity);
+        if velocity.abs() > most {
+            entry.work = entry.work.with_velocity(most.copysign(velocity));
+        }
+    }
+
+    /// Tells what of `entry` slaves have lowered.
+    pub(in crate::axis) fn record_slowed(&self, entry: &Entry, scope: &mut Scope<'_>) {
+        if !self.is_slowed() || !Self::has_bound(&entry.work) {
+            return;
+        }
+        let mut free = *entry;
+        self.scale_entry(&mut free);
+        let mut asked = free.limits;
+        if let Work::Velocity { velocity, .. } = free.work {
+            asked.velocity = velocity.abs();
+        }
+        let velocity = match entry.work {
+            Work::Halt | Work::Stop => "",
+            _ => "Velocity",
+        };
+        self.record_slowed_pins(velocity, &asked, scope);
+    }
+
+    /// The same for what is `asked`, whose velocity is that of pin `velocity`; what has none only brakes.
+    pub(in crate::axis) fn record_slowed_pins(
+        &self,
+        velocity: &'static str,
+        asked: &Limits,
+        scope: &mut Scope<'_>,
+    ) {
+        let used = self.slowed(asked);
+        let speeds_up = !velocity.is_empty();
+        let pins = [
+            (velocity, asked.velocity, used.velocity, speeds_up),
+            ("Acceleration", asked.acceleration, used.acceleration, speeds_up),
+            ("Deceleration", asked.deceleration, used.deceleration, true),
+            ("Jerk", asked.jerk, used.jerk, true),
+            ("Snap", asked.snap, used.snap, true),
+        ];
+        for (pin, value, limit, counts) in pins {
+            if counts && value > limit {
+                self.record(Event::Slowed { pin, value, limit }, scope);
+            }
+        }
+    }
+
+    /// Whether it may slow its master down, or is slowed down.
+    pub(crate) fn may_bound(&self) -> bool {
+        let slows = self.config.following.on_limit == OnLimit::SlowMaster;
+        (slows && self.coupling.is_some()) || self.is_slowed()
+    }
+
+    /// Every limit of a velocity is finite, so there is a bound where that is.
+    fn is_slowed(&self) -> bool {
+        self.bound.now.velocity.is_finite()
+    }
+
+    /// Before bounds are collected: no slave has left less than everything, and whether its master keeps its limits is noted.
+    pub(crate) fn begin_bound(&mut self) {
+        self.bound.next = Limits::NONE;
+        if self.config.following.on_limit != OnLimit::SlowMaster {
+            return;
+        }
+        let Some(coupling) = &mut self.coupling else {
+            return;
+        };
+        match coupling.rung {
+            Rung::Locked => coupling.slows = true,
+            Rung::Lost => coupling.slows = false,
+            Rung::Due
+            | Rung::Own
+            | Rung::BesideLaw(_)
+            | Rung::BesideMeasured { .. }
+            | Rung::BesideLine { .. } => {}
+        }
+    }
+
+    /// A slave leaves no more than `bound`.
+    pub(crate) fn lower_bound(&mut self, bound: &Limits) {
+        self.bound.next = self.bound.next.or_smaller(bound);
+    }
+
+    /// Its master keeps its limits.
+    pub(super) fn slows_master(&self) -> bool {
+        self.coupling.as_ref().is_some_and(|coupling| coupling.slows)
+    }
+
+    /// Whether its motion was planned within what its slaves leave, not before there were any, nor after a fault.
+    pub(super) fn keeps_bound(&self) -> bool {
+        let own = Some(&self.in_force).filter(|_| !matches!(self.motion, Motion::Hold));
+        let added = self.layer.as_ref().and_then(|layer| layer.limits_in_motion());
+        let mut all = own.into_iter().chain(added);
+        self.is_slowed() && all.all(|limits| self.slowed(limits) == *limits)
+    }
+
+    /// What it leaves to each of its masters: its limits, and what its own slaves leave of them, as seen through the gear. Of two
+    /// masters each has half. A shift in motion has its part of them.
+    pub(crate) fn bounds_of_masters(&self) -> impl Iterator<Item = (AxisId, Limits)> + use<P> {
+        let coupling = self.coupling.as_ref().filter(|coupling| coupling.slows);
+        let bounds = coupling.map_or([None; 2], |coupling| {
+            let gearing = &coupling.gearing;
+            let part = if gearing.second.is_some() { 0.5 } else { 1.0 };
+            let limits = self.slowed(&self.parameters.limits).times(part);
+            let bound = |leg: usize, (master, gear): (AxisId, Gear)| {
+                let bound = behind(&limits, gear.ratio())?;
+                let shift = self.taken_by_shift(leg);
+                Some((master, shift.map_or(bound, |shift| beside(&bound, shift))))
+            };
+            let [first, second] = gearing.gears();
+            [
+                first.and_then(|leg| bound(0, leg)),
+                second.and_then(|leg| bound(1, leg)),
+            ]
+        });
+        bounds.into_iter().flatten()
+    }
+
+    /// The most a shift between master and slave may have of `room`, of which the slave has `limits` in all, in units of the
+    /// master.
+    pub(super) fn share_of_shift(&self, room: Limits, limits: &Limits) -> Limits {
+        if self.config.following.on_limit != OnLimit::SlowMaster {
+            return room;
+        }
+        let part = |limits: &Limits, of: f64| Limits {
+            velocity: limits.velocity * of,
+            acceleration: limits.acceleration * of,
+            deceleration: limits.deceleration * of,
+            jerk: limits.jerk * of,
+            snap: limits.snap * of,
+        };
+        part(&room, NEARLY_ALL).or_smaller(&part(limits, SHARE))
+    }
+
+    /// The bound found in this motion step holds from now on.
+    pub(crate) fn take_bound(&mut self, scope: &mut Scope<'_>) {
+        if self.bound.next == self.bound.now {
+            return;
+        }
+        self.bound.now = self.bound.next;
+        self.override_queue();
+        self.bound_owner(scope);
+        self.override_superimposed(scope);
+    }
+
+    /// The owner goes on within the bound that holds from now on. Where it can't be planned with it, it goes on as it was.
+    fn bound_owner(&mut self, scope: &mut Scope<'_>) {
+        let Some(mut owner) = self.owner.filter(|owner| Self::has_bound(&owner.work)) else {
+            return;
+        };
+        let was = owner;
+        self.note_passing(&mut owner);
+        self.override_entry(&mut owner);
+        if owner.limits == was.limits && owner.work == was.work {
+            return;
+        }
+        let is_over = self.is_at_goal() && !owner.is_endless();
+        if is_over || self.goes_on_within(&was, &owner) {
+            self.in_force = Self::limits_of(&owner.limits, &self.motion);
+            self.own(owner);
+            return;
+        }
+        self.record_slowed(&owner, &mut scope.with(owner.instance));
+        let planned = if let Work::Home(_) = owner.work {
+            self.own(owner);
+            self.search_on(scope);
+            Ok(())
+        } else {
+            self.replan(owner, scope)
+        };
+        if let Err(error) = planned {
+            self.refuse_plan(&owner, error, &mut scope.with(owner.instance));
+        }
+        self.end_orphan();
+    }
+
+    /// It has no motion, or one that is at its goal.
+    fn is_at_goal(&self) -> bool {
+        match &self.motion {
+            Motion::Run { elapsed, scans, .. } => elapsed >= scans,
+            _ => true,
+        }
+    }
+
+    /// Whether the motion in progress may go on as it is: its limits get lower, and it keeps them. It leads where it would lead
+    /// with them.
+    fn goes_on_within(&self, was: &Entry, owner: &Entry) -> bool {
+        let is_lower = owner.limits == owner.limits.or_smaller(&was.limits);
+        let Motion::Run { plan, elapsed, .. } = &self.motion else {
+            return false;
+        };
+        let is_alone = self.layer.is_none() && owner.passage == REST && !self.replan_due;
+        is_lower
+            && is_alone
+            && owner.work == was.work
+            && self
+                .planner
+                .fits_behind(&[None; 2], &self.setpoint, Some((plan, *elapsed)), &owner.limits)
+    }
+
+    /// Whether the limits of `work` are its own: slaves can lower them.
+    pub(in crate::axis) fn has_bound(work: &Work) -> bool {
+        match work {
+            Work::Position(_)
+            | Work::Distance(_)
+            | Work::Through { .. }
+            | Work::Velocity { .. }
+            | Work::Release(_)
+            | Work::Halt
+            | Work::Stop
+            | Work::Home(_) => true,
+            Work::Profile { .. }
+            | Work::Torque { .. }
+            | Work::Gear(_)
+            | Work::SetPosition { .. }
+            | Work::Write(_) => false,
+        }
+    }
+}
+
+/// What a master may have for a slave of these `limits` behind a gear of this ratio; none where the slave does not move. For a slave
+/// that adds two masters each may have what the half of its limits leaves.
+fn behind(limits: &Limits, (numerator, denominator): (i32, u16)) -> Option<Limits> {
+    let (ways, turns) = (f64::from(denominator), f64::from(numerator).abs());
+    let behind = |limit: f64| limit * ways / turns;
+    (numerator != 0).then(|| Limits {
+        velocity: behind(limits.velocity),
+        acceleration: behind(limits.acceleration),
+        deceleration: behind(limits.deceleration),
+        jerk: behind(limits.jerk),
+        snap: behind(limits.snap),
+    })
+}
+
+/// What is left of `bound` beside a moving shift. Speed that falls beside it may be speed that grows: the lower rate holds both
+/// ways.
+fn beside(bound: &Limits, shift: &Limits) -> Limits {
+    let less = |limit: f64, taken: f64| {
+        if limit.is_finite() {
+            (limit - taken).max(limit * SHARE)
+        } else {
+            limit
+        }
+    };
+    let rate = less(bound.lower_acceleration(), shift.lower_acceleration());
+    Limits {
+        velocity: less(bound.velocity, shift.velocity),
+        acceleration: rate,
+        deceleration: rate,
+        jerk: less(bound.jerk, shift.jerk),
+        snap: less(bound.snap, shift.snap),
+    }
+}

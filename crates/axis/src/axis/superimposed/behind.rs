@@ -1,0 +1,375 @@
+//! What is superimposed on a slave.
+//!
+//! In gear the set-point is the law with the place of the slave moved on by what has been added; once that is done it stays in the
+//! law, to the bit. Whether there is room is looked at in the motion step, where the master has moved already and its plan is
+//! known. When the slave loses its law, what is being added passes its velocity on to the slave, and the rest of it waits.
+//!
+//! Source: PLCopen Motion Control Part 1, MC_MoveSuperimposed, MC_HaltSuperimposed. What the standard leaves open is told in
+//! docs/coupling.md.
+
+use super::plan::{Proposal, Room};
+use super::{Added, Adds, Layer, Progress};
+use crate::axis::coupling::{Kind, View};
+use crate::axis::{Axis, Motion};
+use crate::{ErrorId, Event, Fate, Scope};
+use standstill_planner::{Lead, Limits, Plan, Planner, Setpoint};
+
+/// Where the plan of a master ends.
+fn end_of<Q: Plan>(lead: &Lead<'_, Q>) -> Setpoint {
+    lead.plan.at(u64::from(lead.plan.scans()))
+}
+
+impl<P: Planner> Axis<P> {
+    /// `command` waits on `layer` for the next motion step.
+    pub(super) fn await_room(&mut self, mut layer: Layer<P::Plan>, command: Added) {
+        layer.command = Some(command);
+        layer.try_soon();
+        self.layer = Some(layer);
+        self.stir();
+    }
+
+    /// Refuses what could not be added even to a master at rest.
+    ///
+    /// # Errors
+    /// The planner refuses the command as it is asked for, or MC_Power bars its direction.
+    pub(super) fn propose_alone(&self, layer: &Layer<P::Plan>, command: &Added) -> Result<(), ErrorId> {
+        let room = || Room {
+            limits: self.slowed(&self.config.limits),
+            endless: false,
+        };
+        self.propose_within(layer, command, room, |_| true).map(|_| ())
+    }
+
+    /// Something is being superimposed, and moves.
+    pub(in crate::axis) fn adds_motion(&self) -> bool {
+        self.layer.as_ref().is_some_and(Layer::moves)
+    }
+
+    /// A halt of what is superimposed that finds nothing in motion is done.
+    pub(in crate::axis) fn end_idle_halt(&mut self) {
+        let idle = |layer: &Layer<P::Plan>| {
+            !layer.moves() && layer.command.is_none_or(|command| command.adds == Adds::Halt)
+        };
+        if self.layer.as_ref().is_some_and(idle) {
+            self.end_superimposed(Fate::Done);
+        }
+    }
+
+    /// The slave is not on its law: it has the velocity of what was being added, and what is left of that waits.
+    pub(in crate::axis) fn rest_superimposed(&mut self) {
+        let setpoint = self.setpoint;
+        if let Some(layer) = self.layer.as_mut().filter(|layer| layer.moves()) {
+            layer.pass_velocity(setpoint);
+            layer.taken = layer.added.position;
+            layer.try_soon();
+        }
+    }
+
+    /// Before the step of a slave: what has no room beside the law any more gives way, and what waits for room begins. `is_new`:
+    /// the master does something else than was known, or a limit has changed; the slave loses its gear for lack of room if it
+    /// `may_lose` it.
+    ///
+    /// Cost: at most nine plans, each laid over the master's.
+    pub(in crate::axis) fn superimpose_behind(
+        &mut self,
+        view: &View<'_, P::Plan>,
+        is_new: bool,
+        may_lose: bool,
+        scope: &mut Scope<'_>,
+    ) {
+        if self.layer.is_none() {
+            return;
+        }
+        if !self.is_on_law() {
+            self.rest_superimposed();
+            return self.tell_waiting(scope);
+        }
+        if is_new {
+            self.give_way(view, may_lose, scope);
+        }
+        if !self.is_on_law() || view.future.is_late() || !self.sees_law(view) {
+            return self.tell_waiting(scope);
+        }
+        self.begin_behind(view, scope);
+    }
+
+    /// A command that waits says so once.
+    fn tell_waiting(&mut self, scope: &mut Scope<'_>) {
+        let Some(layer) = self.layer.as_mut().filter(|layer| layer.retry == 0) else {
+            return;
+        };
+        layer.retry = 1;
+        if let Some(command) = layer.command.filter(|command| !command.runs()) {
+            self.record_as(&command, Event::RoomAwaited, scope);
+        }
+    }
+
+    /// What the law does from the end of the scan before on is known.
+    fn sees_law(&self, view: &View<'_, P::Plan>) -> bool {
+        match view.future.kind() {
+            // Of measured values each step is looked at.
+            Kind::Plan | Kind::Measured => true,
+            // It may have come to rest in this scan.
+            Kind::Still => self.law_stands(view),
+            Kind::Unknown | Kind::NotSeen => false,
+        }
+    }
+
+    /// What moves beside the law gives way to what the master does now: slower, or to rest. Where there is no room for that
+    /// either, the gear is lost.
+    fn give_way(&mut self, view: &View<'_, P::Plan>, may_lose: bool, scope: &mut Scope<'_>) {
+        let Some(layer) = &mut self.layer else { return };
+        layer.retry = layer.retry.min(1);
+        let motion = layer.motion;
+        let Motion::Run { plan, elapsed, .. } = &motion else {
+            return;
+        };
+        // Where the way of the master is not known each step is looked at.
+        if !self.sees_law(view)
+            || view.future.kind() == Kind::Measured
+            || self.fits_law(view, (plan, *elapsed))
+        {
+            return;
+        }
+        if let Some(command) = self.layer.as_mut().and_then(|layer| layer.command.as_mut()) {
+            command.progress = Progress::Waits;
+        }
+        if self.take_proposal(view, scope) || self.brake_behind(view, scope) || !may_lose {
+            return;
+        }
+        let beside = self.planner.peaks((plan, *elapsed)).unwrap_or_default();
+        let reason = self.reason_beside(view, &beside);
+        let limit = self.parameters.limits.velocity;
+        self.lose_gear(reason.unwrap_or(("velocity", f64::NAN, limit)), scope);
+    }
+
+    /// A command that waits or was lowered begins, or goes faster, if there is room beside the law now.
+    fn begin_behind(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let Some(layer) = &self.layer else { return };
+        let Some(command) = layer.command else { return };
+        let is_due = match self.first_lead(view) {
+            Some(lead) => lead.elapsed.saturating_add(1) >= layer.retry,
+            None => layer.retry != u64::MAX,
+        };
+        if !command.lacks_room() || !is_due {
+            return;
+        }
+        let ends_outside = self
+            .end_behind(view, layer)
+            .is_some_and(|end| self.allowed(end).is_err());
+        if ends_outside && !layer.moves() && matches!(command.adds, Adds::Distance { .. }) {
+            return self.refuse_end(view, &command, scope);
+        }
+        self.take_proposal(view, scope);
+    }
+
+    /// Sets in motion what fits beside the law from now on. Returns whether there is something.
+    fn take_proposal(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
+        let Some(layer) = &self.layer else { return false };
+        let Some(command) = &layer.command else {
+            return false;
+        };
+        let room = || self.room_of_law(view);
+        let fits = |plan: &P::Plan| self.fits_law(view, (plan, 0));
+        // What the planner took once it takes again; while it is barred everything stays as it is.
+        let Ok(proposed) = self.propose_within(layer, command, room, fits) else {
+            return false;
+        };
+        let is_found = proposed.is_some();
+        let (place, moves) = (layer.added.position, layer.moves());
+        if let (false, Some(coupling)) = (moves, &mut self.coupling) {
+            coupling.lay_layer(place);
+        }
+        self.add(proposed, scope);
+        self.stir();
+        let next = self.next_switch_of_law(view);
+        if let Some(layer) = &mut self.layer {
+            layer.retry = match next {
+                Some((switch, now)) if switch > now => switch,
+                // Nothing changes until the master does.
+                _ => u64::MAX,
+            };
+        }
+        is_found
+    }
+
+    /// What is superimposed comes to rest with the stop dynamics or more slowly, if there is room for that.
+    fn brake_behind(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
+        let Some(layer) = &self.layer else { return false };
+        let Some(command) = layer.command else {
+            return false;
+        };
+        let stop = Added {
+            limits: self.slowed(&self.stop_limits()),
+            halting: true,
+            ..command
+        };
+        let room = || self.room_of_law(view);
+        let fits = |plan: &P::Plan| self.fits_law(view, (plan, 0));
+        let proposed = self.propose_within(layer, &stop, room, fits);
+        let (Ok(Some(Proposal { plan, limits, .. })), Some(layer)) = (proposed, &mut self.layer) else {
+            return false;
+        };
+        layer.before = layer.in_force;
+        layer.in_force = limits;
+        layer.motion = Motion::along(plan);
+        if let Some(command) = &mut layer.command {
+            command.wait();
+        }
+        let (distance, scans) = (None, plan.scans());
+        self.record_as(&command, Event::Superimposed { distance, scans }, scope);
+        true
+    }
+
+    fn first_lead<'a>(&self, view: &View<'a, P::Plan>) -> Option<Lead<'a, P::Plan>> {
+        self.leads_of_law(view)?.into_iter().flatten().next()
+    }
+
+    /// The scan at which a plan of a master next changes its highest derivative, and that of now, both counted from the start of
+    /// the first of them.
+    fn next_switch_of_law(&self, view: &View<'_, P::Plan>) -> Option<(u64, u64)> {
+        let now = self.first_lead(view)?.elapsed;
+        let leads = self.leads_of_law(view)?;
+        let next = leads.iter().flatten().filter_map(|lead| {
+            let switch = self.planner.next_switch((lead.plan, lead.elapsed));
+            let scans = switch.saturating_sub(lead.elapsed);
+            (scans > 0).then_some(scans)
+        });
+        Some((now.saturating_add(next.min().unwrap_or(0)), now))
+    }
+
+    /// What the law leaves of the limits of the slave all the time.
+    fn room_of_law(&self, view: &View<'_, P::Plan>) -> Room {
+        let limits = &self.slowed(&self.parameters.limits);
+        let none = Limits {
+            velocity: 0.0,
+            acceleration: 0.0,
+            deceleration: 0.0,
+            jerk: 0.0,
+            snap: 0.0,
+        };
+        match self.leads_of_law(view) {
+            Some(leads) => Room {
+                limits: self.room_beside(&leads, limits).unwrap_or(none),
+                endless: leads.iter().flatten().any(|lead| end_of(lead).velocity != 0.0),
+            },
+            None if view.future.kind() == Kind::Measured => Room {
+                limits: self.room_now(view, limits).unwrap_or(none),
+                endless: true,
+            },
+            None => Room {
+                limits: *limits,
+                endless: false,
+            },
+        }
+    }
+
+    /// Whether what is superimposed, so many scans after its start at the end of the scan before, keeps the limits together with
+    /// the law as far as that is known.
+    fn fits_law(&self, view: &View<'_, P::Plan>, (plan, elapsed): (&P::Plan, u64)) -> bool {
+        let Some((before, after)) = self.law_before_and_now(view) else {
+            return false;
+        };
+        let limits = &self.slowed(&self.parameters.limits);
+        let Some(layer) = &self.layer else { return true };
+        match self.leads_of_law(view) {
+            Some(leads) => {
+                let late = u64::from(view.future.is_late());
+                let elapsed = elapsed.saturating_add(late);
+                let now = if late > 0 {
+                    after.plus(&plan.at(elapsed))
+                } else {
+                    before.plus(&layer.added)
+                };
+                let beside = Some((plan, elapsed));
+                self.planner.fits_behind(&leads, &now, beside, limits)
+            }
+            None => {
+                let limits = if view.future.kind() == Kind::Measured {
+                    self.room_now(view, limits)
+                } else {
+                    Some(*limits)
+                };
+                limits.is_some_and(|limits| {
+                    self.planner
+                        .fits_behind(&[None; 2], &layer.added, Some((plan, elapsed)), &limits)
+                })
+            }
+        }
+    }
+
+    /// Where the slave will stand once everything is added (u), if its master comes to rest as far as is known.
+    fn end_behind(&self, view: &View<'_, P::Plan>, layer: &Layer<P::Plan>) -> Option<f64> {
+        let mut way = 0.0;
+        for lead in self.leads_of_law(view).iter().flatten().flatten() {
+            let end = end_of(lead);
+            if end.velocity != 0.0 {
+                return None;
+            }
+            way += lead.factor * (end.position - lead.plan.at(lead.elapsed).position);
+        }
+        Some(self.setpoint.position + way + layer.left())
+    }
+
+    /// Everything added, the slave would stand outside its software limits.
+    #[cold]
+    fn refuse_end(&mut self, view: &View<'_, P::Plan>, command: &Added, scope: &mut Scope<'_>) {
+        let Adds::Distance { distance, .. } = command.adds else {
+            return;
+        };
+        let end = self.layer.as_ref().and_then(|layer| self.end_behind(view, layer));
+        let limit = end.map_or(f64::NAN, |end| self.broken_software_limit(end));
+        let error = ErrorId::TargetOutsideSoftwareLimits;
+        self.refuse(
+            "Distance",
+            distance,
+            limit,
+            error,
+            &mut scope.with(command.instance),
+        );
+        self.end_superimposed(Fate::Failed(error));
+    }
+
+    /// The set-point of what is superimposed for the end of this scan, if it moves.
+    pub(in crate::axis) fn next_added(&mut self) -> Option<Setpoint> {
+        match &mut self.layer.as_mut()?.motion {
+            Motion::Run { plan, elapsed, .. } => Some(plan.next(elapsed.saturating_add(1))),
+            _ => None,
+        }
+    }
+
+    /// `added` was published on top of the law.
+    pub(in crate::axis) fn note_added(&mut self, added: Setpoint) {
+        let Some(layer) = &mut self.layer else { return };
+        layer.added = added;
+        let Motion::Run { elapsed, scans, .. } = &mut layer.motion else {
+            return;
+        };
+        *elapsed = elapsed.saturating_add(1);
+        if *elapsed < *scans {
+            return;
+        }
+        layer.added = Setpoint::at_rest(added.position);
+        layer.motion = Motion::Hold;
+        // It stands now, from where more may fit.
+        layer.try_soon();
+        let is_done = |command: &Added| !command.halting && (command.runs() || command.adds == Adds::Halt);
+        if layer.command.as_ref().is_none_or(is_done) {
+            self.end_superimposed(Fate::Done);
+        }
+    }
+
+    /// After the step of a slave: its own part of the set-point is what is not added.
+    pub(in crate::axis) fn note_own_part(&mut self) {
+        let Some(layer) = &mut self.layer else { return };
+        let (all, added) = (&self.setpoint, &layer.added);
+        layer.taken = added.position;
+        layer.base = Setpoint {
+            position: all.position,
+            velocity: all.velocity - added.velocity,
+            acceleration: all.acceleration - added.acceleration,
+            jerk: all.jerk - added.jerk,
+            snap: all.snap - added.snap,
+        };
+    }
+}

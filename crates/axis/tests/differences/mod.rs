@@ -1,0 +1,63 @@
+//! Published set-points, and what the differences of their positions say, held against limits.
+
+#![allow(dead_code, reason = "each test target takes what it needs")]
+
+use standstill_axis::{Limits, Setpoint};
+
+/// The last published positions, newest first, and what they say of the derivatives.
+pub struct Seen {
+    positions: [f64; 5],
+    cycle: f64,
+    /// The largest position that entered one of them (u).
+    coarsest: f64,
+}
+
+impl Seen {
+    /// An axis that stands at 0.
+    pub fn new(cycle: f64) -> Self {
+        Self {
+            positions: [0.0; 5],
+            cycle,
+            coarsest: 1.0,
+        }
+    }
+
+    /// A position (u) that the next ones are made of.
+    pub fn made_of(&mut self, position: f64) {
+        self.coarsest = self.coarsest.max(position.abs());
+    }
+
+    /// The next set-point: it and the differences of positions are within `limits`.
+    pub fn check(&mut self, now: &Setpoint, limits: &Limits, what: &str) {
+        self.positions.rotate_right(1);
+        self.positions[0] = now.position;
+        let acceleration = limits.acceleration.max(limits.deceleration);
+        let bounds = [limits.velocity, acceleration, limits.jerk, limits.snap];
+        let derivatives = [now.velocity, now.acceleration, now.jerk, now.snap];
+        let mut differences = self.positions;
+        // How far f64 positions resolve a difference of each order.
+        let mut grain = 4.0
+            * f64::EPSILON
+            * self
+                .positions
+                .iter()
+                .fold(self.coarsest, |most: f64, p| most.max(p.abs()));
+        for (order, (bound, derivative)) in bounds.iter().zip(derivatives).enumerate() {
+            assert!(
+                derivative.abs() <= bound * (1.0 + 1e-9),
+                "{what}: derivative {} is {derivative}, limit {bound}",
+                order + 1
+            );
+            for place in 0..4 - order {
+                differences[place] = (differences[place] - differences[place + 1]) / self.cycle;
+            }
+            grain *= 2.0 / self.cycle;
+            assert!(
+                differences[0].abs() <= bound * (1.0 + 1e-9) + grain,
+                "{what}: difference {} is {}, limit {bound}",
+                order + 1,
+                differences[0]
+            );
+        }
+    }
+}
