@@ -3,6 +3,7 @@
 //! Prints a table with the bars of docs/performance.md and marks what is above its bar. The bars are multiples of
 //! a sample from its parameters; the multiples of one that was planned before are shown too.
 
+use standstill_axis::ConfigError;
 use standstill_bench::{
     AXES, CYCLE, Executed, IN_MOTION, LIMITS, ManyAxes, Move, OneAxis, Random, TARGET, Trapezoid, WAYS,
     servo, trapezoid,
@@ -56,7 +57,12 @@ fn main() {
         Measure {
             name: "scan of 64 axes in mixed motion, per axis",
             bar: Some(8.0),
-            batch: Box::new(scan_of_many(None)),
+            batch: Box::new(scan_of_many(ManyAxes::in_motion(None))),
+        },
+        Measure {
+            name: "scan of 64 axes, 32 of them slaves in chains of 4, per axis",
+            bar: None,
+            batch: Box::new(scan_of_many(ManyAxes::in_chains())),
         },
         Measure {
             name: "scan of a mechanism and its loops, a load on a spring",
@@ -88,7 +94,7 @@ fn main() {
     measures.extend(WAYS.iter().enumerate().map(|(way, name)| Measure {
         name,
         bar: None,
-        batch: Box::new(scan_of_many(Some(way))),
+        batch: Box::new(scan_of_many(ManyAxes::in_motion(Some(way)))),
     }));
     let mut times = vec![Vec::new(); measures.len()];
     let mut ratios = vec![Vec::new(); measures.len()];
@@ -196,9 +202,9 @@ fn executor_scan_in_motion() -> impl FnMut() -> f64 {
 
 /// A few scans of all axes in every round, the whole motion over all rounds: longer batches would measure what
 /// else the machine does.
-fn scan_of_many(only: Option<usize>) -> impl FnMut() -> f64 {
+fn scan_of_many(started: Result<ManyAxes, ConfigError>) -> impl FnMut() -> f64 {
     const SCANS: u64 = 7;
-    let started = ManyAxes::in_motion(only).expect("valid");
+    let started = started.expect("valid");
     let (mut axes, mut left) = (started.clone(), IN_MOTION);
     move || {
         if left <= SCANS {

@@ -2,7 +2,9 @@
 //! `valgrind --tool=callgrind --toggle-collect='*one_operation*'` counts nothing else. Prints how many
 //! operations ran. `.ci/instructions` compares the counts with the committed ones.
 
-use standstill_bench::{CYCLE, Executed, LIMITS, Move, OneAxis, Random, TARGET, Trapezoid, any_unit, servo};
+use standstill_bench::{
+    CYCLE, Executed, IN_MOTION, LIMITS, ManyAxes, Move, OneAxis, Random, TARGET, Trapezoid, any_unit, servo,
+};
 use standstill_planner::{GridPlan, Method, Order, RampPlan, Setpoint};
 use std::hint::black_box;
 use std::ops::Range;
@@ -30,13 +32,19 @@ fn one_operation<T>(run: impl FnOnce() -> T) {
 /// A name, and what runs the operation and gives how often it did.
 type Workload = (&'static str, fn() -> u64);
 
-const WORKLOADS: [Workload; 16] = [
+const WORKLOADS: [Workload; 18] = [
     ("trapezoid-sample", trapezoid_sample),
     ("idle-scan", idle_scan),
     ("scan-in-motion", scan_in_motion),
     ("scan-that-plans", scan_that_plans),
     ("executor-idle-scan", executor_idle_scan),
     ("executor-scan-in-motion", executor_scan_in_motion),
+    ("scan-of-64-in-motion", || {
+        scan_of_many(ManyAxes::in_motion(Some(0)).expect("valid"))
+    }),
+    ("scan-of-64-half-in-gear", || {
+        scan_of_many(ManyAxes::in_chains().expect("valid"))
+    }),
     ("plan-sample", plan_sample),
     ("plan", plan),
     ("worst-plan", worst_plan),
@@ -116,6 +124,13 @@ fn executor_scan_in_motion() -> u64 {
         one_operation(|| black_box(&mut rig).scan());
     }
     scans
+}
+
+fn scan_of_many(mut axes: ManyAxes) -> u64 {
+    for _ in 0..IN_MOTION {
+        one_operation(|| black_box(&mut axes).scan());
+    }
+    IN_MOTION
 }
 
 fn one_plan(seed: u64) {

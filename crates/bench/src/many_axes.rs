@@ -26,6 +26,9 @@ pub const WAYS: [&str; 8] = [
     "MC_Jog under MC_SetOverride",
 ];
 
+/// As a slave of the axis before it.
+const SLAVE: usize = WAYS.len();
+
 /// 64 axes with MC_Power and one to three motion blocks each, and drives that follow at once: moves on the grid and
 /// from motion, endless motions on linear and modulo axes, steps of a drive that counts, a superimposed distance, a
 /// blended chain, a jog, a move under an override.
@@ -46,6 +49,11 @@ impl ManyAxes {
     /// # Errors
     /// None with these constants.
     pub fn at_rest(only: Option<usize>) -> Result<Self, ConfigError> {
+        Self::with_ways(|number| only.unwrap_or(usize::from(number) % WAYS.len()))
+    }
+
+    /// Powered, at rest: every axis to move in the way given for its number, as a slave of the one before it in way [`SLAVE`].
+    fn with_ways(way_of: impl Fn(u16) -> usize) -> Result<Self, ConfigError> {
         let mut rig = Self {
             axes: Vec::new(),
             log: Log::default(),
@@ -54,7 +62,7 @@ impl ManyAxes {
             scan: 0,
         };
         for number in 0..AXES {
-            let way = only.unwrap_or(usize::from(number) % WAYS.len());
+            let way = way_of(number);
             let config = AxisConfig {
                 start: StartState::Standstill,
                 modulo: (way == 3).then_some(1.0),
@@ -105,6 +113,14 @@ impl ManyAxes {
                     rig.add(number, "MC_MoveRelative", &[distance(0.4), velocity, blended]);
                     rig.add(number, "MC_MoveRelative", &[distance(0.4), velocity, blended]);
                 }
+                SLAVE => {
+                    let master = Value::Axis(AxisId::new(number.saturating_sub(1)));
+                    let ratio = [
+                        ("RatioNumerator", Value::Int(-3)),
+                        ("RatioDenominator", Value::Word(4)),
+                    ];
+                    rig.add(number, "MC_GearIn", &[("Master", master), ratio[0], ratio[1]]);
+                }
                 _ => {
                     let half = ("VelFactor", Value::Lreal(0.5));
                     rig.add(number, "MC_SetOverride", &[("Enable", Value::Bool(true)), half]);
@@ -120,8 +136,9 @@ impl ManyAxes {
         let Some(mut block) = BlockInstance::new(name) else {
             return;
         };
-        let wire = ("Axis", Value::Axis(AxisId::new(axis)));
-        for (pin, value) in pins.iter().chain([&wire]) {
+        // An axis has one of the two names.
+        let wires = ["Axis", "Slave"].map(|pin| (pin, Value::Axis(AxisId::new(axis))));
+        for (pin, value) in pins.iter().chain(&wires) {
             if let Some((index, _)) = block.info().pin(pin) {
                 let set = block.set(index, *value);
                 debug_assert_eq!(set, Ok(()), "{name}.{pin}");
@@ -135,7 +152,30 @@ impl ManyAxes {
     /// # Errors
     /// None with these constants.
     pub fn in_motion(only: Option<usize>) -> Result<Self, ConfigError> {
-        let mut rig = Self::at_rest(only)?;
+        Ok(Self::at_rest(only)?.set_off())
+    }
+
+    /// The axes at rest, half of them to be slaves: of eight axes four move by MC_MoveAbsolute, and a chain of four by MC_GearIn
+    /// behind the last of these.
+    ///
+    /// # Errors
+    /// None with these constants.
+    pub fn chains_at_rest() -> Result<Self, ConfigError> {
+        Self::with_ways(|number| if number % 8 < 4 { 0 } else { SLAVE })
+    }
+
+    /// The same in motion, all slaves in gear.
+    ///
+    /// # Errors
+    /// None with these constants.
+    pub fn in_chains() -> Result<Self, ConfigError> {
+        Ok(Self::chains_at_rest()?.set_off())
+    }
+
+    /// Gives every axis its commands, and scans until all are in motion.
+    #[must_use]
+    pub fn set_off(self) -> Self {
+        let mut rig = self;
         // Block after block, so that the second of an axis takes over from the first, or waits behind it.
         for round in 0..3 {
             let mut last = (AxisId::NONE, 0);
@@ -144,7 +184,8 @@ impl ManyAxes {
                 let trigger = ["Execute", "JogForward"]
                     .into_iter()
                     .find_map(|name| Some(info.pin(name)?.0));
-                let axis = info.pin("Axis").and_then(|(index, _)| block.get(index));
+                let axis = info.pin("Axis").or(info.pin("Slave"));
+                let axis = axis.and_then(|(index, _)| block.get(index));
                 if let (Some(index), Some(Value::Axis(axis))) = (trigger, axis) {
                     last = (axis, if last.0 == axis { last.1 + 1 } else { 0 });
                     if last.1 == round {
@@ -157,15 +198,20 @@ impl ManyAxes {
                 rig.scan();
             }
         }
-        Ok(rig)
+        rig
     }
 
-    /// Axes in DiscreteMotion or ContinuousMotion whose set-point moves.
+    /// Axes in gear.
+    pub fn in_gear(&self) -> usize {
+        self.axes.iter().filter(|axis| axis.is_in_gear()).count()
+    }
+
+    /// Axes in DiscreteMotion, ContinuousMotion or SynchronizedMotion whose set-point moves.
     pub fn moving(&self) -> usize {
         let moves = |axis: &&Axis| {
             let moving = matches!(
                 axis.state(),
-                AxisState::DiscreteMotion | AxisState::ContinuousMotion
+                AxisState::DiscreteMotion | AxisState::ContinuousMotion | AxisState::SynchronizedMotion
             );
             moving && axis.setpoint().velocity != 0.0
         };

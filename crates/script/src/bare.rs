@@ -2,8 +2,8 @@
 
 use crate::model::Script;
 use crate::read::names::identifier_error;
-use crate::read::read_within;
 use crate::read::time::literal;
+use crate::read::{Terms, read_within};
 use crate::run::{Outcome, run_with};
 use crate::suite::{Allowed, SuiteError, included, program_file, shown};
 use serde_json::json;
@@ -75,14 +75,17 @@ pub fn run_bare(
         path.map_or_else(|| Err("it was not given".to_owned()), |path| program_file(path))
     };
     let text = format!("{script:#}\n");
-    let most = allowed.guest_memory;
+    let terms = Terms {
+        guest_memory: allowed.guest_memory,
+        ..Terms::default()
+    };
     let script = read_within(
         &text,
         "(the script for it)",
         parameters,
         &mut load,
         &mut source,
-        most,
+        terms,
     )?;
     let outcome = run_with(&script, progress).map_err(|source| SuiteError::Run { path, source })?;
     Ok((script, outcome))

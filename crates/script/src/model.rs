@@ -74,8 +74,10 @@ pub struct Axis {
     pub config: AxisConfig,
     /// Its drive.
     pub drive: DriveSetup,
-    /// It stands at a `Slave` pin.
-    pub slave: bool,
+    /// The most masters that a block with it at its `Slave` pin gives it: 0 where there is none, 2 for MC_CombineAxes.
+    pub masters: usize,
+    /// It has a master, and a block with it at its `Axis` pin superimposes motions.
+    pub superimposed: bool,
     /// Where it stands.
     pub place: Place,
 }
@@ -386,12 +388,21 @@ pub enum Signal {
     State(usize),
     /// A number of an axis.
     Axis(usize, AxisNumber),
-    /// The master of an axis that stands at a `Slave` pin; empty while it follows none.
-    Master(usize),
+    /// A master of an axis that stands at a `Slave` pin; empty while it follows none.
+    Master(usize, WhichMaster),
     /// Backward difference of published positions of this order (1-4) over cycle^order.
     Difference(usize, u8),
     /// An expression of a condition by index: a BOOL.
     Formula(usize),
+}
+
+/// Which of the masters of a slave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WhichMaster {
+    /// The only one, or the first of two.
+    First,
+    /// The second of two (MC_CombineAxes).
+    Second,
 }
 
 /// The numeric columns of an axis.
@@ -413,12 +424,20 @@ pub enum AxisNumber {
     Deviation,
     /// By how much a slave sees its master further on.
     Phase,
+    /// By how much a slave of two masters sees the second one further on.
+    Phase2,
+    /// What is superimposed on the law of a slave.
+    Superimposed,
 }
 
 impl AxisNumber {
-    /// Only axes at a `Slave` pin have it.
-    pub(crate) const fn is_of_slaves(self) -> bool {
-        matches!(self, Self::Deviation | Self::Phase)
+    /// How many masters an axis may have at least to have it.
+    pub(crate) const fn least_masters(self) -> usize {
+        match self {
+            Self::Deviation | Self::Phase | Self::Superimposed => 1,
+            Self::Phase2 => 2,
+            _ => 0,
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::read::step::FAULT_KINDS;
 use crate::read::value::NUMBER_WORDS;
 use crate::read::{CLAMPS, SCANS_MAX, VERSION};
 use serde_json::{Map, Value, json};
-use standstill_axis::{DELAY_MAX, DIGITAL, PROBES, QUEUE_MAX};
+use standstill_axis::{ACTUAL_FILTER_MAX, DELAY_MAX, DIGITAL, PROBES, QUEUE_MAX};
 use standstill_blocks::REGISTRY;
 use standstill_fb::{BlockInfo, Direction, PinType, TableInfo};
 
@@ -276,6 +276,8 @@ fn axis_key(key: &str) -> Value {
         "coupling" => object(&shape::COUPLING, |key| match key {
             "on_limit" => words(&ON_LIMIT),
             "on_master_lost" => words(&ON_MASTER_LOST),
+            "actual_filter" => any(&[integer(0, ACTUAL_FILTER_MAX.into()), of("time_literal")]),
+            "actual_lead" => json!({"type": "boolean"}),
             _ => of("finite"),
         }),
         "in_position" => required(

@@ -4,8 +4,8 @@
 
 use crate::golden::{self, Mode, Standing};
 use crate::model::Script;
-use crate::read::read_within;
-use crate::run::{Outcome, RunError, run_with};
+use crate::read::{Terms, read_within};
+use crate::run::{Counted, Outcome, RunError, Session, run_with};
 use crate::{GUEST_MEMORY, Reason, ScriptError, Verdict, Warnings, warnings};
 use standstill_trace::compare::Yardstick;
 use standstill_trace::file::read_regular;
@@ -230,16 +230,45 @@ pub fn read_file(
     let text = read_text(path)?;
     let mut load = |inner: &str| included(path, inner, allowed);
     let mut guest = |inner: &str| module(path, inner, allowed);
-    let most = allowed.guest_memory;
-    let script = read_within(&text, &shown(path), parameters, &mut load, &mut guest, most)?;
+    let terms = Terms {
+        guest_memory: allowed.guest_memory,
+        ..Terms::default()
+    };
+    let script = read_within(&text, &shown(path), parameters, &mut load, &mut guest, terms)?;
     Ok((script, text))
+}
+
+/// How often each statement and branch of the script's programs in Structured Text is executed: `None` if it has no such
+/// program. It is counted in a run of its own, so the run that is judged is the same with and without.
+///
+/// # Errors
+/// As [`run_file`].
+pub fn coverage(path: &Path, allowed: &Allowed) -> Result<Option<Vec<Counted>>, SuiteError> {
+    let text = read_text(path)?;
+    let mut load = |inner: &str| included(path, inner, allowed);
+    let mut guest = |inner: &str| module(path, inner, allowed);
+    let terms = Terms {
+        guest_memory: allowed.guest_memory,
+        coverage: true,
+    };
+    let script = read_within(&text, &shown(path), &[], &mut load, &mut guest, terms)?;
+    if script.programs.iter().all(|program| program.text.is_none()) {
+        return Ok(None);
+    }
+    let run = |source| SuiteError::Run {
+        path: path.to_owned(),
+        source,
+    };
+    let mut session = Session::new(&script).map_err(run)?;
+    while session.advance().map_err(run)? {}
+    Ok(Some(session.counted()))
 }
 
 /// A script with all it includes, read once to be run with many values of its parameters.
 #[derive(Clone, Debug)]
 pub struct Texts {
     name: String,
-    guest_memory: u64,
+    terms: Terms,
     text: String,
     included: BTreeMap<String, String>,
     guests: BTreeMap<String, Vec<u8>>,
@@ -265,11 +294,14 @@ impl Texts {
             guests.insert(inner.to_owned(), bytes.clone());
             Ok(bytes)
         };
-        let most = allowed.guest_memory;
-        let script = read_within(&text, &name, &[], &mut load, &mut guest, most)?;
+        let terms = Terms {
+            guest_memory: allowed.guest_memory,
+            ..Terms::default()
+        };
+        let script = read_within(&text, &name, &[], &mut load, &mut guest, terms)?;
         let texts = Self {
             name,
-            guest_memory: most,
+            terms,
             text,
             included: files,
             guests,
@@ -290,8 +322,8 @@ impl Texts {
             let bytes = self.guests.get(inner).cloned();
             bytes.ok_or_else(|| "it was not there before".to_owned())
         };
-        let most = self.guest_memory;
-        read_within(&self.text, &self.name, parameters, &mut load, &mut guest, most)
+        let terms = self.terms;
+        read_within(&self.text, &self.name, parameters, &mut load, &mut guest, terms)
     }
 }
 

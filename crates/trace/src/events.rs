@@ -244,7 +244,7 @@ fn is_change(trace: &Trace, at: usize, column: &Column, scan: usize) -> bool {
     let jitters = column.kind == Kind::Real || column.is_time;
     match (back(1), column.role) {
         // The note of the coupling tells it.
-        (_, Role::AxisValue) if column.signal() == "Master" => false,
+        (_, Role::AxisValue) if column.signal().starts_with("Master") => false,
         (Some(before), Role::Input | Role::Variable) if jitters => {
             let stood = back(2).is_none_or(|cell| same(cell, before));
             stood && !same(before, now)

@@ -24,6 +24,14 @@ pub const AXIS_SIGNALS: [&str; 7] = [
 /// follows none.
 pub const SLAVE_SIGNALS: [&str; 3] = ["Master", "Deviation", "Phase"];
 
+/// The columns behind those, of every axis that stands at the `Slave` pin of MC_CombineAxes ([`Axis::combined`]): the name of the
+/// second master, and by how much that is seen further on (u of that master).
+pub const COMBINED_SIGNALS: [&str; 2] = ["Master2", "Phase2"];
+
+/// The column behind those, of every axis at a `Slave` pin that MC_MoveSuperimposed may move ([`Axis::superimposed`]): what is
+/// superimposed on its law (u).
+pub const SUPERIMPOSED_SIGNALS: [&str; 1] = ["Superimposed"];
+
 /// A run in a few words: everything but its rows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Header {
@@ -75,13 +83,26 @@ pub struct Axis {
     /// It stands at a `Slave` pin, and has the columns of [`SLAVE_SIGNALS`], too.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub slave: bool,
+    /// It stands at the `Slave` pin of MC_CombineAxes, and has the columns of [`COMBINED_SIGNALS`], too.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub combined: bool,
+    /// It stands at a `Slave` pin and at the `Axis` pin of MC_MoveSuperimposed, and has the column of [`SUPERIMPOSED_SIGNALS`], too.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub superimposed: bool,
 }
 
 impl Axis {
     /// Its columns after its name, in the order of the file.
     pub fn signals(&self) -> impl Iterator<Item = &'static str> {
         let of_slave = if self.slave { &SLAVE_SIGNALS[..] } else { &[] };
-        AXIS_SIGNALS.iter().chain(of_slave).copied()
+        let of_combined = if self.combined { &COMBINED_SIGNALS[..] } else { &[] };
+        let superimposed = if self.superimposed {
+            &SUPERIMPOSED_SIGNALS[..]
+        } else {
+            &[]
+        };
+        let all = AXIS_SIGNALS.iter().chain(of_slave).chain(of_combined);
+        all.chain(superimposed).copied()
     }
 }
 
@@ -363,7 +384,7 @@ struct Probe {
 pub(crate) fn axis_column(axis: &str, signal: &str) -> Column {
     let (kind, role) = match signal {
         "State" => (Kind::Name, Role::AxisState),
-        "Master" => (Kind::Name, Role::AxisValue),
+        "Master" | "Master2" => (Kind::Name, Role::AxisValue),
         _ => (Kind::Real, Role::AxisValue),
     };
     Column {

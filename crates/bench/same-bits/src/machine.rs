@@ -219,7 +219,8 @@ fn block(random: &mut Random, name: &str, axis: usize, config: &AxisConfig, cycl
     let mut block = BlockInstance::new(name).expect("a name of the registry");
     for (index, pin) in block.info().pins().enumerate() {
         let value = match pin.ty {
-            PinType::Axis(_) if pin.name == "Master" => Value::Axis(id((axis + 1) % AXES)),
+            PinType::Axis(_) if pin.name == "Master2" => Value::Axis(id((axis + 2) % AXES)),
+            PinType::Axis(_) if pin.name.starts_with("Master") => Value::Axis(id((axis + 1) % AXES)),
             PinType::Axis(_) => Value::Axis(id(axis)),
             PinType::Table(of) => Value::Table(table(random, of)),
             PinType::Lreal if pin.direction == Direction::Input => number(random, pin, config, cycle),

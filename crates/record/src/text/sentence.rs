@@ -22,6 +22,7 @@ pub fn subject<'n>(names: &'n impl Called, record: &Record) -> &'n str {
         | Event::PointRefused { .. }
         | Event::Clamped { .. }
         | Event::Raised { .. }
+        | Event::Slowed { .. }
         | Event::Superimposed { .. }
         | Event::RoomAwaited
         | Event::Orphaned => names.instance(record.instance.0).unwrap_or(axis),
@@ -76,10 +77,16 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
                 out.write_str(" ")?;
                 match pin {
                     // Numbers of an enumeration.
-                    "BufferMode" | "Direction" | "ExecutionMode" | "MasterValueSource" => {
+                    "BufferMode"
+                    | "Direction"
+                    | "ExecutionMode"
+                    | "CombineMode"
+                    | "MasterValueSource"
+                    | "MasterValueSourceM1"
+                    | "MasterValueSourceM2" => {
                         integer(out, value as i64)?;
                     }
-                    "Master" => out.write_str(match value as usize {
+                    "Master" | "Master1" | "Master2" => out.write_str(match value as usize {
                         0 => "no axis",
                         number => names.axis(number - 1),
                     })?,
@@ -106,6 +113,7 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
         }
         Event::Clamped { pin, value, limit } => changed(out, "clamped: ", pin, value, limit),
         Event::Raised { pin, value, limit } => changed(out, "raised: ", pin, value, limit),
+        Event::Slowed { pin, value, limit } => changed(out, "slowed: ", pin, value, limit),
         Event::Unavoidable(excess) => {
             out.write_str("unavoidable: ")?;
             unavoidable(out, &excess)

@@ -32,6 +32,8 @@ pub fn axis(name: &str, unit: &str, config: &AxisConfig) -> trace::Axis {
             offset: scaling.offset(),
         }),
         slave: false,
+        combined: false,
+        superimposed: false,
     }
 }
 

@@ -1,6 +1,6 @@
 //! The claim that a slave is where the law of a gear puts it, judged on published positions alone, to the bit.
 //!
-//! The law is y = c + (num/den)(m + phase), rounded once: x of a row is the f64 nearest to it, the even one of two that are
+//! The law is y = c + s + (num/den)(m + phase) with what is superimposed, s, rounded once: x of a row is the f64 nearest to it, the even one of two that are
 //! equally near. c is a number of the anchor, where one is given. Otherwise the first judged row is the anchor, as far as
 //! its bits tell: its x has been rounded, too, so c lies within half a unit in the last place of it. Every row leaves less
 //! room for c; where none is left, a row is wrong. All of it is done in integers ([`Exact`]), everything times 2 den, so
@@ -145,18 +145,21 @@ impl Judge<'_> {
         }
     }
 
-    /// Where the slave sees its master, times 2 num.
+    /// A number that the slave has in a row.
+    fn number(&self, number: AxisNumber, scan: u64) -> Exact {
+        match self.rows.cell(&Signal::Axis(self.follow.slave, number), scan) {
+            Some(Cell::Real(value)) if is_usual(value) => Exact::of(value),
+            _ => Exact::ZERO,
+        }
+    }
+
+    /// Where the slave sees its master, times 2 num, and what is superimposed on it, times 2 den.
     fn seen(&self, law: &Law, scan: u64) -> Exact {
-        let phase = match self
-            .rows
-            .cell(&Signal::Axis(self.follow.slave, AxisNumber::Phase), scan)
-        {
-            Some(Cell::Real(phase)) if is_usual(phase) => phase,
-            _ => 0.0,
-        };
+        let phase = self.number(AxisNumber::Phase, scan);
+        let superimposed = self.number(AxisNumber::Superimposed, scan);
         let turn = self.turn_of(self.follow.master).unwrap_or(0.0);
-        let seen = Exact::of(law.master) + Exact::of(phase) + Exact::of(turn).times(law.turns);
-        seen.times(2 * i64::from(self.follow.num))
+        let seen = Exact::of(law.master) + phase + Exact::of(turn).times(law.turns);
+        seen.times(2 * i64::from(self.follow.num)) + superimposed.times(2 * i64::from(self.follow.den))
     }
 
     /// The law from this row on: through the anchor, where the master was nearest to that, or through this row.

@@ -27,7 +27,11 @@ pub(crate) const ON_POWER_OFF: [(&str, PowerOff); 3] = [
     ("coast", PowerOff::Coast),
     ("drive", PowerOff::Drive),
 ];
-pub(crate) const ON_LIMIT: [(&str, OnLimit); 2] = [("lag", OnLimit::Lag), ("error", OnLimit::Error)];
+pub(crate) const ON_LIMIT: [(&str, OnLimit); 3] = [
+    ("lag", OnLimit::Lag),
+    ("error", OnLimit::Error),
+    ("slow_master", OnLimit::SlowMaster),
+];
 pub(crate) const ON_MASTER_LOST: [(&str, OnMasterLost); 2] =
     [("error", OnMasterLost::Error), ("hold", OnMasterLost::Hold)];
 pub(crate) const START_STATES: [(&str, StartState); 2] = [
@@ -76,7 +80,8 @@ impl Reader {
             unit: unit?.to_owned(),
             config,
             drive: drive?,
-            slave: self.slaves.contains(&index),
+            masters: self.masters_of(index),
+            superimposed: self.is_superimposed(index),
             place,
         })
     }
@@ -306,10 +311,20 @@ impl Reader {
             .map_or(Some(OnMasterLost::default()), |node| {
                 self.choice(node, "`coupling.on_master_lost`", &ON_MASTER_LOST)
             });
+        let actual_filter = fields
+            .get("actual_filter")
+            .map_or(Some(Following::DEFAULT.actual_filter.into()), |node| {
+                self.scans(node, "`coupling.actual_filter`")
+            });
+        let actual_lead = fields
+            .get("actual_lead")
+            .map_or(Some(false), |node| self.boolean(node, "`coupling.actual_lead`"));
         Some(Following {
             on_limit: on_limit?,
             max_deviation: max_deviation?,
             on_master_lost: on_master_lost?,
+            actual_filter: u32::try_from(actual_filter?).unwrap_or(u32::MAX),
+            actual_lead: actual_lead?,
         })
     }
 

@@ -6,14 +6,16 @@ use super::names::{Entity, suggestion};
 use super::{Reader, hints, is_note, shape};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::format::number_text;
-use crate::model::{AxisNumber, Comparison, Condition, Conditions, Point, Signal, Span, Test, Variable};
+use crate::model::{
+    AxisNumber, Comparison, Condition, Conditions, Point, Signal, Span, Test, Variable, WhichMaster,
+};
 use standstill_axis::AxisState;
 use standstill_fb::{PinType, Value};
 use standstill_st::Elementary;
 use std::collections::BTreeSet;
 
 /// The numeric columns of an axis by name.
-pub(crate) const AXIS_NUMBERS: [(&str, AxisNumber); 8] = [
+pub(crate) const AXIS_NUMBERS: [(&str, AxisNumber); 10] = [
     ("Position", AxisNumber::Position),
     ("Velocity", AxisNumber::Velocity),
     ("Acceleration", AxisNumber::Acceleration),
@@ -22,6 +24,8 @@ pub(crate) const AXIS_NUMBERS: [(&str, AxisNumber); 8] = [
     ("ActualPosition", AxisNumber::ActualPosition),
     ("Deviation", AxisNumber::Deviation),
     ("Phase", AxisNumber::Phase),
+    ("Phase2", AxisNumber::Phase2),
+    ("Superimposed", AxisNumber::Superimposed),
 ];
 
 /// What values a signal has.
@@ -406,7 +410,12 @@ impl Reader {
         if rest.eq_ignore_ascii_case("State") {
             return Some((Signal::State(axis), Kind::State));
         }
-        let is_master = rest.eq_ignore_ascii_case("Master");
+        let named = |name| rest.eq_ignore_ascii_case(name);
+        let which = match () {
+            () if named("Master") => Some(WhichMaster::First),
+            () if named("Master2") => Some(WhichMaster::Second),
+            () => None,
+        };
         let (number, difference) = match rest.split_once('.') {
             Some((number, difference)) => (number, Some(difference)),
             None => (rest, None),
@@ -415,19 +424,39 @@ impl Reader {
             .iter()
             .find(|(known, _)| known.eq_ignore_ascii_case(number))
             .map(|(_, n)| *n);
-        let is_of_slaves = is_master || number.is_some_and(AxisNumber::is_of_slaves);
-        if is_of_slaves && difference.is_none() && !self.slaves.contains(&axis) {
-            let message = format!(
-                "{} stands at no `Slave` pin, and has no {}",
-                quoted(name),
-                quoted(rest)
-            );
-            let help = "Master, Deviation and Phase are signals of axes that a block of this script couples to a master";
+        let least = match (which, number) {
+            (Some(WhichMaster::First), _) => 1,
+            (Some(WhichMaster::Second), _) => 2,
+            (None, number) => number.map_or(0, AxisNumber::least_masters),
+        };
+        let masters = self.masters_of(axis);
+        let lacks = if difference.is_some() {
+            None
+        } else if masters == 0 && least > 0 {
+            Some((
+                "`Slave` pin",
+                "Master, Deviation and Phase are signals of axes that a block of this script couples to a master",
+            ))
+        } else if masters < least {
+            Some((
+                "`Slave` pin of MC_CombineAxes",
+                "Master2 and Phase2 are signals of axes that MC_CombineAxes couples to two masters",
+            ))
+        } else if number == Some(AxisNumber::Superimposed) && !self.is_superimposed(axis) {
+            Some((
+                "`Axis` pin of MC_MoveSuperimposed",
+                "Superimposed is a signal of axes that have a master and are moved by MC_MoveSuperimposed",
+            ))
+        } else {
+            None
+        };
+        if let Some((pin, help)) = lacks {
+            let message = format!("{} stands at no {pin}, and has no {}", quoted(name), quoted(rest));
             self.report(Diagnostic::new(Code::UnknownSignal, span, message).help(help));
             return None;
         }
-        if is_master {
-            return Some((Signal::Master(axis), Kind::Master));
+        if let Some(which) = which {
+            return Some((Signal::Master(axis, which), Kind::Master));
         }
         let signal = match (number, difference) {
             (Some(number), None) => Some(Signal::Axis(axis, number)),
@@ -444,7 +473,7 @@ impl Reader {
             let message = format!("an axis has no signal {}", quoted(rest));
             let help = suggestion(
                 rest,
-                ["State", "Master"]
+                ["State", "Master", "Master2"]
                     .into_iter()
                     .chain(AXIS_NUMBERS.iter().map(|(name, _)| *name))
                     .chain(["Position.d1", "Position.d2", "Position.d3", "Position.d4"]),

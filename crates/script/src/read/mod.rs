@@ -74,8 +74,7 @@ struct Reader {
     tables: Vec<f64>,
     /// The guest programs read so far.
     programs: Vec<Option<Program>>,
-    /// Memory that all guests may have together (bytes).
-    guest_memory: u64,
+    terms: Terms,
     /// Names may be missing because of another mistake, so a name that is not known tells nothing.
     lacks_names: bool,
     /// The script's folder, with the `/` behind it; empty if none.
@@ -83,7 +82,9 @@ struct Reader {
     /// The axes as the script has them.
     axis_names: Vec<String>,
     /// Those at a `Slave` pin.
-    slaves: BTreeSet<usize>,
+    slaves: BTreeMap<usize, usize>,
+    /// Axes at the `Axis` pin of MC_MoveSuperimposed.
+    superimposed: BTreeSet<usize>,
     /// The expressions read so far.
     formulas: Vec<Formula>,
     /// What is wrong with sources in Structured Text.
@@ -132,10 +133,28 @@ pub fn read_with_programs(
     load: &mut dyn FnMut(&str) -> Result<String, String>,
     guest: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<Script, ScriptError> {
-    read_within(text, file_name, overrides, load, guest, GUEST_MEMORY)
+    read_within(text, file_name, overrides, load, guest, Terms::default())
 }
 
-/// As [`read_with_programs`], for a script whose guests may have so many bytes of memory together.
+/// On which terms programs run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Terms {
+    /// Memory that all guests may have together (bytes).
+    pub guest_memory: u64,
+    /// Whether programs in Structured Text count their statements.
+    pub coverage: bool,
+}
+
+impl Default for Terms {
+    fn default() -> Self {
+        Self {
+            guest_memory: GUEST_MEMORY,
+            coverage: false,
+        }
+    }
+}
+
+/// As [`read_with_programs`], on other terms.
 ///
 /// # Errors
 /// As [`read_with`].
@@ -145,7 +164,7 @@ pub(crate) fn read_within(
     overrides: &[(String, f64)],
     load: &mut dyn FnMut(&str) -> Result<String, String>,
     guest: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
-    guest_memory: u64,
+    terms: Terms,
 ) -> Result<Script, ScriptError> {
     let mut guests: Vec<Vec<u8>> = Vec::new();
     let mut keep = |path: &str| {
@@ -157,7 +176,7 @@ pub(crate) fn read_within(
     let root =
         json::parse(plain).map_err(|diagnostic| ScriptError::new(file_name, plain, vec![diagnostic]))?;
     let mut reader = Reader {
-        guest_memory,
+        terms,
         ..Reader::default()
     };
     let mut files = include::Files::new(file_name, plain, load);
@@ -433,12 +452,21 @@ impl Reader {
                         .map(|(_, node)| node),
                     _ => None,
                 };
-                self.slaves
-                    .extend(member("pins").and_then(|pins| self.slave_of(pins)));
+                if let Some(pins) = member("pins")
+                    && let Some(slave) = self.axis_at(pins, "Slave")
+                {
+                    let masters = if pin_of(pins, "Master2").is_some() { 2 } else { 1 };
+                    let most = self.slaves.entry(slave).or_default();
+                    *most = masters.max(*most);
+                }
                 let info = match member("type").map(|node| &node.json) {
                     Some(Json::Text(name)) => standstill_blocks::registry::find(name),
                     _ => None,
                 };
+                if info.is_some_and(|info| info.name == "MC_MoveSuperimposed") {
+                    let axis = member("pins").and_then(|pins| self.axis_at(pins, "Axis"));
+                    self.superimposed.extend(axis);
+                }
                 if let Some(Node {
                     span,
                     json: Json::Text(name),
@@ -452,21 +480,25 @@ impl Reader {
         }
     }
 
-    /// The axis at the `Slave` pin, if there is one.
-    fn slave_of(&self, pins: &Node) -> Option<usize> {
-        let Json::Map(members) = &pins.json else {
-            return None;
-        };
-        let (_, axis) = members
-            .iter()
-            .find(|(key, _)| key.text.eq_ignore_ascii_case("Slave"))?;
-        match &axis.json {
+    /// The axis at this pin, if there is one.
+    fn axis_at(&self, pins: &Node, pin: &str) -> Option<usize> {
+        match &pin_of(pins, pin)?.json {
             Json::Text(name) => match self.names.get(name)? {
                 Entity::Axis(axis) => Some(axis),
                 _ => None,
             },
             _ => None,
         }
+    }
+
+    /// The most masters that a block of the script gives an axis.
+    fn masters_of(&self, axis: usize) -> usize {
+        self.slaves.get(&axis).copied().unwrap_or(0)
+    }
+
+    /// It has a master, and motions may be superimposed on it.
+    fn is_superimposed(&self, axis: usize) -> bool {
+        self.masters_of(axis) > 0 && self.superimposed.contains(&axis)
     }
 
     fn declare_programs(&mut self, fields: &Fields<'_>, places: &mut BTreeMap<String, Span>) {
@@ -641,4 +673,14 @@ fn initial_of(node: &Node) -> Option<&Node> {
 /// The note of a map of names, which is no name: see the contract's rule that any object may carry one.
 fn is_note(key: &Key, node: &Node) -> bool {
     key.text == "note" && matches!(node.json, Json::Text(_))
+}
+
+/// What stands at a pin of a block.
+fn pin_of<'a>(pins: &'a Node, pin: &str) -> Option<&'a Node> {
+    let Json::Map(members) = &pins.json else {
+        return None;
+    };
+    let mut pins = members.iter();
+    pins.find(|(key, _)| key.text.eq_ignore_ascii_case(pin))
+        .map(|(_, node)| node)
 }

@@ -93,7 +93,7 @@ impl Reader {
         };
         let all: Vec<_> = members.iter().map(|(_, node)| said(node)).collect();
         let total = all.iter().flatten().copied().fold(0, u64::saturating_add);
-        let most = self.guest_memory;
+        let most = self.terms.guest_memory;
         if total > most {
             let message = format!(
                 "the programs may take {total} bytes of memory, more than the {most} of all guests of a script"

@@ -107,8 +107,15 @@ pub(crate) const SOFTWARE_LIMITS: Shape = shape("`software_limits`", &["min", "m
 pub(crate) const IN_POSITION: Shape = shape("`in_position`", &["window", "time", "note"]);
 pub(crate) const COUPLING: Shape = Shape {
     what: "`coupling`",
-    keys: &["on_limit", "max_deviation", "on_master_lost", "note"],
-    later: &["actual_filter", "actual_lead", "cam_continuity"],
+    keys: &[
+        "on_limit",
+        "max_deviation",
+        "on_master_lost",
+        "actual_filter",
+        "actual_lead",
+        "note",
+    ],
+    later: &["cam_continuity"],
 };
 pub(crate) const HOMING: Shape = shape(
     "`homing`",

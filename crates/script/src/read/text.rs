@@ -13,6 +13,9 @@ use standstill_guest::Settings;
 use standstill_st::{self as st, Compiled, Options, Source, Symbols};
 use std::sync::Arc;
 
+/// So many times the fuel has a program that counts its statements, at the least: counting one takes six instructions.
+const COUNTING: u64 = 16;
+
 /// Most files of a program.
 const FILES_MAX: usize = 64;
 
@@ -46,7 +49,7 @@ impl Reader {
         name: &str,
         fields: &Fields<'_>,
         place: Place,
-        settings: Settings,
+        mut settings: Settings,
         load: LoadGuest<'_>,
     ) -> Option<Program> {
         let files = self.sources(fields.get("st")?, load);
@@ -57,11 +60,14 @@ impl Reader {
         };
         let options = Options {
             program: program?,
-            library: false,
-            lint: false,
+            coverage: self.terms.coverage,
             axes: self.axis_names.clone(),
             bindings: bindings?,
+            ..Options::default()
         };
+        if options.coverage {
+            settings.fuel = settings.fuel.saturating_mul(COUNTING);
+        }
         let compiled = self.compiled(&files?, &options, fields)?;
         let guest = match standstill_guest::Program::compile(&compiled.wasm, settings) {
             Ok(guest) => guest,
@@ -186,7 +192,7 @@ impl Reader {
                 let lists = self.each(items, |reader, item| {
                     let path = reader.text(item, "a path of `trace`")?;
                     let found = symbols.below(path, COLUMNS_MAX + 1);
-                    if found.is_none() {
+                    if found.as_ref().is_none_or(Vec::is_empty) {
                         reader.unknown_variable(name, path, symbols, item.span);
                     }
                     found
@@ -245,7 +251,11 @@ impl Reader {
 
     fn unknown_variable(&mut self, name: &str, path: &str, symbols: &Symbols, span: Span) {
         let inner = symbols.below(path, 1).and_then(|inner| inner.into_iter().next());
-        let diagnostic = if let Some(first) = inner {
+        let diagnostic = if symbols.is_text(path) {
+            let message = format!("{} is a STRING, which is no signal", quoted(path));
+            let help = "compare it in the program: `IsReady := Message = 'ready';`";
+            Diagnostic::new(Code::UnknownSignal, span, message).help(help)
+        } else if let Some(first) = inner {
             let message = format!("{} has members or elements: which of them?", quoted(path));
             let help = format!("for example `{name}.{}`", symbols.short(&first.path));
             Diagnostic::new(Code::UnknownSignal, span, message).help(help)

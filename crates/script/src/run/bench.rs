@@ -187,6 +187,11 @@ impl<'a> Bench<'a> {
         self.error.take().map_or(Ok(()), Err)
     }
 
+    /// How often statements of the guests were executed.
+    pub(crate) fn counted(&self) -> Vec<super::Counted> {
+        self.guests.counted(self.script)
+    }
+
     /// Whether a guest program has had a fault, or an expression in a wire.
     pub(crate) fn has_fault(&self) -> bool {
         self.guests.has_fault() || self.wire_fault
@@ -209,7 +214,7 @@ impl<'a> Bench<'a> {
                     Some(formulas::of_value(input, value, whole))
                 }
                 Signal::State(axis) | Signal::Axis(axis, _) => formulas::of_reading(input, &reading(axis)?),
-                Signal::Master(_) | Signal::Difference(..) | Signal::Formula(_) => None,
+                Signal::Master(..) | Signal::Difference(..) | Signal::Formula(_) => None,
             };
             let outcome = self
                 .formulas
@@ -363,16 +368,34 @@ impl<'a> Bench<'a> {
                 Cell::Real(setpoint.snap),
                 Cell::Real(axis.actual_position()),
             ];
-            let of_slave = configured.slave.then(|| {
-                let coupled = axis.coupled();
-                let master = coupled.and_then(|coupled| script.axes.get(coupled.master.index()));
+            let coupled = axis.coupled();
+            let name = |master: Option<AxisId>| {
+                let master = master.and_then(|master| script.axes.get(master.index()));
+                Cell::Name(master.map_or("", |master| &master.name))
+            };
+            let of_slave = (configured.masters > 0).then(|| {
                 [
-                    Cell::Name(master.map_or("", |master| &master.name)),
+                    name(coupled.map(|coupled| coupled.master)),
                     Cell::Real(coupled.map_or(0.0, |coupled| coupled.deviation)),
                     Cell::Real(coupled.map_or(0.0, |coupled| coupled.phase)),
                 ]
             });
-            of_all.into_iter().chain(of_slave.into_iter().flatten())
+            let second = coupled.and_then(|coupled| coupled.second);
+            let of_combined = (configured.masters > 1).then(|| {
+                [
+                    name(second.map(|(master, _)| master)),
+                    Cell::Real(second.map_or(0.0, |(_, phase)| phase)),
+                ]
+            });
+            let superimposed = configured
+                .superimposed
+                .then(|| Cell::Real(coupled.map_or(0.0, |coupled| coupled.superimposed)));
+            let of_slave = of_slave.into_iter().flatten();
+            of_all
+                .into_iter()
+                .chain(of_slave)
+                .chain(of_combined.into_iter().flatten())
+                .chain(superimposed)
         });
         let named = &self.cells;
         let variables = self

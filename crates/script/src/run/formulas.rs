@@ -190,8 +190,13 @@ pub(crate) fn of_reading(input: &FormulaInput, reading: &Reading) -> Option<Valu
             AxisNumber::ActualPosition => reading.actual,
             AxisNumber::Deviation => reading.coupled.map_or(0.0, |coupled| coupled.deviation),
             AxisNumber::Phase => reading.coupled.map_or(0.0, |coupled| coupled.phase),
+            AxisNumber::Phase2 => {
+                let second = reading.coupled.and_then(|coupled| coupled.second);
+                second.map_or(0.0, |(_, phase)| phase)
+            }
+            AxisNumber::Superimposed => reading.coupled.map_or(0.0, |coupled| coupled.superimposed),
         }),
-        Signal::Point(_) | Signal::Master(_) | Signal::Difference(..) | Signal::Formula(_) => return None,
+        Signal::Point(_) | Signal::Master(..) | Signal::Difference(..) | Signal::Formula(_) => return None,
     })
 }
 

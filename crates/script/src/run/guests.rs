@@ -14,6 +14,21 @@ pub(crate) struct Guests {
     all: Vec<Running>,
 }
 
+/// A statement of Structured Text, or a branch of one, and how often it was executed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counted {
+    /// Its file.
+    pub file: String,
+    /// Where the statement begins.
+    pub line: u32,
+    /// In characters from 1.
+    pub column: u32,
+    /// 0 for the statement; else the number of one of its branches, from 1. The last one is ELSE.
+    pub branch: u32,
+    /// How often.
+    pub count: u64,
+}
+
 #[derive(Debug)]
 struct Running {
     guest: Guest,
@@ -47,6 +62,23 @@ impl Guests {
                 .collect()
         };
         self.all.iter().zip(&script.programs).map(values).collect()
+    }
+
+    /// How often the statements of Structured Text were executed so far.
+    pub(crate) fn counted(&self, script: &Script) -> Vec<Counted> {
+        let mut all = Vec::new();
+        for (running, program) in self.all.iter().zip(&script.programs) {
+            let counters = program.text.iter().flat_map(|text| text.symbols.counters());
+            all.extend(counters.map(|counter| Counted {
+                file: counter.file.clone(),
+                line: counter.position.line,
+                column: counter.position.column,
+                branch: counter.branch,
+                // Memory never shrinks, so it is there.
+                count: running.guest.bits(counter.address, 8).unwrap_or(0),
+            }));
+        }
+        all
     }
 
     pub(crate) fn has_fault(&self) -> bool {

@@ -1,7 +1,7 @@
 //! Where the signals of a script stand in a row of a trace, and the header of its own one.
 
 use super::cells;
-use crate::model::{Action, AxisNumber, Point, Program, Script, Symbol, Variable};
+use crate::model::{Action, AxisNumber, Point, Program, Script, Symbol, Variable, WhichMaster};
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Direction, PinType, Value};
 use standstill_record::told;
@@ -14,6 +14,8 @@ use std::ops::Range;
 pub(crate) struct Layout {
     /// Columns of each axis.
     axes: Vec<Range<usize>>,
+    /// The column of what is superimposed on the law of each, if it has one.
+    superimposed: Vec<Option<usize>>,
     /// First column of the input variables.
     variables: usize,
     /// First column of each instance.
@@ -28,10 +30,19 @@ impl Layout {
     pub(crate) fn new(script: &Script) -> Self {
         let mut next = 0;
         let mut axes = Vec::with_capacity(script.axes.len());
+        let mut superimposed = Vec::with_capacity(script.axes.len());
         for axis in &script.axes {
             let first = next;
-            let of_slave = if axis.slave { trace::SLAVE_SIGNALS.len() } else { 0 };
+            let of_slave = match axis.masters {
+                0 => 0,
+                1 => trace::SLAVE_SIGNALS.len(),
+                _ => trace::SLAVE_SIGNALS.len() + trace::COMBINED_SIGNALS.len(),
+            };
             next += trace::AXIS_SIGNALS.len() + of_slave;
+            superimposed.push(axis.superimposed.then_some(next));
+            if axis.superimposed {
+                next += trace::SUPERIMPOSED_SIGNALS.len();
+            }
             axes.push(first..next);
         }
         let variables = next;
@@ -48,6 +59,7 @@ impl Layout {
         }
         Self {
             axes,
+            superimposed,
             variables,
             instances,
             programs,
@@ -97,12 +109,16 @@ impl Layout {
     }
 
     /// Column of the name of a slave's master.
-    pub(crate) fn master(&self, axis: usize) -> Option<usize> {
-        self.of_axis(axis, 7)
+    pub(crate) fn master(&self, axis: usize, which: WhichMaster) -> Option<usize> {
+        let place = match which {
+            WhichMaster::First => 7,
+            WhichMaster::Second => 10,
+        };
+        self.of_axis(axis, place)
     }
 
-    /// Column of a number of an axis, if it has it; the order is that of [`trace::AXIS_SIGNALS`] and then
-    /// [`trace::SLAVE_SIGNALS`].
+    /// Column of a number of an axis, if it has it; the order is that of [`trace::AXIS_SIGNALS`], then
+    /// [`trace::SLAVE_SIGNALS`] and [`trace::COMBINED_SIGNALS`].
     pub(crate) fn number(&self, axis: usize, number: AxisNumber) -> Option<usize> {
         let place = match number {
             AxisNumber::Position => 1,
@@ -113,6 +129,8 @@ impl Layout {
             AxisNumber::ActualPosition => 6,
             AxisNumber::Deviation => 8,
             AxisNumber::Phase => 9,
+            AxisNumber::Phase2 => 11,
+            AxisNumber::Superimposed => return self.place((*self.superimposed.get(axis)?)?),
         };
         self.of_axis(axis, place)
     }
@@ -134,7 +152,9 @@ pub(crate) fn header(script: &Script) -> trace::Header {
             .axes
             .iter()
             .map(|axis| trace::Axis {
-                slave: axis.slave,
+                slave: axis.masters > 0,
+                combined: axis.masters > 1,
+                superimposed: axis.superimposed,
                 ..told::axis(&axis.name, &axis.unit, &axis.config)
             })
             .collect(),

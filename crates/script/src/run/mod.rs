@@ -13,6 +13,7 @@ mod session;
 mod values;
 
 pub(crate) use formulas::turned;
+pub use guests::Counted;
 pub use recorded::{RecordingError, judge_recording};
 pub(crate) use rows::{Derivatives, Rows};
 use schedule::PENDING_MAX;

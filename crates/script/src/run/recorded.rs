@@ -152,7 +152,7 @@ fn column(layout: &Layout, signal: &Signal) -> Option<usize> {
     match *signal {
         Signal::Point(point) => layout.point(point),
         Signal::State(axis) => layout.state(axis),
-        Signal::Master(axis) => layout.master(axis),
+        Signal::Master(axis, which) => layout.master(axis, which),
         Signal::Axis(axis, number) => layout.number(axis, number),
         Signal::Difference(axis, _) => layout.number(axis, AxisNumber::Position),
         Signal::Formula(_) => None,

@@ -40,7 +40,7 @@ impl<'a> Rows<'a> {
         let column = match *signal {
             Signal::Point(point) => self.layout.point(point)?,
             Signal::State(axis) => self.layout.state(axis)?,
-            Signal::Master(axis) => self.layout.master(axis)?,
+            Signal::Master(axis, which) => self.layout.master(axis, which)?,
             Signal::Axis(axis, number) => self.layout.number(axis, number)?,
             Signal::Difference(axis, order) => {
                 let [.., last] = self.differences(axis, scan, order)?;
@@ -58,7 +58,7 @@ impl<'a> Rows<'a> {
             Signal::Point(_)
             | Signal::State(_)
             | Signal::Axis(..)
-            | Signal::Master(_)
+            | Signal::Master(..)
             | Signal::Formula(_) => false,
         }
     }
@@ -248,7 +248,7 @@ impl<'a> Rows<'a> {
             Signal::Point(Point::Input(_) | Point::Formula(_))
             | Signal::State(_)
             | Signal::Axis(..)
-            | Signal::Master(_)
+            | Signal::Master(..)
             | Signal::Difference(..)
             | Signal::Formula(_) => None,
         }

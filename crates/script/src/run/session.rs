@@ -138,6 +138,12 @@ impl<'a> Session<'a> {
         Some((&axis.name, on.state.name()))
     }
 
+    /// How often statements of Structured Text were executed, where the script was read so that they are counted.
+    #[must_use]
+    pub(crate) fn counted(&self) -> Vec<super::Counted> {
+        self.bench.counted()
+    }
+
     /// Scans done so far.
     #[must_use]
     pub const fn scans(&self) -> u64 {

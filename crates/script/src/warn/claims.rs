@@ -73,7 +73,7 @@ fn constant(rows: &Rows<'_>, condition: &Condition) -> Option<String> {
             inputs
                 .all(|input| matches!(input.signal, Signal::Point(point) if is_constant(rows.script, point)))
         }
-        Signal::State(_) | Signal::Master(_) | Signal::Axis(..) | Signal::Difference(..) => false,
+        Signal::State(_) | Signal::Master(..) | Signal::Axis(..) | Signal::Difference(..) => false,
     };
     is_constant.then(|| {
         format!(

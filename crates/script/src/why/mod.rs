@@ -172,7 +172,7 @@ impl<'a> Walk<'a> {
             Signal::Point(point) => self.point(point, since, scan),
             Signal::Formula(formula) => self.formula(formula, true, since, scan),
             Signal::State(axis)
-            | Signal::Master(axis)
+            | Signal::Master(axis, _)
             | Signal::Axis(axis, _)
             | Signal::Difference(axis, _) => self.axis(axis, scan),
         }
@@ -185,7 +185,7 @@ impl<'a> Walk<'a> {
             Signal::Point(point) => self.written(point, scan).into_iter().collect(),
             Signal::Formula(formula) => self.formula(formula, false, scan, scan),
             Signal::State(axis)
-            | Signal::Master(axis)
+            | Signal::Master(axis, _)
             | Signal::Axis(axis, _)
             | Signal::Difference(axis, _) => self.axis(axis, scan),
         }

@@ -67,7 +67,7 @@ impl Walk<'_> {
                 .collect()
             }
             Signal::State(axis)
-            | Signal::Master(axis)
+            | Signal::Master(axis, _)
             | Signal::Axis(axis, _)
             | Signal::Difference(axis, _) => {
                 let all = self.look.commanders(axis).into_iter();

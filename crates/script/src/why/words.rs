@@ -46,11 +46,16 @@ pub(super) fn noted(subject: &str, scan: u64, text: &str) -> Option<String> {
 /// `move.Velocity was clamped in scan 5: 25000.0 to 50.0`, with what may be behind it.
 pub(super) fn changed(subject: &str, scan: u64, text: &str) -> Option<String> {
     let (how, told) = text.split_once(": ")?;
-    if !matches!(how, "clamped" | "raised") {
+    if !matches!(how, "clamped" | "raised" | "slowed") {
         return None;
     }
     let (pin, values) = told.split_once(' ')?;
     let (from, to) = values.split_once(" to ")?;
+    if how == "slowed" {
+        return Some(format!(
+            "{subject}.{pin} was lowered in scan {scan} to what a slave can follow: {from} to {to}"
+        ));
+    }
     let hint = per_minute(pin, from, to);
     Some(format!(
         "{subject}.{pin} was {how} in scan {scan}: {from} to {to}{hint}"

@@ -50,6 +50,8 @@ fn axes_take_their_configuration() {
         on_limit: OnLimit::Error,
         max_deviation: Some(0.5),
         on_master_lost: OnMasterLost::Hold,
+        actual_filter: 8,
+        actual_lead: true,
     };
     assert_eq!(x.config.following, following);
     assert!(x.config.needs_homed);

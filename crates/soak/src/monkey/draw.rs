@@ -17,7 +17,7 @@ const AXES: u64 = 3;
 
 /// Played more often than chance would have it: a curve, one that waits for an edge and one that ends that, or limits that
 /// are written while moves blend.
-const FAVOURED: [&[&str]; 14] = [
+const FAVOURED: [&[&str]; 19] = [
     &["MC_PositionProfile"],
     &["MC_VelocityProfile"],
     &["MC_AccelerationProfile"],
@@ -31,7 +31,12 @@ const FAVOURED: [&[&str]; 14] = [
     &["MC_GearIn", "MC_PhasingAbsolute", "MC_PhasingRelative"],
     &["MC_GearInPos", "MC_GearOut", "MC_MoveVelocity"],
     &["MC_GearInPos", "MC_GearIn"],
+    &["MC_CombineAxes", "MC_GearOut", "MC_MoveVelocity"],
+    &["MC_CombineAxes", "MC_PhasingAbsolute", "MC_GearIn"],
     &["MC_GearInPos", "MC_PhasingRelative", "MC_MoveAbsolute"],
+    &["MC_GearIn", "MC_MoveSuperimposed", "MC_HaltSuperimposed"],
+    &["MC_GearIn", "MC_MoveSuperimposed", "MC_MoveSuperimposed"],
+    &["MC_GearInPos", "MC_MoveSuperimposed", "MC_PhasingAbsolute"],
 ];
 
 /// Lengths of a scan (ns).
@@ -153,14 +158,19 @@ fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
     }
     if random.one_in(4) {
         config.following = Following {
-            on_limit: one_of(random, &[OnLimit::Lag, OnLimit::Error]),
+            on_limit: one_of(random, &[OnLimit::Lag, OnLimit::Error, OnLimit::SlowMaster]),
             max_deviation: random.one_in(2).then(|| way * random.log_between(1.0, 1000.0)),
             on_master_lost: one_of(random, &[OnMasterLost::Error, OnMasterLost::Hold]),
+            actual_filter: one_of(random, &[0, 1, 4, 16, 64]),
+            actual_lead: random.one_in(4),
         };
     }
     // What the configuration says no to goes.
     if config.check().is_err() {
         config.profile = MoveProfile::Overlapped;
+    }
+    if config.check().is_err() {
+        config.following.actual_filter = Following::DEFAULT.actual_filter;
     }
     if config.check().is_err() {
         config.scaling = None;

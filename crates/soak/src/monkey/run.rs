@@ -374,11 +374,11 @@ impl<H: Hands> Run<'_, H> {
                 self.tracks[index].leads(from, to, scans);
                 self.tracks[index].resolves(resolution(plan));
             }
-            if let Some((master, numerator, denominator)) = axis.gear()
-                && let Some(master) = self.tracks.get(master.index()).cloned()
-            {
-                let ratio = f64::from(numerator) / f64::from(denominator);
-                self.tracks[index].follows(&master, ratio);
+            for (master, numerator, denominator) in axis.gears().into_iter().flatten() {
+                if let Some(master) = self.tracks.get(master.index()).cloned() {
+                    let ratio = f64::from(numerator) / f64::from(denominator);
+                    self.tracks[index].follows(&master, ratio);
+                }
             }
             self.tracks[index].check(&setpoint)?;
         }
@@ -508,6 +508,7 @@ impl<H: Hands> Run<'_, H> {
                 | Event::PointRefused { .. }
                 | Event::Clamped { .. }
                 | Event::Raised { .. }
+                | Event::Slowed { .. }
                 | Event::Superimposed { .. }
                 | Event::RoomAwaited
                 | Event::Planned { .. }

@@ -130,7 +130,7 @@ pub fn kind_of(info: &BlockInfo) -> Kind {
         // The drive sees no edge: it waits until it is aborted, or finds the probe taken.
         "MC_TouchProbe" => Kind::Administrative,
         "MC_DigitalCamSwitch" | "MC_ReadActualTorque" => Kind::Reading,
-        "MC_GearIn" | "MC_GearInPos" => Kind::Motion,
+        "MC_GearIn" | "MC_GearInPos" | "MC_CombineAxes" => Kind::Motion,
         // Beside the coupling, which owns the axis; without one it is refused.
         "MC_PhasingAbsolute" | "MC_PhasingRelative" => Kind::Administrative,
         // Its command owns the axis, but the block does not show that.
@@ -145,13 +145,16 @@ pub fn axis_pins(info: &'static BlockInfo) -> impl Iterator<Item = (usize, &'sta
     pins.filter(|(_, pin)| matches!(pin.ty, PinType::Axis(_)))
 }
 
-/// The axis of `count` at a pin of a block of `axis`: a master is the next one, so that all of them could make a ring.
+/// The axis of `count` at a pin of a block of `axis`: a master is the next one, so that all of them could make a ring, and a
+/// second master the one after that, the same one of two.
 pub fn wired(pin: &Pin, axis: usize, count: usize) -> usize {
-    if pin.name == "Master" {
-        (axis + 1) % count.max(1)
-    } else {
-        axis
-    }
+    let further = match pin.name {
+        "Master" | "Master1" => 1,
+        "Master2" if count > 2 => 2,
+        "Master2" => 1,
+        _ => 0,
+    };
+    (axis + further) % count.max(1)
 }
 
 impl AxisSetup {

@@ -275,11 +275,19 @@ fn members(axis: &AxisSetup) -> Vec<String> {
     }
     let following = &config.following;
     let mut coupling = numbers(&[("max_deviation", following.max_deviation)]);
-    if following.on_limit == OnLimit::Error {
-        coupling.push("\"on_limit\": \"error\"".to_owned());
+    match following.on_limit {
+        OnLimit::Lag => {}
+        OnLimit::Error => coupling.push("\"on_limit\": \"error\"".to_owned()),
+        OnLimit::SlowMaster => coupling.push("\"on_limit\": \"slow_master\"".to_owned()),
     }
     if following.on_master_lost == OnMasterLost::Hold {
         coupling.push("\"on_master_lost\": \"hold\"".to_owned());
+    }
+    if following.actual_filter != plain.following.actual_filter {
+        coupling.push(format!("\"actual_filter\": {}", following.actual_filter));
+    }
+    if following.actual_lead {
+        coupling.push("\"actual_lead\": true".to_owned());
     }
     if !coupling.is_empty() {
         members.push(format!("\"coupling\": {{{}}}", coupling.join(", ")));

@@ -3,15 +3,49 @@
 use super::{Broken, rule};
 use standstill_axis::{Axis, AxisId, CommandId, Standard};
 
+/// A master in a row in which its slave is in gear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Leg {
+    gear: (AxisId, i32, u16),
+    /// Its position (u).
+    at: f64,
+    /// By how much the slave sees it ahead (u of the master).
+    phase: f64,
+    turn: Option<f64>,
+}
+
+impl Leg {
+    fn ratio(&self) -> f64 {
+        let (_, numerator, denominator) = self.gear;
+        f64::from(numerator) / f64::from(denominator)
+    }
+
+    /// How far the slave has to go since it was at `from`.
+    fn way_since(&self, from: &Self) -> f64 {
+        self.ratio() * (way(self.at, from.at, self.turn) + (self.phase - from.phase))
+    }
+
+    /// The largest numbers that enter.
+    fn size(&self) -> f64 {
+        let own = self.at.abs() + self.phase.abs() + self.turn.unwrap_or(0.0);
+        self.ratio().abs() * own
+    }
+}
+
 /// Positions of one row in which a slave is in gear.
 #[derive(Clone, Copy, Debug)]
 struct Row {
-    gear: (AxisId, i16, u16),
+    legs: [Option<Leg>; 2],
     command: Option<CommandId>,
-    master: f64,
-    /// By how much the slave sees its master ahead (u of the master).
-    phase: f64,
+    /// What is superimposed on the law (u).
+    superimposed: f64,
     slave: f64,
+}
+
+impl Row {
+    fn size(&self) -> f64 {
+        self.slave.abs() + self.superimposed.abs() + self.legs.iter().flatten().map(Leg::size).sum::<f64>()
+    }
 }
 
 /// The law of one slave.
@@ -38,33 +72,41 @@ impl Law {
     /// # Errors
     /// It is off the law by more than two roundings of every number that enters.
     pub fn check(&mut self, axis: &Axis<Standard>, axes: &[Axis<Standard>]) -> Result<(), Broken> {
-        let gear = axis.gear().filter(|_| axis.is_in_gear());
-        let master = gear.and_then(|(master, ..)| axes.get(master.index()));
-        let (Some(gear), Some(master)) = (gear, master) else {
+        // What it sees of actual values is not published.
+        if !axis.is_in_gear() || axis.follows_actual() {
             self.forget();
             return Ok(());
-        };
+        }
+        let phases = axis.phases();
+        let legs = [0, 1].map(|leg: usize| {
+            let gear = axis.gears()[leg]?;
+            let master = axes.get(gear.0.index())?;
+            Some(Leg {
+                gear,
+                at: master.setpoint().position,
+                phase: phases[leg],
+                turn: master.config().modulo,
+            })
+        });
         let row = Row {
-            gear,
+            legs,
             command: axis.active_command(),
-            master: master.setpoint().position,
-            phase: axis.phase(),
+            superimposed: axis.coupled().map_or(0.0, |coupled| coupled.superimposed),
             slave: axis.setpoint().position,
         };
-        let is_same = |anchor: &Row| anchor.gear == row.gear && anchor.command == row.command;
+        let gears = |row: &Row| row.legs.map(|leg| leg.map(|leg| leg.gear));
+        let is_same = |anchor: &Row| gears(anchor) == gears(&row) && anchor.command == row.command;
         let Some(anchor) = self.anchor.filter(is_same) else {
             self.anchor = Some(row);
             return Ok(());
         };
-        let (turn, master_turn) = (axis.config().modulo, master.config().modulo);
-        let (_, numerator, denominator) = gear;
-        let ratio = f64::from(numerator) / f64::from(denominator);
-        let seen = way(row.master, anchor.master, master_turn) + (row.phase - anchor.phase);
-        let off = way(row.slave - anchor.slave, ratio * seen, turn).abs();
-        let size = |row: &Row| row.slave.abs() + ratio.abs() * (row.master.abs() + row.phase.abs());
-        let turns = turn.unwrap_or(0.0) + ratio.abs() * master_turn.unwrap_or(0.0);
-        let rounding = 4.0 * f64::EPSILON * (size(&row) + size(&anchor) + turns);
-        if turn.or(master_turn).is_some() {
+        let turn = axis.config().modulo;
+        let ways = row.legs.iter().flatten().zip(anchor.legs.iter().flatten());
+        let law: f64 = ways.map(|(now, then)| now.way_since(then)).sum();
+        let added = row.superimposed - anchor.superimposed;
+        let off = way(row.slave - anchor.slave, law + added, turn).abs();
+        let rounding = 4.0 * f64::EPSILON * (row.size() + anchor.size() + turn.unwrap_or(0.0));
+        if turn.is_some() || row.legs.iter().flatten().any(|leg| leg.turn.is_some()) {
             self.anchor = Some(row);
         }
         rule(

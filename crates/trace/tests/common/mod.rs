@@ -92,6 +92,8 @@ pub fn header() -> Header {
             modulo: None,
             scaling: None,
             slave: false,
+            combined: false,
+            superimposed: false,
         }],
         inputs: vec![Input {
             name: "GO".into(),
