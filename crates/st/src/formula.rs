@@ -47,6 +47,7 @@ fn in_expression(expression: &Expression, sources: &Sources, found: &mut Vec<Ref
         | ExpressionKind::Integer(_)
         | ExpressionKind::Real(_)
         | ExpressionKind::Duration(..)
+        | ExpressionKind::Text(_)
         | ExpressionKind::Element(..)
         | ExpressionKind::Wrong => {}
         ExpressionKind::Typed(_, inner) | ExpressionKind::Negative(inner) | ExpressionKind::Not(inner) => {

@@ -10,8 +10,11 @@
 #![forbid(unsafe_code)]
 
 mod check;
+mod coverage;
+mod dialect;
 mod emit;
 mod error;
+mod format;
 mod formula;
 mod layout;
 mod lex;
@@ -25,8 +28,11 @@ mod syntax;
 mod typed;
 mod types;
 
+pub use coverage::Counter;
+pub use dialect::Dialect;
 pub use emit::FaultKind;
 pub use error::{Code, DIAGNOSTICS_MOST, Diagnostic, Report, Severity};
+pub use format::format;
 pub use formula::{Reference, references};
 pub use layout::{FAULT_SITE, FAULT_VALUE, LOOP_SITE};
 pub use parse::NESTING_MOST;
@@ -45,6 +51,10 @@ pub struct Options {
     pub library: bool,
     /// Whether lints are looked for, which are warnings.
     pub lint: bool,
+    /// Whether the module counts how often each statement and branch is executed.
+    pub coverage: bool,
+    /// What types, elements and pins of the library are called, beside their own names, and how enumerations are numbered.
+    pub dialect: Dialect,
     /// Names of axes, the first one is number 1: a variable of type AXIS_REF of such a name begins as that axis.
     pub axes: Vec<String>,
     /// Which axis a variable of type AXIS_REF begins as: its path, and the number of the axis.
@@ -105,7 +115,7 @@ fn build(given: &[Source<'_>], options: &Options, module: bool) -> Result<Built,
     }
     let items = parse::parse(&sources, &mut found);
     let (program, mut found) = check::check(&sources, &items, options, found);
-    let Some(program) = program else {
+    let Some(mut program) = program else {
         return Err(found.report(sources));
     };
     if options.lint {
@@ -114,15 +124,20 @@ fn build(given: &[Source<'_>], options: &Options, module: bool) -> Result<Built,
     if !module || program.instances.is_empty() {
         return Ok((None, found.report(sources)));
     }
+    let counters = if options.coverage {
+        coverage::Counters::new(&mut program, &sources)
+    } else {
+        coverage::Counters::default()
+    };
     let mut image = vec![0; program.layout.end as usize];
     symbols::image(&program, &mut image);
     if let Err(wrong) = symbols::bind(&program, options, &mut image) {
         found.add(wrong);
         return Err(found.report(sources));
     }
-    match emit::emit(&program, &image) {
+    match emit::emit(&program, &image, &counters) {
         Ok(emitted) => {
-            let symbols = Symbols::new(program, emitted.sites, &sources);
+            let symbols = Symbols::new(program, emitted.sites, counters.list(&sources), &sources);
             Ok((Some((emitted.wasm, symbols)), found.report(sources)))
         }
         Err(wrong) => {

@@ -30,6 +30,10 @@ pub(crate) fn write(program: &Program<'_>, ty: TypeId, start: &Start, memory: &m
             }
             members(program, &unit.members.list, start, memory, at);
         }
+        (Type::Text(_), Start::Text(bytes)) => {
+            put(&[bytes.len() as u8], memory, at);
+            put(bytes, memory, at + 1);
+        }
         (Type::Array(array), _) => elements(program, ty, array, start, memory, at),
         _ => {
             let Some(of) = program.types.elementary(ty) else {

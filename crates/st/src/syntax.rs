@@ -37,9 +37,10 @@ pub(crate) enum UnitKind {
     Function,
     FunctionBlock,
     Program,
+    Method,
 }
 
-/// A program, a function block or a function.
+/// A program, a function block, a function or a method.
 #[derive(Debug)]
 pub(crate) struct Unit {
     pub kind: UnitKind,
@@ -47,6 +48,10 @@ pub(crate) struct Unit {
     pub result: Option<TypeSpec>,
     pub sections: Vec<Section>,
     pub body: Vec<Statement>,
+    /// Of a function block.
+    pub methods: Vec<Self>,
+    /// Of a method: whether only its block calls it.
+    pub private: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,6 +106,8 @@ pub(crate) enum SpecKind {
         elements: Vec<(Ident, Option<Expression>)>,
     },
     Structure(Vec<Variables>),
+    /// STRING of a length that is said.
+    Text(Box<Expression>),
     /// It has been told what is wrong with it.
     Wrong,
 }
@@ -127,6 +134,8 @@ pub(crate) enum ExpressionKind {
     Real(f64),
     /// Nanoseconds; whether it is an LTIME.
     Duration(i64, bool),
+    /// The bytes of `'text'`.
+    Text(Vec<u8>),
     /// `INT#5`
     Typed(Ident, Box<Expression>),
     /// `E#a`
@@ -203,6 +212,8 @@ impl Operator {
 /// `Units[i].Mv.Done`, `w.%X3`
 #[derive(Debug)]
 pub(crate) struct Path {
+    /// Whether `THIS^.` stands before it.
+    pub this: bool,
     pub root: Ident,
     pub selectors: Vec<Selector>,
     pub span: Span,

@@ -60,6 +60,12 @@ pub(crate) enum Kind {
     /// Its value, which must lie in a subrange.
     Within(Box<Expr>, Elementary, i128, i128),
     Call(Box<FunctionCall>),
+    /// The bytes of a string; its address is pushed.
+    Text(Vec<u8>),
+    /// A function whose value is a string, put together at this address.
+    Join(crate::library::Function, Vec<Expr>, u32),
+    /// Two strings.
+    Compare(Operation, Box<[Expr; 2]>),
     /// A function of the library, done in this type.
     Library(crate::library::Function, Elementary, Vec<Expr>),
     Wrong,
@@ -103,10 +109,15 @@ pub(crate) enum Operation {
 #[derive(Clone, Debug)]
 pub(crate) struct FunctionCall {
     pub unit: UnitId,
+    /// Of a method: what it is called for.
+    pub instance: Option<Place>,
     /// In the order of its parameters.
     pub arguments: Vec<Argument>,
     /// Where outputs go, and what they are then.
     pub outputs: Vec<(Place, Expr)>,
+    /// Where a value with members, elements or bytes is kept, and how many bytes it has: the next call of the function
+    /// overwrites its own.
+    pub buffer: Option<(u32, u32)>,
 }
 
 #[derive(Clone, Debug)]

@@ -141,6 +141,12 @@ impl Elementary {
     }
 }
 
+/// Most bytes of a string: its length stands in one byte.
+pub(crate) const TEXT_MOST: u8 = 254;
+
+/// The bytes of a STRING whose length is not said.
+pub(crate) const TEXT_USUAL: u8 = 80;
+
 /// A type, by its place in [`Types`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct TypeId(pub u32);
@@ -161,6 +167,8 @@ pub(crate) enum Type {
     },
     Structure(Structure),
     Array(Array),
+    /// STRING of so many bytes.
+    Text(u8),
     /// An instance of a function block or program.
     Block(UnitId),
     /// A literal without a type, of whole numbers.
@@ -234,6 +242,8 @@ pub(crate) enum Start {
     /// As its type says.
     Default,
     Value(Constant),
+    /// The bytes of a string.
+    Text(Vec<u8>),
     /// Elements of an array from the first on: how often, and what.
     List(Vec<(u32, Start)>),
     /// Members of a structure or block, by place.
@@ -332,6 +342,11 @@ impl Types {
         id
     }
 
+    /// STRING of so many bytes.
+    pub(crate) fn text(&mut self, capacity: u8) -> TypeId {
+        self.shared(Type::Text(capacity))
+    }
+
     fn anonymous_key(&self, ty: &Type) -> String {
         match ty {
             Type::Array(array) => format!("A{:?}{}", array.bounds, array.of.0),
@@ -368,9 +383,13 @@ impl Types {
             Type::Enumeration(Enumeration { base, .. }) | Type::Subrange { base, .. } => {
                 (base.size(), base.size())
             }
+            Type::Text(capacity) => (u32::from(*capacity) + 1, 1),
             Type::Structure(structure) => (structure.members.size, 8),
             Type::Array(array) => {
-                let align = self.elementary(array.of).map_or(8, Elementary::size);
+                let align = match self.get(array.of) {
+                    Type::Text(_) => 1,
+                    _ => self.elementary(array.of).map_or(8, Elementary::size),
+                };
                 (array.stride.saturating_mul(array.count), align)
             }
             Type::Block(unit) => (unit_size(*unit), 8),

@@ -1,6 +1,6 @@
 //! The statements of all units, and what is remembered while those of one are looked at.
 
-use super::{Body, Checker, UnitKind};
+use super::{Body, Checker};
 use crate::error::{Code, Diagnostic};
 use crate::source::Span;
 use crate::types::{MemberKind, UnitId};
@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 #[derive(Debug, Default)]
 pub(super) struct BodyState {
-    /// Members of the unit that are control variables of loops that are running.
-    pub controls: Vec<usize>,
+    /// Variables that control loops that are running: whose, and which.
+    pub controls: Vec<(UnitId, usize)>,
     /// How many loops are around.
     pub loops: usize,
     /// In_outs that a call of this instance gives, by the text of the instance.
@@ -30,7 +30,7 @@ impl Checker<'_> {
             self.body = BodyState::default();
             let statements = self.in_scope(Some(id), |checker| checker.statements(&syntax.body));
             self.check_kept();
-            let function = self.unit(id).kind == UnitKind::Function;
+            let function = self.unit(id).kind.has_frame();
             let members = self.unit(id).members.list.iter().enumerate();
             let fresh = members.filter(|(_, member)| match member.kind {
                 MemberKind::Temp | MemberKind::Result => true,

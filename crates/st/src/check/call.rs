@@ -5,7 +5,7 @@ use super::{Checker, UnitKind};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::library::{Function, blocks, conversion};
 use crate::source::Span;
-use crate::syntax::{self, Call, Expression, ExpressionKind, Way};
+use crate::syntax::{self, Call, Expression, ExpressionKind, Path, Selector, Way};
 use crate::typed::{Argument, Base, BlockCall, Expr, FunctionCall, Kind, Place, StmtKind};
 use crate::types::{Member, MemberKind, Type, TypeId, UnitId, WRONG};
 
@@ -13,16 +13,17 @@ impl<'a> Checker<'a> {
     /// A call that is an expression.
     pub(super) fn call_value(&mut self, call: &'a Call, expected: Option<TypeId>) -> Expr {
         let wrong = Expr::wrong(call.span);
+        if let Some((method, instance)) = self.method_of(&call.callee) {
+            return self.function(method, Some(instance), call);
+        }
         let name = &call.callee.root;
         let key = name.key();
-        let local = self
-            .scope
-            .is_some_and(|unit| self.unit(unit).members.find(&key).is_some());
+        let local = self.local(&key).is_some();
         let own_name = self
             .scope
             .is_some_and(|unit| self.unit(unit).kind == UnitKind::Function);
         let shadowed = (local && !own_name) || self.global_names.contains_key(&key);
-        if !call.callee.selectors.is_empty() || shadowed {
+        if !call.callee.selectors.is_empty() || shadowed || call.callee.this {
             if let Named::Place(place, _) = self.named(&call.callee, None) {
                 let message = match self.types.get(place.ty) {
                     Type::Block(_) => "a block has no value".to_owned(),
@@ -39,7 +40,7 @@ impl<'a> Checker<'a> {
         }
         if let Some(unit) = self.unit_names.get(&key).copied() {
             if self.unit(unit).kind == UnitKind::Function {
-                return self.function(unit, call);
+                return self.function(unit, None, call);
             }
             let message = format!("`{}` is no function", name.text);
             let help = format!(
@@ -67,6 +68,13 @@ impl<'a> Checker<'a> {
             }
             _ => message,
         };
+        let text = key.ends_with("_TO_STRING") || key.starts_with("STRING_TO_");
+        let guess = guess.filter(|_| !text);
+        let block = if text {
+            Some(super::library_call::TO_TEXT.to_owned())
+        } else {
+            block
+        };
         let wrong_name = Diagnostic::error(Code::UnknownName, name.span, message);
         self.tell(wrong_name.maybe_help(guess).maybe_help(block));
         wrong
@@ -92,7 +100,10 @@ impl<'a> Checker<'a> {
             let info = self.unit(unit);
             let place = match &argument.name {
                 None => positions.next(),
-                Some(name) => info.members.find(&name.key()).map(|(place, _)| place),
+                Some(name) => {
+                    let key = self.member_key(unit, name);
+                    info.members.find(&key).map(|(place, _)| place)
+                }
             };
             let Some(place) = place else {
                 self.no_such_argument(unit, argument, span);
@@ -265,12 +276,44 @@ impl<'a> Checker<'a> {
         (!converted.is_wrong()).then_some((target, converted))
     }
 
-    fn function(&mut self, unit: UnitId, call: &'a Call) -> Expr {
+    /// The method that is called so, and the instance it is called for; `None` if it is no method.
+    fn method_of(&mut self, callee: &'a Path) -> Option<(UnitId, Place)> {
+        let Some((Selector::Member(name), before)) = callee.selectors.split_last() else {
+            let block = self.this_block()?;
+            let method = self.methods.get(&(block, callee.root.key())).copied()?;
+            let ty = self.block_type(block);
+            return Some((method, plain(Base::This, 0, ty)));
+        };
+        let key = name.key();
+        if !self.methods.keys().any(|(_, method)| *method == key) {
+            return None;
+        }
+        let Named::Place(instance, _) = self.named_part(callee, before, None) else {
+            return None;
+        };
+        let Type::Block(block) = *self.types.get(instance.ty) else {
+            return None;
+        };
+        let method = self.methods.get(&(block, key)).copied()?;
+        let private = self.unit(method).syntax.is_some_and(|syntax| syntax.private);
+        if private && self.this_block() != Some(block) {
+            let message = format!(
+                "the method `{}` of {} is private",
+                name.text,
+                self.unit(block).name
+            );
+            self.error(Code::UnknownMember, name.span, message, "make it PUBLIC");
+        }
+        Some((method, instance))
+    }
+
+    /// A call of a FUNCTION, or of a METHOD for an instance.
+    pub(super) fn function(&mut self, unit: UnitId, instance: Option<Place>, call: &'a Call) -> Expr {
         self.resolve_unit(unit, call.span);
         self.note_call(unit, call.span);
         let matched = self.matched(unit, &call.arguments, call.span);
         let info = self.unit(unit);
-        let frame = info.frame;
+        let (name, frame) = (info.name.clone(), info.frame);
         let result = info
             .result
             .and_then(|place| info.members.list.get(place))
@@ -291,7 +334,7 @@ impl<'a> Checker<'a> {
                         None => match self.default_value(member, call.span) {
                             Some(value) => value,
                             None => {
-                                self.missing(&member.name, &call.callee.root.text, call.span);
+                                self.missing(&member.name, &name, call.span);
                                 Expr::wrong(call.span)
                             }
                         },
@@ -305,7 +348,7 @@ impl<'a> Checker<'a> {
                         None => wrong = true,
                     },
                     None => {
-                        self.missing(&member.name, &call.callee.root.text, call.span);
+                        self.missing(&member.name, &name, call.span);
                         wrong = true;
                     }
                 },
@@ -324,8 +367,10 @@ impl<'a> Checker<'a> {
                 return Expr {
                     kind: Kind::Call(Box::new(FunctionCall {
                         unit,
+                        instance,
                         arguments,
                         outputs,
+                        buffer: None,
                     })),
                     ty: WRONG,
                     span: call.span,
@@ -333,11 +378,18 @@ impl<'a> Checker<'a> {
             }
             return Expr::wrong(call.span);
         };
+        let buffer = self.types.elementary(result).is_none().then(|| {
+            let (bytes, _) = self.size(result);
+            (self.layout.take(bytes), bytes)
+        });
+        self.check_memory(call.span);
         Expr {
             kind: Kind::Call(Box::new(FunctionCall {
                 unit,
+                instance,
                 arguments,
                 outputs,
+                buffer,
             })),
             ty: self.types.value_type(result),
             span: call.span,
@@ -347,6 +399,14 @@ impl<'a> Checker<'a> {
     /// What an input of a function is that a call leaves out.
     fn default_value(&mut self, member: &Member, span: Span) -> Option<Expr> {
         use crate::types::{Constant, Start};
+        if self.is_text(member.ty) {
+            let bytes = match &member.start {
+                Start::Text(bytes) => bytes.clone(),
+                _ => Vec::new(),
+            };
+            let (kind, ty) = (Kind::Text(bytes), member.ty);
+            return Some(Expr { kind, ty, span });
+        }
         let elementary = self.types.elementary(member.ty)?;
         let kind = match &member.start {
             Start::Value(Constant::Integer(number)) => Kind::Integer(*number),
@@ -376,11 +436,12 @@ impl<'a> Checker<'a> {
 
     /// A call that is a statement.
     pub(super) fn call_statement(&mut self, call: &'a Call) -> Option<StmtKind> {
+        if self.method_of(&call.callee).is_some() {
+            let value = self.call_value(call, None);
+            return (!matches!(value.kind, Kind::Wrong)).then_some(StmtKind::Evaluate(value));
+        }
         let key = call.callee.root.key();
-        let local = self
-            .scope
-            .is_some_and(|unit| self.unit(unit).members.find(&key).is_some());
-        let variable = local || self.global_names.contains_key(&key) || !call.callee.selectors.is_empty();
+        let variable = self.variable_exists(&key) || !call.callee.selectors.is_empty() || call.callee.this;
         if !variable {
             let block = self
                 .unit_names

@@ -146,6 +146,15 @@ impl<'a> Checker<'a> {
                 ))
             }
             (Some(_), Some(_)) => wrong,
+            (None, None) if self.is_text(left.ty) && self.is_text(right.ty) => {
+                wrong.help("put strings together with CONCAT(..)")
+            }
+            (Some(_), None) if self.is_text(right.ty) => {
+                wrong.help(format!("convert it: {one}_TO_STRING(..)"))
+            }
+            (None, Some(_)) if self.is_text(left.ty) => {
+                wrong.help(format!("convert it: {other}_TO_STRING(..)"))
+            }
             _ => wrong.help("structures, arrays and blocks are not computed with: use their members"),
         };
         self.tell(wrong);
@@ -252,8 +261,11 @@ impl<'a> Checker<'a> {
             }
             let base = self.types.elementary(of).unwrap_or(Elementary::Int);
             (left, right, base)
+        } else if self.is_text(left.ty) && self.is_text(right.ty) {
+            return self.compare_texts(left, operation, right);
         } else {
-            if self.types.elementary(left.ty).is_none() && !is_any(&left) {
+            let text = self.is_text(left.ty);
+            if self.types.elementary(left.ty).is_none() && !is_any(&left) && !text {
                 let message = format!("{} is not compared as a whole", self.type_name(left.ty));
                 self.error(Code::WrongType, left.span, message, "compare its members");
                 return Expr::wrong(span);

@@ -228,20 +228,28 @@ impl<'a> Checker<'a> {
             self.globals[place].member.offset = self.layout.take(if ty == WRONG { 0 } else { size });
             self.check_memory(span);
         }
-        for place in 0..self.units.len() {
-            if self.units[place].kind == UnitKind::Function {
-                self.units[place].frame = self.layout.take(self.units[place].members.size);
-                self.check_memory(self.units[place].span);
-            }
-        }
+        self.place_frames(false);
         for instance in instances {
             let size = self.unit(instance.unit).members.size;
             instance.address = self.layout.take(size);
             self.check_memory(instance.span);
         }
+        self.place_frames(true);
     }
 
-    fn check_memory(&mut self, span: Span) {
+    /// Places for the variables of functions, of the sources or of the library.
+    fn place_frames(&mut self, prelude: bool) {
+        for place in 0..self.units.len() {
+            let unit = &self.units[place];
+            let (span, bytes) = (unit.span, unit.members.size);
+            if unit.kind.has_frame() && self.in_prelude(span) == prelude {
+                self.units[place].frame = self.layout.take(bytes);
+                self.check_memory(span);
+            }
+        }
+    }
+
+    pub(super) fn check_memory(&mut self, span: Span) {
         if u64::from(self.layout.end) > super::spec::BYTES_MOST {
             self.too_large(span);
             self.layout.end = 0;

@@ -32,6 +32,10 @@ impl Checker<'_> {
         if value.ty == to {
             return value;
         }
+        if let (Type::Text(_), Type::Text(capacity)) = (self.types.get(value.ty), self.types.get(to)) {
+            let capacity = *capacity;
+            return self.text_value(value, capacity);
+        }
         if self.types.is_enumeration(to) {
             return self.enumeration_value(value, to);
         }
@@ -79,7 +83,27 @@ impl Checker<'_> {
             && let (ANY_INTEGER, Kind::Integer(number)) = (value.ty, &value.kind)
             && of.base.holds(*number)
         {
-            return Expr { ty: to, ..value };
+            let Some(element) = self.options.dialect.element_numbered(&of.name, *number) else {
+                return Expr { ty: to, ..value };
+            };
+            let ours = of
+                .elements
+                .iter()
+                .find(|(name, _)| Some(name.as_str()) == element);
+            if let Some((_, number)) = ours {
+                let kind = Kind::Integer(*number);
+                return Expr {
+                    kind,
+                    ty: to,
+                    ..value
+                };
+            }
+            let message = format!(
+                "no element of {} that there is here has the number {number} in the dialect {}",
+                of.name, self.options.dialect.name
+            );
+            self.error(Code::OutOfRange, value.span, message, "name an element");
+            return Expr::wrong(value.span);
         }
         self.refuse(&value, to)
     }

@@ -10,11 +10,7 @@ use std::collections::BTreeMap;
 
 /// Types of the language that are refused, and what to use.
 pub(super) const REFUSED_TYPES: &[(&str, &str)] = &[
-    (
-        "STRING",
-        "use a number or an enumeration; strings are not supported yet",
-    ),
-    ("WSTRING", "use a number or an enumeration"),
+    ("WSTRING", "use STRING"),
     ("CHAR", "use BYTE"),
     ("WCHAR", "use WORD"),
     ("DATE", "use TIME, which counts from the start of the run: TIME()"),
@@ -68,7 +64,13 @@ impl<'a> Checker<'a> {
         }
         for ty in self.library_types.values() {
             if let Type::Enumeration(of) = self.types.get(*ty) {
-                for (name, _) in &of.elements {
+                let names = of.elements.iter().map(|(name, _)| name.as_str());
+                let there = self
+                    .options
+                    .dialect
+                    .elements_called(&of.name)
+                    .map(|(_, there)| there);
+                for name in names.chain(there) {
                     let owners = self.elements.entry(name.to_ascii_uppercase()).or_default();
                     owners.push(ElementOf::Known(*ty));
                 }
@@ -88,7 +90,7 @@ impl<'a> Checker<'a> {
         let function = Function::find(&key).is_some()
             || conversion(&key).is_some()
             || OPERATORS.iter().any(|(name, _)| *name == key);
-        if library || function {
+        if (library || function) && !self.in_prelude(name.span) {
             let message = format!("`{}` has that name in the library", name.text);
             self.error(
                 Code::DuplicateName,
@@ -113,7 +115,10 @@ impl<'a> Checker<'a> {
     /// Tells if a name is that of an elementary type, or is written in a way other compilers refuse.
     pub(super) fn check_name(&mut self, name: &Ident) {
         let key = name.key();
-        if Elementary::find(&key).is_some() || REFUSED_TYPES.iter().any(|(it, _)| *it == key) {
+        if Elementary::find(&key).is_some()
+            || key == super::spec::TEXT
+            || REFUSED_TYPES.iter().any(|(it, _)| *it == key)
+        {
             let message = format!("`{}` is the name of a type of the language", name.text);
             self.error(Code::BadName, name.span, message, "choose another name");
         }
@@ -146,22 +151,37 @@ impl<'a> Checker<'a> {
     }
 
     fn declare_unit(&mut self, unit: &'a syntax::Unit) {
+        let id = self.add_unit(unit, None);
+        self.unit_names.entry(unit.name.key()).or_insert(id);
+        for method in &unit.methods {
+            let own = self.add_unit(method, Some(id));
+            self.check_name(&method.name);
+            if let Some(other) = self.methods.insert((id, method.name.key()), own) {
+                let other = self.unit(other).span;
+                self.twice(&method.name, other);
+            }
+        }
+    }
+
+    /// Notes a unit and the names of its constants.
+    fn add_unit(&mut self, unit: &'a syntax::Unit, owner: Option<UnitId>) -> UnitId {
         let id = UnitId(self.units.len() as u32);
         self.units.push(UnitInfo {
             kind: match unit.kind {
                 syntax::UnitKind::Function => UnitKind::Function,
                 syntax::UnitKind::FunctionBlock => UnitKind::Block,
                 syntax::UnitKind::Program => UnitKind::Program,
+                syntax::UnitKind::Method => UnitKind::Method,
             },
             name: unit.name.text.clone(),
             span: unit.name.span,
             syntax: Some(unit),
+            owner,
             state: State::Todo,
             members: Members::default(),
             result: None,
             frame: 0,
         });
-        self.unit_names.entry(unit.name.key()).or_insert(id);
         for section in unit.sections.iter().filter(|section| section.constant) {
             for variables in &section.variables {
                 for (name, _) in &variables.names {
@@ -169,6 +189,7 @@ impl<'a> Checker<'a> {
                 }
             }
         }
+        id
     }
 
     fn declare_constant(
@@ -241,6 +262,12 @@ impl<'a> Checker<'a> {
         while unit < self.units.len() {
             self.resolve_unit(UnitId(unit as u32), Span::default());
             unit += 1;
+        }
+        for ((block, key), method) in self.methods.clone() {
+            let taken = self.unit(block).members.find(&key).map(|(_, member)| member.span);
+            if let (Some(other), Some(syntax)) = (taken, self.unit(method).syntax) {
+                self.twice(&syntax.name, other);
+            }
         }
     }
 

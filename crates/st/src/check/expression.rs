@@ -6,7 +6,7 @@ use super::path::Named;
 use crate::error::Code;
 use crate::parse::NESTING_MOST;
 use crate::source::Span;
-use crate::syntax::{Expression, ExpressionKind, Ident};
+use crate::syntax::{Expression, ExpressionKind, Ident, Selector};
 use crate::typed::{Expr, Kind};
 use crate::types::{ANY_INTEGER, ANY_REAL, BOOL, Class, Elementary, TypeId, Types, WRONG};
 
@@ -44,6 +44,10 @@ impl<'a> Checker<'a> {
                 };
                 (Kind::Integer((*ns).into()), Types::of(ty))
             }
+            ExpressionKind::Text(bytes) => {
+                let ty = self.types.text(bytes.len() as u8);
+                (Kind::Text(bytes.clone()), ty)
+            }
             ExpressionKind::Typed(name, inner) => return self.typed(name, inner, span),
             ExpressionKind::Element(name, element) => {
                 let (ty, _) = self.type_by_name(name);
@@ -67,7 +71,15 @@ impl<'a> Checker<'a> {
             ExpressionKind::Call(call) => {
                 let value = self.call_value(call, expected);
                 if let (Kind::Call(_), WRONG) = (&value.kind, value.ty) {
-                    let message = format!("`{}` gives no value", call.callee.root.text);
+                    let name = call
+                        .callee
+                        .selectors
+                        .last()
+                        .map_or(&call.callee.root, |last| match last {
+                            Selector::Member(name) => name,
+                            _ => &call.callee.root,
+                        });
+                    let message = format!("`{}` gives no value", name.text);
                     self.error(
                         Code::WrongType,
                         span,

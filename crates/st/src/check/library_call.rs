@@ -8,6 +8,9 @@ use crate::syntax::{Call, Expression, Operator, Way};
 use crate::typed::{Expr, Kind};
 use crate::types::{ANY_INTEGER, ANY_REAL, BOOL, Class, Elementary, TypeId, Types};
 
+/// What to write where a number has no conversion to or from STRING.
+pub(super) const TO_TEXT: &str = "whole numbers, BOOL and TIME have one; make a whole number first: LINT_TO_STRING(LREAL_TO_LINT(x * 1000.0))";
+
 impl<'a> Checker<'a> {
     /// A call of a function of the library; `None` if there is none of that name.
     pub(super) fn library_call(
@@ -23,6 +26,9 @@ impl<'a> Checker<'a> {
         if let Some((_, operator)) = OPERATORS.iter().find(|(name, _)| *name == key) {
             let arguments = self.inputs(key, &["IN1", "IN2"], true, call);
             return Some(self.operator_call(*operator, &arguments, call.span, expected));
+        }
+        if key == "TO_STRING" {
+            return Some(self.text_of_value(call));
         }
         if let Some(found) = self.conversion_call(key, call) {
             return Some(found);
@@ -130,6 +136,31 @@ impl<'a> Checker<'a> {
             left = right;
         }
         all.map_or_else(|| Expr::wrong(span), |all| Expr { span, ..all })
+    }
+
+    /// `TO_STRING(..)`: the conversion of the type of its input.
+    fn text_of_value(&mut self, call: &'a Call) -> Expr {
+        let arguments = self.inputs("TO_STRING", &["IN"], false, call);
+        let Some(argument) = arguments.first() else {
+            return Expr::wrong(call.span);
+        };
+        let value = self.expression(argument, None);
+        let value = self.settle(value);
+        if value.is_wrong() {
+            return value;
+        }
+        let name = format!("{}_TO_STRING", self.type_name(value.ty));
+        match self.unit_names.get(&name).copied() {
+            Some(unit) => self.function(unit, None, call),
+            None => {
+                let message = format!(
+                    "there is no conversion from {} to STRING",
+                    self.type_name(value.ty)
+                );
+                self.error(Code::WrongType, call.span, message, TO_TEXT);
+                Expr::wrong(call.span)
+            }
+        }
     }
 
     /// `X_TO_Y(..)` and `TO_Y(..)`.
@@ -244,6 +275,15 @@ impl<'a> Checker<'a> {
                 self.shift(function, arguments, span, expected)
             }
             Function::Time => wrong,
+            Function::Len
+            | Function::Left
+            | Function::Right
+            | Function::Mid
+            | Function::Concat
+            | Function::Insert
+            | Function::Delete
+            | Function::Replace
+            | Function::Find => self.text_function(function, arguments, span),
         }
     }
 
@@ -318,7 +358,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn no_input(&mut self, function: Function, value: &Expr, wanted: &str) -> Expr {
+    pub(super) fn no_input(&mut self, function: Function, value: &Expr, wanted: &str) -> Expr {
         if !value.is_wrong() {
             let message = format!(
                 "{} takes {wanted}, not {}",

@@ -14,6 +14,7 @@ mod path;
 mod spec;
 mod start;
 mod statement;
+mod text;
 mod unit;
 
 use crate::error::{Code, DIAGNOSTICS_MOST, Diagnostic, Found, did_you_mean};
@@ -33,9 +34,18 @@ pub(crate) use configuration::{Instance, Task};
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum UnitKind {
     Function,
+    /// Of the block that [`UnitInfo::owner`] names.
+    Method,
     Block,
     Program,
     Library(&'static BlockInfo),
+}
+
+impl UnitKind {
+    /// Whether its variables are made anew at every call, and so have a place of their own.
+    pub(crate) const fn has_frame(self) -> bool {
+        matches!(self, Self::Function | Self::Method)
+    }
 }
 
 impl PartialEq for UnitKind {
@@ -53,6 +63,8 @@ pub(crate) struct UnitInfo<'a> {
     pub name: String,
     pub span: Span,
     syntax: Option<&'a Unit>,
+    /// The block that a method belongs to.
+    pub owner: Option<UnitId>,
     state: State,
     pub members: Members,
     /// The member that is the value of a function.
@@ -135,6 +147,8 @@ pub(crate) struct Checker<'a> {
     named: BTreeMap<String, NamedType<'a>>,
     units: Vec<UnitInfo<'a>>,
     unit_names: BTreeMap<String, UnitId>,
+    /// By block and name.
+    methods: BTreeMap<(UnitId, String), UnitId>,
     globals: Vec<Global<'a>>,
     global_names: BTreeMap<String, usize>,
     constants: BTreeMap<(Option<UnitId>, String), ConstantEntry<'a>>,
@@ -167,6 +181,7 @@ pub(crate) fn check<'a>(
         named: BTreeMap::new(),
         units: Vec::new(),
         unit_names: BTreeMap::new(),
+        methods: BTreeMap::new(),
         globals: Vec::new(),
         global_names: BTreeMap::new(),
         constants: BTreeMap::new(),
@@ -229,6 +244,11 @@ impl<'a> Checker<'a> {
         did_you_mean(name, candidates)
     }
 
+    /// Whether a place is in the library's own text, which is the last file.
+    fn in_prelude(&self, span: Span) -> bool {
+        self.sources.file_index(span) + 1 == self.sources.count()
+    }
+
     fn unit(&self, id: UnitId) -> &UnitInfo<'a> {
         &self.units[id.0 as usize]
     }
@@ -271,6 +291,7 @@ impl<'a> Checker<'a> {
             Type::Elementary(it) => it.name().to_owned(),
             Type::Enumeration(it) => it.name.clone(),
             Type::Subrange { name, .. } => name.clone(),
+            Type::Text(capacity) => format!("STRING[{capacity}]"),
             Type::Structure(it) => it.name.clone(),
             Type::Array(it) => {
                 let bounds: Vec<_> = it

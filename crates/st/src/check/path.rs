@@ -21,8 +21,20 @@ pub(super) enum Named {
 impl<'a> Checker<'a> {
     /// What a path leads to. Elements of enumerations are those of type `expected`, where several have the name.
     pub(super) fn named(&mut self, path: &'a Path, expected: Option<TypeId>) -> Named {
+        self.named_part(path, &path.selectors, expected)
+    }
+
+    /// What a path leads to with these of its selectors.
+    pub(super) fn named_part(
+        &mut self,
+        path: &'a Path,
+        mut selectors: &'a [Selector],
+        expected: Option<TypeId>,
+    ) -> Named {
         let key = path.root.key();
-        let mut selectors = path.selectors.as_slice();
+        if path.this {
+            return self.named_of_this(path, selectors);
+        }
         if let Some(value) = self.constant_named(&key, selectors, path.root.span) {
             return Named::Value(value);
         }
@@ -49,8 +61,56 @@ impl<'a> Checker<'a> {
         Named::Nothing
     }
 
+    /// A variable behind `THIS^.`: one of the block, whatever a method has.
+    fn named_of_this(&mut self, path: &'a Path, selectors: &'a [Selector]) -> Named {
+        let Some(block) = self.this_block() else {
+            self.error(
+                Code::Misplaced,
+                path.span,
+                "THIS^ is the instance of a FUNCTION_BLOCK, and this is none",
+                "name the variable directly",
+            );
+            return Named::Nothing;
+        };
+        let Some((place, _)) = self.unit(block).members.find(&path.root.key()) else {
+            let info = self.unit(block);
+            let names = info.members.list.iter().map(|member| member.name.as_str());
+            let guess = self.guess(&path.root.text, names);
+            let message = format!("{} has no variable {}", info.name, quoted(&path.root.text));
+            self.tell(Diagnostic::error(Code::UnknownName, path.root.span, message).maybe_help(guess));
+            return Named::Nothing;
+        };
+        if selectors.is_empty()
+            && let Some(value) = self.constant(Some(block), &path.root.key(), path.root.span)
+        {
+            return Named::Value(value);
+        }
+        let (place, fixed) = self.member_place(block, place);
+        self.select(place, fixed, selectors)
+    }
+
+    /// The function block whose instance the statements work on.
+    pub(super) fn this_block(&self) -> Option<UnitId> {
+        let unit = self.scope?;
+        match self.unit(unit).kind {
+            UnitKind::Block => Some(unit),
+            _ => self.unit(unit).owner,
+        }
+    }
+
+    /// A variable of the unit whose names count, or of the block whose method it is.
+    pub(super) fn local(&self, key: &str) -> Option<(UnitId, usize)> {
+        let scope = self.scope?;
+        let units = [Some(scope), self.unit(scope).owner];
+        units.into_iter().flatten().find_map(|unit| {
+            let (place, _) = self.unit(unit).members.find(key)?;
+            Some((unit, place))
+        })
+    }
+
     fn constant_named(&mut self, key: &str, selectors: &[Selector], span: Span) -> Option<Expr> {
-        if let Some(unit) = self.scope {
+        let block = self.scope.and_then(|unit| self.unit(unit).owner);
+        for unit in [self.scope, block].into_iter().flatten() {
             if selectors.is_empty()
                 && let Some(value) = self.constant(Some(unit), key, span)
             {
@@ -84,18 +144,13 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn variable_exists(&self, key: &str) -> bool {
-        let local = self
-            .scope
-            .is_some_and(|unit| self.unit(unit).members.find(key).is_some());
-        local || self.global_names.contains_key(key)
+    pub(super) fn variable_exists(&self, key: &str) -> bool {
+        self.local(key).is_some() || self.global_names.contains_key(key)
     }
 
     /// A variable of the unit, or a global one.
     fn variable(&mut self, key: &str, _span: Span) -> Option<(Place, Option<String>)> {
-        if let Some(unit) = self.scope
-            && let Some((place, _)) = self.unit(unit).members.find(key)
-        {
+        if let Some((unit, place)) = self.local(key) {
             return Some(self.member_place(unit, place));
         }
         let place = self.global_names.get(key).copied()?;
@@ -120,10 +175,10 @@ impl<'a> Checker<'a> {
         if let MemberKind::External(global) = member.kind {
             return self.global_place(global);
         }
-        let function = info.kind == UnitKind::Function;
+        let function = info.kind.has_frame();
         let fixed = if member.constant {
             Some(format!("`{}` is a CONSTANT", member.name))
-        } else if self.body.controls.contains(&place) {
+        } else if self.body.controls.contains(&(unit, place)) {
             Some(format!(
                 "`{}` is the control variable of a FOR that is running",
                 member.name
@@ -168,8 +223,21 @@ impl<'a> Checker<'a> {
         Named::Place(place, fixed)
     }
 
+    /// The key of a member, which a dialect may call otherwise.
+    pub(super) fn member_key(&self, unit: UnitId, name: &Ident) -> String {
+        let info = self.unit(unit);
+        let ours = match info.kind {
+            UnitKind::Library(_) => self.options.dialect.pin_called(&info.name, &name.text),
+            _ => None,
+        };
+        ours.map_or_else(|| name.key(), str::to_ascii_uppercase)
+    }
+
     fn member(&mut self, place: &mut Place, fixed: &mut Option<String>, name: &Ident) -> bool {
-        let key = name.key();
+        let key = match self.types.get(place.ty) {
+            Type::Block(unit) => self.member_key(*unit, name),
+            _ => name.key(),
+        };
         let members = match self.types.get(place.ty) {
             Type::Structure(structure) => &structure.members,
             Type::Block(unit) => &self.unit(*unit).members,
@@ -315,7 +383,9 @@ impl<'a> Checker<'a> {
         match path.selectors.as_slice() {
             [] => {}
             [Selector::Member(name)] => {
-                let known = self.named.contains_key(key) || self.library_types.contains_key(key);
+                let known = self.named.contains_key(key)
+                    || self.library_types.contains_key(key)
+                    || self.options.dialect.type_called(key).is_some();
                 let (ty, _) = known.then(|| self.find_type(key, path.root.span)).flatten()?;
                 if !self.types.is_enumeration(ty) {
                     return None;
@@ -369,10 +439,14 @@ impl<'a> Checker<'a> {
             self.error(Code::WrongType, name.span, message, "");
             return None;
         };
-        let found = of
-            .elements
-            .iter()
-            .find(|(it, _)| it.eq_ignore_ascii_case(&name.text));
+        let ours = self
+            .options
+            .dialect
+            .elements_called(&of.name)
+            .find(|(_, there)| of.library && there.eq_ignore_ascii_case(&name.text))
+            .map(|(ours, _)| ours.to_owned());
+        let wanted = ours.as_deref().unwrap_or(&name.text);
+        let found = of.elements.iter().find(|(it, _)| it.eq_ignore_ascii_case(wanted));
         match found {
             Some((_, number)) => Some(Expr {
                 kind: Kind::Integer(*number),

@@ -7,9 +7,12 @@ use crate::library::blocks;
 use crate::source::Span;
 use crate::syntax::{Expression, Ident, SpecKind, TypeSpec, Variables};
 use crate::types::{
-    Array, Constant, Elementary, Enumeration, Member, MemberKind, Members, Start, Structure, Type, TypeId,
-    Types, WRONG,
+    Array, Constant, Elementary, Enumeration, Member, MemberKind, Members, Start, Structure, TEXT_USUAL,
+    Type, TypeId, Types, WRONG,
 };
+
+/// The name of the type of strings.
+pub(super) const TEXT: &str = "STRING";
 
 /// Most dimensions of an array.
 const DIMENSIONS_MOST: usize = 6;
@@ -28,6 +31,7 @@ impl<'a> Checker<'a> {
                 (self.enumeration(base.as_ref(), elements, None), Start::Default)
             }
             SpecKind::Structure(members) => (self.structure(members, None), Start::Default),
+            SpecKind::Text(length) => (self.text_type(length), Start::Default),
             SpecKind::Wrong => (WRONG, Start::Default),
         }
     }
@@ -71,8 +75,14 @@ impl<'a> Checker<'a> {
 
     /// The type of this name in upper case, if there is one.
     pub(super) fn find_type(&mut self, key: &str, span: Span) -> Option<(TypeId, Start)> {
+        // The name that a dialect has for a type of the library.
+        let ours = self.options.dialect.type_called(key);
+        let key = ours.filter(|_| !self.named.contains_key(key)).unwrap_or(key);
         if let Some(it) = Elementary::find(key) {
             return Some((Types::of(it), Start::Default));
+        }
+        if key == TEXT {
+            return Some((self.types.text(TEXT_USUAL), Start::Default));
         }
         if self.named.contains_key(key) {
             return Some(self.named_type(key, span));

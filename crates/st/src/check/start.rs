@@ -25,6 +25,9 @@ impl<'a> Checker<'a> {
         if found.is_wrong() {
             return Start::Default;
         }
+        if let crate::typed::Kind::Text(bytes) = found.kind {
+            return Start::Text(bytes);
+        }
         match found.constant() {
             Some(constant) => Start::Value(constant),
             None => {

@@ -132,7 +132,7 @@ impl<'a> Checker<'a> {
         if value.is_wrong() {
             return None;
         }
-        if self.types.elementary(ty).is_some() {
+        if self.types.elementary(ty).is_some() || self.is_text(ty) {
             return Some(StmtKind::Assign(target, value));
         }
         let (size, _) = self.size(ty);
@@ -267,14 +267,11 @@ impl<'a> Checker<'a> {
 
     fn for_(&mut self, each: &'a For) -> Option<StmtKind> {
         let key = each.variable.key();
-        let member = self
-            .scope
-            .and_then(|unit| self.unit(unit).members.find(&key))
-            .map(|(place, _)| place);
+        let member = self.local(&key);
         let path_span = each.variable.span;
-        let found = match (self.scope, member) {
-            (Some(unit), Some(place)) => Some(self.member_place(unit, place)),
-            _ => match self.global_names.get(&key).copied() {
+        let found = match member {
+            Some((unit, place)) => Some(self.member_place(unit, place)),
+            None => match self.global_names.get(&key).copied() {
                 Some(place) => Some(self.global_place(place)),
                 None => {
                     let message = format!("there is no variable `{}`", each.variable.text);

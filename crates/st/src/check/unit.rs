@@ -26,6 +26,7 @@ impl<'a> Checker<'a> {
                 name: info.name.to_owned(),
                 span: Span::default(),
                 syntax: None,
+                owner: None,
                 state: State::Done,
                 members,
                 result: None,
@@ -78,10 +79,10 @@ impl<'a> Checker<'a> {
             });
         });
         let taken = |member: &&Member| matches!(member.kind, MemberKind::Input | MemberKind::InOut);
-        if self.unit(id).kind == UnitKind::Function
+        if self.unit(id).kind.has_frame()
             && self.unit(id).members.list.iter().filter(taken).count() > INPUTS_MOST
         {
-            let message = format!("a FUNCTION has at most {INPUTS_MOST} inputs");
+            let message = format!("a FUNCTION or METHOD has at most {INPUTS_MOST} inputs");
             self.error(Code::TooLarge, span, message, "hand over a structure");
         }
         let unit = self.unit_mut(id);
@@ -94,7 +95,7 @@ impl<'a> Checker<'a> {
     }
 
     fn section(&mut self, id: UnitId, section: &'a Section) {
-        let function = self.unit(id).kind == UnitKind::Function;
+        let function = self.unit(id).kind.has_frame();
         for variables in &section.variables {
             if section.kind == SectionKind::External {
                 self.externals(id, variables);
@@ -113,8 +114,8 @@ impl<'a> Checker<'a> {
                 self.error(
                     Code::Misplaced,
                     span,
-                    "a FUNCTION keeps nothing between calls",
-                    "make it a FUNCTION_BLOCK",
+                    "a FUNCTION or METHOD keeps nothing between calls",
+                    "make it a variable of a FUNCTION_BLOCK",
                 );
             }
             let (ty, default) = self.spec(&variables.spec);
@@ -141,10 +142,10 @@ impl<'a> Checker<'a> {
             self.error(Code::WrongType, span, message, "hand it over as VAR_IN_OUT");
         }
         if holds_block && kind == MemberKind::Temp {
-            let what = if self.unit(id).kind == UnitKind::Function {
-                "a FUNCTION"
-            } else {
-                "VAR_TEMP"
+            let what = match self.unit(id).kind {
+                UnitKind::Function => "a FUNCTION",
+                UnitKind::Method => "a METHOD",
+                _ => "VAR_TEMP",
             };
             let message = format!("{what} keeps nothing between calls, which a function block needs");
             self.error(

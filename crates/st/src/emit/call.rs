@@ -3,6 +3,7 @@
 use super::expression::Emitter;
 use super::function::{at, value_type};
 use super::place::Root;
+use super::text::Helper;
 use super::{FaultKind, Target, kind_of};
 use crate::check::UnitKind;
 use crate::library::blocks;
@@ -16,8 +17,11 @@ use wasm_encoder::{BlockType, ValType};
 const RECORDS: u32 = 8;
 
 impl Emitter<'_, '_, '_> {
-    /// A call of a FUNCTION; its value stays on the stack.
+    /// A call of a FUNCTION or METHOD; its value stays on the stack.
     pub(super) fn function_call(&mut self, call: &FunctionCall) {
+        if let Some(instance) = &call.instance {
+            self.whole_address(instance);
+        }
         for argument in &call.arguments {
             match argument {
                 Argument::Value(value) => self.expression(value),
@@ -27,6 +31,13 @@ impl Emitter<'_, '_, '_> {
         self.context.want(Target::Unit(call.unit));
         self.function.call(Target::Unit(call.unit));
         self.outputs(&call.outputs);
+        if let Some((buffer, bytes)) = call.buffer {
+            let value = self.function.local(ValType::I32);
+            let (buffer, bytes) = (buffer.cast_signed(), bytes.cast_signed());
+            let mut sink = self.function.sink();
+            sink.local_set(value).i32_const(buffer).local_get(value);
+            sink.i32_const(bytes).memory_copy(0, 0).i32_const(buffer);
+        }
     }
 
     /// Writes outputs to their variables.
@@ -46,11 +57,24 @@ impl Emitter<'_, '_, '_> {
                 self.expression(value);
                 self.store(of, offset);
             }
+            (None, _) if matches!(program.types.get(target.ty), Type::Text(_)) => {
+                self.whole_address(target);
+                self.assign_text(target.ty, |emitter| emitter.expression(value));
+            }
             (None, _) => {
                 let size = |unit: crate::types::UnitId| program.units[unit.0 as usize].members.size;
                 let (bytes, _) = program.types.size(target.ty, size);
                 self.copy(target, value, bytes);
             }
+        }
+    }
+
+    /// Copies a string, whose address `from` pushes, to the address on the stack.
+    pub(super) fn assign_text(&mut self, to: crate::types::TypeId, from: impl FnOnce(&mut Self)) {
+        if let Type::Text(capacity) = *self.context.program.types.get(to) {
+            self.function.sink().i32_const(capacity.into());
+            from(self);
+            self.helper(Helper::Assign);
         }
     }
 

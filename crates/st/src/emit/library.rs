@@ -2,6 +2,7 @@
 
 use super::expression::Emitter;
 use super::function::{at, value_type};
+use super::text::Helper;
 use super::{FaultKind, Target};
 use crate::layout;
 use crate::library::Function;
@@ -19,6 +20,14 @@ impl Emitter<'_, '_, '_> {
             Function::Rol | Function::Ror => self.rotate(function, of, values),
             Function::Time => {
                 self.function.sink().i32_const(0).i64_load(at(layout::NOW, 3));
+            }
+            Function::Len => {
+                values.iter().for_each(|value| self.expression(value));
+                self.function.sink().i32_load8_u(at(0, 0));
+            }
+            Function::Find => {
+                values.iter().for_each(|value| self.expression(value));
+                self.helper(Helper::Find);
             }
             Function::Min | Function::Max => self.extreme(function, of, values),
             // As MIN(MAX(IN, MN), MX).

@@ -12,8 +12,10 @@ mod looping;
 mod operator;
 mod place;
 mod statement;
+mod text;
 
 use crate::check::{Body, Program, Task, UnitKind};
+use crate::coverage::Counters;
 use crate::error::{Code, Diagnostic};
 use crate::layout;
 use crate::source::Span;
@@ -38,6 +40,7 @@ enum Target {
     Fault,
     Unit(UnitId),
     Task(usize),
+    Text(text::Helper),
     Import(&'static str),
 }
 
@@ -56,6 +59,8 @@ pub enum FaultKind {
     Step,
     /// A VAR_IN_OUT was never given.
     Unbound,
+    /// A position outside of a string, or a negative length; the value is that.
+    Position,
     /// No fault: a loop, which is told if the fuel is used up.
     Loop,
 }
@@ -71,6 +76,7 @@ impl FaultKind {
             Self::Choice => "MUX has no such input",
             Self::Step => "a FOR with a step of 0",
             Self::Unbound => "a VAR_IN_OUT that was never given",
+            Self::Position => "a position outside of its string",
             Self::Loop => "a loop that did not end",
         }
     }
@@ -83,6 +89,7 @@ impl FaultKind {
             Self::Index => "the index",
             Self::Subrange => "the value",
             Self::Choice => "K",
+            Self::Position => "the position",
             Self::Step | Self::Unbound | Self::Loop => return None,
         };
         Some(format!("{what} is {value}"))
@@ -104,6 +111,7 @@ struct Context<'p, 'a> {
     wanted: Vec<Target>,
     numbers: BTreeMap<Target, usize>,
     sites: Vec<Site>,
+    counters: &'p Counters,
     /// What variables begin as that are made at every call, behind everything else.
     templates: Vec<u8>,
     templates_at: u32,
@@ -133,13 +141,14 @@ pub(crate) struct Emitted {
 }
 
 /// Writes the module; `image` is what stands in memory before the first scan.
-pub(crate) fn emit(program: &Program<'_>, image: &[u8]) -> Result<Emitted, Diagnostic> {
+pub(crate) fn emit(program: &Program<'_>, image: &[u8], counters: &Counters) -> Result<Emitted, Diagnostic> {
     let mut context = Context {
         program,
         bodies: program.bodies.iter().map(|body| (body.unit, body)).collect(),
         wanted: Vec::new(),
         numbers: BTreeMap::new(),
         sites: Vec::new(),
+        counters,
         templates: Vec::new(),
         templates_at: program.layout.end.next_multiple_of(8),
     };
@@ -154,6 +163,7 @@ pub(crate) fn emit(program: &Program<'_>, image: &[u8]) -> Result<Emitted, Diagn
         let function = match target {
             Target::Import(_) => continue,
             Target::Fault => fault_function(),
+            Target::Text(helper) => text::helper(helper),
             Target::Task(task) => statement::task(&mut context, task),
             Target::Unit(unit) => statement::unit(&mut context, unit),
         };

@@ -5,9 +5,10 @@ use super::function::{Function, at, value_type};
 use super::place::Root;
 use super::{Context, kind_of};
 use crate::check::UnitKind;
+use crate::source::Span;
 use crate::start;
 use crate::typed::{Base, Branch, Expr, Place, Stmt, StmtKind};
-use crate::types::{Elementary, Member, MemberKind, TypeId, UnitId};
+use crate::types::{Elementary, Member, MemberKind, Type, TypeId, UnitId};
 use wasm_encoder::{BlockType, ValType};
 
 /// Most entries of a table of branches, for each label.
@@ -23,11 +24,12 @@ pub(super) fn task(context: &mut Context<'_, '_>, task: usize) -> Function {
     emitter.function
 }
 
-/// A program, a function block or a FUNCTION.
+/// A program, a function block, a FUNCTION or a METHOD, which gets its instance before its parameters.
 pub(super) fn unit(context: &mut Context<'_, '_>, id: UnitId) -> Function {
     let program = context.program;
     let info = &program.units[id.0 as usize];
-    let is_function = kind_of(program, id) == UnitKind::Function;
+    let is_function = kind_of(program, id).has_frame();
+    let is_method = kind_of(program, id) == UnitKind::Method;
     let members = &info.members.list;
     let result = info.result.and_then(|place| members.get(place));
     let (parameters, value) = if is_function {
@@ -39,7 +41,11 @@ pub(super) fn unit(context: &mut Context<'_, '_>, id: UnitId) -> Function {
             _ => Emitter::parameter(program.types.elementary(member.ty)),
         });
         (
-            taken.collect(),
+            is_method
+                .then_some(ValType::I32)
+                .into_iter()
+                .chain(taken)
+                .collect(),
             result.map(|member| Emitter::parameter(program.types.elementary(member.ty))),
         )
     } else {
@@ -53,7 +59,7 @@ pub(super) fn unit(context: &mut Context<'_, '_>, id: UnitId) -> Function {
         (Root::Local(0), 0)
     };
     if is_function {
-        emitter.take_parameters(members, frame);
+        emitter.take_parameters(members, frame, u32::from(is_method));
     }
     if let Some(body) = body {
         for member in body.fresh.iter().filter_map(|place| members.get(*place)) {
@@ -81,12 +87,12 @@ const fn place(offset: u32, ty: TypeId) -> Place {
 }
 
 impl Emitter<'_, '_, '_> {
-    /// Puts the parameters of a FUNCTION where its variables stand.
-    fn take_parameters(&mut self, members: &[Member], frame: u32) {
+    /// Puts the parameters of a FUNCTION, from local variable `first` on, where its variables stand.
+    fn take_parameters(&mut self, members: &[Member], frame: u32, first: u32) {
         let taken = members
             .iter()
             .filter(|member| matches!(member.kind, MemberKind::Input | MemberKind::InOut));
-        for (local, member) in (0..).zip(taken) {
+        for (local, member) in (first..).zip(taken) {
             let offset = frame + member.offset;
             match (member.kind, self.type_of(member.ty)) {
                 (MemberKind::InOut, _) => {
@@ -99,6 +105,12 @@ impl Emitter<'_, '_, '_> {
                 (_, Some(of)) => {
                     self.function.sink().i32_const(0).local_get(local);
                     self.store(of, offset);
+                }
+                (_, None) if matches!(self.context.program.types.get(member.ty), Type::Text(_)) => {
+                    self.function.sink().i32_const(offset.cast_signed());
+                    self.assign_text(member.ty, |emitter| {
+                        emitter.function.sink().local_get(local);
+                    });
                 }
                 (_, None) => {
                     let bytes = self.bytes(member.ty);
@@ -154,9 +166,25 @@ impl Emitter<'_, '_, '_> {
         }
     }
 
+    /// Counts a statement or one of its branches, if that is asked for.
+    fn count(&mut self, place: Span, branch: u32) {
+        if let Some(address) = self.context.counters.address(place, branch) {
+            let mut sink = self.function.sink();
+            sink.i32_const(0).i32_const(0).i64_load(at(address, 3));
+            sink.i64_const(1).i64_add().i64_store(at(address, 3));
+        }
+    }
+
+    /// The statements of a branch, the first of which is number 1.
+    fn branch(&mut self, list: &[Stmt], of: Span, number: u32) {
+        self.count(of, number);
+        self.statements(list);
+    }
+
     pub(super) fn statements(&mut self, list: &[Stmt]) {
         for statement in list {
             let mark = self.function.mark();
+            self.count(statement.span, 0);
             self.statement(statement);
             self.function.release(mark);
         }
@@ -175,8 +203,8 @@ impl Emitter<'_, '_, '_> {
                 }
             }
             StmtKind::Block(call) => self.block_call(call, span),
-            StmtKind::If(branches, other) => self.if_(branches, other),
-            StmtKind::Case(selector, of, branches, other) => self.case(selector, *of, branches, other),
+            StmtKind::If(branches, other) => self.if_(branches, other, span),
+            StmtKind::Case(selector, of, branches, other) => self.case(selector, *of, branches, other, span),
             StmtKind::For(each) => self.for_(each, span),
             StmtKind::While(condition, body) => self.while_(condition, body, span),
             StmtKind::Repeat(body, condition) => self.repeat(body, condition, span),
@@ -198,32 +226,33 @@ impl Emitter<'_, '_, '_> {
         }
     }
 
-    fn if_(&mut self, branches: &[(Expr, Vec<Stmt>)], other: &[Stmt]) {
+    fn if_(&mut self, branches: &[(Expr, Vec<Stmt>)], other: &[Stmt], span: Span) {
+        let last = branches.len() as u32 + 1;
         if let [(condition, body)] = branches {
             self.expression(condition);
             self.function.if_(BlockType::Empty);
-            self.statements(body);
-            if !other.is_empty() {
+            self.branch(body, span, 1);
+            if !other.is_empty() || self.context.counters.address(span, last).is_some() {
                 self.function.else_();
-                self.statements(other);
+                self.branch(other, span, last);
             }
             self.function.end();
             return;
         }
         // Side by side, so that a long row of ELSIFs is not deep.
         let end = self.function.block();
-        for (condition, body) in branches {
+        for (number, (condition, body)) in (1..).zip(branches) {
             self.expression(condition);
             self.function.if_(BlockType::Empty);
-            self.statements(body);
+            self.branch(body, span, number);
             self.function.branch(end);
             self.function.end();
         }
-        self.statements(other);
+        self.branch(other, span, last);
         self.function.end();
     }
 
-    fn case(&mut self, selector: &Expr, of: Elementary, branches: &[Branch], other: &[Stmt]) {
+    fn case(&mut self, selector: &Expr, of: Elementary, branches: &[Branch], other: &[Stmt], span: Span) {
         let ty = value_type(of);
         let local = self.function.local(ty);
         self.expression(selector);
@@ -233,14 +262,21 @@ impl Emitter<'_, '_, '_> {
         let high = labels().map(|(_, to)| *to).max().unwrap_or(0);
         let count = labels().count() as i128;
         if ty == ValType::I32 && count >= 3 && high - low < count * SPARSE {
-            self.table(local, low, high, branches, other);
+            self.table(local, (low, high), branches, other, span);
         } else {
-            self.comparisons(local, of, branches, other);
+            self.comparisons(local, of, branches, other, span);
         }
     }
 
     /// A branch by table: one jump however many labels there are.
-    fn table(&mut self, local: u32, low: i128, high: i128, branches: &[Branch], other: &[Stmt]) {
+    fn table(
+        &mut self,
+        local: u32,
+        (low, high): (i128, i128),
+        branches: &[Branch],
+        other: &[Stmt],
+        span: Span,
+    ) {
         let count = branches.len() as u32;
         let mut targets = vec![count; (high - low + 1) as usize];
         for (place, branch) in (0..).zip(branches) {
@@ -259,21 +295,21 @@ impl Emitter<'_, '_, '_> {
             .i32_const(low as i32)
             .i32_sub()
             .br_table(targets, count);
-        for branch in branches {
+        for (number, branch) in (1..).zip(branches) {
             self.function.end();
-            self.statements(&branch.body);
+            self.branch(&branch.body, span, number);
             self.function.branch(end);
         }
         self.function.end();
-        self.statements(other);
+        self.branch(other, span, count + 1);
         self.function.end();
     }
 
     /// One comparison after the other.
-    fn comparisons(&mut self, local: u32, of: Elementary, branches: &[Branch], other: &[Stmt]) {
+    fn comparisons(&mut self, local: u32, of: Elementary, branches: &[Branch], other: &[Stmt], span: Span) {
         let wide = of.size() == 8;
         let end = self.function.block();
-        for branch in branches {
+        for (number, branch) in (1..).zip(branches) {
             self.function.sink().i32_const(0);
             for (from, to) in &branch.labels {
                 self.function.sink().local_get(local);
@@ -290,11 +326,11 @@ impl Emitter<'_, '_, '_> {
                 self.function.sink().i32_or();
             }
             self.function.if_(BlockType::Empty);
-            self.statements(&branch.body);
+            self.branch(&branch.body, span, number);
             self.function.branch(end);
             self.function.end();
         }
-        self.statements(other);
+        self.branch(other, span, branches.len() as u32 + 1);
         self.function.end();
     }
 }

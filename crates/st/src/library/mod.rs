@@ -54,6 +54,15 @@ functions! {
     Rol = "ROL", &["IN", "N"];
     Ror = "ROR", &["IN", "N"];
     Time = "TIME", &[];
+    Len = "LEN", &["IN"];
+    Left = "LEFT", &["IN", "L"];
+    Right = "RIGHT", &["IN", "L"];
+    Mid = "MID", &["IN", "L", "P"];
+    Concat = "CONCAT", &["IN1"];
+    Insert = "INSERT", &["IN1", "IN2", "P"];
+    Delete = "DELETE", &["IN", "L", "P"];
+    Replace = "REPLACE", &["IN1", "IN2", "L", "P"];
+    Find = "FIND", &["IN1", "IN2"];
 }
 
 impl Function {
@@ -84,7 +93,7 @@ impl Function {
 
     /// Whether it takes any number of inputs.
     pub(crate) const fn is_open(self) -> bool {
-        matches!(self, Self::Min | Self::Max | Self::Mux)
+        matches!(self, Self::Min | Self::Max | Self::Mux | Self::Concat)
     }
 }
 
@@ -118,9 +127,10 @@ pub(crate) fn conversion(name: &str) -> Option<(Option<&str>, Elementary)> {
     Some((Some(from), Elementary::find(to)?))
 }
 
-/// Counters for numbers of other widths than INT, in Structured Text: what the table of blocks does not have.
+/// What the table of blocks does not have, in Structured Text: counters for numbers of other widths than INT, and
+/// conversions to strings and back.
 pub(crate) fn prelude() -> String {
-    use Elementary::{Dint, Lint, Udint, Ulint};
+    use Elementary::{Byte, Dint, Dword, Int, Lint, Lword, Sint, Udint, Uint, Ulint, Usint, Word};
     let counters = [Dint, Lint, Udint, Ulint].map(|ty| {
         let (lowest, highest) = ty.range();
         include_str!("counters.st")
@@ -128,7 +138,22 @@ pub(crate) fn prelude() -> String {
             .replace("HIGHEST", &highest.to_string())
             .replace("NUMBER", ty.name())
     });
-    counters.concat()
+    let signed = [(Sint, "LINT"), (Int, "LINT"), (Dint, "LINT")];
+    let unsigned = [Usint, Uint, Udint, Byte, Word, Dword, Lword].map(|ty| (ty, "ULINT"));
+    let conversions = signed.iter().chain(&unsigned).map(|(ty, widest)| {
+        include_str!("string_of.st")
+            .replace("WIDEST", widest)
+            .replace("NUMBER", ty.name())
+    });
+    let back = "FUNCTION STRING_TO_ULINT : ULINT VAR_INPUT IN : STRING[254]; END_VAR
+        STRING_TO_ULINT := LINT_TO_ULINT(STRING_TO_LINT(IN)); END_FUNCTION";
+    [
+        counters.concat(),
+        include_str!("strings.st").to_owned(),
+        back.to_owned(),
+        conversions.collect(),
+    ]
+    .join("\n")
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What a program does with its variables: who is called where, what is read and written.
 
-use crate::check::{Program, UnitKind};
+use crate::check::Program;
 use crate::source::Span;
 use crate::typed::{Argument, Base, Expr, Kind, Place, Stmt, StmtKind};
 use crate::types::{Elementary, Type, TypeId, UnitId};
@@ -201,7 +201,9 @@ impl Walk<'_, '_, '_> {
 
     fn expression(&mut self, value: &Expr) {
         match &value.kind {
-            Kind::Integer(_) | Kind::Real(_) | Kind::Wrong => {}
+            Kind::Integer(_) | Kind::Real(_) | Kind::Text(_) | Kind::Wrong => {}
+            Kind::Join(_, values, _) => values.iter().for_each(|value| self.expression(value)),
+            Kind::Compare(_, sides) => sides.iter().for_each(|side| self.expression(side)),
             Kind::Load(place) => self.read(place),
             Kind::Negate(_, inner) | Kind::Not(_, inner) | Kind::Within(inner, ..) => self.expression(inner),
             Kind::Convert(inner, from, to) => {
@@ -226,6 +228,9 @@ impl Walk<'_, '_, '_> {
                 }
             }
             Kind::Call(call) => {
+                if let Some(instance) = &call.instance {
+                    self.write(instance);
+                }
                 for argument in &call.arguments {
                     match argument {
                         Argument::Value(value) => self.expression(value),
@@ -266,9 +271,10 @@ impl Walk<'_, '_, '_> {
         let program = self.program;
         let info = |unit: UnitId| program.units.get(unit.0 as usize);
         let (unit, offset) = match (place.base, self.unit) {
-            (Base::This, Some(unit)) => (Some(unit), place.offset),
-            (Base::ThisPointer(offset), Some(unit)) => (Some(unit), offset),
-            (Base::Memory | Base::MemoryPointer(_), Some(unit)) if info(unit)?.kind == UnitKind::Function => {
+            // A method works on the variables of its block.
+            (Base::This, Some(unit)) => (info(unit)?.owner.or(Some(unit)), place.offset),
+            (Base::ThisPointer(offset), Some(unit)) => (info(unit)?.owner.or(Some(unit)), offset),
+            (Base::Memory | Base::MemoryPointer(_), Some(unit)) if info(unit)?.kind.has_frame() => {
                 let address = match place.base {
                     Base::MemoryPointer(address) => address,
                     _ => place.offset,

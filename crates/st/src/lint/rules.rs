@@ -176,7 +176,7 @@ fn unused(program: &Program<'_>, facts: &Facts, told: &mut Vec<Diagnostic>) {
     let of_units = program.units.iter().enumerate().flat_map(|(unit, info)| {
         let own = matches!(
             info.kind,
-            UnitKind::Program | UnitKind::Block | UnitKind::Function
+            UnitKind::Program | UnitKind::Block | UnitKind::Function | UnitKind::Method
         );
         let members = info.members.list.iter().enumerate().filter(move |_| own);
         members.map(move |(place, member)| {

@@ -8,7 +8,7 @@ use crate::syntax::{
     Configuration, Instance, Item, Section, SectionKind, Task, TypeDeclaration, Unit, UnitKind, Variables,
 };
 
-const FLAT: &str = "write FUNCTION_BLOCKs that hold instances of others, and FUNCTIONs";
+pub(super) const FLAT: &str = "write FUNCTION_BLOCKs that hold instances of others, and FUNCTIONs";
 
 impl Parser<'_> {
     pub(super) fn item(&mut self, items: &mut Vec<Item>) {
@@ -148,11 +148,7 @@ impl Parser<'_> {
 
     fn unit(&mut self, kind: UnitKind, end: Word) -> Option<Item> {
         let open = self.next();
-        while ["ABSTRACT", "FINAL", "PUBLIC", "PRIVATE", "INTERNAL", "PROTECTED"]
-            .iter()
-            .any(|it| self.is_name(it))
-            && matches!(self.ahead(1), Token::Name)
-        {
+        while self.is_access() {
             let span = self.next();
             let what = self.text_of(span).to_ascii_uppercase();
             self.unsupported(span, &what, "leave it out");
@@ -161,6 +157,7 @@ impl Parser<'_> {
             UnitKind::Program => "a program",
             UnitKind::FunctionBlock => "a function block",
             UnitKind::Function => "a function",
+            UnitKind::Method => "a method",
         };
         let Some(name) = self.new_name(what).or_else(|| {
             self.next();
@@ -190,6 +187,64 @@ impl Parser<'_> {
         }
         self.take(Token::Semicolon);
         self.open.push(end);
+        let sections = self.sections();
+        let mut methods = Vec::new();
+        let body = self.body(kind, open, &name.text, &mut methods);
+        self.open.pop();
+        Some(Item::Unit(Unit {
+            kind,
+            name,
+            result,
+            sections,
+            body,
+            methods,
+            private: false,
+        }))
+    }
+
+    /// Whether a word stands here that says who may use something.
+    fn is_access(&self) -> bool {
+        ["ABSTRACT", "FINAL", "PUBLIC", "PRIVATE", "INTERNAL", "PROTECTED"]
+            .iter()
+            .any(|it| self.is_name(it))
+            && self.ahead(1) == Token::Name
+    }
+
+    /// METHOD .. END_METHOD.
+    fn method(&mut self) -> Option<Unit> {
+        let open = self.next();
+        let mut private = false;
+        while self.is_access() {
+            let span = self.next();
+            match self.text_of(span).to_ascii_uppercase().as_str() {
+                "PRIVATE" | "PROTECTED" => private = true,
+                "ABSTRACT" => self.unsupported(span, "ABSTRACT", "give the method statements"),
+                _ => {}
+            }
+        }
+        let Some(name) = self.new_name("a method") else {
+            self.skip_past(Word::EndMethod);
+            return None;
+        };
+        let result = self.take(Token::Colon).then(|| self.type_spec(&mut None));
+        self.take(Token::Semicolon);
+        self.open.push(Word::EndMethod);
+        let sections = self.sections();
+        let body = self.body(UnitKind::Method, open, &name.text, &mut Vec::new());
+        self.open.pop();
+        Some(Unit {
+            kind: UnitKind::Method,
+            name,
+            result,
+            sections,
+            body,
+            methods: Vec::new(),
+            private,
+        })
+    }
+
+    /// The sections of variables of a unit.
+    fn sections(&mut self) -> Vec<Section> {
         let mut sections = Vec::new();
         while let Token::Word(word) = self.token() {
             match word {
@@ -213,19 +268,23 @@ impl Parser<'_> {
                 _ => break,
             }
         }
-        let body = self.body(end, open, &name.text);
-        self.open.pop();
-        Some(Item::Unit(Unit {
-            kind,
-            name,
-            result,
-            sections,
-            body,
-        }))
+        sections
     }
 
-    /// The statements of a unit, up to and with its end.
-    fn body(&mut self, end: Word, open: Span, name: &str) -> Vec<crate::syntax::Statement> {
+    /// The statements of a unit, up to and with its end; methods stand between them.
+    fn body(
+        &mut self,
+        kind: UnitKind,
+        open: Span,
+        name: &str,
+        methods: &mut Vec<Unit>,
+    ) -> Vec<crate::syntax::Statement> {
+        let end = match kind {
+            UnitKind::Program => Word::EndProgram,
+            UnitKind::FunctionBlock => Word::EndFunctionBlock,
+            UnitKind::Function => Word::EndFunction,
+            UnitKind::Method => Word::EndMethod,
+        };
         let mut body = Vec::new();
         loop {
             body.extend(self.statements());
@@ -234,14 +293,21 @@ impl Parser<'_> {
                     self.next();
                     return body;
                 }
-                Token::Word(word @ (Word::Method | Word::Property)) => {
+                Token::Word(Word::Method) if kind == UnitKind::FunctionBlock => {
+                    methods.extend(self.method());
+                }
+                Token::Word(Word::Method) if kind != UnitKind::Method => {
+                    self.tell_here(
+                        Code::Misplaced,
+                        "a METHOD belongs to a FUNCTION_BLOCK",
+                        "make it a FUNCTION, or the program a FUNCTION_BLOCK",
+                    );
+                    self.skip_past(Word::EndMethod);
+                }
+                Token::Word(Word::Property) => {
                     let span = self.next();
-                    let what = format!("{} of a function block", word.text());
-                    self.unsupported(span, &what, "make it a function block or a FUNCTION of its own");
-                    self.skip_past(match word {
-                        Word::Method => Word::EndMethod,
-                        _ => Word::EndProperty,
-                    });
+                    self.unsupported(span, "PROPERTY", "write two methods, or VAR_INPUT and VAR_OUTPUT");
+                    self.skip_past(Word::EndProperty);
                 }
                 Token::Word(word)
                     if skip::is_section(word) && word != Word::EndVar && word != Word::EndStruct =>

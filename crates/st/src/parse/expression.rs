@@ -8,9 +8,8 @@ use crate::syntax::{
     Argument, Call, Expression, ExpressionKind as Kind, Ident, Operator, Path, Selector, Way,
 };
 
-/// What to use in place of strings.
-pub(super) const STRINGS: &str =
-    "strings are not supported yet: use a number or an enumeration for what the program decides on";
+/// What to use in place of strings of wide characters.
+pub(super) const STRINGS: &str = "use STRING, whose literals stand between `'`";
 
 impl Parser<'_> {
     pub(super) fn expression(&mut self) -> Expression {
@@ -184,17 +183,14 @@ impl Parser<'_> {
                     span,
                 };
                 let callee = Path {
+                    this: false,
                     root,
                     selectors: Vec::new(),
                     span,
                 };
                 return self.call_expression(callee);
             }
-            Token::Text => {
-                self.unsupported(from, "STRING", STRINGS);
-                self.next();
-                Kind::Wrong
-            }
+            Token::Text => self.text(),
             Token::WideText => {
                 self.unsupported(from, "WSTRING", STRINGS);
                 self.next();
@@ -209,9 +205,9 @@ impl Parser<'_> {
                 self.next();
                 Kind::Wrong
             }
-            Token::Word(word @ (Word::This | Word::Super)) => {
-                let what = format!("{}^", word.text());
-                self.unsupported(from, &what, "name the variables of the block directly");
+            Token::Word(Word::This) => return self.name_in_expression(),
+            Token::Word(Word::Super) => {
+                self.unsupported(from, "SUPER^", super::declaration::FLAT);
                 self.given_up(from);
                 Kind::Wrong
             }
@@ -250,6 +246,12 @@ impl Parser<'_> {
 
     /// A variable, or the name of what is called.
     pub(super) fn path(&mut self) -> Option<Path> {
+        let from = self.span();
+        let this = self.take_word(Word::This);
+        if this {
+            self.take(Token::Caret);
+            self.expect(Token::Dot, ".", "behind THIS^");
+        }
         let root = self.ident("a variable")?;
         let mut selectors = Vec::new();
         loop {
@@ -283,8 +285,9 @@ impl Parser<'_> {
                     );
                 }
                 _ => {
-                    let span = root.span.to(self.before());
+                    let span = from.to(self.before());
                     return Some(Path {
+                        this,
                         root,
                         selectors,
                         span,

@@ -5,6 +5,7 @@ use crate::error::{Code, Diagnostic, quoted};
 use crate::lex::{Token, Word};
 use crate::source::Span;
 use crate::syntax::{Expression, ExpressionKind as Kind, Ident};
+use crate::types::TEXT_MOST;
 
 const UNITS: [(&str, i128); 7] = [
     ("d", 86_400_000_000_000),
@@ -127,9 +128,10 @@ impl Parser<'_> {
                 let text = self.text_of(span).to_owned();
                 return Kind::Element(ty, Ident { text, span });
             }
-            Token::Text | Token::WideText => {
+            Token::Text if !negative => self.text(),
+            Token::WideText => {
                 let span = self.next();
-                self.unsupported(span, "STRING", super::expression::STRINGS);
+                self.unsupported(span, "WSTRING", super::expression::STRINGS);
                 return Kind::Wrong;
             }
             _ => {
@@ -146,6 +148,25 @@ impl Parser<'_> {
         Kind::Typed(ty, Box::new(Expression { kind, span }))
     }
 
+    /// `'it$'s'`
+    pub(super) fn text(&mut self) -> Kind {
+        let span = self.next();
+        let inner = self.text_of(span).get(1..).unwrap_or_default();
+        let inner = inner.strip_suffix('\'').unwrap_or(inner);
+        match unescaped(inner) {
+            Ok(bytes) if bytes.len() <= usize::from(TEXT_MOST) => Kind::Text(bytes),
+            Ok(bytes) => {
+                let why = format!("a string has at most {TEXT_MOST} bytes, not {}", bytes.len());
+                self.bad_literal(span, why, "put it together with CONCAT where it is used")
+            }
+            Err(sign) => {
+                let why = format!("{} is no character", quoted(&sign));
+                let help = "write $$, $', $L, $N, $P, $R, $T, or a byte in two digits of base 16: $0A";
+                self.bad_literal(span, why, help)
+            }
+        }
+    }
+
     pub(super) fn boolean(&mut self, value: bool) -> Kind {
         self.next();
         Kind::Bool(value)
@@ -160,6 +181,35 @@ impl Parser<'_> {
             self.next();
         }
     }
+}
+
+/// The bytes of a string as it is written, or the escape that is none.
+fn unescaped(text: &str) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let mut rest = text;
+    while let Some((plain, behind)) = rest.split_once('$') {
+        bytes.extend(plain.as_bytes());
+        let digits = behind
+            .get(..2)
+            .filter(|it| it.bytes().all(|it| it.is_ascii_hexdigit()));
+        if let Some(digits) = digits {
+            bytes.extend(u8::from_str_radix(digits, 16));
+            rest = behind.get(2..).unwrap_or_default();
+            continue;
+        }
+        let sign = behind.chars().next().unwrap_or(' ');
+        bytes.push(match sign.to_ascii_uppercase() {
+            '$' | '\'' => sign as u8,
+            'L' | 'N' => b'\n',
+            'P' => 0x0C,
+            'R' => b'\r',
+            'T' => b'\t',
+            _ => return Err(format!("${sign}")),
+        });
+        rest = behind.get(1..).unwrap_or_default();
+    }
+    bytes.extend(rest.as_bytes());
+    Ok(bytes)
 }
 
 /// A duration behind its `#`, in lower case.

@@ -81,8 +81,8 @@ impl Parser<'_> {
                 self.next();
                 Some(Kind::Empty)
             }
+            Token::Name | Token::Word(Word::This) => self.assignment_or_call(),
             Token::Word(word) => self.keyword_statement(word),
-            Token::Name => self.assignment_or_call(),
             Token::Address => {
                 self.unsupported(
                     from,
@@ -139,12 +139,8 @@ impl Parser<'_> {
                 self.skip_to_semicolon();
                 return None;
             }
-            Word::This | Word::Super => {
-                self.unsupported(
-                    from,
-                    &format!("{}^", word.text()),
-                    "name the variables of the block directly",
-                );
+            Word::Super => {
+                self.unsupported(from, "SUPER^", super::declaration::FLAT);
                 self.skip_to_semicolon();
                 return None;
             }

@@ -70,7 +70,18 @@ impl Parser<'_> {
             }
         }
         let upper = name.key();
-        if upper == "STRING" || upper == "WSTRING" {
+        if upper == "STRING" && matches!(self.token(), Token::OpenBracket | Token::Open) {
+            let close = if self.take(Token::OpenBracket) {
+                (Token::CloseBracket, "]")
+            } else {
+                self.next();
+                (Token::Close, ")")
+            };
+            let length = self.expression();
+            self.expect(close.0, close.1, "behind the length of a STRING");
+            return SpecKind::Text(Box::new(length));
+        }
+        if upper == "WSTRING" {
             self.unsupported(name.span, &upper, STRINGS);
             if matches!(self.token(), Token::OpenBracket | Token::Open) {
                 self.next();

@@ -88,6 +88,13 @@ impl Symbols {
         }
     }
 
+    /// Whether a STRING stands at a path, which is no signal.
+    #[must_use]
+    pub fn is_text(&self, path: &str) -> bool {
+        self.part(path)
+            .is_some_and(|part| matches!(self.types.get(part.ty), Type::Text(_)))
+    }
+
     pub(super) fn search(&self, part: &Part, wanted: Wanted, most: usize, found: &mut Vec<Symbol>) {
         if found.len() >= most {
             return;

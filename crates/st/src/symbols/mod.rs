@@ -7,6 +7,7 @@ pub(crate) use bind::bind;
 pub use columns::BlockAt;
 
 use crate::check::{Instance, Program, UnitKind};
+use crate::coverage::Counter;
 use crate::emit::{FaultKind, Site};
 use crate::source::{Position, Sources, Span};
 use crate::start;
@@ -106,6 +107,7 @@ pub struct Symbols {
     units: Vec<Unit>,
     roots: Vec<Root>,
     places: Vec<Place>,
+    counters: Vec<Counter>,
     tasks: Vec<Task>,
 }
 
@@ -121,7 +123,12 @@ struct Part {
 }
 
 impl Symbols {
-    pub(crate) fn new(program: Program<'_>, sites: Vec<Site>, sources: &Sources) -> Self {
+    pub(crate) fn new(
+        program: Program<'_>,
+        sites: Vec<Site>,
+        counters: Vec<Counter>,
+        sources: &Sources,
+    ) -> Self {
         let places = sites.into_iter().map(|site| Place {
             file: sources.file_name(site.span).to_owned(),
             position: sources.position(site.span.start),
@@ -162,6 +169,7 @@ impl Symbols {
             types: std::sync::Arc::new(types),
             roots,
             places,
+            counters,
         }
     }
 
@@ -169,6 +177,12 @@ impl Symbols {
     #[must_use]
     pub fn tasks(&self) -> &[Task] {
         &self.tasks
+    }
+
+    /// Where statements and branches are counted; none unless [`Options::coverage`](crate::Options::coverage) is set.
+    #[must_use]
+    pub fn counters(&self) -> &[Counter] {
+        &self.counters
     }
 
     /// The places of faults and loops; number 1 is the first one.

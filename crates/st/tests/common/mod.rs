@@ -61,7 +61,11 @@ impl Running {
     }
 
     pub fn of(compiled: Compiled) -> Self {
-        let program = Program::compile(&compiled.wasm, Settings::default()).unwrap();
+        Self::with(compiled, Settings::default())
+    }
+
+    pub fn with(compiled: Compiled, settings: Settings) -> Self {
+        let program = Program::compile(&compiled.wasm, settings).unwrap();
         Self {
             guest: program.start().unwrap(),
             machine: Machine::new(),

@@ -1,0 +1,114 @@
+//! Strings: their literals, comparisons and functions.
+
+use super::Checker;
+use crate::error::{Code, Diagnostic};
+use crate::library::Function;
+use crate::source::Span;
+use crate::syntax::Expression;
+use crate::typed::{Expr, Kind, Operation};
+use crate::types::{BOOL, Elementary, TEXT_MOST, Type, TypeId, Types};
+
+impl<'a> Checker<'a> {
+    /// The type STRING[n].
+    pub(super) fn text_type(&mut self, length: &'a Expression) -> TypeId {
+        let Some(number) = self.whole(length) else {
+            return crate::types::WRONG;
+        };
+        match u8::try_from(number) {
+            Ok(capacity) if (1..=TEXT_MOST).contains(&capacity) => self.types.text(capacity),
+            _ => {
+                let message = format!("a STRING has 1 to {TEXT_MOST} bytes, not {number}");
+                self.error(Code::OutOfRange, length.span, message, "");
+                crate::types::WRONG
+            }
+        }
+    }
+
+    pub(super) fn is_text(&self, ty: TypeId) -> bool {
+        matches!(self.types.get(ty), Type::Text(_))
+    }
+
+    /// A string as one of another length: what is longer than that is cut when it is assigned; a literal is told.
+    pub(super) fn text_value(&mut self, value: Expr, capacity: u8) -> Expr {
+        match &value.kind {
+            Kind::Text(bytes) if bytes.len() > usize::from(capacity) => {
+                let message = format!("STRING[{capacity}] does not hold {} bytes", bytes.len());
+                self.error(Code::OutOfRange, value.span, message, "declare it longer");
+                Expr::wrong(value.span)
+            }
+            _ => value,
+        }
+    }
+
+    /// Two strings are compared byte by byte.
+    pub(super) fn compare_texts(&mut self, left: Expr, operation: Operation, right: Expr) -> Expr {
+        Expr {
+            span: left.span.to(right.span),
+            kind: Kind::Compare(operation, Box::new([left, right])),
+            ty: BOOL,
+        }
+    }
+
+    /// LEN, CONCAT and their kin.
+    pub(super) fn text_function(
+        &mut self,
+        function: Function,
+        arguments: &[&'a Expression],
+        span: Span,
+    ) -> Expr {
+        let inputs = function.inputs();
+        let mut values = Vec::new();
+        for (place, argument) in arguments.iter().enumerate() {
+            let number = inputs.get(place).is_some_and(|name| ["L", "P"].contains(name));
+            let value = self.expression(argument, None);
+            let value = self.settle(value);
+            values.push(if number {
+                self.text_number(function, value)
+            } else {
+                self.text_input(function, value)
+            });
+        }
+        if values.iter().any(Expr::is_wrong) {
+            return Expr::wrong(span);
+        }
+        if matches!(function, Function::Len | Function::Find) {
+            let of = Elementary::Int;
+            let (kind, ty) = (Kind::Library(function, of, values), Types::of(of));
+            return Expr { kind, ty, span };
+        }
+        let buffer = self.layout.take(u32::from(TEXT_MOST) + 1);
+        self.check_memory(span);
+        Expr {
+            kind: Kind::Join(function, values, buffer),
+            ty: self.types.text(TEXT_MOST),
+            span,
+        }
+    }
+
+    fn text_input(&mut self, function: Function, value: Expr) -> Expr {
+        if value.is_wrong() || self.is_text(value.ty) {
+            return value;
+        }
+        let name = self.type_name(value.ty);
+        let message = format!("{} takes a STRING, not {name}", function.name());
+        let mut wrong = Diagnostic::error(Code::WrongType, value.span, message);
+        if self.types.elementary(value.ty).is_some() {
+            wrong = wrong.help(format!("convert it: {name}_TO_STRING(..)"));
+        }
+        self.tell(wrong);
+        Expr::wrong(value.span)
+    }
+
+    /// A length or position, as LINT.
+    fn text_number(&mut self, function: Function, value: Expr) -> Expr {
+        let of = self.types.elementary(value.ty).filter(|it| it.is_integer());
+        match of.filter(|it| *it != Elementary::Ulint || matches!(value.kind, Kind::Integer(_))) {
+            Some(of) if !self.types.is_enumeration(value.ty) => Expr {
+                span: value.span,
+                ty: Types::of(Elementary::Lint),
+                kind: Kind::Convert(Box::new(value), of, Elementary::Lint),
+            },
+            _ => self.no_input(function, &value, "whole numbers up to LINT as L and P"),
+        }
+    }
+}

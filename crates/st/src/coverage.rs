@@ -1,0 +1,101 @@
+//! Counters of statements and branches, for those who ask for them.
+//!
+//! They stand behind the variables, so these keep their places, and count in 64 bits. What they cost is fuel: a run that is
+//! judged has none, coverage is counted in a run of its own.
+
+use crate::check::Program;
+use crate::source::{Position, Sources, Span};
+use crate::typed::{Stmt, StmtKind};
+use std::collections::BTreeMap;
+
+/// The place of a counter: where its statement begins, and 0, or the number of one of its branches.
+type Key = (u32, u32);
+
+/// A statement, or a branch of one, and where it is counted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counter {
+    /// The file, as it was given.
+    pub file: String,
+    /// Where the statement begins.
+    pub position: Position,
+    /// 0 for the statement; else the number of one of its branches, from 1, the last of which is ELSE, whether it is
+    /// written or not.
+    pub branch: u32,
+    /// Where the count stands in memory, 8 bytes.
+    pub address: u32,
+}
+
+/// All counters of a program; none unless they are asked for.
+#[derive(Debug, Default)]
+pub(crate) struct Counters {
+    places: BTreeMap<Key, u32>,
+}
+
+impl Counters {
+    /// Finds the statements of the sources, and takes memory for their counters.
+    pub(crate) fn new(program: &mut Program<'_>, sources: &Sources) -> Self {
+        let mut keys = Vec::new();
+        for body in &program.bodies {
+            let span = program.units[body.unit.0 as usize].span;
+            // The last file is the library's.
+            if sources.file_index(span) + 1 < sources.count() {
+                statements(&body.statements, &mut keys);
+            }
+        }
+        let mut places = BTreeMap::new();
+        for key in keys {
+            places.insert(key, program.layout.take(8));
+        }
+        Self { places }
+    }
+
+    pub(crate) fn address(&self, at: Span, branch: u32) -> Option<u32> {
+        self.places.get(&(at.start, branch)).copied()
+    }
+
+    /// For the table of symbols.
+    pub(crate) fn list(&self, sources: &Sources) -> Vec<Counter> {
+        let each = self.places.iter().map(|((start, branch), address)| Counter {
+            file: sources
+                .file_name(Span {
+                    start: *start,
+                    end: *start,
+                })
+                .to_owned(),
+            position: sources.position(*start),
+            branch: *branch,
+            address: *address,
+        });
+        each.collect()
+    }
+}
+
+/// The keys of statements and of all within them. The nesting is limited by the parser.
+fn statements(list: &[Stmt], keys: &mut Vec<Key>) {
+    for statement in list {
+        let start = statement.span.start;
+        keys.push((start, 0));
+        let mut branches = |count: usize| keys.extend((1..=count as u32 + 1).map(|branch| (start, branch)));
+        match &statement.kind {
+            StmtKind::If(arms, other) => {
+                branches(arms.len());
+                arms.iter().for_each(|(_, body)| statements(body, keys));
+                statements(other, keys);
+            }
+            StmtKind::Case(_, _, arms, other) => {
+                branches(arms.len());
+                arms.iter().for_each(|arm| statements(&arm.body, keys));
+                statements(other, keys);
+            }
+            StmtKind::For(each) => statements(&each.body, keys),
+            StmtKind::While(_, body) | StmtKind::Repeat(body, _) => statements(body, keys),
+            StmtKind::Assign(..)
+            | StmtKind::Copy(..)
+            | StmtKind::Evaluate(_)
+            | StmtKind::Block(_)
+            | StmtKind::Exit
+            | StmtKind::Continue
+            | StmtKind::Return => {}
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What another system calls the types, elements and pins of the library. Data: which system it is, and where that is written
+//! down, the caller knows.
+
+/// Other names and numbers; the default has none.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Dialect {
+    /// Its name, for messages.
+    pub name: String,
+    /// Our type, its name there.
+    pub types: Vec<(String, String)>,
+    /// Our type, our element, its name there.
+    pub elements: Vec<(String, String, String)>,
+    /// Our type, the number there, our element. Numbers of such a type that are not listed are refused.
+    pub numbers: Vec<(String, i32, String)>,
+    /// Our block, our pin, its name there.
+    pub pins: Vec<(String, String, String)>,
+}
+
+impl Dialect {
+    /// Our type, which is called so there.
+    pub(crate) fn type_called(&self, name: &str) -> Option<&str> {
+        let found = self
+            .types
+            .iter()
+            .find(|(_, there)| there.eq_ignore_ascii_case(name));
+        found.map(|(ty, _)| ty.as_str())
+    }
+
+    /// The elements of an enumeration: our name, and the one there.
+    pub(crate) fn elements_called<'a>(&'a self, ty: &'a str) -> impl Iterator<Item = (&'a str, &'a str)> {
+        let of_type = self.elements.iter().filter(move |(of, ..)| of == ty);
+        of_type.map(|(_, element, there)| (element.as_str(), there.as_str()))
+    }
+
+    /// Our name of a block's pin, which is called so there.
+    pub(crate) fn pin_called(&self, block: &str, name: &str) -> Option<&str> {
+        let same =
+            |(of, _, there): &&(String, String, String)| of == block && there.eq_ignore_ascii_case(name);
+        self.pins.iter().find(same).map(|(_, pin, _)| pin.as_str())
+    }
+
+    /// The element that has a number there: `None` if the numbers are ours, `Some(None)` if no element has it.
+    pub(crate) fn element_numbered(&self, ty: &str, number: i128) -> Option<Option<&str>> {
+        let mut of_type = self.numbers.iter().filter(|(of, ..)| of == ty).peekable();
+        of_type.peek()?;
+        let same = of_type.find(|(_, it, _)| i128::from(*it) == number);
+        Some(same.map(|(.., element)| element.as_str()))
+    }
+}

@@ -1,0 +1,329 @@
+//! The canonical layout of a text: indentation, spaces and the case of keywords. Lines end where the author ended them;
+//! comments stay as they are.
+
+use crate::error::{Found, Report};
+use crate::lex::{Token, Word, lex};
+use crate::parse;
+use crate::source::{Source, Sources};
+use crate::types::Elementary;
+
+const STEP: usize = 2;
+
+/// Lays out the text of a file. Cost: linear in its bytes.
+///
+/// # Errors
+/// The [`Report`] of a text that cannot be read: nobody knows what belongs together in it.
+pub fn format(name: &str, bytes: &[u8]) -> Result<String, Box<Report>> {
+    let (sources, wrong) = Sources::new(&[Source { name, bytes }]);
+    let mut found = Found::default();
+    wrong.into_iter().for_each(|it| found.add(it));
+    let _items = parse::parse(&sources, &mut found);
+    if found.has_errors() {
+        return Err(Box::new(found.report(sources)));
+    }
+    let (text, start) = sources.text_of(0);
+    let mut layout = Layout::default();
+    let tokens = lex(text, start, &mut Found::default());
+    let mut before = 0;
+    for (place, (token, span)) in tokens.iter().enumerate() {
+        let (from, to) = ((span.start - start) as usize, (span.end - start) as usize);
+        let lines = layout.gap(text.get(before..from).unwrap_or_default());
+        if *token != Token::End {
+            let rest = tokens.get(place..).unwrap_or_default();
+            layout.token(rest, text.get(from..to).unwrap_or_default(), lines);
+        }
+        before = to;
+    }
+    layout.out.push('\n');
+    Ok(layout.out.trim_start().to_owned())
+}
+
+/// Something that is open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Open {
+    /// A unit, whose statements are not indented.
+    Unit,
+    /// What stands within is indented by one step.
+    Block,
+    /// CASE: labels by one step, statements by two.
+    Case,
+    Parenthesis,
+}
+
+#[derive(Default)]
+struct Layout {
+    out: String,
+    open: Vec<Open>,
+    /// The token before, if one stands on this line.
+    last: Option<Token>,
+    /// Whether the last token was an operator or opened something, so that a sign behind it is no subtraction.
+    expects_value: bool,
+    /// Whether the last token was such a sign.
+    signed: bool,
+    /// Whether a statement or declaration has begun and is not over.
+    inside: bool,
+    /// Whether the line began with a word that opens a unit or a section: it ends what the word began.
+    header: bool,
+    /// Whether a label of CASE is being written.
+    label: bool,
+}
+
+/// What stands between two tokens: comments and pragmas, each with the line ends before it.
+fn pieces(gap: &str) -> (Vec<(usize, &str)>, usize) {
+    let mut found = Vec::new();
+    let mut lines = 0;
+    let mut rest = gap;
+    while let Some(first) = rest.chars().next() {
+        let end = if rest.starts_with("//") {
+            rest.find('\n').unwrap_or(rest.len())
+        } else if rest.starts_with("(*") {
+            nested(rest, "(*", "*)")
+        } else if rest.starts_with("/*") {
+            nested(rest, "/*", "*/")
+        } else if first == '{' {
+            rest.find('}').map_or(rest.len(), |end| end + 1)
+        } else {
+            lines += usize::from(first == '\n');
+            rest = rest.get(first.len_utf8()..).unwrap_or_default();
+            continue;
+        };
+        let (comment, behind) = rest.split_at(end);
+        found.push((lines, comment.trim_end()));
+        lines = 0;
+        rest = behind;
+    }
+    (found, lines)
+}
+
+/// Where a comment that may hold others ends.
+fn nested(text: &str, open: &str, close: &str) -> usize {
+    let (mut depth, mut at) = (0_usize, 0);
+    while let Some(rest) = text.get(at..).filter(|rest| !rest.is_empty()) {
+        if rest.starts_with(open) {
+            depth += 1;
+            at += 2;
+        } else if rest.starts_with(close) {
+            depth = depth.saturating_sub(1);
+            at += 2;
+            if depth == 0 {
+                return at;
+            }
+        } else {
+            at += rest.chars().next().map_or(1, char::len_utf8);
+        }
+    }
+    text.len()
+}
+
+impl Layout {
+    /// Writes the comments between two tokens; gives back the line ends behind them.
+    fn gap(&mut self, gap: &str) -> usize {
+        let (comments, lines) = pieces(gap);
+        let mut forced = 0;
+        for (lines, comment) in comments {
+            self.begin(lines.max(forced), 0);
+            if !self.out.is_empty() && !self.out.ends_with(['\n', ' ']) {
+                self.out.push(' ');
+            }
+            // Line ends of the system's do not come back in.
+            self.out.push_str(&comment.replace("\r\n", "\n"));
+            forced = usize::from(comment.starts_with("//"));
+            self.last = None;
+        }
+        lines.max(forced)
+    }
+
+    /// Ends the line, if it ends here, and indents the next one, by so many steps less than what is open.
+    fn begin(&mut self, lines: usize, less: usize) {
+        if lines == 0 || self.out.is_empty() {
+            return;
+        }
+        if self.header {
+            (self.header, self.inside) = (false, self.open.last() == Some(&Open::Parenthesis));
+        }
+        let blank = if lines > 1 { "\n\n" } else { "\n" };
+        self.out.push_str(blank);
+        let steps: usize = self.open.iter().map(|open| open.steps()).sum();
+        let parenthesis = self.open.last() == Some(&Open::Parenthesis);
+        let more = usize::from(self.inside && !parenthesis);
+        let width = (steps + more).saturating_sub(less) * STEP;
+        self.out.extend(std::iter::repeat_n(' ', width));
+        self.last = None;
+    }
+
+    fn token(&mut self, tokens: &[(Token, crate::source::Span)], text: &str, lines: usize) {
+        let Some((token, _)) = tokens.first().copied() else {
+            return;
+        };
+        let member = self.last == Some(Token::Dot);
+        let word = match token {
+            Token::Word(word) if !member => Some(word),
+            _ => None,
+        };
+        if word.is_some_and(closes) {
+            self.open.pop();
+        }
+        let case = self.open.last() == Some(&Open::Case);
+        if case && !self.inside && !self.label && is_label(tokens) {
+            self.label = true;
+        }
+        if matches!(token, Token::Close | Token::CloseBracket) {
+            self.open.pop();
+        }
+        if word.is_some_and(begins) {
+            self.inside = false;
+        }
+        let outward = self.label || word == Some(Word::Else) && case;
+        let middle = matches!(word, Some(Word::Else | Word::Elsif | Word::Until)) && !case;
+        let closing = matches!(token, Token::Close | Token::CloseBracket)
+            && self.inside
+            && self.open.last() != Some(&Open::Parenthesis);
+        self.begin(lines, usize::from(outward || middle || closing));
+        let fresh = self.last.is_none();
+        let glued = self.out.is_empty() || self.out.ends_with(['\n', ' ']);
+        if !glued && (self.last.is_none() || self.space(token)) {
+            self.out.push(' ');
+        }
+        match word {
+            Some(word) => self.out.push_str(word.text()),
+            None if !member && token == Token::Name && is_type(text) => {
+                self.out.push_str(&text.to_ascii_uppercase());
+            }
+            None => self.out.push_str(text),
+        }
+        self.follow(token, word, fresh, case);
+        self.last = Some(token);
+    }
+
+    /// What a token that was written opens, and what may follow it.
+    fn follow(&mut self, token: Token, word: Option<Word>, fresh: bool, case: bool) {
+        self.signed = self.expects_value && matches!(token, Token::Minus | Token::Plus);
+        self.expects_value = match token {
+            Token::Word(Word::True | Word::False | Word::This) => false,
+            Token::Word(_) => word.is_some(),
+            Token::Name
+            | Token::Integer
+            | Token::Based
+            | Token::Real
+            | Token::Duration
+            | Token::Text
+            | Token::WideText
+            | Token::Address
+            | Token::Close
+            | Token::CloseBracket
+            | Token::Caret
+            | Token::Dot => false,
+            _ => true,
+        };
+        self.inside = !matches!(token, Token::Semicolon) && !word.is_some_and(ends);
+        if token == Token::Semicolon && self.open.last() == Some(&Open::Parenthesis) {
+            self.inside = true;
+        }
+        if self.label && token == Token::Colon {
+            (self.label, self.inside) = (false, false);
+        }
+        if matches!(token, Token::Open | Token::OpenBracket) {
+            self.open.push(Open::Parenthesis);
+        }
+        // `OF` of an array is followed by its type.
+        if word == Some(Word::Of) && case {
+            self.inside = false;
+        }
+        if let Some(open) = word.and_then(opens) {
+            self.open.push(open);
+            self.header |= fresh && matches!(token, Token::Word(word) if opens_header(word));
+        }
+    }
+
+    /// Whether a space stands before a token on the same line.
+    fn space(&self, token: Token) -> bool {
+        use Token as T;
+        match (self.last.unwrap_or(T::End), token) {
+            (T::Open | T::OpenBracket | T::Dot | T::Range | T::Typed, _) => false,
+            (_, T::Comma | T::Semicolon | T::Close | T::CloseBracket | T::Dot | T::Range | T::Caret) => false,
+            (T::Name | T::Integer | T::Based | T::CloseBracket | T::Caret, T::Open | T::OpenBracket) => false,
+            (_, T::Colon) => !self.label,
+            _ => !self.signed,
+        }
+    }
+}
+
+impl Open {
+    const fn steps(self) -> usize {
+        match self {
+            Self::Unit => 0,
+            Self::Block | Self::Parenthesis => 1,
+            Self::Case => 2,
+        }
+    }
+}
+
+/// What a word opens.
+const fn opens(word: Word) -> Option<Open> {
+    Some(match word {
+        Word::Program | Word::FunctionBlock | Word::Function | Word::Method => Open::Unit,
+        Word::Case => Open::Case,
+        Word::Type
+        | Word::Struct
+        | Word::Configuration
+        | Word::Resource
+        | Word::Var
+        | Word::VarInput
+        | Word::VarOutput
+        | Word::VarInOut
+        | Word::VarTemp
+        | Word::VarStat
+        | Word::VarExternal
+        | Word::VarGlobal
+        | Word::If
+        | Word::For
+        | Word::While
+        | Word::Repeat => Open::Block,
+        _ => return None,
+    })
+}
+
+/// Whether the line that this word begins ends what it says.
+const fn opens_header(word: Word) -> bool {
+    !matches!(word, Word::Case | Word::If | Word::For | Word::While)
+}
+
+/// Whether a word closes what another one opened.
+fn closes(word: Word) -> bool {
+    word.text().starts_with("END_")
+}
+
+/// Whether a statement or declaration begins or ends with this word, so that its line does not go on from the one before.
+fn begins(word: Word) -> bool {
+    closes(word)
+        || opens(word).is_some_and(|open| open != Open::Block || word != Word::Struct)
+        || matches!(
+            word,
+            Word::Else | Word::Elsif | Word::Until | Word::Exit | Word::Continue | Word::Return
+        )
+}
+
+/// Whether what follows this word begins anew.
+fn ends(word: Word) -> bool {
+    closes(word)
+        || matches!(
+            word,
+            Word::Then | Word::Do | Word::Else | Word::Repeat | Word::Struct | Word::Type
+        )
+}
+
+fn is_type(text: &str) -> bool {
+    Elementary::find(text).is_some() || text.eq_ignore_ascii_case("STRING")
+}
+
+/// Whether a label of CASE stands here: what comes before a `:` on the way to the next statement.
+fn is_label(tokens: &[(Token, crate::source::Span)]) -> bool {
+    let stops = |token: &Token| {
+        matches!(
+            token,
+            Token::Colon | Token::Semicolon | Token::Assign | Token::Open | Token::End
+        ) || matches!(token, Token::Word(word) if !matches!(word, Word::True | Word::False))
+    };
+    let first = tokens.iter().map(|(token, _)| token).find(|token| stops(token));
+    first == Some(&Token::Colon)
+}

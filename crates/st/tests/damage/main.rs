@@ -1,0 +1,76 @@
+//! Random damage to programs: bytes are changed, lost, doubled and moved. The same on every machine; libFuzzer does it with
+//! the same play ([contributing](../../../../docs/contributing.md#fuzzing)).
+
+mod play;
+
+use std::fs;
+use std::path::Path;
+
+/// Splitmix64.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, count: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) % count.max(1) as u64) as usize
+    }
+}
+
+/// Programs of the repository, in the order of their names.
+fn programs() -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scan-tests/structured_text");
+    let mut paths = Vec::new();
+    for place in [folder.clone(), folder.join("idioms")] {
+        let entries = fs::read_dir(place).unwrap().flatten();
+        paths.extend(entries.map(|entry| entry.path()));
+    }
+    paths.retain(|path| path.extension().is_some_and(|it| it == "st"));
+    paths.sort();
+    paths.iter().map(|path| fs::read(path).unwrap()).collect()
+}
+
+fn damaged(random: &mut Random, programs: &[Vec<u8>]) -> Vec<u8> {
+    let mut text = programs[random.below(programs.len())].clone();
+    for _ in 0..=random.below(5) {
+        let at = random.below(text.len());
+        let to = (at + random.below(40)).min(text.len());
+        match random.below(6) {
+            0 if at < text.len() => text[at] = random.below(256) as u8,
+            1 => drop(text.drain(at..to)),
+            2 => {
+                let piece = text[at..to].to_vec();
+                let place = random.below(text.len());
+                text.splice(place..place, piece);
+            }
+            3 => {
+                let other = &programs[random.below(programs.len())];
+                let from = random.below(other.len());
+                let piece = other[from..(from + random.below(200)).min(other.len())].to_vec();
+                text.splice(at..at, piece);
+            }
+            4 => text.truncate(at),
+            _ => {
+                let signs = b"()[]{};:='$#.,*/-%\n\"\xc3\xbc\0";
+                text.insert(at, signs[random.below(signs.len())]);
+            }
+        }
+    }
+    text
+}
+
+/// Covers: ST5
+#[test]
+fn no_damage_to_a_program_leads_to_a_panic() {
+    let programs = programs();
+    assert!(programs.len() > 10);
+    programs.iter().for_each(|program| play::play(program));
+    for seed in 0..3000 {
+        let text = damaged(&mut Random(seed), &programs);
+        let shown = String::from_utf8_lossy(&text).into_owned();
+        let result = std::panic::catch_unwind(|| play::play(&text));
+        assert!(result.is_ok(), "seed {seed}\n{shown}");
+    }
+}

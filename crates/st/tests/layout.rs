@@ -1,0 +1,149 @@
+//! The canonical layout of a text.
+
+use standstill_st::format;
+
+fn laid_out(text: &str) -> String {
+    format("prog.st", text.as_bytes()).unwrap_or_else(|report| panic!("{}", report.render()))
+}
+
+const UGLY: &str = "\u{feff}type  Step:(Idle,Moving:=5 );
+   Point : struct
+x,y:lreal ; // of the plane
+end_struct; end_type
+
+
+program  Main
+var
+  a,b : int:=-5;   m:array[-1..2] of int := [1, 2(3)]; (* two
+   lines *)
+end_var
+  var_input  Go : bool ; end_var
+{region 'x'}
+if Go and not( a>-b )then a:=a-1;
+      elsif a=- 1 then
+b := m[ -1 ]*( a+b );
+else
+   (* nothing *)
+   ;
+  end_if;
+case a of
+ 1,2 .. 3: b:=1;
+    for a := 1 to 3 by -1 do
+ exit;
+    end_for;
+   INT#4:
+b := max(1,
+a,
+b
+);
+else
+b.3 := w.%X3;
+end_case;
+repeat
+b := b
++ 1; // up
+until b>3
+end_repeat;\r
+Mv(Axis:=X,Done=>d,
+Execute := TRUE);
+end_program
+";
+
+const PRETTY: &str = "TYPE Step : (Idle, Moving := 5);
+  Point : STRUCT
+    x, y : LREAL; // of the plane
+  END_STRUCT; END_TYPE
+
+PROGRAM Main
+VAR
+  a, b : INT := -5; m : ARRAY [-1..2] OF INT := [1, 2(3)]; (* two
+   lines *)
+END_VAR
+VAR_INPUT Go : BOOL; END_VAR
+{region 'x'}
+IF Go AND NOT (a > -b) THEN a := a - 1;
+ELSIF a = -1 THEN
+  b := m[-1] * (a + b);
+ELSE
+  (* nothing *)
+  ;
+END_IF;
+CASE a OF
+  1, 2..3: b := 1;
+    FOR a := 1 TO 3 BY -1 DO
+      EXIT;
+    END_FOR;
+  INT#4:
+    b := max(1,
+      a,
+      b
+    );
+  ELSE
+    b.3 := w.%X3;
+END_CASE;
+REPEAT
+  b := b
+    + 1; // up
+UNTIL b > 3
+END_REPEAT;
+Mv(Axis := X, Done => d,
+  Execute := TRUE);
+END_PROGRAM
+";
+
+#[test]
+fn a_text_is_indented_by_what_is_open_and_its_lines_stay() {
+    assert_eq!(laid_out(UGLY), PRETTY);
+}
+
+#[test]
+fn what_is_laid_out_stays_as_it_is() {
+    assert_eq!(laid_out(PRETTY), PRETTY);
+    let methods = "FUNCTION_BLOCK A
+VAR
+  n : INT;
+END_VAR
+
+METHOD Up : INT
+VAR_INPUT Step : INT := 1; END_VAR
+n := n + Step; // more
+Up := THIS^.n;
+END_METHOD
+
+n := -n;
+END_FUNCTION_BLOCK
+";
+    assert_eq!(laid_out(methods), methods);
+    // Mistakes of types and names do not matter, but what cannot be read is left alone.
+    assert!(format("prog.st", b"PROGRAM P IF x THEN END_PROGRAM").is_err());
+}
+
+/// The texts of the repository, laid out twice, are the same, and are made of the same words.
+#[test]
+fn programs_of_the_repository_keep_their_words() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut count = 0;
+    for place in [
+        "scan-tests/gallery/packer",
+        "scan-tests/structured_text",
+        "crates/examples",
+    ] {
+        let mut folders = vec![folder.join(place)];
+        while let Some(inner) = folders.pop() {
+            for entry in std::fs::read_dir(inner).unwrap().flatten() {
+                let path = entry.path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else if path.extension().is_some_and(|it| it == "st") {
+                    let text = std::fs::read_to_string(&path).unwrap();
+                    let once = laid_out(&text);
+                    assert_eq!(laid_out(&once), once, "{}", path.display());
+                    let words = |text: &str| text.to_uppercase().split_whitespace().collect::<String>();
+                    assert_eq!(words(&once), words(&text), "{}", path.display());
+                    count += 1;
+                }
+            }
+        }
+    }
+    assert!(count >= 5, "{count}");
+}
