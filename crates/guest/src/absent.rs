@@ -32,6 +32,12 @@ impl Program {
     }
 
     /// Never called.
+    #[must_use]
+    pub const fn settings(&self) -> &Settings {
+        match self.0 {}
+    }
+
+    /// Never called.
     ///
     /// # Errors
     /// None.

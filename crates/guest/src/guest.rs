@@ -57,6 +57,12 @@ impl Program {
         })
     }
 
+    /// What its guests may use up.
+    #[must_use]
+    pub const fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
     /// A guest before its first scan: its `_initialize` and then its `plc_init` have run, in which blocks answer
     /// [`Code::NotInTick`](crate::Code::NotInTick).
     ///

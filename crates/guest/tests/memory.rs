@@ -7,7 +7,7 @@ use standstill_testkit::Random;
 #[test]
 fn no_guest_reaches_beyond_its_memory_or_leaves_an_axis_moving() {
     let (mut faults, mut moving, mut done) = (0, 0, 0);
-    for case in 0..1_000_u64 {
+    for case in 0..1_200_u64 {
         let mut random = Random(case);
         let bytes: Vec<u8> = (0..500).flat_map(|_| random.bits().to_le_bytes()).collect();
         let played = hostile::play(&bytes);

@@ -119,6 +119,8 @@ function curveBlock(axis, panel, lines, shared) {
       }
     },
     redraw: () => made && made.redraw(false, true),
+    // The columns hold other numbers now; they are drawn when the block is.
+    refill: () => made && made.setData([shared.numbers, ...lines.map((line) => plotted(line.column, line.rows, shared.scans))], false),
   };
   return hideable(block, shared);
 }
@@ -235,6 +237,16 @@ function axisGroup(axis, shared) {
   return makeGroup(axis.name, `${order}${axis.unit ? `, ${axis.unit}` : ''}${modulo}`, blocks, still, shared);
 }
 
+// The claims of each trace that has some.
+function claimGroups(shared) {
+  return shared.traces.filter((trace) => trace.header.claims.length > 0).map((trace) => {
+    const { claims } = trace.header;
+    const held = claims.filter((claim) => claim.verdict === 'passed').length;
+    const name = shared.traces.length > 1 ? `Claims of ${trace.letter}` : 'Claims';
+    return makeGroup(name, `${held} of ${claims.length} hold`, claims.map((claim) => claimBlock(claim, trace, shared)), [], shared);
+  });
+}
+
 // Every group of the board, top to bottom: axes, claims, input variables, instances in call order.
 function makeGroups(shared) {
   const groups = [];
@@ -242,13 +254,7 @@ function makeGroups(shared) {
   for (const name of together(shared.traces.map((trace) => trace.header.axes.map((axis) => axis.name)))) {
     groups.push(axisGroup(axes.get(name), shared));
   }
-  for (const trace of shared.traces) {
-    const { claims } = trace.header;
-    if (claims.length === 0) continue;
-    const held = claims.filter((claim) => claim.verdict === 'passed').length;
-    const name = shared.traces.length > 1 ? `Claims of ${trace.letter}` : 'Claims';
-    groups.push(makeGroup(name, `${held} of ${claims.length} hold`, claims.map((claim) => claimBlock(claim, trace, shared)), [], shared));
-  }
+  groups.push(...claimGroups(shared));
   const addGroup = (title, detail, names) => {
     const [blocks, still] = [[], []];
     names.forEach((name) => addRow(name, blocks, still, shared));

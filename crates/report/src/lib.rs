@@ -13,6 +13,8 @@
 mod facts;
 mod page;
 
+pub use page::about;
+
 use standstill_trace::Trace;
 use standstill_trace::time_literal;
 

@@ -29,6 +29,8 @@ const SCRIPT: &str = concat!(
     include_str!("../page/curves.js"),
     include_str!("../page/board.js"),
     include_str!("../page/page.js"),
+    "\n",
+    include_str!("../page/start.js"),
 );
 
 /// The whole page.
@@ -79,8 +81,8 @@ fn hash(text: &str) -> String {
     format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text.as_bytes())))
 }
 
-/// Everything of a trace but its rows.
-fn about(source: &Source<'_>) -> Value {
+/// Everything of a trace but its rows: name, header, events.
+pub fn about(source: &Source<'_>) -> Value {
     let header = source.trace.header();
     let events: Vec<Value> = events(source.trace)
         .into_iter()

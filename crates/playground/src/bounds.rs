@@ -1,0 +1,67 @@
+//! How much the playground takes. The command line takes more.
+
+use standstill_script::model::Script;
+
+/// Most bytes of a script with the files it names.
+pub const BYTES_MAX: usize = 1 << 20;
+
+/// Most scans of a run; a quarter of an hour at 1 ms.
+pub const SCANS_MAX: u64 = 1_000_000;
+
+/// Most cells of a run, that is scans times columns: 8 bytes each.
+pub const CELLS_MAX: u64 = 20_000_000;
+
+/// Most block instances.
+pub const BLOCKS_MAX: usize = 2_000;
+
+/// Most instructions that the calls of all programs may take in one scan.
+pub const FUEL_MAX: u64 = 20_000_000;
+
+/// Most lines to plan at once.
+pub const LINES_MAX: usize = 200;
+
+/// Most characters of a link's fragment that is read.
+pub const LINK_MAX: usize = 1 << 17;
+
+/// What goes with a script that is too large.
+const REMEDY: &str = "the command line takes more";
+
+/// Whether texts of so many bytes are read.
+pub fn bytes(bytes: usize) -> Result<(), String> {
+    within("bytes of text", bytes as u64, BYTES_MAX as u64)
+}
+
+/// Whether the script is run.
+pub fn script(script: &Script) -> Result<(), String> {
+    within("scans", script.scans, SCANS_MAX)?;
+    within("blocks", script.blocks.len() as u64, BLOCKS_MAX as u64)?;
+    let calls = script.programs.iter().map(|program| {
+        let calls = program.calls.len().max(1) as u64;
+        program.guest.settings().fuel.saturating_mul(calls)
+    });
+    let fuel = calls.fold(0, u64::saturating_add);
+    within("instructions of programs in a scan (`fuel`)", fuel, FUEL_MAX)
+}
+
+/// Whether a trace of so many columns is kept.
+pub fn cells(scans: u64, columns: usize) -> Result<(), String> {
+    within(
+        "cells (scans times columns)",
+        scans.saturating_mul(columns as u64),
+        CELLS_MAX,
+    )
+}
+
+/// Whether so many lines are planned.
+pub fn lines(lines: usize) -> Result<(), String> {
+    within("lines", lines as u64, LINES_MAX as u64)
+}
+
+fn within(what: &str, found: u64, most: u64) -> Result<(), String> {
+    if found <= most {
+        return Ok(());
+    }
+    Err(format!(
+        "{found} {what} are more than the {most} of the playground; {REMEDY}"
+    ))
+}

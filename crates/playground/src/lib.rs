@@ -1,0 +1,35 @@
+//! Scan scripts in a browser: reader, runner, judge and planner behind a few functions on JSON.
+//!
+//! What stands here: what each function takes and gives, and how much of it. What does not: motion, scripts, traces, which are
+//! the libraries'; the page, which is in `page/`. There are no files, no clock and no network: a script comes with the texts of
+//! the files it names.
+//!
+//! Everything is bounded, with a message that says the bound: nobody who opens a link waits for a script that somebody else
+//! made too large. A run tells how far it is, and its caller may end it.
+
+mod bounds;
+#[cfg(target_arch = "wasm32")]
+mod browser;
+mod hand;
+mod plans;
+mod project;
+mod runs;
+#[cfg(feature = "guest")]
+mod save;
+mod share;
+
+pub use bounds::{BLOCKS_MAX, BYTES_MAX, CELLS_MAX, FUEL_MAX, LINES_MAX, LINK_MAX, SCANS_MAX};
+pub use hand::hand;
+pub use plans::plan;
+pub use project::check;
+pub use runs::{Ran, run};
+#[cfg(feature = "guest")]
+pub use save::save;
+pub use share::share;
+
+/// Files are written by the module with guests: a report holds a page of its own, which is large.
+#[cfg(not(feature = "guest"))]
+#[must_use]
+pub fn save(_: &str, _: &str) -> String {
+    r#"{"needs": "guests"}"#.to_owned()
+}
