@@ -402,13 +402,23 @@ typedef struct standstill_axis_setup {
    */
   double max_deviation;
   /**
-   * What a slave does that cannot keep up: 0 lags and catches up, 1 stops with error 420.
+   * What a slave does that cannot keep up: 0 lags and catches up, 1 stops with error 420, 2 has its
+   * master move no faster than the slave can follow while it is in gear.
    */
   int32_t on_limit;
   /**
    * What a slave does whose master goes out of operation: 0 stops with error 421, 1 comes to rest and stays coupled.
    */
   int32_t on_master_lost;
+  /**
+   * As a master of actual values: scans of each of the four averages slaves see them through, at most 64; 0: 16; below 0:
+   * no filter.
+   */
+  int32_t actual_filter;
+  /**
+   * As a master of actual values: slaves see it ahead by what the filter delays at its velocity, if not 0.
+   */
+  uint32_t actual_lead;
 } standstill_axis_setup;
 
 /**
@@ -1329,7 +1339,7 @@ int32_t standstill_instance_make(struct standstill_runtime *runtime, const char 
 
 /* The library was compiled with these sizes. */
 STANDSTILL_ASSERT(runtime_config, sizeof(standstill_runtime_config) == 24);
-STANDSTILL_ASSERT(axis_setup, sizeof(standstill_axis_setup) == 288);
+STANDSTILL_ASSERT(axis_setup, sizeof(standstill_axis_setup) == 296);
 STANDSTILL_ASSERT(drive_setup, sizeof(standstill_drive_setup) == 248);
 STANDSTILL_ASSERT(feedback, sizeof(standstill_feedback) == 136);
 STANDSTILL_ASSERT(command, sizeof(standstill_command) == 80);

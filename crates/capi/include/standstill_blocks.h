@@ -28,6 +28,12 @@ enum standstill_mc_buffer_mode {
     STANDSTILL_MC_BLENDING_HIGH = 5,
 };
 
+/** MC_COMBINE_MODE */
+enum standstill_mc_combine_mode {
+    STANDSTILL_MC_ADD_AXES = 0,
+    STANDSTILL_MC_SUB_AXES = 1,
+};
+
 /** MC_DIRECTION */
 enum standstill_mc_direction {
     STANDSTILL_MC_DIRECTION_UNSET = 0,
@@ -1672,7 +1678,7 @@ typedef struct standstill_mc_gear_in_in {
     int16_t ratio_numerator; /* RatioNumerator: Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest. */
     uint16_t ratio_denominator; /* RatioDenominator: Denominator of the ratio, above 0. */
     uint8_t reserved_18[2];
-    int32_t master_value_source; /* MasterValueSource: mcSetValue; other values of the master are not followed in this version. */
+    int32_t master_value_source; /* MasterValueSource: mcSetValue, or mcActualValue for what the drive of the master tells, filtered. */
     double acceleration; /* Acceleration: Rate while the speed grows, until in gear; 0 takes the axis default. (u/s^2) */
     double deceleration; /* Deceleration: Rate while the speed falls, until in gear; 0 takes the axis default. (u/s^2) */
     double jerk; /* Jerk: Jerk until in gear; 0 takes the axis default, and no limit if there is none. (u/s^3) */
@@ -1757,7 +1763,7 @@ typedef struct standstill_mc_gear_in_pos_in {
     int16_t ratio_numerator; /* RatioNumerator: Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest. */
     uint16_t ratio_denominator; /* RatioDenominator: Denominator of the ratio, above 0. */
     uint8_t reserved_18[2];
-    int32_t master_value_source; /* MasterValueSource: mcSetValue; other values of the master are not followed in this version. */
+    int32_t master_value_source; /* MasterValueSource: mcSetValue, or mcActualValue for what the drive of the master tells, filtered. */
     double master_sync_position; /* MasterSyncPosition: Place of the master at the sync point. (u) */
     double slave_sync_position; /* SlaveSyncPosition: Place of the slave at the sync point. (u) */
     int32_t sync_mode; /* SyncMode: Which of the places that mean the same on a modulo slave; with mcSlowDown the slave is never faster than in sync. */
@@ -1891,6 +1897,63 @@ static inline standstill_mc_phasing_relative_in standstill_mc_phasing_relative_i
 
 static inline standstill_mc_phasing_relative_out standstill_mc_phasing_relative_out_default(void) {
     standstill_mc_phasing_relative_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
+/** MC_CombineAxes: Lets one axis follow two others at once: their ways are added, or subtracted. */
+typedef struct standstill_mc_combine_axes_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t master1; /* Master1: The first axis to follow. */
+    int32_t master2; /* Master2: The second axis to follow; it may be the same one. */
+    int32_t slave; /* Slave: The axis that follows. */
+    uint8_t execute; /* Execute: A rising edge couples the axes with the values of that call. */
+    uint8_t continuous_update; /* ContinuousUpdate: Changed inputs hold for the coupling in progress while TRUE, if it was TRUE at the rising edge. */
+    uint8_t reserved_18[2];
+    int32_t combine_mode; /* CombineMode: mcAddAxes: the ways of both masters are added; mcSubAxes: that of the second is taken away. */
+    int16_t gear_ratio_numerator_m1; /* GearRatioNumeratorM1: Way of the slave for one of the first master, as a ratio: numerator, signed, 0 allowed. */
+    int16_t gear_ratio_denominator_m1; /* GearRatioDenominatorM1: Denominator of that ratio, above 0. */
+    int16_t gear_ratio_numerator_m2; /* GearRatioNumeratorM2: Way of the slave for one of the second master: numerator, signed, 0 allowed. */
+    int16_t gear_ratio_denominator_m2; /* GearRatioDenominatorM2: Denominator of that ratio, above 0. */
+    int32_t master_value_source_m1; /* MasterValueSourceM1: Which values of the first master are followed. */
+    int32_t master_value_source_m2; /* MasterValueSourceM2: Which values of the second master are followed. */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it. */
+    uint8_t reserved_44[4];
+} standstill_mc_combine_axes_in;
+STANDSTILL_ASSERT(mc_combine_axes_in, sizeof(standstill_mc_combine_axes_in) == 48);
+
+typedef struct standstill_mc_combine_axes_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t in_sync; /* InSync: The set position of the slave is the one the masters ask for. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t active; /* Active: The block controls the slave. */
+    uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint8_t reserved_9[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_12[4];
+    double deviation; /* Deviation: How far the slave is from where the masters ask it to be, once it was in sync; 0 in sync. (u) */
+    uint8_t master_lost; /* MasterLost: A master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost). */
+    uint8_t reserved_25[7];
+} standstill_mc_combine_axes_out;
+STANDSTILL_ASSERT(mc_combine_axes_out, sizeof(standstill_mc_combine_axes_out) == 32);
+
+static inline standstill_mc_combine_axes_in standstill_mc_combine_axes_in_default(void) {
+    standstill_mc_combine_axes_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    in.gear_ratio_numerator_m1 = 1;
+    in.gear_ratio_denominator_m1 = 1;
+    in.gear_ratio_numerator_m2 = 1;
+    in.gear_ratio_denominator_m2 = 1;
+    in.master_value_source_m1 = 1;
+    in.master_value_source_m2 = 1;
+    return in;
+}
+
+static inline standstill_mc_combine_axes_out standstill_mc_combine_axes_out_default(void) {
+    standstill_mc_combine_axes_out out;
     memset(&out, 0, sizeof out);
     out.size = (uint32_t)sizeof out;
     return out;
@@ -2370,6 +2433,10 @@ int32_t standstill_mc_phasing_absolute(struct standstill_runtime *runtime, uint6
 /** One call of MC_PhasingRelative. A key of 0 makes the instance. */
 int32_t standstill_mc_phasing_relative(struct standstill_runtime *runtime, uint64_t *key,
     const struct standstill_mc_phasing_relative_in *in, struct standstill_mc_phasing_relative_out *out);
+
+/** One call of MC_CombineAxes. A key of 0 makes the instance. */
+int32_t standstill_mc_combine_axes(struct standstill_runtime *runtime, uint64_t *key,
+    const struct standstill_mc_combine_axes_in *in, struct standstill_mc_combine_axes_out *out);
 
 /** One call of R_TRIG. A key of 0 makes the instance. */
 int32_t standstill_r_trig(struct standstill_runtime *runtime, uint64_t *key,

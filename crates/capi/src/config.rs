@@ -66,6 +66,8 @@ impl AxisSetup {
             max_deviation: 0.0,
             on_limit: 0,
             on_master_lost: 0,
+            actual_filter: 0,
+            actual_lead: 0,
         }
     }
 
@@ -130,13 +132,22 @@ impl AxisSetup {
                 scans: self.in_position_scans,
             }),
             following: Following {
-                on_limit: choice("on_limit", self.on_limit, &[OnLimit::Lag, OnLimit::Error])?,
+                on_limit: choice(
+                    "on_limit",
+                    self.on_limit,
+                    &[OnLimit::Lag, OnLimit::Error, OnLimit::SlowMaster],
+                )?,
                 max_deviation: given(self.max_deviation),
                 on_master_lost: choice(
                     "on_master_lost",
                     self.on_master_lost,
                     &[OnMasterLost::Error, OnMasterLost::Hold],
                 )?,
+                actual_filter: match self.actual_filter {
+                    0 => Following::DEFAULT.actual_filter,
+                    scans => u32::try_from(scans).unwrap_or(0),
+                },
+                actual_lead: self.actual_lead != 0,
             },
         })
     }

@@ -164,10 +164,16 @@ pub struct AxisSetup {
     /// How far a slave may be off the law of its gear (u), then error 420; 0: any distance. This and what follows is 0 in a
     /// structure that ends before.
     pub max_deviation: f64,
-    /// What a slave does that cannot keep up: 0 lags and catches up, 1 stops with error 420.
+    /// What a slave does that cannot keep up: 0 lags and catches up, 1 stops with error 420, 2 has its
+    /// master move no faster than the slave can follow while it is in gear.
     pub on_limit: i32,
     /// What a slave does whose master goes out of operation: 0 stops with error 421, 1 comes to rest and stays coupled.
     pub on_master_lost: i32,
+    /// As a master of actual values: scans of each of the four averages slaves see them through, at most 64; 0: 16; below 0:
+    /// no filter.
+    pub actual_filter: i32,
+    /// As a master of actual values: slaves see it ahead by what the filter delays at its velocity, if not 0.
+    pub actual_lead: u32,
 }
 
 /// The drive under an axis. drive_defaults gives an ideal one.
@@ -559,7 +565,7 @@ pub struct Dump {
 
 // No gap a compiler might fill otherwise: every byte belongs to a field.
 const _: () = assert!(size_of::<RuntimeConfig>() == 24);
-const _: () = assert!(size_of::<AxisSetup>() == 288);
+const _: () = assert!(size_of::<AxisSetup>() == 296);
 const _: () = assert!(size_of::<DriveSetup>() == 248);
 const _: () = assert!(size_of::<Feedback>() == 136);
 const _: () = assert!(size_of::<Command>() == 80);

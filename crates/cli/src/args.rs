@@ -74,6 +74,9 @@ pub enum Command {
         /// Write the outcome to this file, as JUnit XML
         #[arg(long, value_name = "FILE.xml")]
         junit: Option<PathBuf>,
+        /// Write which statements and branches of Structured Text the scripts execute to this file
+        #[arg(long, value_name = "FILE.lcov", conflicts_with_all = ["list", "mutate", "recording"])]
+        coverage: Option<PathBuf>,
         /// Write a page of every script that fails into this folder: golden and run over each other
         #[arg(long, value_name = "FOLDER")]
         report: Option<PathBuf>,
@@ -323,6 +326,15 @@ pub enum St {
         #[arg(long)]
         json: bool,
     },
+    /// Lay out files: indentation, spaces, the case of keywords
+    Fmt {
+        /// The files
+        #[arg(value_name = "FILE.st", required = true)]
+        files: Vec<PathBuf>,
+        /// Write nothing; fail if a file would change
+        #[arg(long)]
+        check: bool,
+    },
     /// Compile a project to a guest in WebAssembly, with a file of its symbols beside it
     Build {
         /// The project
@@ -343,6 +355,9 @@ pub struct StSources {
     /// All files of the project
     #[arg(value_name = "FILE.st", required = true)]
     pub files: Vec<PathBuf>,
+    /// Understand names and numbers of this system, too: codesys, twincat or omron
+    #[arg(long, value_name = "NAME")]
+    pub dialect: Option<String>,
     /// The PROGRAM to run in every scan, if neither a CONFIGURATION says nor there is only one
     #[arg(long, value_name = "NAME")]
     pub program: Option<String>,

@@ -1,13 +1,14 @@
 //! The program `standstill`: arguments, exit statuses, printing. What it prints comes from the libraries.
 //!
 //! Standard output is the same on every machine; messages and progress go to standard error. A library beside the program,
-//! so that a fuzzer can call what reads lines of plans.
+//! so that a fuzzer and a page can call what reads lines of plans.
 #![forbid(unsafe_code)]
 
 mod args;
 mod blocks;
 mod compare;
 mod cores;
+mod coverage;
 mod errors;
 pub mod exit;
 mod explain;
@@ -39,6 +40,8 @@ mod table;
 mod test;
 #[cfg(feature = "watch")]
 mod watch;
+
+pub use run::verdict;
 
 use args::{Arguments, Command, Schema, Soak, St};
 use clap::Parser;
@@ -138,6 +141,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             abs,
             rel,
             junit,
+            coverage,
             report,
             recording,
             threads,
@@ -160,6 +164,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
                 threads: *threads,
                 yardstick: test::yardstick(*golden, *abs, *rel)?,
                 junit: junit.as_deref(),
+                coverage: coverage.as_deref(),
                 report: report.as_deref(),
                 recording: recording.as_deref(),
                 allowed: &outside.allowed(),
@@ -244,6 +249,10 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::St {
             what: St::Lint { sources, json },
         } => st::check(sources, *json, true, out),
+        #[cfg(feature = "st")]
+        Command::St {
+            what: St::Fmt { files, check },
+        } => st::lay_out(files, *check, out),
         #[cfg(feature = "st")]
         Command::St {
             what:

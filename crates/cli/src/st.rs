@@ -5,8 +5,10 @@ use crate::exit::{Exit, Failure, complain};
 use crate::json::{Object, list, string};
 use standstill_script::suite::shown;
 use standstill_st::{
-    Diagnostic, FAULT_SITE, FAULT_VALUE, LOOP_SITE, Options, Report, Severity, Source, Symbols, Value,
+    Diagnostic, Dialect, FAULT_SITE, FAULT_VALUE, LOOP_SITE, Options, Report, Severity, Source, Symbols,
+    Value,
 };
+use standstill_trace::file::replace_beside;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -28,6 +30,21 @@ fn sources(files: &[(String, Vec<u8>)]) -> Vec<Source<'_>> {
     files.iter().map(|(name, bytes)| Source { name, bytes }).collect()
 }
 
+/// The names and numbers of another system, if one is named.
+fn dialect(given: &StSources) -> Result<Dialect, Failure> {
+    let Some(name) = &given.dialect else {
+        return Ok(Dialect::default());
+    };
+    let known = standstill_export::Dialect::new(name).map_err(|error| Failure::usage(&error.to_string()))?;
+    Ok(Dialect {
+        name: name.clone(),
+        types: known.types().to_vec(),
+        elements: known.names().to_vec(),
+        numbers: known.numbers().to_vec(),
+        pins: known.pins().to_vec(),
+    })
+}
+
 /// Says what is wrong and doubtful, with or without lints; a lint is a failure.
 pub fn check(given: &StSources, json: bool, lint: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
     let files = read(&given.files)?;
@@ -35,6 +52,7 @@ pub fn check(given: &StSources, json: bool, lint: bool, out: &mut dyn Write) -> 
         program: given.program.clone(),
         library: true,
         lint,
+        dialect: dialect(given)?,
         ..Options::default()
     };
     let report = standstill_st::check(&sources(&files), &options);
@@ -76,6 +94,25 @@ fn diagnostic(report: &Report, it: &Diagnostic) -> String {
         .text()
 }
 
+/// Lays out the files in place and names those that changed; with `check` nothing is written, and one that would change
+/// fails. A file that cannot be read as Structured Text is left as it is.
+pub fn lay_out(paths: &[PathBuf], check: bool, out: &mut dyn Write) -> Result<Exit, Failure> {
+    let mut exit = Exit::Passed;
+    for ((name, bytes), path) in read(paths)?.iter().zip(paths) {
+        let canonical = standstill_st::format(name, bytes)
+            .map_err(|report| Failure::Told(Exit::BadInput, report.render()))?;
+        if canonical.as_bytes() == bytes {
+            continue;
+        }
+        if !check {
+            replace_beside(path, |out| out.write_all(canonical.as_bytes()))?;
+        }
+        writeln!(out, "{name}")?;
+        exit = exit.max(Exit::of(!check));
+    }
+    Ok(exit)
+}
+
 /// Compiles to a module, and writes its symbols beside it.
 pub fn build(
     given: &StSources,
@@ -87,6 +124,7 @@ pub fn build(
     let options = Options {
         program: given.program.clone(),
         axes: axes.to_vec(),
+        dialect: dialect(given)?,
         ..Options::default()
     };
     let compiled = standstill_st::compile(&sources(&files), &options)

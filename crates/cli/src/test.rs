@@ -2,6 +2,7 @@
 
 use crate::args::{Golden, SCRIPTS};
 use crate::cores;
+use crate::coverage::Coverage;
 use crate::exit::{Exit, Failure, complain, go_on};
 use crate::explain::load;
 use crate::failing::Pages;
@@ -42,6 +43,8 @@ pub struct Wish<'a> {
     pub yardstick: Option<Yardstick>,
     /// Where to write the outcome as JUnit XML.
     pub junit: Option<&'a Path>,
+    /// Where to write which statements of Structured Text were executed.
+    pub coverage: Option<&'a Path>,
     /// The folder for pages of scripts that fail.
     pub report: Option<&'a Path>,
     /// The trace to judge the claims on, instead of runs.
@@ -122,6 +125,10 @@ fn told(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Result
     write!(out, "{tally}")?;
     if let Some(path) = wish.junit {
         junit::save(&tally.cases, path)?;
+    }
+    if let Some(path) = wish.coverage {
+        let coverage = Coverage::of(&found(wish.paths, wish.word)?, wish.allowed);
+        writeln!(out, "{}", coverage.save(path)?)?;
     }
     Ok(tally)
 }

@@ -13,6 +13,10 @@ pub struct Dialect {
     numbers: Vec<(String, i32, String)>,
     /// Block, pin, name there.
     pins: Vec<(String, String, String)>,
+    /// Type, name there.
+    types: Vec<(String, String)>,
+    /// Type, element, name there.
+    names: Vec<(String, String, String)>,
 }
 
 /// No dialect has this name.
@@ -58,6 +62,12 @@ impl Dialect {
                             .push((block.to_owned(), pin.to_owned(), to.to_owned()));
                     }
                 }
+                ["type", ty, to] if found => dialect.types.push((ty.to_owned(), to.to_owned())),
+                ["element", ty, element, to] if found => {
+                    dialect
+                        .names
+                        .push((ty.to_owned(), element.to_owned(), to.to_owned()));
+                }
                 _ => {}
             }
         }
@@ -74,6 +84,30 @@ impl Dialect {
     /// Its name; empty for our own.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Types and what they are called there.
+    #[must_use]
+    pub fn types(&self) -> &[(String, String)] {
+        &self.types
+    }
+
+    /// Types, their elements, and what these are called there.
+    #[must_use]
+    pub fn names(&self) -> &[(String, String, String)] {
+        &self.names
+    }
+
+    /// Types whose elements have other numbers there: type, number, element.
+    #[must_use]
+    pub fn numbers(&self) -> &[(String, i32, String)] {
+        &self.numbers
+    }
+
+    /// Blocks, their pins, and what these are called there.
+    #[must_use]
+    pub fn pins(&self) -> &[(String, String, String)] {
+        &self.pins
     }
 
     /// What a pin is called.
@@ -150,10 +184,21 @@ mod tests {
                 assert!(info.pins().any(|it| it.name == pin), "{name}: {block}.{pin}");
                 lines += 1;
             }
+            for (ty, element, there) in &dialect.names {
+                let all = enumerations();
+                let info = all.iter().find(|info| info.name == ty).expect(ty);
+                assert!(info.number_of(element).is_some(), "{name}: {ty} {element}");
+                assert!(info.number_of(there).is_none(), "{name}: {there} is ours");
+                lines += 1;
+            }
+            for (ty, there) in &dialect.types {
+                assert!(!there.eq_ignore_ascii_case(ty), "{name}: {there} is ours");
+                lines += 1;
+            }
         }
         let said = DATA
             .lines()
-            .filter(|line| line.starts_with("number ") || line.starts_with("pin "));
+            .filter(|line| !line.is_empty() && !line.starts_with('#') && !line.starts_with("dialect "));
         assert_eq!(said.count(), lines, "a line was not understood");
     }
 

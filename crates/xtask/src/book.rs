@@ -92,7 +92,7 @@ fn plain(path: &Path) -> PathBuf {
 }
 
 /// Every file below a folder, sorted.
-fn files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+pub(crate) fn files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();

@@ -13,6 +13,7 @@ mod faults;
 mod packages;
 mod pictures;
 mod requirements;
+pub mod site;
 mod states;
 mod vibration;
 

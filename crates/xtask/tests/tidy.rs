@@ -280,6 +280,17 @@ fn layers_depend_only_downwards() {
             ],
         ),
         (
+            "crates/playground",
+            "standstill-playground",
+            &[
+                "standstill-cli",
+                "standstill-planner",
+                "standstill-report",
+                "standstill-script",
+                "standstill-trace",
+            ],
+        ),
+        (
             "crates/xtask",
             "standstill-xtask",
             &[

@@ -5,11 +5,11 @@ use crate::plan::refusal::{Code, Refusal};
 use crate::suggest::nearest;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
-use standstill_planner::{Field, Limits, Setpoint};
+use standstill_planner::{DirectedLimits, Field, Limits, Setpoint};
 use std::fmt;
 
 /// The fields every method takes. What only some take stands in the table of methods.
-const COMMON: [&str; 10] = [
+const COMMON: [&str; 11] = [
     "id",
     "Ts",
     "target",
@@ -18,6 +18,7 @@ const COMMON: [&str; 10] = [
     "acceleration",
     "jerk",
     "end_velocity",
+    "end_acceleration",
     "limits",
     "method",
 ];
@@ -25,12 +26,16 @@ const COMMON: [&str; 10] = [
 /// The fields of `limits`.
 const LIMITS: [&str; 5] = ["velocity", "acceleration", "deceleration", "jerk", "snap"];
 
+/// The fields of `velocity_limits`.
+const DIRECTIONS: [&str; 2] = ["positive", "negative"];
+
 /// The fields of one line, each with its text. The keys are known and stand there once.
 #[derive(Clone, Debug)]
 pub struct Fields<'a> {
     members: Members<'a>,
     limits: Members<'a>,
     limits_before: Members<'a>,
+    velocity_limits: Members<'a>,
 }
 
 /// Start of a move and its limits: what every method reads.
@@ -40,6 +45,8 @@ pub struct Problem {
     pub start: Setpoint,
     /// Velocity at the target (u/s).
     pub end_velocity: f64,
+    /// Acceleration at the target (u/s^2).
+    pub end_acceleration: f64,
     /// The limits; infinite where none is given.
     pub limits: Limits,
 }
@@ -52,6 +59,7 @@ impl Problem {
             (Field::Acceleration, self.start.acceleration),
             (Field::Jerk, self.start.jerk),
             (Field::EndVelocity, self.end_velocity),
+            (Field::EndAcceleration, self.end_acceleration),
         ];
         moving.into_iter().find(|(_, value)| *value != 0.0)
     }
@@ -75,6 +83,7 @@ impl<'a> Fields<'a> {
             members,
             limits: Members::default(),
             limits_before: Members::default(),
+            velocity_limits: Members::default(),
         })
     }
 
@@ -101,9 +110,15 @@ impl<'a> Fields<'a> {
             members: self.members.clone(),
             limits: self.opened("limits")?,
             limits_before: self.opened("limits_before")?,
+            velocity_limits: self.opened("velocity_limits")?,
         };
         opened.check_keys(&opened.limits, "limits.", LIMITS.into_iter())?;
         opened.check_keys(&opened.limits_before, "limits_before.", LIMITS.into_iter())?;
+        opened.check_keys(
+            &opened.velocity_limits,
+            "velocity_limits.",
+            DIRECTIONS.into_iter(),
+        )?;
         Ok(opened)
     }
 
@@ -157,6 +172,7 @@ impl<'a> Fields<'a> {
         match field.split_once('.') {
             Some(("limits", name)) => self.limits.get(name),
             Some(("limits_before", name)) => self.limits_before.get(name),
+            Some(("velocity_limits", name)) => self.velocity_limits.get(name),
             _ => self.members.get(field),
         }
     }
@@ -167,7 +183,7 @@ impl<'a> Fields<'a> {
             return Ok(None);
         };
         if ["\"NaN\"", "\"Infinity\"", "\"-Infinity\""].contains(&text) {
-            let remedy = if field.starts_with("limits") {
+            let remedy = if field.starts_with("limits") || field.starts_with("velocity_limits") {
                 "; leave it out for no limit"
             } else {
                 ""
@@ -221,6 +237,7 @@ impl<'a> Fields<'a> {
                 snap: 0.0,
             },
             end_velocity: state("end_velocity")?,
+            end_acceleration: state("end_acceleration")?,
             limits: self.limits("limits", &Limits::NONE)?,
         })
     }
@@ -234,6 +251,30 @@ impl<'a> Fields<'a> {
             }
         }
         self.limits("limits_before", limits)
+    }
+
+    /// `limits` with the velocity bound of each direction: of that and its own in `velocity_limits` the lower one.
+    pub fn directed(&self, limits: &Limits) -> Result<DirectedLimits, Refusal> {
+        let side = |name: &str| {
+            let field = format!("velocity_limits.{name}");
+            let bound = self.limit(&field, f64::INFINITY)?;
+            if bound > 0.0 {
+                return Ok(bound.min(limits.velocity));
+            }
+            let message = format!("`{field}` must be positive: it is the largest speed in its direction");
+            let nearest = (bound < 0.0).then(|| crate::json::number(-bound));
+            Err(self.invalid(&field, message).nearest(nearest))
+        };
+        Ok(DirectedLimits {
+            positive: side("positive")?,
+            negative: side("negative")?,
+            limits: *limits,
+        })
+    }
+
+    /// Whether the line has a field.
+    pub fn has(&self, field: &str) -> bool {
+        self.members.get(field).is_some()
     }
 
     /// The limits of an object; those it does not give are as in `absent`.

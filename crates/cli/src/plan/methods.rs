@@ -63,7 +63,7 @@ const METHODS: [&MethodInfo; 10] = [
     },
     &MethodInfo {
         name: "ramp",
-        fields: &["limits_before"],
+        fields: &["limits_before", "velocity_limits"],
         plan: ramp::ramp,
     },
 ];
@@ -78,7 +78,7 @@ const OVERLAPPED: &MethodInfo = &MethodInfo {
 /// The default for everything else.
 const ONLINE: &MethodInfo = &MethodInfo {
     name: "online",
-    fields: &["limits_before"],
+    fields: &["limits_before", "velocity_limits"],
     plan: online::online,
 };
 
@@ -163,7 +163,7 @@ pub fn all() -> impl Iterator<Item = &'static MethodInfo> {
 /// Plans what a line asks for; gives the name of the method as well.
 pub fn plan(fields: &Fields<'_>) -> Result<(&'static str, Planned), Refusal> {
     let problem = fields.problem()?;
-    let default = if problem.first_motion().is_some() {
+    let default = if problem.first_motion().is_some() || fields.has("velocity_limits") {
         ONLINE
     } else {
         OVERLAPPED

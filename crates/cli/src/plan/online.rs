@@ -3,39 +3,63 @@
 use crate::json::number;
 use crate::plan::fields::{Fields, Problem};
 use crate::plan::methods::Planned;
-use crate::plan::refusal::Refusal;
+use crate::plan::refusal::{Code, Refusal};
 use crate::plan::samples::Setpoints;
-use crate::plan::shared::{bounded, check_end_velocity, check_limits, cycle, too_long};
+use crate::plan::shared::{
+    bounded, check_end_direction, check_limits, check_no_end_acceleration, cycle, too_long,
+};
 use standstill_planner::papers::{Tracking, peaks, scans};
-use standstill_planner::{Excess, Field, OnlinePlan, PlanError, Setpoint};
+use standstill_planner::{Excess, Field, Goal, OnlinePlan, Order, PlanError, Setpoint};
 
 /// The limits both need.
 const NEEDED: [Field; 2] = [Field::LimitVelocity, Field::LimitAcceleration];
 
-/// `online`: from any state to a position, at rest there or with a velocity.
+/// `online`: from any state to a position, at rest there or with a velocity and an acceleration.
 pub fn online(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> {
     let Problem {
         start,
         end_velocity,
-        limits,
+        end_acceleration,
+        limits: given,
     } = problem;
     let cycle = cycle(fields)?;
     let target = fields.required("target")?;
-    check_limits(fields, limits, &NEEDED, &[])?;
-    check_end_velocity(fields, problem)?;
-    if (target - start.position) * end_velocity < 0.0 {
-        let message = "`end_velocity` points away from the target".to_owned();
-        return Err(fields.invalid("end_velocity", message).nearest(Some(number(0.0))));
-    }
-    let before = fields.limits_before(limits)?;
-    let plan = OnlinePlan::keeping_velocity(start, target, *end_velocity, limits, &before, cycle)
-        .map_err(|error| Refusal::of_plan_error(fields, error))?;
-    let end = if *end_velocity == 0.0 {
+    let limits = fields.directed(given)?;
+    check_limits(fields, &limits.either(), &NEEDED, &[])?;
+    let before = fields.limits_before(given)?.into();
+    check_end_direction(fields, *end_velocity, &limits)?;
+    let plan = if *end_acceleration == 0.0 {
+        OnlinePlan::keeping_velocities(start, target, *end_velocity, &limits, &before, cycle)
+    } else {
+        let goal = Goal {
+            position: target,
+            velocity: *end_velocity,
+            acceleration: *end_acceleration,
+        };
+        OnlinePlan::reaching(start, &goal, &limits, &before, cycle)
+    };
+    let plan = plan.map_err(|error| match error {
+        PlanError::Unreachable {
+            field: Field::EndAcceleration,
+            nearest,
+            ..
+        } => {
+            let message = if limits.limits.order() == Order::Two {
+                "without `limits.jerk` or `limits.snap` acceleration jumps, so `end_acceleration` can only be 0"
+            } else {
+                "no motion inside `limits` can come to this `end_acceleration` at `end_velocity` and go on from it"
+            };
+            Refusal::of_field(Code::Unreachable, fields, "end_acceleration", message).nearest(Some(number(nearest)))
+        }
+        other => Refusal::of_plan_error(fields, other),
+    })?;
+    let end = if *end_velocity == 0.0 && *end_acceleration == 0.0 {
         plan.at(plan.scans().into())
     } else {
-        // Where it is at the first instant with that velocity, not at the scan after it.
+        // Where it is at the first instant with both, not at the scan after it.
         Setpoint {
             velocity: *end_velocity,
+            acceleration: *end_acceleration,
             ..Setpoint::at_rest(target)
         }
     };
@@ -61,6 +85,7 @@ pub fn tracking(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refus
         let message = "`end_velocity` must be 0: this method ends at rest".to_owned();
         return Err(fields.invalid("end_velocity", message).nearest(Some(number(0.0))));
     }
+    check_no_end_acceleration(fields, problem)?;
     let cycle = cycle(fields)?;
     let targets = targets(fields, cycle)?;
     check_limits(fields, limits, &NEEDED, &[])?;

@@ -5,7 +5,7 @@ use crate::plan::fields::{Fields, Problem};
 use crate::plan::methods::Planned;
 use crate::plan::refusal::Refusal;
 use crate::plan::samples::Setpoints;
-use crate::plan::shared::{bounded, check_limits, check_rest, cycle, too_long};
+use crate::plan::shared::{bounded, check_limits, check_no_end_acceleration, check_rest, cycle, too_long};
 use crate::suggest::nearest;
 use standstill_planner::papers::{Profile, SCurve, ShortPath, ShortPathPolicy, Timed, Trapezoid};
 use standstill_planner::{Field, PlanError, SampledPlan};
@@ -83,6 +83,7 @@ pub fn short_path(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Ref
         start,
         end_velocity,
         limits,
+        ..
     } = problem;
     let accelerations = [
         (Field::Acceleration, start.acceleration),
@@ -97,6 +98,7 @@ pub fn short_path(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Ref
     let cycle = cycle(fields)?;
     let target = fields.required("target")?;
     let policy = policy(fields)?;
+    check_no_end_acceleration(fields, problem)?;
     check_limits(fields, limits, &ORDER_THREE, &[Field::LimitSnap])?;
     let plan = ShortPath::new(
         start.position,

@@ -4,7 +4,9 @@ use crate::plan::fields::{Fields, Problem};
 use crate::plan::methods::Planned;
 use crate::plan::refusal::Refusal;
 use crate::plan::samples::Setpoints;
-use crate::plan::shared::{bounded, check_end_velocity, check_limits, cycle};
+use crate::plan::shared::{
+    bounded, check_end_direction, check_end_velocity, check_limits, check_no_end_acceleration, cycle,
+};
 use standstill_planner::{Field, RampPlan, Setpoint};
 
 /// From any state to the constant `end_velocity`, wherever that is reached.
@@ -13,6 +15,7 @@ pub fn ramp(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> 
         start,
         end_velocity,
         limits,
+        ..
     } = problem;
     let cycle = cycle(fields)?;
     if fields.names().any(|name| name == "target") {
@@ -20,9 +23,12 @@ pub fn ramp(fields: &Fields<'_>, problem: &Problem) -> Result<Planned, Refusal> 
         return Err(fields.invalid("target", message));
     }
     check_limits(fields, limits, &[Field::LimitAcceleration], &[])?;
+    check_no_end_acceleration(fields, problem)?;
     check_end_velocity(fields, problem)?;
-    let before = fields.limits_before(limits)?;
-    let plan = RampPlan::keeping_velocity(start, *end_velocity, limits, &before, cycle)
+    let before = fields.limits_before(limits)?.into();
+    let limits = fields.directed(limits)?;
+    check_end_direction(fields, *end_velocity, &limits)?;
+    let plan = RampPlan::keeping_velocities(start, *end_velocity, &limits, &before, cycle)
         .map_err(|error| Refusal::of_plan_error(fields, error))?;
     let end = Setpoint {
         velocity: *end_velocity,

@@ -3,7 +3,7 @@
 use crate::json::number;
 use crate::plan::fields::{Fields, Problem};
 use crate::plan::refusal::{Code, Refusal};
-use standstill_planner::{Field, Limits, Peaks, grid};
+use standstill_planner::{DirectedLimits, Field, Limits, Peaks, grid};
 
 /// Refuses a start or an end that moves.
 pub fn check_rest(fields: &Fields<'_>, problem: &Problem) -> Result<(), Refusal> {
@@ -14,6 +14,17 @@ pub fn check_rest(fields: &Fields<'_>, problem: &Problem) -> Result<(), Refusal>
             Err(fields.invalid(field.name(), message).nearest(Some(number(0.0))))
         }
     }
+}
+
+/// Refuses an end acceleration.
+pub fn check_no_end_acceleration(fields: &Fields<'_>, problem: &Problem) -> Result<(), Refusal> {
+    if problem.end_acceleration == 0.0 {
+        return Ok(());
+    }
+    let message = "`end_acceleration` must be 0: only `online` ends with another".to_owned();
+    Err(fields
+        .invalid("end_acceleration", message)
+        .nearest(Some(number(0.0))))
 }
 
 /// The sample time.
@@ -63,6 +74,31 @@ pub fn check_end_velocity(fields: &Fields<'_>, problem: &Problem) -> Result<(), 
         return Err(fields.invalid("end_velocity", message).nearest(Some(nearest)));
     }
     Ok(())
+}
+
+/// Refuses an end velocity above the bound of its direction, which is the nearest: it cannot be reached.
+pub fn check_end_direction(
+    fields: &Fields<'_>,
+    end_velocity: f64,
+    limits: &DirectedLimits,
+) -> Result<(), Refusal> {
+    let (side, name) = if end_velocity < 0.0 {
+        (limits.negative, "velocity_limits.negative")
+    } else {
+        (limits.positive, "velocity_limits.positive")
+    };
+    // A limit that makes no sense is for the planner to refuse.
+    if !(side > 0.0 && end_velocity.abs() > side) {
+        return Ok(());
+    }
+    let name = if side < limits.limits.velocity {
+        name
+    } else {
+        "limits.velocity"
+    };
+    let message = format!("`end_velocity` is above `{name}`: it cannot be reached");
+    let refusal = Refusal::of_field(Code::Unreachable, fields, "end_velocity", message);
+    Err(refusal.nearest(Some(number(side.copysign(end_velocity)))))
 }
 
 /// The answer to a move of more scans than a plan counts.

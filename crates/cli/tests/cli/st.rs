@@ -113,3 +113,100 @@ fn what_is_probably_not_meant_is_told_by_its_code() {
     let ended = standstill(&place, &["st", "lint", "--json", "cell.st"]);
     assert_eq!(ended.status, 0, "{}", ended.out);
 }
+
+#[test]
+fn files_are_laid_out_in_place_and_only_those_that_change_are_named() {
+    let place = scratch("st_fmt");
+    fs::write(place.join("good.st"), GOOD).unwrap();
+    let ugly = GOOD.replace("Count := Count + 1", "Count:=Count+1");
+    fs::write(place.join("ugly.st"), &ugly).unwrap();
+    let ended = standstill(&place, &["st", "fmt", "--check", "good.st", "ugly.st"]);
+    assert_eq!((ended.status, ended.out.as_str()), (1, "ugly.st\n"));
+    assert_eq!(fs::read_to_string(place.join("ugly.st")).unwrap(), ugly);
+    let ended = standstill(&place, &["st", "fmt", "good.st", "ugly.st"]);
+    assert_eq!((ended.status, ended.out.as_str()), (0, "ugly.st\n"));
+    assert_eq!(fs::read_to_string(place.join("ugly.st")).unwrap(), GOOD);
+    fs::write(place.join("bad.st"), "PROGRAM P x := ; END_PROGRAM").unwrap();
+    let ended = standstill(&place, &["st", "fmt", "bad.st"]);
+    assert_eq!(ended.status, 3);
+    assert!(ended.err.contains("bad.st:1:16"), "{}", ended.err);
+}
+
+/// What is executed is counted beside the run that is judged.
+#[test]
+fn a_test_says_which_statements_and_branches_were_executed() {
+    let place = scratch("st_coverage");
+    let text = "FUNCTION Half : INT
+VAR_INPUT x : INT; END_VAR
+Half := x / 2;
+END_FUNCTION
+PROGRAM Cell
+VAR_INPUT Go : BOOL; END_VAR
+VAR_OUTPUT Count : INT; Kind : INT; END_VAR
+IF Go THEN
+  Count := Count + 1;
+END_IF;
+CASE Count OF
+  1: Kind := 10;
+  2, 3: Kind := 20;
+  7: Kind := Half(7);
+END_CASE;
+END_PROGRAM
+";
+    fs::write(place.join("cell.st"), text).unwrap();
+    let script = |claims: &str| {
+        format!(
+            r#"{{"standstill": 1, "title": "t", "cycle": "T#10ms", "scans": 5, "golden": false, "axes": {{}}, "blocks": [],
+  "programs": {{"cell": {{"st": "cell.st"}}}}, "steps": [{{"at": 2, "set": {{"cell.Go": true}}}}],
+  "expect": [{claims}]}}"#
+        )
+    };
+    let path = place.join("a.scan.json");
+    fs::write(
+        &path,
+        script(r#"{"at": 4, "that": {"cell.Count": 3, "cell.Kind": 20}}"#),
+    )
+    .unwrap();
+    let ended = standstill(&place, &["test", "--coverage", "cov.lcov", "a.scan.json"]);
+    assert_eq!(ended.status, 0, "{} {}", ended.out, ended.err);
+    let line = "coverage: 5 of 7 (71.4 %) statements, 5 of 6 (83.3 %) branches: cov.lcov\n";
+    assert!(ended.out.ends_with(line), "{}", ended.out);
+    let lcov = fs::read_to_string(place.join("cov.lcov")).unwrap();
+    let expected = "TN:
+SF:cell.st
+BRDA:8,2,0,3
+BRDA:8,2,1,2
+BRDA:11,4,0,1
+BRDA:11,4,1,2
+BRDA:11,4,2,0
+BRDA:11,4,3,2
+BRF:6
+BRH:5
+DA:3,0
+DA:8,5
+DA:9,3
+DA:11,5
+DA:12,1
+DA:13,2
+DA:14,0
+LF:7
+LH:5
+end_of_record
+";
+    assert_eq!(lcov, expected);
+    // The trace of the judged run is the same with and without.
+    for (name, more) in [("with", &["--coverage", "x.lcov"][..]), ("without", &[][..])] {
+        let trace = place.join(name);
+        fs::create_dir(&trace).unwrap();
+        for file in ["a.scan.json", "cell.st"] {
+            fs::copy(place.join(file), trace.join(file)).unwrap();
+        }
+        let text = fs::read_to_string(trace.join("a.scan.json")).unwrap();
+        fs::write(trace.join("a.scan.json"), text.replace("\"golden\": false, ", "")).unwrap();
+        let mut arguments = vec!["test", "--accept", "a.scan.json"];
+        arguments.extend(more);
+        assert_eq!(standstill(&trace, &arguments).status, 0);
+    }
+    let golden = |name: &str| fs::read(place.join(name).join("a.exact")).unwrap();
+    assert_eq!(golden("with"), golden("without"));
+}

@@ -2296,6 +2296,86 @@ void MC_PhasingRelative(struct standstill_mc_phasing_relative_fb *self) {
     }
 }
 
+struct standstill_mc_combine_axes_fb {
+    void *table;
+    struct standstill_reference *master1;
+    struct standstill_reference *master2;
+    struct standstill_reference *slave;
+    uint8_t execute;
+    uint8_t continuous_update;
+    int32_t combine_mode;
+    int16_t gear_ratio_numerator_m1;
+    int16_t gear_ratio_denominator_m1;
+    int16_t gear_ratio_numerator_m2;
+    int16_t gear_ratio_denominator_m2;
+    int32_t master_value_source_m1;
+    int32_t master_value_source_m2;
+    int32_t buffer_mode;
+    uint8_t in_sync;
+    uint8_t busy;
+    uint8_t active;
+    uint8_t command_aborted;
+    uint8_t error;
+    uint16_t error_id;
+    double deviation;
+    uint8_t master_lost;
+    int32_t result;
+    uint64_t key;
+};
+STANDSTILL_ASSERT(rusty_mc_combine_axes_master1, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, master1) == 8);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_master2, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, master2) == 16);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_slave, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, slave) == 24);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_execute, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, execute) == 32);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_continuous_update, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, continuous_update) == 33);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_combine_mode, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, combine_mode) == 36);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_gear_ratio_numerator_m1, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, gear_ratio_numerator_m1) == 40);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_gear_ratio_denominator_m1, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, gear_ratio_denominator_m1) == 42);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_gear_ratio_numerator_m2, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, gear_ratio_numerator_m2) == 44);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_gear_ratio_denominator_m2, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, gear_ratio_denominator_m2) == 46);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_master_value_source_m1, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, master_value_source_m1) == 48);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_master_value_source_m2, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, master_value_source_m2) == 52);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_buffer_mode, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, buffer_mode) == 56);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_in_sync, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, in_sync) == 60);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, busy) == 61);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_active, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, active) == 62);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, command_aborted) == 63);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, error) == 64);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, error_id) == 66);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_deviation, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, deviation) == 72);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_master_lost, sizeof(void *) != 8 || offsetof(struct standstill_mc_combine_axes_fb, master_lost) == 80);
+STANDSTILL_ASSERT(rusty_mc_combine_axes_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_combine_axes_fb, result) == 84 && offsetof(struct standstill_mc_combine_axes_fb, key) == 88 && sizeof(struct standstill_mc_combine_axes_fb) == 96));
+
+void MC_CombineAxes(struct standstill_mc_combine_axes_fb *self);
+
+void MC_CombineAxes(struct standstill_mc_combine_axes_fb *self) {
+    struct standstill_mc_combine_axes_in in = standstill_mc_combine_axes_in_default();
+    struct standstill_mc_combine_axes_out out = standstill_mc_combine_axes_out_default();
+    in.master1 = self->master1 != NULL ? self->master1->number : 0;
+    in.master2 = self->master2 != NULL ? self->master2->number : 0;
+    in.slave = self->slave != NULL ? self->slave->number : 0;
+    in.execute = self->execute;
+    in.continuous_update = self->continuous_update;
+    in.combine_mode = (int32_t)self->combine_mode;
+    in.gear_ratio_numerator_m1 = self->gear_ratio_numerator_m1;
+    in.gear_ratio_denominator_m1 = self->gear_ratio_denominator_m1;
+    in.gear_ratio_numerator_m2 = self->gear_ratio_numerator_m2;
+    in.gear_ratio_denominator_m2 = self->gear_ratio_denominator_m2;
+    in.master_value_source_m1 = (int32_t)self->master_value_source_m1;
+    in.master_value_source_m2 = (int32_t)self->master_value_source_m2;
+    in.buffer_mode = (int32_t)self->buffer_mode;
+    self->result = standstill_mc_combine_axes(STANDSTILL_RUNTIME &self->key, &in, &out);
+    if (self->result == 0) {
+        self->in_sync = out.in_sync;
+        self->busy = out.busy;
+        self->active = out.active;
+        self->command_aborted = out.command_aborted;
+        self->error = out.error;
+        self->error_id = out.error_id;
+        self->deviation = out.deviation;
+        self->master_lost = out.master_lost;
+    }
+}
+
 struct standstill_r_trig_fb {
     void *table;
     uint8_t clk;

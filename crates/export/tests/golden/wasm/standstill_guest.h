@@ -32,6 +32,12 @@ enum standstill_mc_buffer_mode {
     STANDSTILL_MC_BLENDING_HIGH = 5,
 };
 
+/** MC_COMBINE_MODE */
+enum standstill_mc_combine_mode {
+    STANDSTILL_MC_ADD_AXES = 0,
+    STANDSTILL_MC_SUB_AXES = 1,
+};
+
 /** MC_DIRECTION */
 enum standstill_mc_direction {
     STANDSTILL_MC_DIRECTION_UNSET = 0,
@@ -1621,7 +1627,7 @@ typedef struct standstill_mc_gear_in_in {
     int16_t ratio_numerator; /* RatioNumerator: Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest. */
     uint16_t ratio_denominator; /* RatioDenominator: Denominator of the ratio, above 0. */
     uint8_t reserved_18[2];
-    int32_t master_value_source; /* MasterValueSource: mcSetValue; other values of the master are not followed in this version. */
+    int32_t master_value_source; /* MasterValueSource: mcSetValue, or mcActualValue for what the drive of the master tells, filtered. */
     double acceleration; /* Acceleration: Rate while the speed grows, until in gear; 0 takes the axis default. (u/s^2) */
     double deceleration; /* Deceleration: Rate while the speed falls, until in gear; 0 takes the axis default. (u/s^2) */
     double jerk; /* Jerk: Jerk until in gear; 0 takes the axis default, and no limit if there is none. (u/s^3) */
@@ -1706,7 +1712,7 @@ typedef struct standstill_mc_gear_in_pos_in {
     int16_t ratio_numerator; /* RatioNumerator: Way of the slave for one of the master, as a ratio: numerator, signed; 0 brings the slave to rest. */
     uint16_t ratio_denominator; /* RatioDenominator: Denominator of the ratio, above 0. */
     uint8_t reserved_18[2];
-    int32_t master_value_source; /* MasterValueSource: mcSetValue; other values of the master are not followed in this version. */
+    int32_t master_value_source; /* MasterValueSource: mcSetValue, or mcActualValue for what the drive of the master tells, filtered. */
     double master_sync_position; /* MasterSyncPosition: Place of the master at the sync point. (u) */
     double slave_sync_position; /* SlaveSyncPosition: Place of the slave at the sync point. (u) */
     int32_t sync_mode; /* SyncMode: Which of the places that mean the same on a modulo slave; with mcSlowDown the slave is never faster than in sync. */
@@ -1840,6 +1846,63 @@ static inline standstill_mc_phasing_relative_in standstill_mc_phasing_relative_i
 
 static inline standstill_mc_phasing_relative_out standstill_mc_phasing_relative_out_default(void) {
     standstill_mc_phasing_relative_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
+/** MC_CombineAxes: Lets one axis follow two others at once: their ways are added, or subtracted. */
+typedef struct standstill_mc_combine_axes_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t master1; /* Master1: The first axis to follow. */
+    int32_t master2; /* Master2: The second axis to follow; it may be the same one. */
+    int32_t slave; /* Slave: The axis that follows. */
+    uint8_t execute; /* Execute: A rising edge couples the axes with the values of that call. */
+    uint8_t continuous_update; /* ContinuousUpdate: Changed inputs hold for the coupling in progress while TRUE, if it was TRUE at the rising edge. */
+    uint8_t reserved_18[2];
+    int32_t combine_mode; /* CombineMode: mcAddAxes: the ways of both masters are added; mcSubAxes: that of the second is taken away. */
+    int16_t gear_ratio_numerator_m1; /* GearRatioNumeratorM1: Way of the slave for one of the first master, as a ratio: numerator, signed, 0 allowed. */
+    int16_t gear_ratio_denominator_m1; /* GearRatioDenominatorM1: Denominator of that ratio, above 0. */
+    int16_t gear_ratio_numerator_m2; /* GearRatioNumeratorM2: Way of the slave for one of the second master: numerator, signed, 0 allowed. */
+    int16_t gear_ratio_denominator_m2; /* GearRatioDenominatorM2: Denominator of that ratio, above 0. */
+    int32_t master_value_source_m1; /* MasterValueSourceM1: Which values of the first master are followed. */
+    int32_t master_value_source_m2; /* MasterValueSourceM2: Which values of the second master are followed. */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it. */
+    uint8_t reserved_44[4];
+} standstill_mc_combine_axes_in;
+_Static_assert(sizeof(standstill_mc_combine_axes_in) == 48, "mc_combine_axes_in");
+
+typedef struct standstill_mc_combine_axes_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t in_sync; /* InSync: The set position of the slave is the one the masters ask for. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t active; /* Active: The block controls the slave. */
+    uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint8_t reserved_9[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_12[4];
+    double deviation; /* Deviation: How far the slave is from where the masters ask it to be, once it was in sync; 0 in sync. (u) */
+    uint8_t master_lost; /* MasterLost: A master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost). */
+    uint8_t reserved_25[7];
+} standstill_mc_combine_axes_out;
+_Static_assert(sizeof(standstill_mc_combine_axes_out) == 32, "mc_combine_axes_out");
+
+static inline standstill_mc_combine_axes_in standstill_mc_combine_axes_in_default(void) {
+    standstill_mc_combine_axes_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    in.gear_ratio_numerator_m1 = 1;
+    in.gear_ratio_denominator_m1 = 1;
+    in.gear_ratio_numerator_m2 = 1;
+    in.gear_ratio_denominator_m2 = 1;
+    in.master_value_source_m1 = 1;
+    in.master_value_source_m2 = 1;
+    return in;
+}
+
+static inline standstill_mc_combine_axes_out standstill_mc_combine_axes_out_default(void) {
+    standstill_mc_combine_axes_out out;
     memset(&out, 0, sizeof out);
     out.size = (uint32_t)sizeof out;
     return out;
@@ -2320,6 +2383,10 @@ STANDSTILL_IMPORT(mc_phasing_absolute) int32_t standstill_mc_phasing_absolute(ui
 STANDSTILL_IMPORT(mc_phasing_relative) int32_t standstill_mc_phasing_relative(uint64_t *key,
     const struct standstill_mc_phasing_relative_in *in, struct standstill_mc_phasing_relative_out *out);
 
+/** One call of MC_CombineAxes. A key of 0 makes the instance. */
+STANDSTILL_IMPORT(mc_combine_axes) int32_t standstill_mc_combine_axes(uint64_t *key,
+    const struct standstill_mc_combine_axes_in *in, struct standstill_mc_combine_axes_out *out);
+
 /** One call of R_TRIG. A key of 0 makes the instance. */
 STANDSTILL_IMPORT(r_trig) int32_t standstill_r_trig(uint64_t *key,
     const struct standstill_r_trig_in *in, struct standstill_r_trig_out *out);
@@ -2375,7 +2442,8 @@ typedef struct standstill_record {
     uint32_t instance;
     /** 1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position,
      *  8 planned to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13
-     *  fault, 14 orphaned, 15 coupled, 16 approaching the law of a gear, 17 in gear, 18 no longer in gear. */
+     *  fault, 14 orphaned, 15 coupled, 16 approaching the law of a gear, 17 in gear, 18 no longer in gear,
+     *  19 in sync late, 20 phase shift planned, 21 lowered to what a slave can follow. */
     int32_t event;
     /** ErrorID, 0 without one. */
     uint32_t error_id;
