@@ -467,7 +467,7 @@ impl<P: Planner> Axis<P> {
                 ..
             } => ("Distance", distance),
             Work::Velocity { velocity, .. } => ("Velocity", velocity),
-            Work::Gear(gearing) => ("Master", f64::from(gearing.master.number())),
+            Work::Gear(gearing) => ("Master", f64::from(gearing.first.master.number())),
             Work::Release(velocity) => ("Slave", velocity),
             Work::Torque { torque, .. } => ("Torque", torque),
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),

@@ -86,20 +86,18 @@ pub(super) enum Work {
 /// How a slave follows which master, or which two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gearing {
-    pub master: AxisId,
-    /// Which values of it are followed: set or actual ones.
-    pub source: ValueSource,
-    pub gear: Gear,
+    pub first: Leg,
     /// MC_CombineAxes: the second master, whose way is added.
-    pub second: Option<Second>,
+    pub second: Option<Leg>,
     /// The places that belong together, if they are given; else those in which it comes into gear.
     pub sync: Option<Sync>,
 }
 
-/// How the second one of two masters is followed.
+/// How one master is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Second {
+pub(super) struct Leg {
     pub master: AxisId,
+    /// Which values of it: set or actual ones.
     pub source: ValueSource,
     pub gear: Gear,
 }

@@ -27,7 +27,7 @@ mod phasing;
 mod sync;
 mod view;
 
-use super::commands::{Entry, Gearing, Second, Sync, Work};
+use super::commands::{Entry, Gearing, Leg, Sync, Work};
 use super::{Axis, Motion};
 use crate::{
     Approach, AxisId, CombineMode, ErrorId, Event, Followed, QUEUE_MAX, Raw, Scope, SyncMode, SyncPoint,
@@ -110,11 +110,6 @@ const COMBINED_PINS: [LegPins; 2] = [
     },
 ];
 
-/// Which values of a master are followed; undefined ones were refused.
-fn source_of(followed: &Followed) -> ValueSource {
-    followed.source.get().unwrap_or(ValueSource::Set)
-}
-
 /// How the owner follows its master, or its two masters.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Coupling {
@@ -147,34 +142,32 @@ pub(super) struct Coupling {
 }
 
 impl Gearing {
+    pub(super) fn legs(&self) -> [Option<Leg>; 2] {
+        [Some(self.first), self.second]
+    }
+
     /// The masters.
     pub(super) fn masters(&self) -> [Option<AxisId>; 2] {
-        self.values().map(|values| values.map(|(master, _)| master))
+        self.legs().map(|leg| leg.map(|leg| leg.master))
     }
 
     /// The masters, and which values of each are followed.
     fn values(&self) -> [Option<Values>; 2] {
-        let second = self.second.map(|second| (second.master, second.source));
-        [Some((self.master, self.source)), second]
-    }
-
-    /// The masters, each with its gear.
-    fn gears(&self) -> [Option<(AxisId, Gear)>; 2] {
-        let second = self.second.map(|second| (second.master, second.gear));
-        [Some((self.master, self.gear)), second]
+        self.legs().map(|leg| leg.map(|leg| (leg.master, leg.source)))
     }
 
     /// Where the slave is for masters that are there.
     pub(super) fn slave(&self, anchor: &Anchor, masters: [Place; 2]) -> Place {
+        let gear = &self.first.gear;
         match &self.second {
-            None => self.gear.slave(anchor, masters[0]),
-            Some(second) => self.gear.slave_of_two(&second.gear, anchor, masters),
+            None => gear.slave(anchor, masters[0]),
+            Some(second) => gear.slave_of_two(&second.gear, anchor, masters),
         }
     }
 
     /// The slave's derivative for those of the masters.
     pub(super) fn derivative(&self, of_masters: [f64; 2]) -> f64 {
-        let first = self.gear.derivative(of_masters[0]);
+        let first = self.first.gear.derivative(of_masters[0]);
         match &self.second {
             None => first,
             Some(second) => first + second.gear.derivative(of_masters[1]),
@@ -184,7 +177,7 @@ impl Gearing {
     /// What a derivative of the master of this number is multiplied by to be its part of that of the slave; `by` comes before.
     pub(super) fn factor(&self, leg: usize, by: f64) -> f64 {
         match (&self.second, leg) {
-            (_, 0) => self.gear.derivative(by),
+            (_, 0) => self.first.gear.derivative(by),
             (Some(second), _) => second.gear.derivative(by),
             (None, _) => 0.0,
         }
@@ -250,7 +243,7 @@ impl<P: Planner> Axis<P> {
     /// How the owner follows its master; `None` while it follows none.
     pub fn coupled(&self) -> Option<Coupled> {
         self.coupling.as_ref().map(|coupling| Coupled {
-            master: coupling.gearing.master,
+            master: coupling.gearing.first.master,
             deviation: coupling.deviation,
             phase: self.phases()[0],
             second: coupling
@@ -289,11 +282,11 @@ impl<P: Planner> Axis<P> {
         let Some(coupling) = &self.coupling else {
             return [None; 2];
         };
-        let ratio = |(master, gear): (AxisId, Gear)| {
-            let (numerator, denominator) = gear.ratio();
-            (master, numerator, denominator)
+        let ratio = |leg: Leg| {
+            let (numerator, denominator) = leg.gear.ratio();
+            (leg.master, numerator, denominator)
         };
-        coupling.gearing.gears().map(|leg| leg.map(ratio))
+        coupling.gearing.legs().map(|leg| leg.map(ratio))
     }
 
     /// The master went out of operation, and the slave rests until a block couples it anew.
@@ -319,15 +312,13 @@ impl<P: Planner> Axis<P> {
         sync: Option<SyncPoint>,
         scope: &mut Scope<'_>,
     ) -> Result<Gearing, ErrorId> {
-        let gear = self.check_leg(followed, &GEAR_PINS, scope)?;
+        let first = self.check_leg(followed, &GEAR_PINS, scope)?;
         let sync = match sync {
             Some(point) => Some(self.check_sync(&point, followed.master.turn, scope)?),
             None => None,
         };
         Ok(Gearing {
-            master: followed.master.axis,
-            source: source_of(followed),
-            gear,
+            first,
             second: None,
             sync,
         })
@@ -340,32 +331,25 @@ impl<P: Planner> Axis<P> {
         mode: Raw<CombineMode>,
         scope: &mut Scope<'_>,
     ) -> Result<Gearing, ErrorId> {
-        let [first, second] = masters;
-        let gear = self.check_leg(first, &COMBINED_PINS[0], scope)?;
-        let second_gear = self.check_leg(second, &COMBINED_PINS[1], scope)?;
-        let second_gear = match mode.get() {
-            Some(CombineMode::Add) => second_gear,
-            Some(CombineMode::Subtract) => second_gear.reversed(),
+        let first = self.check_leg(&masters[0], &COMBINED_PINS[0], scope)?;
+        let mut second = self.check_leg(&masters[1], &COMBINED_PINS[1], scope)?;
+        match mode.get() {
+            Some(CombineMode::Add) => {}
+            Some(CombineMode::Subtract) => second.gear = second.gear.reversed(),
             None => {
                 let number = f64::from(mode.number());
                 return Err(self.refuse("CombineMode", number, 1.0, ErrorId::SyncModeInvalid, scope));
             }
-        };
+        }
         Ok(Gearing {
-            master: first.master.axis,
-            source: source_of(first),
-            gear,
-            second: Some(Second {
-                master: second.master.axis,
-                source: source_of(second),
-                gear: second_gear,
-            }),
+            first,
+            second: Some(second),
             sync: None,
         })
     }
 
     /// The values at the pins for one master.
-    fn check_leg(&self, followed: &Followed, pins: &LegPins, scope: &mut Scope<'_>) -> Result<Gear, ErrorId> {
+    fn check_leg(&self, followed: &Followed, pins: &LegPins, scope: &mut Scope<'_>) -> Result<Leg, ErrorId> {
         let Followed {
             master,
             numerator,
@@ -382,21 +366,23 @@ impl<P: Planner> Axis<P> {
             return refuse(pins.denominator, denominator, 1.0, ErrorId::RatioInvalid);
         };
         let number = f64::from(source.number());
-        match source.get() {
-            Some(ValueSource::Set | ValueSource::Actual) => {}
+        let source = match source.get() {
+            Some(source @ (ValueSource::Set | ValueSource::Actual)) => source,
             Some(ValueSource::Commanded) => {
                 return refuse(pins.source, number, 1.0, ErrorId::MasterSourceInvalid);
             }
             None => return refuse(pins.source, number, 2.0, ErrorId::SourceInvalid),
-        }
+        };
         let turn = self.modulo.as_ref().map(|modulo| modulo.length);
-        match Gear::new(numerator, positive, master.turn, turn) {
-            Some(gear) => Ok(gear),
-            None => {
-                let numerator = f64::from(numerator);
-                refuse(pins.numerator, numerator, f64::NAN, ErrorId::CouplingRatioTooFine)
-            }
-        }
+        let Some(gear) = Gear::new(numerator, positive, master.turn, turn) else {
+            let numerator = f64::from(numerator);
+            return refuse(pins.numerator, numerator, f64::NAN, ErrorId::CouplingRatioTooFine);
+        };
+        Ok(Leg {
+            master: master.axis,
+            source,
+            gear,
+        })
     }
 
     /// MC_GearOut: on with the velocity that is left when acceleration and jerk are gone.
@@ -458,10 +444,10 @@ impl<P: Planner> Axis<P> {
         self.is_bound = true;
         let known = self.coupling.as_ref().map(|coupling| coupling.gearing);
         if known != Some(gearing) {
-            for (master, gear) in gearing.gears().into_iter().flatten() {
-                let (numerator, denominator) = gear.ratio();
+            for leg in gearing.legs().into_iter().flatten() {
+                let (numerator, denominator) = leg.gear.ratio();
                 let event = Event::Coupled {
-                    master,
+                    master: leg.master,
                     numerator,
                     denominator,
                 };
@@ -532,16 +518,21 @@ impl<P: Planner> Axis<P> {
         self.is_bound |= matches!(entry.work, Work::Gear(_));
     }
 
+    /// Notes anew whether the owner, or a command that waits, may follow a master. Returns whether one that waits may.
+    pub(crate) fn renew_bound(&mut self) -> bool {
+        let waits = self.queue.iter().any(|entry| matches!(entry.work, Work::Gear(_)));
+        self.is_bound = self.is_coupled() || self.awaited.is_some() || waits;
+        waits
+    }
+
     /// The masters of commands that wait, in order.
-    pub(crate) fn masters_of_waiting(&mut self) -> [[Option<Values>; 2]; QUEUE_MAX] {
+    pub(crate) fn masters_of_waiting(&self) -> [[Option<Values>; 2]; QUEUE_MAX] {
         let mut masters = [[None; 2]; QUEUE_MAX];
         for (masters, entry) in masters.iter_mut().zip(self.queue.iter()) {
             if let Work::Gear(gearing) = entry.work {
                 *masters = gearing.values();
             }
         }
-        let waits = masters.iter().flatten().any(Option::is_some);
-        self.is_bound = self.is_coupled() || self.awaited.is_some() || waits;
         masters
     }
 

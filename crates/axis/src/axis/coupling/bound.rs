@@ -6,11 +6,11 @@
 //!
 //! A bound lasts from the first scan in gear to the end of the coupling, also while the slave lags or comes onto another ratio.
 
-use super::super::commands::{Entry, REST, Work};
+use super::super::commands::{Entry, Leg, REST, Work};
 use super::super::{Axis, Motion};
 use super::Rung;
 use crate::{AxisId, Event, OnLimit, Scope};
-use standstill_planner::{Gear, Limits, Planner};
+use standstill_planner::{Limits, Planner};
 
 /// Of the room a shift between master and slave may take this much, so that the master can always move.
 const SHARE: f64 = 0.5;
@@ -154,16 +154,13 @@ impl<P: Planner> Axis<P> {
             let gearing = &coupling.gearing;
             let part = if gearing.second.is_some() { 0.5 } else { 1.0 };
             let limits = self.slowed(&self.parameters.limits).times(part);
-            let bound = |leg: usize, (master, gear): (AxisId, Gear)| {
-                let bound = behind(&limits, gear.ratio())?;
-                let shift = self.taken_by_shift(leg);
-                Some((master, shift.map_or(bound, |shift| beside(&bound, shift))))
+            let bound = |number: usize, leg: Leg| {
+                let bound = behind(&limits, leg.gear.ratio())?;
+                let shift = self.taken_by_shift(number);
+                Some((leg.master, shift.map_or(bound, |shift| beside(&bound, shift))))
             };
-            let [first, second] = gearing.gears();
-            [
-                first.and_then(|leg| bound(0, leg)),
-                second.and_then(|leg| bound(1, leg)),
-            ]
+            let second = gearing.second.and_then(|leg| bound(1, leg));
+            [bound(0, gearing.first), second]
         });
         bounds.into_iter().flatten()
     }
@@ -174,14 +171,7 @@ impl<P: Planner> Axis<P> {
         if self.config.following.on_limit != OnLimit::SlowMaster {
             return room;
         }
-        let part = |limits: &Limits, of: f64| Limits {
-            velocity: limits.velocity * of,
-            acceleration: limits.acceleration * of,
-            deceleration: limits.deceleration * of,
-            jerk: limits.jerk * of,
-            snap: limits.snap * of,
-        };
-        part(&room, NEARLY_ALL).or_smaller(&part(limits, SHARE))
+        room.times(NEARLY_ALL).or_smaller(&limits.times(SHARE))
     }
 
     /// The bound found in this motion step holds from now on.
@@ -270,8 +260,7 @@ impl<P: Planner> Axis<P> {
     }
 }
 
-/// What a master may have for a slave of these `limits` behind a gear of this ratio; none where the slave does not move. For a slave
-/// that adds two masters each may have what the half of its limits leaves.
+/// What a master may have for a slave of these `limits` behind a gear of this ratio; none where the slave does not move.
 fn behind(limits: &Limits, (numerator, denominator): (i32, u16)) -> Option<Limits> {
     let (ways, turns) = (f64::from(denominator), f64::from(numerator).abs());
     let behind = |limit: f64| limit * ways / turns;

@@ -203,8 +203,8 @@ impl<P: Planner> Axis<P> {
             ..law.plus(&added)
         });
         // What is added to a law that stands was held against the limits before.
-        let stands = self.law_stands(view);
-        let rough = self.rough(view, &law).filter(|_| added.is_none() || !stands);
+        let is_held = added.is_some() && self.law_stands(view);
+        let rough = self.rough(view, &law).filter(|_| !is_held);
         let reason = self.beyond(Some(place), &next, &limits, rough);
         if let Some(reason) = reason.or_else(|| self.beyond_on_the_way(&anchor, view, &limits)) {
             self.lose_gear(reason, scope);

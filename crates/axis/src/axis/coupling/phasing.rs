@@ -41,7 +41,7 @@ struct Moving<Plan> {
 
 /// The shift between one master and what its slave sees of it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Leg {
+struct Shifts {
     /// The shift (u of the master), and how it moves.
     now: Setpoint,
     command: Option<Shift>,
@@ -52,7 +52,7 @@ struct Leg {
 /// The shifts between masters and what their slave sees of them.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::axis) struct Phasing<Plan> {
-    legs: [Leg; 2],
+    legs: [Shifts; 2],
     /// The shift that moves, one at a time, and of which master.
     motion: Option<(usize, Moving<Plan>)>,
 }
@@ -60,7 +60,7 @@ pub(in crate::axis) struct Phasing<Plan> {
 impl<Plan> Default for Phasing<Plan> {
     fn default() -> Self {
         Self {
-            legs: [Leg::default(); 2],
+            legs: [Shifts::default(); 2],
             motion: None,
         }
     }
@@ -69,7 +69,7 @@ impl<Plan> Default for Phasing<Plan> {
 impl<Plan> Phasing<Plan> {
     /// There is no shift, and none is asked for.
     fn is_none(&self) -> bool {
-        let rests = |leg: &Leg| leg.command.is_none() && leg.now.position == 0.0;
+        let rests = |leg: &Shifts| leg.command.is_none() && leg.now.position == 0.0;
         self.motion.is_none() && self.legs.iter().all(rests)
     }
 
@@ -317,7 +317,7 @@ impl<P: Planner> Axis<P> {
 
     /// The command that waits for room begins, if there is some.
     fn begin_shift(&mut self, leg: usize, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        let Some(Leg { now, command, .. }) = self.phasing.legs.get(leg).copied() else {
+        let Some(Shifts { now, command, .. }) = self.phasing.legs.get(leg).copied() else {
             return;
         };
         let Some(mut shift) = command.filter(|shift| !shift.runs) else {

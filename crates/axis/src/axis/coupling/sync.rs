@@ -155,13 +155,13 @@ impl<P: Planner> Axis<P> {
 
     /// The master whose place a command waits for.
     pub(crate) fn awaited_master(&self) -> Option<AxisId> {
-        self.awaited.as_ref().map(|awaited| awaited.gearing.master)
+        self.awaited.as_ref().map(|awaited| awaited.gearing.first.master)
     }
 
     /// The same, and which values of it.
     pub(crate) fn awaited_values(&self) -> Option<Values> {
         let gearing = self.awaited.as_ref()?.gearing;
-        Some((gearing.master, gearing.source))
+        Some((gearing.first.master, gearing.first.source))
     }
 
     /// Before any axis has moved in this scan: the master whose place a command waits for is there.
@@ -246,7 +246,7 @@ impl<P: Planner> Axis<P> {
         let (Some(anchor), Some(sync)) = (coupling.anchor, coupling.gearing.sync) else {
             return Ok(());
         };
-        let master = f64::from(coupling.gearing.master.number());
+        let master = f64::from(coupling.gearing.first.master.number());
         let not_at_all = |error| ("Master", master, f64::NAN, error);
         self.gear_motion(entry, &self.setpoint).map_err(not_at_all)?;
         let difference = self.difference(coupling, &anchor);
@@ -372,7 +372,7 @@ impl<P: Planner> Axis<P> {
         };
         // The turn of the law that lies at or before `kept`, counted from that of the slave.
         let (before, rest) = split(kept - wanted.position, length);
-        let line = coupling.gearing.gear.derivative(view.now.at.velocity);
+        let line = coupling.gearing.first.gear.derivative(view.now.at.velocity);
         let is_forward = line >= 0.0;
         let further = match sync.mode {
             _ if rest == 0.0 => 0,

@@ -352,7 +352,7 @@ impl<P: Planner> Axis<P> {
         let coupling = self.coupling.as_ref().filter(|_| !self.follows_actual())?;
         let follows_one = coupling.gearing.second.is_none() && !self.is_phasing() && !self.adds_motion();
         (coupling.rung == Rung::Locked && matches!(self.motion, Motion::Geared) && follows_one)
-            .then(|| coupling.gearing.gear.derivative(1.0))
+            .then(|| coupling.gearing.first.gear.derivative(1.0))
     }
 
     /// Before any axis has moved in this scan: its masters are there.
