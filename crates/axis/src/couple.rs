@@ -174,8 +174,13 @@ fn slow_masters<P: Planner>(axes: &mut [Axis<P>], highest: u16, scope: &mut Scop
 
 /// Tells every axis how many masters stand above it, those included whose place a command waits for. Returns the most.
 ///
-/// Cost: as many looks at all axes as the longest chain has axes; what waits may close a ring, which takes one for each axis.
+/// Cost: a look at all axes while nothing has changed; else as many as the longest chain has axes. What waits may close a ring, which
+/// takes one for each axis.
 fn set_ranks<P: Planner>(axes: &mut [Axis<P>]) -> u16 {
+    // Without a ring there are no other ranks than those that agree with each other.
+    if axes.iter().all(|axis| axis.rank() == rank_below(axes, axis)) {
+        return axes.iter().map(Axis::rank).max().unwrap_or(0);
+    }
     for axis in axes.iter_mut() {
         axis.set_rank(0);
     }
@@ -184,9 +189,7 @@ fn set_ranks<P: Planner>(axes: &mut [Axis<P>]) -> u16 {
         let mut is_settled = true;
         for index in 0..axes.len() {
             let Some(axis) = axes.get(index) else { continue };
-            let above = axis.masters().filter_map(|master| axes.get(master.index()));
-            let rank = above.map(|master| master.rank().saturating_add(1)).max();
-            let rank = rank.unwrap_or(0);
+            let rank = rank_below(axes, axis);
             highest = rank.max(highest);
             if let Some(axis) = axes.get_mut(index).filter(|axis| axis.rank() != rank) {
                 axis.set_rank(rank);
@@ -200,11 +203,21 @@ fn set_ranks<P: Planner>(axes: &mut [Axis<P>]) -> u16 {
     highest
 }
 
+/// The rank of an axis, as those of its masters are now.
+fn rank_below<P: Planner>(axes: &[Axis<P>], axis: &Axis<P>) -> u16 {
+    let above = axis.masters().filter_map(|master| axes.get(master.index()));
+    let rank = above.map(|master| master.rank().saturating_add(1)).max();
+    rank.unwrap_or(0)
+}
+
 /// What waits behind a motion may become active in this step: if it could not then, it is told before.
 fn bar_rings<P: Planner>(axes: &mut [Axis<P>], index: usize) {
     let Some(axis) = axes.get_mut(index).filter(|axis| axis.is_bound()) else {
         return;
     };
+    if !axis.renew_bound() {
+        return;
+    }
     let (slave, masters) = (axis.id(), axis.masters_of_waiting());
     let mut barred = [None; QUEUE_MAX];
     for (error, masters) in barred.iter_mut().zip(masters) {
