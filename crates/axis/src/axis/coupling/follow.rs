@@ -564,6 +564,10 @@ impl<P: Planner> Axis<P> {
         if found.is_some() {
             return found;
         }
+        let found = step.beyond(limits);
+        if found.is_some() {
+            return found;
+        }
         if next.is_at_rest() {
             return None;
         }

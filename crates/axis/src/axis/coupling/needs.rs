@@ -1,5 +1,6 @@
 //! What a step from one set-point to the next needs of the limits, whatever the motion between them is.
 
+use super::follow::{Beyond, ROUNDING};
 use standstill_planner::{Limits, Setpoint};
 
 /// What [`Step::needs`] tells, in its order.
@@ -62,6 +63,144 @@ impl Step<'_> {
                 )),
         ]
     }
+}
+
+/// How much a limit may be exceeded by rounding that a moment is off by `1`, relative to it: where a motion is at its limit all
+/// along, what is left to it grows with the square of what the limit grows by.
+const FAR: f64 = 64.0;
+
+/// A moment that rounding puts off by more than this, relative to the largest it may have, says nothing.
+const COARSE: f64 = 1e-3;
+
+impl Step<'_> {
+    /// The first derivative of which no motion from one set-point to the next keeps the limit: its name, the least that some
+    /// motion needs of it, and the limit. Each derivative is looked at by itself, whatever those below it do between the two.
+    ///
+    /// The derivative is a function of time between -L and L, and what the set-points tell of it are its first moments. Which
+    /// moments such a function can have is known: see [`are_possible`].
+    pub(super) fn beyond(&self, most: &Limits) -> Option<Beyond> {
+        let steepest = most.acceleration.max(most.deceleration);
+        let limits = [steepest, most.jerk, most.snap];
+        let mut all = DERIVATIVES.into_iter().enumerate().skip(1).zip(limits);
+        let ((number, name), limit) =
+            all.find(|((number, _), limit)| limit.is_finite() && !self.is_possible(number + 1, *limit))?;
+        Some((name, self.least(number + 1, limit), limit))
+    }
+
+    /// The least limit of the derivative of this order that a motion keeps, to a part in 2^20; more than `limit`. Cost: at most
+    /// 84 looks.
+    fn least(&self, order: usize, limit: f64) -> f64 {
+        let (mut low, mut high) = (limit, 2.0 * limit);
+        for _ in 0..64 {
+            if self.is_possible(order, high) {
+                break;
+            }
+            (low, high) = (high, 2.0 * high);
+        }
+        for _ in 0..20 {
+            let middle = 0.5 * (low + high);
+            if self.is_possible(order, middle) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        high
+    }
+
+    /// Whether some motion leads from one set-point to the next whose derivative of this order stays within `limit`.
+    fn is_possible(&self, order: usize, limit: f64) -> bool {
+        let Self {
+            last, next, cycle, ..
+        } = *self;
+        let half = 0.5 * cycle * cycle;
+        let resolved = |from: f64, to: f64| RESOLVED * (from.abs() + to.abs());
+        // How far each derivative, from the third on down, ends off what those above it explain, and what rounding makes of it.
+        let snapless = order < 4;
+        let jerk = if snapless { 0.0 } else { last.jerk };
+        let acceleration = if order < 3 { 0.0 } else { last.acceleration };
+        let place = resolved(last.position, next.position) + RESOLVED * self.coarsest;
+        let off = [
+            (next.jerk - jerk, resolved(last.jerk, next.jerk)),
+            (
+                next.acceleration - acceleration - jerk * cycle,
+                resolved(last.acceleration, next.acceleration),
+            ),
+            (
+                next.velocity - last.velocity - acceleration * cycle - jerk * half,
+                resolved(last.velocity, next.velocity),
+            ),
+            (
+                self.way.unwrap_or(0.0)
+                    - last.velocity * cycle
+                    - acceleration * half
+                    - jerk * half * cycle / 3.0,
+                if self.way.is_some() { place } else { f64::INFINITY },
+            ),
+        ];
+        let mut known = [0.0; 4];
+        let mut rounding = 0.0;
+        let mut scale = limit * cycle;
+        let all = off.into_iter().skip(4 - order).zip([1.0, 1.0, 2.0, 6.0]);
+        for (number, ((off, resolved), factor)) in all.enumerate() {
+            let noise = factor * resolved / scale;
+            if !(noise <= COARSE) {
+                break;
+            }
+            rounding += noise;
+            if let Some(moment) = known.get_mut(number) {
+                *moment = factor * off / scale;
+            }
+            if !are_possible(&known, number + 1, 1.0 + ROUNDING + FAR * rounding) {
+                return false;
+            }
+            scale *= cycle;
+        }
+        true
+    }
+}
+
+/// Whether there is a function f of time t in [0, 1] between `-most` and `most` with the first `count` of these moments: the
+/// integrals of f (1 - t)^n; fewer of them are possible.
+///
+/// For g between 0 and 1 with the moments c, the exponential of -(c0 / z + c1 / z^2 + ..) is 1 - (n0 / z + n1 / z^2 + ..) with the
+/// moments n of a measure. There is such a g where that measure is nowhere below 0, and so for 1 - g, and for both with time
+/// reversed.
+///
+/// Source: N. I. Akhiezer and M. G. Krein, Some Questions in the Theory of Moments, on the L-problem of A. A. Markov.
+fn are_possible(moments: &[f64; 4], count: usize, most: f64) -> bool {
+    // Of g, which is half of 1 + f / most.
+    let [c0, c1, c2, c3] = moments.map(|moment| 0.5 * moment / most);
+    let known = [0.5 + c0, 0.25 + c1, 1.0 / 6.0 + c2, 0.125 + c3];
+    let [c0, c1, c2, c3] = known;
+    let reversed = [c0, c0 - c1, c0 - 2.0 * c1 + c2, c0 - 3.0 * c1 + 3.0 * c2 - c3];
+    match count {
+        0 => true,
+        1 => (0.0..=1.0).contains(&c0),
+        2 => measure(known)[1] >= 0.0 && measure(reversed)[1] >= 0.0,
+        3 => spread([c0, c1, c2]) >= 0.0 && spread([1.0 - c0, 0.5 - c1, 1.0 / 3.0 - c2]) >= 0.0,
+        _ => [known, reversed].into_iter().all(|moments| {
+            let [_, n1, n2, n3] = measure(moments);
+            n1 * n3 >= n2 * n2
+        }),
+    }
+}
+
+/// The moments n of the measure that belongs to these.
+fn measure([c0, c1, c2, c3]: [f64; 4]) -> [f64; 4] {
+    let square = c0 * c0;
+    [
+        c0,
+        c1 - square / 2.0,
+        c2 - c0 * c1 + square * c0 / 6.0,
+        c3 - c0 * c2 - c1 * c1 / 2.0 + square * c1 / 2.0 - square * square / 24.0,
+    ]
+}
+
+/// By how much the moments are further apart than those of a function that is 1 in one piece.
+fn spread([c0, c1, c2]: [f64; 3]) -> f64 {
+    let square = c0 * c0;
+    c0 * c2 - c1 * c1 - square * square / 12.0
 }
 
 /// A scan of constant snap, from a state on: velocity, acceleration, jerk and snap.
@@ -130,6 +269,47 @@ mod tests {
 
     const CYCLE: f64 = 0.01;
 
+    /// The moments of a function that is `most` and `-most` in turn, and changes at these times.
+    fn moments(most: f64, switches: &[f64]) -> [f64; 4] {
+        let mut moments = [0.0; 4];
+        let mut from = 0.0;
+        let mut value = most;
+        for &to in switches.iter().chain(&[1.0]) {
+            let (from_end, to_end) = (1.0 - from, 1.0 - to);
+            let (mut upper, mut lower) = (from_end, to_end);
+            for (number, moment) in moments.iter_mut().enumerate() {
+                *moment += value * (upper - lower) / (number + 1) as f64;
+                (upper, lower) = (upper * from_end, lower * to_end);
+            }
+            (from, value) = (to, -value);
+        }
+        moments
+    }
+
+    /// Of all functions with the same first n moments, one that changes its sign at most n - 1 times is the smallest.
+    #[test]
+    fn moments_are_possible_up_to_the_smallest_function_that_has_them() {
+        let mut random = 1_u64;
+        let mut draw = || {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (random >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        for round in 0..20_000 {
+            let count = 1 + round % 4;
+            let mut switches = [draw(), draw(), draw()];
+            switches.sort_by(f64::total_cmp);
+            let sign = if draw() < 0.5 { 1.0 } else { -1.0 };
+            let of = |most: f64| moments(sign * most, &switches[..round / 4 % count]);
+            let are_all = |most| (1..=count).all(|count| are_possible(&of(most), count, 1.0 + 1e-9));
+            assert!(are_all(1.0), "{count} {switches:?}");
+            // Where a switch is next to another or to an end the function is hardly larger than one without it.
+            let ends = [0.0, switches[0], switches[1], switches[2], 1.0];
+            if ends.windows(2).all(|pair| pair[1] - pair[0] > 0.05) {
+                assert!(!are_all(1.001), "{count} {switches:?}");
+            }
+        }
+    }
+
     /// A piece of constant snap, then another one, each half a scan long.
     fn after(start: &Setpoint, time: f64, snap: f64) -> Setpoint {
         let (t, t2) = (time, time * time);
@@ -150,16 +330,43 @@ mod tests {
         }
     }
 
-    fn needs(last: &Setpoint, next: &Setpoint) -> [f64; 4] {
-        let way = Some(next.position - last.position);
+    fn step<'a>(last: &'a Setpoint, next: &'a Setpoint) -> Step<'a> {
         Step {
             last,
             next,
-            way,
+            way: Some(next.position - last.position),
             coarsest: 0.0,
             cycle: CYCLE,
         }
-        .needs()
+    }
+
+    fn needs(last: &Setpoint, next: &Setpoint) -> [f64; 4] {
+        step(last, next).needs()
+    }
+
+    /// The ends of a scan tell of each derivative by itself no more than the limit, all together tell that it was above.
+    #[test]
+    fn a_switch_within_a_scan_shows_at_its_ends() {
+        let start = Setpoint {
+            position: 3.0,
+            velocity: -1.0,
+            acceleration: 20.0,
+            ..Setpoint::default()
+        };
+        let middle = after(&start, 0.3 * CYCLE, 1.02e4);
+        let end = after(&middle, 0.7 * CYCLE, -1.02e4);
+        let limits = |snap| Limits {
+            velocity: 10.0,
+            acceleration: 100.0,
+            deceleration: 100.0,
+            jerk: 1e3,
+            snap,
+        };
+        assert!(needs(&start, &end)[3] < 1e4);
+        assert_eq!(step(&start, &end).beyond(&limits(1.0201e4)), None);
+        let (name, least, limit) = step(&start, &end).beyond(&limits(1e4)).unwrap();
+        assert_eq!((name, limit), ("snap", 1e4));
+        assert!((least / 1.02e4 - 1.0).abs() < 1e-4, "{least}");
     }
 
     #[test]
