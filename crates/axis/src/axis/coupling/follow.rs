@@ -477,8 +477,8 @@ impl<P: Planner> Axis<P> {
         let degree = self.slowed(&self.parameters.limits).order().degree();
         let is_rough = view.degree() < degree && law.acceleration != 0.0;
         match view.future.kind() {
-            // What they do was planned for this slave.
-            _ if self.slows_master() && view.keeps_bound() => None,
+            // What they do was planned for this slave, if it does nothing else.
+            _ if self.slows_master() && view.keeps_bound() && !self.adds_motion() => None,
             _ if self.config.following.on_limit == OnLimit::Error => Some(is_rough),
             Kind::Unknown | Kind::Measured | Kind::Still | Kind::NotSeen => Some(is_rough),
             Kind::Plan if view.future.is_late() => Some(false),
