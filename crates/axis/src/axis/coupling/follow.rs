@@ -76,6 +76,7 @@ impl<P: Planner> Axis<P> {
         if self.has_lost_master() || !self.is_coupled() {
             return self.advance(scope);
         }
+        let shifts = self.is_phasing();
         let view = &self.shifted_view(view, scope);
         self.rebase(view, scope.scan);
         let is_new = self.look_ahead(view);
@@ -98,7 +99,10 @@ impl<P: Planner> Axis<P> {
             if let Some(coupling) = &mut self.coupling {
                 coupling.is_kept = false;
             }
-            self.note_source();
+            // The last step of a shift is one of its own.
+            if !shifts {
+                self.note_source();
+            }
         }
         if self.is_coupled() {
             self.step_behind(view, scope);
