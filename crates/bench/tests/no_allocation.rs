@@ -176,6 +176,20 @@ fn no_scan_of_64_axes_in_mixed_motion_uses_the_heap() {
     }
 }
 
+/// Covers: G84
+#[test]
+fn no_scan_of_64_axes_of_which_32_follow_others_uses_the_heap() {
+    let mut axes = ManyAxes::chains_at_rest().expect("valid");
+    // From rest over coming into gear, which is in `set_off`, to the end of the motions.
+    let before = allocations();
+    axes = axes.set_off();
+    for _ in 0..SCANS {
+        axes.scan();
+    }
+    assert_eq!(allocations() - before, 0);
+    assert!(axes.in_gear() > 0, "none is in gear");
+}
+
 #[test]
 fn the_count_sees_an_allocation() {
     let before = allocations();
