@@ -61,7 +61,13 @@ impl Failure {
     }
 
     /// A command that this build does not have.
-    #[cfg(not(all(feature = "live", feature = "st", feature = "sweep", feature = "watch")))]
+    #[cfg(not(all(
+        feature = "live",
+        feature = "serve",
+        feature = "st",
+        feature = "sweep",
+        feature = "watch"
+    )))]
     pub fn left_out(feature: &str) -> Self {
         Self::usage(&format!(
             "this build of standstill has no `{feature}`: build it with the feature `{feature}`"

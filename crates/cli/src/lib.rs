@@ -30,6 +30,8 @@ mod progress;
 mod report;
 mod run;
 mod saved;
+#[cfg(feature = "serve")]
+mod serve;
 mod soak;
 #[cfg(feature = "st")]
 mod st;
@@ -96,6 +98,7 @@ fn is_data(command: &Command) -> bool {
         Command::Test { json, .. } | Command::Explain { json, .. } => *json,
         Command::Live(_)
         | Command::Watch(_)
+        | Command::Serve(_)
         | Command::Report { .. }
         | Command::Compare { .. }
         | Command::Init { .. }
@@ -123,6 +126,10 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Live(arguments) => live::live(arguments, out),
         #[cfg(feature = "watch")]
         Command::Watch(arguments) => watch::watch(arguments, out),
+        #[cfg(feature = "serve")]
+        Command::Serve(arguments) => serve::serve(arguments),
+        #[cfg(not(feature = "serve"))]
+        Command::Serve(_) => Err(Failure::left_out("serve")),
         #[cfg(not(feature = "live"))]
         Command::Live(_) => Err(Failure::left_out("live")),
         #[cfg(not(feature = "watch"))]
@@ -197,11 +204,19 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             trace,
             map,
         } => compare::compare(recording, trace, map, out),
-        Command::Plan { file, samples } => {
+        Command::Plan {
+            file,
+            samples,
+            svg,
+            report,
+        } => {
             let file = file.as_deref().unwrap_or(Path::new("-"));
-            with_lines(file, |lines, name| {
-                plan::plan(lines, name, samples.as_deref(), out)
-            })
+            let files = plan::Files {
+                samples: samples.as_deref(),
+                svg: svg.as_deref(),
+                report: report.as_deref(),
+            };
+            with_lines(file, |lines, name| plan::plan(lines, name, files, out))
         }
         Command::ComparePlanners { cases } => {
             with_lines(cases, |lines, name| plan::compare(lines, name, out))

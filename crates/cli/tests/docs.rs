@@ -2,7 +2,8 @@
 //!
 //! A `console` block is run, with the last `jsonl` block before it on standard input. A table whose first column is
 //! `id` shows answers of `standstill plan` to the lines of that `jsonl` block, its other columns named after fields,
-//! rounded to the digits shown. Files named `out.` something are written to, and read from, a folder of the test.
+//! rounded to the digits shown. A picture `pictures/plan-NAME.svg` is that of these lines, as `plan --svg` draws it; with
+//! `STANDSTILL_WRITE_DOCS=1` the test writes it. Files named `out.` something are written to, and read from, a folder of the test.
 
 use serde_json::Value;
 use std::io::{ErrorKind, Write};
@@ -41,15 +42,16 @@ fn standstill(arguments: &str, input: &str, folder: &Path) -> String {
     out.replace(&format!("{}/", env!("CARGO_TARGET_TMPDIR")), "")
 }
 
-/// Checks a page; the number of examples and the number of cells in its tables.
-fn checked(page: &str) -> (usize, usize) {
+/// Checks a page; the number of examples, of cells in its tables, and of pictures of plans.
+fn checked(page: &str) -> (usize, usize, usize) {
     let text = std::fs::read_to_string(root().join("docs").join(page)).unwrap();
-    let (mut input, mut shown, mut cells) = (String::new(), 0, 0);
+    let (mut input, mut shown, mut cells, mut pictures) = (String::new(), 0, 0, 0);
     for (index, part) in text.split("```").enumerate() {
         if index % 2 == 0 {
             // Without lines to plan a table is of something else.
             if !input.is_empty() {
                 cells += checked_tables(page, part, &input);
+                pictures += checked_pictures(page, part, &input);
             }
         } else if let Some(lines) = part.strip_prefix("jsonl\n") {
             input = lines.to_owned();
@@ -61,7 +63,32 @@ fn checked(page: &str) -> (usize, usize) {
             }
         }
     }
-    (shown, cells)
+    (shown, cells, pictures)
+}
+
+/// Draws the pictures of plans that are shown between two fenced blocks; their number.
+fn checked_pictures(page: &str, text: &str, input: &str) -> usize {
+    let names = text.split("(pictures/plan-").skip(1);
+    let names = names
+        .filter_map(|rest| rest.split_once(".svg)"))
+        .map(|(name, _)| name);
+    names
+        .map(|name| {
+            let drawn = format!("out.plan-{name}.svg");
+            standstill(&format!("plan --svg {drawn}"), input, &root());
+            let drawn = std::fs::read_to_string(placed(&drawn)).unwrap();
+            let path = root().join(format!("docs/pictures/plan-{name}.svg"));
+            if std::env::var_os("STANDSTILL_WRITE_DOCS").is_some_and(|value| value == "1") {
+                std::fs::write(&path, &drawn).unwrap();
+            }
+            let kept = std::fs::read_to_string(&path).unwrap_or_default();
+            assert!(
+                kept == drawn,
+                "{page}: the picture plan-{name}.svg is not that of its lines: \
+                 STANDSTILL_WRITE_DOCS=1 cargo test -p standstill-cli --test docs draws it"
+            );
+        })
+        .count()
 }
 
 /// Runs a console block: its first line is the command, the rest what it prints; `...` stands for any lines.
@@ -176,7 +203,16 @@ fn every_console_block_and_every_table_of_plans_is_true() {
     let pages = pages("");
     // The tutorial has a folder of its own.
     for page in pages.iter().filter(|page| *page != "tutorial.md") {
-        let (shown, cells) = checked(page);
+        let (shown, cells, pictures) = checked(page);
+        let with_picture = [
+            "papers",
+            "planner",
+            "planner-lines",
+            "planner-online",
+            "planner-ramps",
+        ];
+        let with_picture = with_picture.iter().any(|name| *page == format!("{name}.md"));
+        assert_eq!(pictures, usize::from(with_picture), "pictures of plans on {page}");
         let expected = least.iter().find(|(name, ..)| name == page);
         let (_, least_shown, least_cells) = expected.unwrap_or(&("", 0, 0));
         assert!(shown >= *least_shown, "{page}: only {shown} examples found");

@@ -43,7 +43,73 @@ fn the_script_prints_what_stands_under_it() {
     let folder = folder_with_script("readme", |script| script);
     let output = standstill(&folder, &["run", "there.scan.json"]);
     assert_eq!(output.status.code(), Some(0));
-    assert_eq!(String::from_utf8(output.stdout).unwrap(), blocks("text")[0]);
+    let (found, shown) = (
+        String::from_utf8(output.stdout).unwrap(),
+        blocks("text").remove(0),
+    );
+    // `...` stands for any lines.
+    let mut parts = shown.split("...\n");
+    let mut rest = found.strip_prefix(parts.next().unwrap()).expect("it begins so");
+    for part in parts {
+        rest = rest
+            .split_once(part)
+            .unwrap_or_else(|| panic!("{found} has no\n{part}"))
+            .1;
+    }
+    assert_eq!(rest, "", "it ends so");
+}
+
+#[test]
+fn the_script_is_laid_out_by_fmt_and_fits_a_page() {
+    let folder = folder_with_script("readme_fmt", |script| script);
+    let output = standstill(&folder, &["fmt", "--check", "there.scan.json"]);
+    assert_eq!(output.status.code(), Some(0));
+    // What a page of GitHub shows of a line before it scrolls.
+    for block in [blocks("json"), blocks("text"), blocks("console")].concat() {
+        for line in block.lines() {
+            assert!(line.chars().count() <= 98, "{line}");
+        }
+    }
+}
+
+#[test]
+fn the_comparison_is_that_of_its_page() {
+    let page = std::fs::read_to_string(root().join("docs/comparison.md")).unwrap();
+    let text = readme();
+    let (_, table) = text.split_once("| question |").unwrap();
+    let rows: Vec<_> = table
+        .lines()
+        .skip(2)
+        .take_while(|line| line.starts_with('|'))
+        .collect();
+    assert_eq!(rows.len(), 5);
+    for row in rows {
+        let row = row.replace("](docs/", "](");
+        assert!(
+            page.lines().any(|line| line == row),
+            "docs/comparison.md has no\n{row}"
+        );
+    }
+}
+
+#[test]
+fn the_first_test_of_ones_own_passes() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("readme_init");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    let console = blocks("console").remove(0);
+    let line = console
+        .lines()
+        .find_map(|line| line.strip_prefix("$ standstill "))
+        .unwrap();
+    let arguments: Vec<_> = line.split(' ').collect();
+    assert_eq!(standstill(&folder, &arguments).status.code(), Some(0));
+    assert_eq!(
+        standstill(&folder.join("cell"), &["test", "--strict"])
+            .status
+            .code(),
+        Some(0)
+    );
 }
 
 #[test]

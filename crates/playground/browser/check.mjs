@@ -2,8 +2,8 @@
 //
 //     node check.mjs STANDSTILL PLAYWRIGHT AXE SITE
 
-import { execFileSync } from 'node:child_process';
-import { existsSync, readFileSync, readdirSync, statSync, writeFileSync } from 'node:fs';
+import { execFileSync, spawn } from 'node:child_process';
+import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join, relative, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { gzipSync } from 'node:zlib';
@@ -35,7 +35,7 @@ const browser = await chromium.launch({
 });
 
 // A page of the playground, ready, and what it complained of.
-async function open(address, options = {}) {
+async function open(address, options = {}, home = server.address) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
   const page = await context.newPage();
   const complaints = [];
@@ -45,8 +45,8 @@ async function open(address, options = {}) {
     complaints.push(`a dialog: ${dialog.message()}`);
     dialog.dismiss();
   });
-  page.on('request', (request) => !request.url().startsWith(server.address) && !/^(data|blob):/.test(request.url()) && complaints.push(`asks ${request.url()}`));
-  await page.goto(`${server.address}playground/${address}`);
+  page.on('request', (request) => !request.url().startsWith(home) && !/^(data|blob):/.test(request.url()) && complaints.push(`asks ${request.url()}`));
+  await page.goto(`${home}playground/${address}`);
   await page.waitForSelector('html[data-ready][data-runs]', { timeout: 120_000 });
   return { page, complaints, close: () => context.close() };
 }
@@ -389,8 +389,77 @@ async function book() {
   await context.close();
 }
 
-// The same run here and by the command line: how much slower it is.
-const parts = { first, digests, links, hostile, tooLarge, editing, tabs, downloads, looks, book };
+// The program serves a folder: the same page opens its scripts, and runs them again when one is saved.
+async function desk() {
+  const folder = join(site, '..', 'playground', 'desk');
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(join(folder, 'cells'), { recursive: true });
+  const put = (name, text) => writeFileSync(join(folder, name), text);
+  const [slide, machine] = [readFileSync('scan-tests/tutorial/slide.scan.json', 'utf8'), '{"standstill": 1, "axes": {"X": {"limits": {"velocity": 10, "acceleration": 100}}}}'];
+  put('cells/slide.scan.json', slide);
+  put(`cells/${HOSTILE.replaceAll('/', '').replace(/[<>"']/g, '_')}.scan.json`, slide);
+  put('cells/two.scan.json', JSON.stringify({ standstill: 1, cycle: 'T#1ms', scans: 20, include: 'x.machine.json', blocks: [] }));
+  const child = spawn(binary, ['serve', '--port', '0', '--site', site, folder], { stdio: ['ignore', 'ignore', 'pipe'] });
+  try {
+    const line = await new Promise((done) => child.stderr.once('data', (data) => done(String(data))));
+    const home = line.match(/http:\S+/)[0];
+    const { page, complaints, close } = await open('?script=cells%2Fslide.scan.json', {}, home);
+    check('a script of the folder opens', (await page.title()).includes('cells/slide.scan.json'), await page.title());
+    check('with the command line\'s digest', (await digest(page)) === JSON.parse(standstill('run', '--json', 'scan-tests/tutorial/slide.scan.json')).scripts[0].digest, await digest(page));
+    check('the picker has the folder\'s scripts in front', (await page.locator('#pick optgroup').first().locator('option').count()) === 3);
+    // It is changed here, then saved elsewhere: what was saved is shown, and what was here can be had back.
+    let before = await runs(page);
+    await page.evaluate(() => window.playground.cursor('"Position": 40'));
+    await page.keyboard.press('Alt+ArrowUp');
+    await rerun(page, before);
+    before = await runs(page);
+    const since = performance.now();
+    put('cells/slide.scan.json', slide.replace('"Position": 40', '"Position": 25'));
+    await rerun(page, before);
+    const last = () => page.evaluate(() => window.playground.shared.traces[0].byName.get('out.Position').reals.at(-1));
+    console.log(`a saved script runs again after ${Math.round(performance.now() - since)} ms`);
+    check('what is saved runs again', (await last()) === 25, await last());
+    before = await runs(page);
+    await content(page).focus();
+    await page.keyboard.press('Control+z');
+    await rerun(page, before);
+    check('and undo has what was here', (await last()) === 41, await last());
+    before = await runs(page);
+    put('cells/slide.scan.json', slide.replace('"Position"', '"Positoin"'));
+    await rerun(page, before);
+    check('a mistake that is saved is told', (await page.textContent('.mistake')).includes('unknown_pin'), await verdict(page));
+    // A machine file that is missing at first.
+    before = await runs(page);
+    await page.selectOption('#pick', '/cells/two.scan.json');
+    await rerun(page, before);
+    check('a missing file is named', (await page.textContent('#mistakes')).includes('there is no such file'), await page.textContent('#mistakes'));
+    before = await runs(page);
+    put('cells/x.machine.json', machine);
+    await rerun(page, before);
+    check('and read when it is there', (await verdict(page)).includes('20 scans') && (await page.locator('.files button').count()) === 2, await verdict(page));
+    put('cells/third.scan.json', slide);
+    await page.focus('#tab-run');
+    await page.focus('#pick');
+    await page.waitForFunction(() => document.querySelectorAll('#pick optgroup:first-of-type option').length === 4);
+    check('the address names the script', page.url().endsWith('?script=cells%2Ftwo.scan.json'), page.url());
+    check('no error from a folder', complaints.length === 0, complaints.join('; '));
+    await close();
+    const other = await open('', {}, home);
+    check('without a name the first script of the folder opens', (await other.page.title()).includes('cells/'), await other.page.title());
+    await other.close();
+    const none = await open('?script=nothing.scan.json', {}, home);
+    check('a script that is not there is told', (await none.page.textContent('#trouble')).includes('there is no such file'), await none.page.textContent('#trouble'));
+    child.kill();
+    await none.close();
+  } finally {
+    child.kill();
+  }
+  const { page, close } = await open('?script=a.scan.json');
+  check('without the program it is said what is needed', (await page.textContent('#trouble')).includes('standstill serve'), await page.textContent('#trouble'));
+  await close();
+}
+
+const parts = { first, digests, links, hostile, tooLarge, editing, tabs, downloads, looks, book, desk };
 const wanted = (process.env.ONLY || Object.keys(parts).join(' ')).split(' ');
 for (const name of wanted) {
   try {

@@ -2,6 +2,7 @@
 
 use crate::bounds;
 use crate::project::refused;
+use standstill_cli::plan::Files;
 
 /// Answers every line as `standstill plan` does; `{"refused": ".."}` for too many of them.
 ///
@@ -14,6 +15,6 @@ pub fn plan(lines: &str) -> String {
     }
     let mut answers = Vec::new();
     // What is refused stands in the answers; writing to memory cannot fail.
-    let _ = standstill_cli::plan::plan(&mut lines.as_bytes(), "lines", None, &mut answers);
+    let _ = standstill_cli::plan::plan(&mut lines.as_bytes(), "lines", Files::default(), &mut answers);
     String::from_utf8_lossy(&answers).into_owned()
 }

@@ -1,6 +1,8 @@
 //! A script with the files it names, and what is wrong with it.
 
 use crate::bounds;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use standstill_script::model::{Script, Span};
@@ -15,12 +17,51 @@ pub struct Project {
     name: String,
     /// Its text.
     text: String,
-    /// Texts of the files it names, by their paths relative to it.
+    /// The files it names, by their paths relative to it.
     #[serde(default)]
-    files: BTreeMap<String, String>,
+    files: BTreeMap<String, File>,
+    /// Why others cannot be had.
+    #[serde(default)]
+    lacks: BTreeMap<String, String>,
     /// Values in place of its own parameters.
     #[serde(default)]
     set: BTreeMap<String, f64>,
+}
+
+/// A file that a script names.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+enum File {
+    Text(String),
+    /// Of a program that is no text.
+    Bytes {
+        base64: String,
+    },
+}
+
+impl File {
+    /// How much of it came.
+    fn len(&self) -> usize {
+        match self {
+            Self::Text(text) | Self::Bytes { base64: text } => text.len(),
+        }
+    }
+
+    fn text(&self) -> Result<String, String> {
+        match self {
+            Self::Text(text) => Ok(text.clone()),
+            Self::Bytes { .. } => Err("it is no text".to_owned()),
+        }
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        match self {
+            Self::Text(text) => Ok(text.clone().into_bytes()),
+            Self::Bytes { base64 } => STANDARD
+                .decode(base64)
+                .map_err(|_| "it came damaged: no base64".to_owned()),
+        }
+    }
 }
 
 impl Project {
@@ -28,7 +69,7 @@ impl Project {
     pub fn read(request: &str) -> Result<Self, Value> {
         let project: Self =
             serde_json::from_str(request).map_err(|error| refused(&format!("no project: {error}")))?;
-        let texts = project.files.values().map(String::len).sum::<usize>();
+        let texts = project.files.values().map(File::len).sum::<usize>();
         bounds::bytes(project.text.len().saturating_add(texts)).map_err(|why| refused(&why))?;
         Ok(project)
     }
@@ -46,15 +87,16 @@ impl Project {
             .map(|(name, value)| (name.clone(), *value))
             .collect();
         let file = |path: &str| {
-            let text = self.files.get(path);
-            text.ok_or_else(|| "there is no such file here; add it".to_owned())
+            let why = || self.lacks.get(path).map(String::as_str);
+            let file = self.files.get(path);
+            file.ok_or_else(|| why().unwrap_or("there is no such file here; add it").to_owned())
         };
         let script = read_with_programs(
             &self.text,
             &self.name,
             &set,
-            &mut |path| file(path).cloned(),
-            &mut |path| file(path).map(|text| text.clone().into_bytes()),
+            &mut |path| file(path)?.text(),
+            &mut |path| file(path)?.bytes(),
         );
         let script = script.map_err(|error| {
             if needs_guests(&error) {

@@ -1,5 +1,7 @@
 //! What the page gets: the digests of the command line, messages with their places, and refusals with their bounds.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use standstill_playground::{
     BLOCKS_MAX, BYTES_MAX, LINES_MAX, LINK_MAX, check, hand, plan, run, save, share,
@@ -296,4 +298,52 @@ fn an_axis_led_by_hand_comes_to_its_target_within_its_limits() {
     assert!(swing(&axes[2]) < 1.0, "{axes:?}");
     assert!(hand("{}").contains("refused"));
     assert!(hand(r#"{"cycle": 0, "scans": 1, "target": 1, "limits": 1}"#).contains("refused"));
+}
+
+#[test]
+fn a_program_that_is_no_text_runs_and_what_cannot_be_had_says_why() {
+    let folder = scan_tests("guests");
+    let path = folder.join("a_guest_moves_an_axis.scan.json");
+    let as_text = project(&path);
+    let expected = ran(&as_text)["digest"].clone();
+    let mut as_bytes = as_text;
+    let name = as_bytes["files"].as_object().and_then(|files| {
+        let text = as_bytes["text"].as_str()?;
+        files
+            .keys()
+            .find(|name| text.contains(&format!("\"{name}\"")))
+            .cloned()
+    });
+    let name = name.expect("the script names a program");
+    let bytes = wat(as_bytes["files"][&name].as_str().expect("a text"));
+    as_bytes["files"][&name] = json!({"base64": bytes});
+    assert_eq!(ran(&as_bytes)["digest"], expected);
+    as_bytes["files"][&name] = json!({"base64": "no base64"});
+    assert!(
+        ran(&as_bytes)["text"]
+            .as_str()
+            .is_some_and(|text| text.contains("it came damaged"))
+    );
+    as_bytes["files"]
+        .as_object_mut()
+        .expect("an object")
+        .remove(&name);
+    let why = |project: &Value| {
+        ran(project)["text"]
+            .as_str()
+            .map(str::to_owned)
+            .unwrap_or_default()
+    };
+    assert!(
+        why(&as_bytes).contains("there is no such file here"),
+        "{}",
+        why(&as_bytes)
+    );
+    as_bytes["lacks"] = json!({&*name: "a pipe is no file"});
+    assert!(why(&as_bytes).contains("a pipe is no file"), "{}", why(&as_bytes));
+}
+
+/// A module, from its text, in base64.
+fn wat(text: &str) -> String {
+    STANDARD.encode(wat::parse_str(text).expect("a module"))
 }

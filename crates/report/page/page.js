@@ -174,24 +174,32 @@ function drawOverview() {
 // A name that may go on in the next line behind an underscore.
 const breakable = (name) => name.split(/(?<=_)/).flatMap((part, at) => (at > 0 ? [element('wbr'), part] : [part]));
 
-// The events in view, each a link to its scan.
+// The events in view, each a link to its scan. Rows that say the same as before stay: a page may be told new events many times a second.
 function listEvents() {
   const { min, max } = shared.view;
   const wanted = shared.filter.toLowerCase();
   const inView = shared.events.filter((event) => event.scan >= Math.floor(min) && event.scan <= max
     && (!wanted || `${event.subject} ${event.text}`.toLowerCase().includes(wanted)));
-  const rows = inView.slice(0, EVENTS_SHOWN).map((event) => {
-    const row = element('button', { className: 'event', type: 'button' },
+  const list = find('#list'), several = shared.traces.length > 1;
+  const shown = inView.slice(0, EVENTS_SHOWN);
+  shown.forEach((event, at) => {
+    const [row, said] = [list.children[at], `${event.trace.letter} ${event.scan} ${event.subject} ${event.text}`];
+    if (row && row.said === said) {
+      row.event = event;
+      return;
+    }
+    const fresh = element('button', { className: 'event', type: 'button' },
       element('span', { className: 'scan', textContent: event.scan }),
-      element('span', { className: 'subject', style: shared.traces.length > 1 ? `color: var(--trace-${event.trace.index})` : '' },
-        ...breakable(shared.traces.length > 1 ? `${event.trace.letter} ${event.subject}` : event.subject)),
+      element('span', { className: 'subject', style: several ? `color: var(--trace-${event.trace.index})` : '' },
+        ...breakable(several ? `${event.trace.letter} ${event.subject}` : event.subject)),
       element('span', { className: 'what', textContent: event.text }));
-    row.event = event;
-    row.addEventListener('click', () => setCursor(event.scan));
-    return row;
+    Object.assign(fresh, { event, said });
+    fresh.addEventListener('click', () => setCursor(fresh.event.scan));
+    if (row) row.replaceWith(fresh);
+    else list.append(fresh);
   });
-  find('#list').replaceChildren(...rows);
-  const more = inView.length - rows.length;
+  while (list.children.length > shown.length) list.lastChild.remove();
+  const more = inView.length - shown.length;
   find('#more').textContent = more > 0 ? `${more} more in view: zoom in to see them` : '';
   find('#count').textContent = inView.length === shared.events.length ? `${inView.length}` : `${inView.length} of ${shared.events.length} in view`;
   markEvents();

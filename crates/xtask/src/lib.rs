@@ -10,6 +10,7 @@ pub mod book;
 mod compliance;
 mod error_ids;
 mod faults;
+mod front;
 mod packages;
 mod pictures;
 mod requirements;
@@ -45,6 +46,7 @@ pub fn generated() -> Vec<Generated> {
     files.push(bad_input::page());
     files.extend(Compliance::read().pages());
     files.extend(states::pages());
+    files.extend(front::pictures());
     files.extend(vibration::pages());
     files.extend(requirements.pages());
     files

@@ -1,6 +1,7 @@
 //! `standstill plan`: one JSON object a line in, one a line out.
 
 mod compare;
+mod drawn;
 mod fields;
 mod grid;
 mod methods;
@@ -14,6 +15,7 @@ mod shared;
 
 use crate::exit::{Exit, Failure};
 use crate::{limit, out};
+use drawn::Drawn;
 use fields::Fields;
 use samples::Samples;
 use std::io::{BufRead, Write};
@@ -21,32 +23,45 @@ use std::path::Path;
 
 pub use compare::compare;
 
+/// The files to write, each if it is wanted.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Files<'a> {
+    /// The set-points of every plan, as CSV.
+    pub samples: Option<&'a Path>,
+    /// A picture of the first plans.
+    pub svg: Option<&'a Path>,
+    /// A page of them.
+    pub report: Option<&'a Path>,
+}
+
 /// Answers every line of `input` that is not blank, in order. `name` stands for the input in messages.
-/// Set-points go to the file `samples`.
 ///
 /// Flushes `out` before it waits for more input, so that a program can hold a conversation.
 pub fn plan(
     input: &mut dyn BufRead,
     name: &str,
-    samples: Option<&Path>,
+    files: Files<'_>,
     out: &mut dyn Write,
 ) -> Result<Exit, Failure> {
     let mut exit = Exit::Passed;
-    let mut samples = samples.map(Samples::create).transpose()?;
+    let mut samples = files.samples.map(Samples::create).transpose()?;
+    let mut drawn = Drawn::default();
     each_line(input, name, |_, line| {
         let (id, planned) = match Fields::of_line(line) {
             Ok(fields) => {
-                let planned = fields.checked().and_then(|fields| methods::plan(&fields));
+                let checked = fields.checked();
+                let planned = checked.and_then(|fields| Ok((methods::plan(&fields)?, fields)));
                 (fields.id(), planned)
             }
             Err(refusal) => ("null", Err(refusal)),
         };
         match planned {
-            Ok((method, planned)) => {
+            Ok(((method, planned), fields)) => {
                 writeln!(out, "{}", reply::line(id, method, &planned))?;
                 if let Some(samples) = &mut samples {
                     samples.add(id, &planned)?;
                 }
+                drawn.add(files, &fields, method, &planned)?;
             }
             Err(refusal) => {
                 exit = Exit::Failed;
@@ -59,6 +74,7 @@ pub fn plan(
     if let Some(samples) = samples {
         samples.finish()?;
     }
+    drawn.finish(files)?;
     Ok(exit)
 }
 

@@ -33,7 +33,7 @@ pub enum Setpoints {
 
 impl Setpoints {
     /// The set-point `scan` scans after the start.
-    fn at(&self, scan: u32) -> Setpoint {
+    pub fn at(&self, scan: u32) -> Setpoint {
         match self {
             Self::Grid(plan) => plan.at(scan.into()),
             Self::Unequal(plan) => plan.at(scan.into()),

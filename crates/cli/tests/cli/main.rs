@@ -13,6 +13,7 @@ mod machine;
 mod plan;
 mod reports;
 mod run;
+mod serve;
 mod soak;
 mod soak_blocks;
 mod st;

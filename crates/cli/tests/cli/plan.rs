@@ -1,6 +1,6 @@
 //! Lines in, lines out.
 
-use crate::support::{command, ended, fed, scratch, write};
+use crate::support::{Ended, command, ended, fed, read, scratch, write};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Write};
 use std::process::Stdio;
@@ -266,4 +266,95 @@ fn tracking_tells_the_excess_of_every_plan() {
         panic!("{excess:?}");
     };
     assert!(both > one + 1e-3, "{one} {both}");
+}
+
+/// A line of order 3 with this id and sample time.
+fn line(id: &str, cycle: &str) -> String {
+    format!(
+        r#"{{"id": "{id}", "Ts": {cycle}, "target": 0.02, "limits": {{"velocity": 1, "acceleration": 20, "jerk": 2000}}}}"#
+    )
+}
+
+#[test]
+fn plans_are_drawn_over_each_other() {
+    let folder = scratch("plan_drawn");
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let [svg, html, csv] = ["x.svg", "x.html", "x.csv"].map(path);
+    let lines = [
+        line("<b>one</b>", "0.001"),
+        "no JSON".to_owned(),
+        line("two", "0.001"),
+    ]
+    .join("\n");
+    let drawn = fed(
+        &["plan", "--svg", &svg, "--report", &html, "--samples", &csv],
+        lines.as_bytes(),
+    );
+    // A line that is refused is answered as always, and not drawn.
+    assert_eq!(
+        (drawn.status, drawn.out.lines().count(), drawn.err.as_str()),
+        (1, 3, "")
+    );
+    assert_eq!(drawn.out, fed(&["plan"], lines.as_bytes()).out);
+    let picture = read(&folder, "x.svg");
+    assert!(
+        picture.contains(">&lt;b&gt;one&lt;/b&gt;: overlapped, 75 scans, 0.0750 s<"),
+        "{picture}"
+    );
+    assert!(
+        picture.contains("class=\"p1\"") && !picture.contains("class=\"p2\""),
+        "{picture}"
+    );
+    let page = read(&folder, "x.html");
+    assert!(
+        page.starts_with("<!doctype html>") && page.contains("two: overlapped, 75 scans"),
+        "{page:.300}"
+    );
+    assert!(!page.contains("<b>one</b>"));
+    // A seventh has no colour.
+    let seven: Vec<_> = (0..7).map(|at| line(&at.to_string(), "0.001")).collect();
+    let drawn = fed(&["plan", "--svg", &svg], seven.join("\n").as_bytes());
+    assert_eq!((drawn.status, drawn.out.lines().count()), (0, 7));
+    assert!(
+        drawn.err.contains("note: of 7 plans the first 6 are drawn"),
+        "{}",
+        drawn.err
+    );
+    // Nothing at all is a picture, too.
+    assert_eq!(fed(&["plan", "--svg", &svg], b"").status, 0);
+    assert!(read(&folder, "x.svg").ends_with("</svg>\n"));
+}
+
+#[test]
+fn what_makes_no_page_of_plans_is_told() {
+    let folder = scratch("plan_no_page");
+    let html = folder.join("x.html").to_string_lossy().into_owned();
+    let page = |lines: &[String]| fed(&["plan", "--report", &html], lines.join("\n").as_bytes());
+    let told = |ended: Ended, status: i32, why: &str| {
+        assert!(ended.status == status && ended.err.contains(why), "{ended:?}");
+    };
+    told(page(&[]), 2, "no line was planned");
+    told(page(&["no JSON".to_owned()]), 2, "no line was planned");
+    told(
+        page(&[line("a", "0.0010000000005")]),
+        2,
+        "scans of whole nanoseconds",
+    );
+    told(page(&[line("a", "1e-10")]), 2, "scans of whole nanoseconds");
+    told(page(&[line("a", "0.001"), line("b", "0.002")]), 3, "cycle");
+    let long = r#"{"Ts": 0.001, "target": 1e6, "limits": {"velocity": 1, "acceleration": 1, "jerk": 1}}"#;
+    told(
+        page(&[long.to_owned()]),
+        2,
+        "more than the 1000000 of a page; `--svg` draws it",
+    );
+    assert!(!folder.join("x.html").exists(), "nothing was written");
+    let svg = folder.join("x.svg").to_string_lossy().into_owned();
+    assert_eq!(fed(&["plan", "--svg", &svg], long.as_bytes()).status, 0);
+    let nowhere = folder.join("no/folder/x.svg").to_string_lossy().into_owned();
+    told(
+        fed(&["plan", "--svg", &nowhere], line("a", "0.001").as_bytes()),
+        4,
+        "x.svg",
+    );
 }

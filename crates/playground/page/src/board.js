@@ -21,6 +21,15 @@ function traceOf(told, reals) {
   return { ...told.trace, index: 0, letter: 'A', rows, columns, byName: new Map(columns.map((column) => [column.name, column])) };
 }
 
+const areSame = (one, other) => one.length === other.length && one.every((value, at) => Object.is(value, other[at]));
+
+// Whether a column is drawn as the one before.
+function isSame(one, other) {
+  if (one.reals || other.reals) return Boolean(one.reals && other.reals) && areSame(one.reals, other.reals);
+  return areSame(one.edges.scans, other.edges.scans) && areSame(one.edges.values, other.edges.values)
+    && (one.names === undefined || areSame(one.names, other.names));
+}
+
 // What of a trace decides which blocks there are.
 function shapeOf(trace) {
   const columns = trace.columns.map((column) => {
@@ -63,10 +72,15 @@ export function show(told, reals, view) {
   if (same) {
     // The same blocks with other numbers: nothing is made anew while a number is dragged.
     const [old] = shared.traces;
+    const changed = new Set(trace.columns.filter((column) => !isSame(old.byName.get(column.name), column)).map(({ name }) => name));
     for (const column of trace.columns) Object.assign(old.byName.get(column.name), column);
     const claims = JSON.stringify(old.header.claims) !== JSON.stringify(trace.header.claims);
     Object.assign(old, { events: trace.events, header: trace.header });
-    for (const group of shared.groups) for (const block of group.blocks) if (block.refill) block.refill();
+    for (const block of shared.groups.flatMap((group) => group.blocks)) {
+      if (!block.names.some((name) => changed.has(name))) continue;
+      if (block.refill) block.refill();
+      block.stale = true;
+    }
     if (claims) {
       const { folded, hidden } = remembered();
       const at = shared.groups.findIndex((group) => group.title === 'Claims' && group.blocks.every((block) => block.gutter.classList.contains('wide')));
@@ -104,7 +118,12 @@ export function show(told, reals, view) {
     shared.refresh();
     layOut();
   }
-  setView(shared.view.min, shared.view.max);
+  if (same && !view) {
+    listEvents();
+    schedule();
+  } else {
+    setView(shared.view.min, shared.view.max);
+  }
   const cursor = view && view.cursor !== undefined ? view.cursor : shared.cursor;
   setCursor(cursor === null || (before === 0 && !view) ? shared.marks[0] || 0 : cursor);
 }

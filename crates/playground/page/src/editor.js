@@ -1,7 +1,7 @@
 // The editor: a script and the files it names, one at a time. It stands in a shadow root, whose styles need no inline ones.
 
 import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete';
-import { defaultKeymap, history, historyKeymap } from '@codemirror/commands';
+import { defaultKeymap, history, historyKeymap, isolateHistory } from '@codemirror/commands';
 import { json } from '@codemirror/lang-json';
 import { HighlightStyle, bracketMatching, syntaxHighlighting } from '@codemirror/language';
 import { lintKeymap, setDiagnostics } from '@codemirror/lint';
@@ -135,6 +135,15 @@ export function makeEditor(host, changed) {
   return {
     view,
     open: (name, text) => view.setState(state(name, text)),
+    // Another text in place of this one: a change of what differs, which is undone by itself.
+    replace(text) {
+      const old = view.state.doc.toString();
+      const most = Math.min(old.length, text.length);
+      let [from, same] = [0, 0];
+      while (from < most && old[from] === text[from]) from++;
+      while (same < most - from && old[old.length - 1 - same] === text[text.length - 1 - same]) same++;
+      view.dispatch({ changes: { from, to: old.length - same, insert: text.slice(from, text.length - same) }, annotations: isolateHistory.of('full') });
+    },
     // Squiggles: `[{from: [line, column], to: [line, column], message, severity}]`, columns in characters.
     mark(found) {
       const { doc } = view.state;

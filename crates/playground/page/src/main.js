@@ -6,14 +6,15 @@ import { ask, end } from './engine.js';
 import { useNames, useSchema } from './schema.js';
 import { makeHand } from './hand.js';
 import { makePlans } from './plans.js';
+import { follow, forget } from './served.js';
 
 const PATIENCE = 250; // ms until a run shows that it is busy
 
 const find = (selector) => document.querySelector(selector);
 
-// What is open: the script first, then the files it names.
-const open = { name: 'script.scan.json', texts: new Map(), shown: 'script.scan.json' };
-let gallery = [];
+// What is open: the script first, then the files it names; why some of those cannot be had.
+const open = { name: 'script.scan.json', texts: new Map(), shown: 'script.scan.json', lacks: undefined };
+let gallery = []; // scripts to pick, by groups; the first group is the folder's where `standstill serve` shows one
 let wantedView = null; // that of a link, for the first run
 let running = null; // the request at the worker
 let waiting = false; // the text has changed since
@@ -39,36 +40,41 @@ function tell(text) {
 function project() {
   const [text, files] = [open.texts.get(open.name), {}];
   for (const [name, file] of open.texts) if (name !== open.name) files[name] = file;
-  return { name: open.name, text, files };
+  return { name: open.name, text, files, ...(open.lacks && { lacks: open.lacks }) };
 }
 
-// Runs what is in the editor now, and once more if that changed on the way: never two runs at once.
+// Runs what is in the editor now, and once more if that changed on the way: never two runs at once. The next one goes on in the
+// worker while this page draws the one before.
 async function rerun() {
   if (running) {
     waiting = true;
     return;
   }
-  running = project();
+  const mine = project();
+  running = mine;
   const busy = setTimeout(() => { find('#busy').hidden = false; }, PATIENCE);
   find('#progress').removeAttribute('value');
   find('#done').textContent = '';
-  try {
-    const { about, reals, took } = await ask('run', [running], ({ scans, of }) => {
-      find('#progress').value = scans / of;
-      find('#done').textContent = `${scans} of ${of} scans`;
-    });
-    tellRun(about, reals, took);
-  } catch (error) {
-    outcome(error.message, 'bad');
-    find('#digest').textContent = '';
-  } finally {
+  const done = () => {
     clearTimeout(busy);
     find('#busy').hidden = true;
-    running = null;
+    if (running === mine) running = null;
     if (waiting) {
       waiting = false;
       rerun();
     }
+  };
+  try {
+    const { about, reals, took } = await ask('run', [mine], ({ scans, of }) => {
+      find('#progress').value = scans / of;
+      find('#done').textContent = `${scans} of ${of} scans`;
+    });
+    done();
+    tellRun(about, reals, took);
+  } catch (error) {
+    if (running === mine) done();
+    outcome(error.message, 'bad');
+    find('#digest').textContent = '';
   }
 }
 
@@ -145,7 +151,8 @@ function showFile(name) {
 }
 
 function listFiles() {
-  const buttons = [...open.texts.keys()].map((name) => {
+  const texts = [...open.texts].filter(([, text]) => typeof text === 'string');
+  const buttons = texts.map(([name]) => {
     const button = element('button', { type: 'button', textContent: name, ariaPressed: String(name === open.shown) });
     button.addEventListener('click', () => showFile(name));
     return button;
@@ -154,9 +161,11 @@ function listFiles() {
   find('#files').hidden = buttons.length < 2;
 }
 
-// Opens a script with its files: `{name, text, files}`.
-function openProject({ name, text, files }) {
+// Opens a script with its files: `{name, text, files}`, where a file that is no text is `{base64}`.
+function openProject({ name, text, files, lacks }) {
+  forget();
   open.name = name;
+  open.lacks = lacks;
   open.texts = new Map([[name, text], ...Object.entries(files || {})]);
   mistakes = [];
   showFile(name);
@@ -168,6 +177,28 @@ async function fetched(path) {
   const answer = await fetch(new URL(path, import.meta.url));
   if (!answer.ok) throw new Error(`${path}: ${answer.status} ${answer.statusText}`);
   return answer;
+}
+
+// What the folder has of a script, when it was saved: the page has it, too, and what was changed here can be undone.
+function refill({ name, text, files, lacks }) {
+  const texts = new Map([[name, text], ...Object.entries(files)]);
+  const shown = texts.has(open.shown) ? open.shown : name;
+  Object.assign(open, { texts, lacks });
+  if (shown === open.shown) editor.replace(texts.get(shown));
+  else showFile(shown);
+  listFiles();
+  tell(`${name} was saved: read again.`);
+  return rerun();
+}
+
+// Opens a script of the folder that `standstill serve` shows.
+async function openServed(path) {
+  const served = gallery.find((group) => group.served);
+  if (!served) {
+    trouble('Scripts of a folder are opened by `standstill serve FOLDER`; this page comes from a web server.');
+    return false;
+  }
+  return follow(path, { opened: openProject, saved: refill, trouble });
 }
 
 // Opens a script of the gallery or the tutorial by its name.
@@ -188,7 +219,7 @@ async function pick(name) {
 // A link as the page makes it.
 const isProject = (content) => content && typeof content.name === 'string' && typeof content.text === 'string'
   && (content.files === undefined || (typeof content.files === 'object' && content.files !== null
-    && Object.values(content.files).every((text) => typeof text === 'string')));
+    && Object.values(content.files).every((file) => typeof file === 'string' || (file && typeof file.base64 === 'string'))));
 
 function isView(view) {
   return view && [view.min, view.max].every(Number.isFinite) && view.max > view.min && (view.cursor === undefined || Number.isInteger(view.cursor));
@@ -207,7 +238,8 @@ async function openLink(link) {
 }
 
 async function share() {
-  const answer = await ask('share', [{ pack: { ...project(), view: viewed() } }]);
+  const { lacks, ...packed } = project();
+  const answer = await ask('share', [{ pack: { ...packed, view: viewed() } }]);
   if (answer.refused) {
     tell(answer.refused);
     return;
@@ -264,8 +296,14 @@ function turnTo(name) {
 function listen() {
   find('#pick').addEventListener('change', ({ target }) => {
     trouble('');
-    history.replaceState(null, '', `${location.pathname}?gallery=${encodeURIComponent(target.value)}`);
-    pick(target.value).catch((error) => trouble(error.message));
+    const path = target.value.startsWith('/') ? target.value.slice(1) : null;
+    const wanted = path === null ? `gallery=${encodeURIComponent(target.value)}` : `script=${encodeURIComponent(path)}`;
+    history.replaceState(null, '', `${location.pathname}?${wanted}`);
+    (path === null ? pick(target.value) : openServed(path)).catch((error) => trouble(error.message));
+  });
+  // A folder may have other scripts by now.
+  find('#pick').addEventListener('focus', () => {
+    if (gallery.some((group) => group.served)) listScripts().catch((error) => trouble(error.message));
   });
   find('#cancel').addEventListener('click', () => end('cancelled'));
   find('#share').addEventListener('click', () => share().catch((error) => tell(error.message)));
@@ -293,18 +331,28 @@ function listen() {
   });
 }
 
+// Fills the picker; a script of a folder has its path as value, behind a slash.
+async function listScripts() {
+  gallery = await (await fetched('scripts.json')).json();
+  const groups = gallery.map(({ label, served, scripts }) => element('optgroup', { label }, ...scripts.map(({ name, title }) =>
+    element('option', { value: served ? `/${name}` : name, textContent: title.length > 70 ? `${title.slice(0, 69)}…` : title, title }))));
+  const { value } = find('#pick');
+  find('#pick').replaceChildren(element('option', { value: '', textContent: '(your own)' }), ...groups);
+  find('#pick').value = value;
+}
+
 async function start() {
   listen();
   // Compiling goes on while the texts come.
   ask('share', [{ unpack: '' }]).catch(() => {});
   const link = new URLSearchParams(location.hash.slice(1)).get('s');
-  gallery = await (await fetched('scripts.json')).json();
-  const groups = gallery.map(({ label, scripts }) => element('optgroup', { label },
-    ...scripts.map(({ name, title }) => element('option', { value: name, textContent: title.length > 70 ? `${title.slice(0, 69)}…` : title, title }))));
-  find('#pick').replaceChildren(element('option', { value: '', textContent: '(your own)' }), ...groups);
-  const wanted = new URLSearchParams(location.search).get('gallery');
-  const opened = link ? await openLink(link) : wanted !== null && await pick(wanted);
-  if (!opened) await pick('slide');
+  await listScripts();
+  const wanted = new URLSearchParams(location.search);
+  const [script, name] = [wanted.get('script'), wanted.get('gallery')];
+  const [served] = gallery.filter((group) => group.served).flatMap((group) => group.scripts);
+  const first = () => (served ? openServed(served.name) : pick('slide'));
+  const opened = link ? await openLink(link) : script !== null ? await openServed(script) : name !== null && await pick(name);
+  if (!opened && !await first() && served) await pick('slide');
   useSchema(await (await fetched('schema.json')).json());
 }
 

@@ -21,9 +21,10 @@ self.onmessage = ({ data }) => {
       const since = performance.now();
       const tell = (scans, of) => self.postMessage({ id, progress: { scans, of } });
       const ran = run(JSON.stringify(args[0]), { tell });
+      const done = performance.now() - since;
       const [about, reals] = [JSON.parse(ran.about()), ran.reals()];
       ran.free();
-      self.postMessage({ id, answer: { about, reals, took: performance.now() - since } }, [reals.buffer]);
+      self.postMessage({ id, answer: { about, reals, ran: done, took: performance.now() - since } }, [reals.buffer]);
     } else {
       self.postMessage({ id, answer: does[what](...args) });
     }

@@ -3,13 +3,18 @@
 //! The picture is drawn in numbers with one decimal, so the same trace gives the same bytes everywhere. Its colours
 //! follow the reader's light or dark theme; it loads nothing.
 
+mod failing;
 mod picture;
+mod plans;
 mod range;
 mod report;
 
 use crate::panels::{curves, waves};
 use crate::trace::Trace;
+pub use failing::failing;
 use picture::{GAP, Picture};
+pub use picture::{Theme, themed};
+pub use plans::{PLANS_MAX, Plan, plans};
 use range::{Range, ticks};
 pub use report::report;
 
@@ -138,6 +143,26 @@ mod tests {
             "only the upper limit is near"
         );
         assert!(picture.contains(">DiscreteMotion<") && picture.contains(">Standstill<"));
+    }
+
+    #[test]
+    fn a_picture_for_one_light_has_its_colours_alone() {
+        let both = report(&trace("there", 100, 3));
+        assert_eq!(both.matches("@media").count(), 2);
+        for (theme, kept, gone) in [
+            (Theme::Light, "#1d5fc4", "#7fb2ff"),
+            (Theme::Dark, "#7fb2ff", "@media"),
+        ] {
+            let one = themed(&both, theme);
+            assert!(one.contains(kept) && !one.contains(gone), "{theme:?}: {one}");
+            assert_eq!(
+                one.matches('{').count(),
+                one.matches('}').count(),
+                "{theme:?}: {one}"
+            );
+            assert_eq!(one.matches("</style>").count(), 2, "{theme:?}: {one}");
+            assert!(one.ends_with("</svg>\n"));
+        }
     }
 
     #[test]

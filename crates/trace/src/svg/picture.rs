@@ -12,13 +12,13 @@ use crate::panels::{Curve, Wave, compact};
 use crate::trace::Trace;
 
 /// Width of the picture.
-const WIDTH: f64 = 880.0;
+pub const WIDTH: f64 = 880.0;
 
 /// Room for labels left of the curves.
 pub const GUTTER: f64 = 190.0;
 
 /// Room right of the curves, for half a tick label.
-const MARGIN: f64 = 30.0;
+pub const MARGIN: f64 = 30.0;
 
 /// Height of a curve.
 pub const CURVE: f64 = 84.0;
@@ -44,6 +44,57 @@ const STYLE: &str = "<style>\n\
     .grid { stroke: #333 } .limit { stroke: #ff7070 } .curve { stroke: #7fb2ff } .in { stroke: #e0b050 }\n\
     .out { stroke: #63d297 } rect { fill: #232a36; stroke: #666 } }\n\
     </style>\n";
+
+/// Letters of a note that fit on a line.
+const NOTE: usize = 120;
+
+/// A text as lines of so many letters at most; a word that is longer is cut.
+pub fn wrapped(text: &str, letters: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= letters => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ if word.chars().count() <= letters => lines.push(word.to_owned()),
+            _ => {
+                let cut = word.chars().take(letters.saturating_sub(1));
+                lines.push(cut.chain(['…']).collect());
+            }
+        }
+    }
+    lines
+}
+
+/// In which light a picture is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Theme {
+    /// Light, whatever the reader's system has.
+    Light,
+    /// Dark, likewise.
+    Dark,
+}
+
+/// What begins and ends the colours for the dark.
+const DARK: [&str; 2] = ["@media (prefers-color-scheme: dark) {", " }\n</style>"];
+
+/// A picture of this module for one light only: for pages that choose between two files.
+#[must_use]
+pub fn themed(picture: &str, theme: Theme) -> String {
+    let [begin, end] = DARK;
+    let mut parts = picture.split(begin);
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (dark, rest) = part.split_once(end).unwrap_or((part, ""));
+        if theme == Theme::Dark {
+            text.push_str(dark.trim_start());
+        }
+        text.push_str("\n</style>");
+        text.push_str(rest);
+    }
+    text
+}
 
 /// A cell for a box: numbers as labels have them.
 fn box_text(cell: Cell<'_>) -> String {
@@ -191,6 +242,16 @@ impl Picture {
     }
 
     pub fn wave(&mut self, wave: &Wave) {
+        let class = match wave.role {
+            Role::Variable | Role::Input => "in",
+            Role::AxisState | Role::AxisValue | Role::InOut | Role::Output => "out",
+        };
+        self.wave_of(class, wave);
+        self.label("", self.y - 0.2 * ROW - 1.0, &wave.name);
+    }
+
+    /// The line of a Boolean without its name.
+    pub fn wave_of(&mut self, class: &str, wave: &Wave) {
         let low = self.y + 0.8 * ROW;
         let height = |level: bool| if level { low - LEVEL } else { low };
         let mut path = String::new();
@@ -203,13 +264,24 @@ impl Picture {
             }
         }
         let _ = write!(path, "H{:.1}", self.x(self.scans));
-        let class = match wave.role {
-            Role::Variable | Role::Input => "in",
-            Role::AxisState | Role::AxisValue | Role::InOut | Role::Output => "out",
-        };
         self.line(class, &path);
-        self.label("", low - 1.0, &wave.name);
         self.y += ROW;
+    }
+
+    /// A box across the picture with a text in it.
+    pub fn note(&mut self, class: &str, text: &str) {
+        let lines = wrapped(text, NOTE);
+        let (top, height) = (self.y, 16.0 * lines.len() as f64 + 8.0);
+        let _ = writeln!(
+            self.body,
+            "<rect class=\"{class}\" x=\"{GAP:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{height:.1}\" rx=\"4\"/>",
+            WIDTH - 2.0 * GAP
+        );
+        for (line, at) in lines.iter().zip(0..) {
+            let y = top + 16.0 * (f64::from(at) + 1.0);
+            self.text("", "start", [GAP + 8.0, y], line);
+        }
+        self.y = top + height + GAP;
     }
 
     /// All of it, below a title that readers of pages are told.

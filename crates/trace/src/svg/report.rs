@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use super::picture::{CURVE, GAP, GUTTER, Picture, ROW};
+use super::picture::{CURVE, GAP, GUTTER, Picture, ROW, wrapped};
 use super::range::{Range, limits, ticks};
 use crate::column::{Cell, Column, Kind, Role};
 use crate::events::same;
@@ -24,10 +24,17 @@ const BUSY: usize = 8;
 /// Letters of a title that fit on a line.
 const TITLE: usize = 88;
 
+/// Letters of a claim's words on a line, and lines of them: longer ones are cut.
+const SAID: usize = 124;
+const SAID_LINES: usize = 3;
+
+/// Letters of a label that fit left of the curves.
+const GUTTER_LETTERS: usize = 27;
+
 /// Half of the width of a claim's mark.
 const MARK: f64 = 3.5;
 
-const STYLE: &str = "<style>\n\
+pub const STYLE: &str = "<style>\n\
     .title { font-size: 15px; font-weight: 600 } .actual { stroke: #555; stroke-width: 1; stroke-dasharray: 3 3 }\n\
     .held { stroke: #14803f } .failed { stroke: #c22 } circle { fill: #14803f } .span { stroke-width: 4; opacity: .35 }\n\
     @media (prefers-color-scheme: dark) { .actual { stroke: #bbb } .held { stroke: #4fc882 } .failed { stroke: #ff6b6b }\n\
@@ -68,25 +75,10 @@ pub fn report(trace: &Trace) -> String {
     picture.finish(&header.title)
 }
 
-/// A title as lines that fit the width; a word that does not stands on a line of its own.
-fn lines(title: &str) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in title.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= TITLE => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
-}
-
 fn heading(picture: &mut Picture, trace: &Trace) {
     let header = trace.header();
     picture.y += GAP / 2.0;
-    for line in lines(&header.title) {
+    for line in wrapped(&header.title, TITLE) {
         picture.text("title", "start", [GAP, picture.y + 4.0], &line);
         picture.y += ROW;
     }
@@ -118,14 +110,21 @@ fn draw(picture: &mut Picture, trace: &Trace, curve: &Curve<'_>, ticks: &[usize]
     picture.trail("actual", &actual, |value| bottom - CURVE * range.part(value));
 }
 
-/// A claim: the scans it speaks of, where it came true, where it failed.
-fn draw_claim(picture: &mut Picture, claim: &Claim) {
-    let middle = picture.y + 0.5 * ROW;
+/// A claim: what it says, the scans it speaks of, where it came true, where it failed.
+pub fn draw_claim(picture: &mut Picture, claim: &Claim) {
     let (mark, class) = match claim.verdict {
         ClaimVerdict::Passed => ("✓", "held"),
         ClaimVerdict::Failed => ("✗", "failed"),
     };
-    picture.label("", middle + 4.0, &format!("{} {mark}", claim.path));
+    let mut lines = wrapped(&format!("{} {mark}", claim.path), GUTTER_LETTERS);
+    lines.truncate(1);
+    picture.label("", picture.y + 11.0, lines.first().map_or("", String::as_str));
+    let said = wrapped(&claim.text, SAID);
+    for line in said.iter().take(SAID_LINES) {
+        picture.text("small", "start", [GUTTER + 4.0, picture.y + 11.0], line);
+        picture.y += 12.0;
+    }
+    let middle = picture.y + 5.0;
     if let Some([from, to]) = claim.scans {
         let [left, right] = [picture.x(from), picture.x(to + 1)];
         picture.line(
@@ -146,7 +145,7 @@ fn draw_claim(picture: &mut Picture, claim: &Claim) {
         picture.line("failed", &format!("M{left:.1} {top:.1}L{right:.1} {bottom:.1}"));
         picture.line("failed", &format!("M{left:.1} {bottom:.1}L{right:.1} {top:.1}"));
     }
-    picture.y += ROW;
+    picture.y += 14.0;
 }
 
 /// A row for every input variable and pin that changes, instances set apart.

@@ -1,0 +1,199 @@
+//! `standstill serve`: the playground as a tool of the desk, with the scripts of a folder in it.
+//!
+//! What stands here: who is answered, and by what. What does not: running a script, which the page does. Nothing is written, and
+//! the loopback address is the only one it listens on. Other pages in the same browser can send requests there, too: those that
+//! came under another name are refused, and no answer is for other pages to read.
+
+#[cfg(any(unix, windows))]
+mod answer;
+#[cfg(any(unix, windows))]
+mod folder;
+#[cfg(any(unix, windows))]
+mod site;
+
+#[cfg(any(unix, windows))]
+pub use desk::serve;
+
+/// Where there is no network.
+#[cfg(not(any(unix, windows)))]
+pub fn serve(_: &crate::args::ServeArguments) -> Result<crate::exit::Exit, crate::exit::Failure> {
+    Err(crate::exit::Failure::usage(
+        "serve needs a network, and this build of standstill has none: `standstill run` shows a run as text",
+    ))
+}
+
+#[cfg(any(unix, windows))]
+mod desk {
+    use super::answer::{Answer, plain};
+    use super::folder::Folder;
+    use super::site::Site;
+    use crate::args::ServeArguments;
+    use crate::exit::{Exit, Failure, complain};
+    use crate::limit;
+    use crate::test::where_scripts_are;
+    use percent_encoding::percent_decode_str;
+    use standstill_script::suite::shown;
+    use std::io;
+    use std::net::{Ipv4Addr, TcpListener};
+    use std::thread;
+    use tiny_http::{Method, Request, Server};
+
+    /// Answers that may be on their way at the same time: a page asks for several files at once.
+    const THREADS: usize = 4;
+
+    /// Where the scripts of the folder are, beside the pages.
+    const SCRIPTS: &str = "/folder/";
+
+    /// What picks scripts in the page; here it has those of the folder, too.
+    const LIST: &str = "/playground/scripts.json";
+
+    /// What every answer comes from.
+    struct Desk {
+        site: Site,
+        folder: Folder,
+        port: u16,
+    }
+
+    /// Answers until it is interrupted.
+    pub fn serve(arguments: &ServeArguments) -> Result<Exit, Failure> {
+        let folders: Vec<_> = arguments.folder.iter().cloned().collect();
+        let mut folders = where_scripts_are(&folders);
+        let folder = Folder::new(folders.remove(0), &arguments.include_from)?;
+        let site = Site::find(arguments.site.as_deref())?;
+        let (server, port) = listen(arguments.port)?;
+        let desk = Desk { site, folder, port };
+        let name = desk.folder.name();
+        limit::doing(format!("serving {name}"));
+        complain(&format!(
+            "{name} in the playground: http://127.0.0.1:{port}/ (this machine only; Ctrl and C end it)"
+        ));
+        thread::scope(|scope| {
+            let work = || {
+                while let Ok(request) = server.recv() {
+                    desk.answer(request);
+                }
+                // Nobody waits for connections any more: no other thread gets one either.
+                server.unblock();
+            };
+            for _ in 1..THREADS {
+                scope.spawn(work);
+            }
+            work();
+        });
+        Err(Failure::Told(
+            Exit::Io,
+            format!("error: port {port}: no more connections can be taken; start it again"),
+        ))
+    }
+
+    fn listen(port: u16) -> Result<(Server, u16), Failure> {
+        let failed = |error: &io::Error| {
+            let why = match error.kind() {
+                io::ErrorKind::AddrInUse => "another program has it".to_owned(),
+                _ => error.to_string(),
+            };
+            let remedy = "`--port N` takes another one, `--port 0` one that is free";
+            Failure::Told(Exit::Io, format!("error: port {port}: {why}; {remedy}"))
+        };
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| failed(&error))?;
+        let port = listener.local_addr().map_err(|error| failed(&error))?.port();
+        let server = Server::from_listener(listener, None).map_err(|error| {
+            Failure::Told(
+                Exit::Io,
+                format!("error: port {port}: the server could not be started: {error}"),
+            )
+        })?;
+        Ok((server, port))
+    }
+
+    impl Desk {
+        fn answer(&self, request: Request) {
+            let answer = self.found(&request).unwrap_or_else(|refusal| refusal);
+            // Who asked may have gone.
+            let _ = request.respond(answer.response());
+        }
+
+        /// The answer, or one that says what is wrong.
+        fn found(&self, request: &Request) -> Result<Answer, Answer> {
+            let header = |name: &'static str| {
+                let all = request.headers().iter().filter(move |one| one.field.equiv(name));
+                all.map(|one| one.value.as_str())
+            };
+            if header("Host").count() != 1 || !header("Host").all(|host| is_ours(host, self.port)) {
+                let port = self.port;
+                let why = format!("this is answered under http://127.0.0.1:{port}/ and no other name");
+                return Err(plain(421, &why));
+            }
+            if !matches!(request.method(), Method::Get | Method::Head) {
+                return Err(plain(
+                    405,
+                    "only GET and HEAD are answered: nothing is written here",
+                ));
+            }
+            let path = request.url().split(['?', '#']).next().unwrap_or_default();
+            let Ok(path) = percent_decode_str(path).decode_utf8() else {
+                return Err(plain(400, "the path is no UTF-8"));
+            };
+            if path == "/" {
+                return Ok(Answer::elsewhere("/playground/"));
+            }
+            if path == LIST {
+                let list = self.site.scripts()?;
+                return Ok(Answer::json(&self.folder.listed(list)?));
+            }
+            if let Some(script) = path.strip_prefix(SCRIPTS) {
+                return self.folder.script(script, header("If-None-Match").next());
+            }
+            self.site.file(&path)
+        }
+    }
+
+    /// Whether a page under this name is ours: any other one may stand for this machine, too, if its owner says so.
+    fn is_ours(host: &str, port: u16) -> bool {
+        let host = host.to_ascii_lowercase();
+        let name = match host.strip_suffix(&format!(":{port}")) {
+            Some(name) => name,
+            None if port == 80 => &host,
+            None => return false,
+        };
+        matches!(name, "127.0.0.1" | "localhost")
+    }
+
+    /// The name of a folder for people: the last part of its path at least.
+    pub(super) fn name_of(folder: &std::path::Path) -> String {
+        let real = folder.canonicalize().ok();
+        let last = real.as_deref().and_then(|path| path.file_name());
+        match last {
+            Some(last) if folder.file_name().is_none() => last.to_string_lossy().into_owned(),
+            _ => shown(folder),
+        }
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::*;
+
+        #[test]
+        fn names_of_this_machine_are_answered_and_no_others() {
+            for host in ["127.0.0.1:7480", "localhost:7480", "LocalHost:7480"] {
+                assert!(is_ours(host, 7480), "{host}");
+            }
+            for host in [
+                "",
+                "127.0.0.1",
+                "localhost",
+                "127.0.0.1:7481",
+                "evil.example:7480",
+                "127.0.0.1.evil.example:7480",
+                "localhost.evil.example:7480",
+                "127.0.0.1:74807480",
+                "0.0.0.0:7480",
+                "192.168.0.7:7480",
+                "127.0.0.1:7480:7480",
+            ] {
+                assert!(!is_ours(host, 7480), "{host}");
+            }
+            assert!(is_ours("localhost", 80));
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Times the function `run` as it is without a browser: a request on standard input, how often as the argument; a line with
+//! milliseconds for each. `crates/playground/browser/measure.mjs` holds the page's times against these.
+
+use std::io::Read;
+use std::time::Instant;
+
+fn main() {
+    let turns = std::env::args()
+        .nth(1)
+        .and_then(|turns| turns.parse().ok())
+        .unwrap_or(15);
+    let mut request = String::new();
+    std::io::stdin()
+        .lock()
+        .read_to_string(&mut request)
+        .expect("a request in UTF-8");
+    for _ in 0..turns {
+        let begin = Instant::now();
+        let ran = standstill_playground::run(&request, |_, _| true);
+        let took = begin.elapsed().as_secs_f64() * 1e3;
+        assert!(ran.about.contains("\"verdict\""), "{}", ran.about);
+        println!("{took}");
+    }
+}

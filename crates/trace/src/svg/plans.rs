@@ -1,0 +1,207 @@
+//! The picture of plans: their courses over each other, from one start on.
+
+use super::picture::{CURVE, GAP, GUTTER, MARGIN, Picture, ROW, WIDTH, wrapped};
+use super::range::{Range, path, ticks};
+use crate::panels::compact;
+
+/// The colours: no more plans are drawn than these can tell apart.
+pub const PLANS_MAX: usize = 6;
+
+const STYLE: &str = "<style>\n\
+    .p0 { stroke: #1d5fc4 } .p1 { stroke: #c2500a } .p2 { stroke: #14773f } .p3 { stroke: #8a2fb0 } .p4 { stroke: #a01840 }\n\
+    .p5 { stroke: #5c5c00 }\n\
+    @media (prefers-color-scheme: dark) { .p0 { stroke: #7fb2ff } .p1 { stroke: #ffa566 } .p2 { stroke: #63d297 }\n\
+    .p3 { stroke: #d59bf0 } .p4 { stroke: #ff8fae } .p5 { stroke: #d8d46a } }\n\
+    </style>\n";
+
+/// Letters of a plan's label on its line.
+const LABEL: usize = 110;
+
+/// What is drawn, below each other, and its unit.
+const TITLES: [(&str, &str); 5] = [
+    ("Position", "u"),
+    ("Velocity", "u/s"),
+    ("Acceleration", "u/s^2"),
+    ("Jerk", "u/s^3"),
+    ("Snap", "u/s^4"),
+];
+
+/// A plan to draw.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// What it is called.
+    pub label: String,
+    /// Moments of its course: time (s), position, velocity, acceleration, jerk, snap (in u and s). Times do not fall; at
+    /// equal ones a value jumps.
+    pub course: Vec<[f64; 6]>,
+    /// Limits of velocity, acceleration, jerk and snap, where there are some.
+    pub limits: [Option<f64>; 4],
+}
+
+/// The picture of up to [`PLANS_MAX`] plans: the labels, then position to snap, each in one range for all plans, with their
+/// limits dashed where a curve comes near. What stands still in every plan is left out.
+///
+/// Work is proportional to the moments.
+#[must_use]
+pub fn plans(title: &str, plans: &[Plan]) -> String {
+    let plans = &plans[..plans.len().min(PLANS_MAX)];
+    let mut picture = Picture::new(0);
+    picture.body.push_str(STYLE);
+    for (plan, at) in plans.iter().zip(0..) {
+        let y = picture.y + 4.0;
+        picture.line(&format!("p{at}"), &format!("M{GUTTER} {:.1}h24", y - 4.0));
+        let label = wrapped(&plan.label, LABEL).into_iter().next().unwrap_or_default();
+        picture.text("", "start", [GUTTER + 30.0, y], &label);
+        picture.y += ROW;
+    }
+    let moments = || plans.iter().flat_map(|plan| &plan.course);
+    let end = moments().map(|moment| moment[0]).fold(0.0, f64::max);
+    let x = |time: f64| GUTTER + (WIDTH - MARGIN - GUTTER) * if end > 0.0 { time / end } else { 0.0 };
+    let times = round_times(end);
+    for (panel, (name, unit)) in TITLES.iter().enumerate() {
+        let values = || {
+            moments()
+                .map(|moment| moment[panel + 1])
+                .filter(|value| value.is_finite())
+        };
+        let (least, greatest) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
+        if least == greatest {
+            continue;
+        }
+        let (top, bottom) = (picture.y, picture.y + CURVE);
+        let range = Range::of(least, greatest);
+        let height = |value: f64| bottom - CURVE * range.part(value);
+        let right = WIDTH - MARGIN;
+        let lines: String = times
+            .iter()
+            .map(|time| format!("M{:.1} {top:.1}V{bottom:.1}", x(*time)))
+            .collect();
+        picture.line("grid", &lines);
+        picture.line("frame", &format!("M{GUTTER} {top:.1}V{bottom:.1}H{right:.1}"));
+        if least < 0.0 && greatest > 0.0 {
+            picture.line("frame", &format!("M{GUTTER} {:.1}H{right:.1}", height(0.0)));
+        }
+        for limit in limits(plans, panel).into_iter().filter(|limit| range.has(*limit)) {
+            let y = height(limit);
+            picture.line("limit", &format!("M{GUTTER} {y:.1}H{right:.1}"));
+        }
+        for (plan, at) in plans.iter().zip(0..) {
+            let points: Vec<[f64; 2]> = plan
+                .course
+                .iter()
+                .filter(|moment| moment[panel + 1].is_finite())
+                .map(|moment| [x(moment[0]), height(moment[panel + 1])])
+                .collect();
+            picture.line(&format!("p{at}"), &path(&points));
+        }
+        picture.label("", top + 0.5 * CURVE, &format!("{name} ({unit})"));
+        for value in [greatest, least] {
+            let y = height(value).clamp(top + 6.0, bottom - 2.0) + 3.0;
+            picture.label("small unit", y, &compact(value));
+        }
+        picture.y = bottom + GAP;
+    }
+    let y = picture.y + 4.0;
+    for time in &times {
+        picture.text("small", "middle", [x(*time), y], &compact(*time));
+    }
+    picture.label("small unit", y, "time (s)");
+    picture.y = y;
+    picture.finish(title)
+}
+
+/// The limits of a panel, each once, on both sides.
+fn limits(plans: &[Plan], panel: usize) -> Vec<f64> {
+    let own = |plan: &Plan| panel.checked_sub(1).and_then(|at| plan.limits[at]);
+    let mut all: Vec<f64> = plans
+        .iter()
+        .filter_map(own)
+        .flat_map(|limit| [limit, -limit])
+        .collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
+}
+
+/// Round times up to the end (s).
+fn round_times(end: f64) -> Vec<f64> {
+    // A power of ten of which the end has a hundred thousand at least.
+    let mut scale = 1.0;
+    while end / scale > 1e6 && scale < 1e300 {
+        scale *= 10.0;
+    }
+    while end / scale < 1e5 && scale > 1e-300 {
+        scale /= 10.0;
+    }
+    let steps = (end / scale).min(1e7) as usize;
+    ticks(steps).into_iter().map(|step| step as f64 * scale).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(label: &str, end: f64) -> Plan {
+        Plan {
+            label: label.to_owned(),
+            course: vec![
+                [0.0, 0.0, 0.0, 2.0, 0.0, 0.0],
+                [0.5 * end, 1.0, 2.0, 2.0, 0.0, 0.0],
+                [0.5 * end, 1.0, 2.0, -2.0, 0.0, 0.0],
+                [end, 2.0, 0.0, -2.0, 0.0, 0.0],
+            ],
+            limits: [Some(2.0), Some(50.0), None, None],
+        }
+    }
+
+    #[test]
+    fn courses_labels_and_near_limits_are_drawn() {
+        let picture = plans("two", &[plan("<one>", 1.0), plan("two", 2.0)]);
+        assert!(picture.contains(">&lt;one&gt;<"), "{picture}");
+        assert!(
+            picture.contains(">Position (u)<") && !picture.contains(">Jerk"),
+            "{picture}"
+        );
+        // A legend and three panels for each; the limit of velocity alone is near.
+        for class in ["p0", "p1"] {
+            assert_eq!(
+                picture.matches(&format!("class=\"{class}\"")).count(),
+                4,
+                "{picture}"
+            );
+        }
+        assert_eq!(picture.matches("class=\"limit\"").count(), 1, "{picture}");
+        // The shorter one ends in the middle: 190 + 660 / 2.
+        let first = picture
+            .lines()
+            .filter(|line| line.contains("class=\"p0\""))
+            .nth(1)
+            .unwrap_or_default();
+        assert!(first.contains("L520.0 "), "{first}");
+        assert!(
+            picture.contains(">0.5<") && picture.contains(">time (s)<"),
+            "{picture}"
+        );
+    }
+
+    #[test]
+    fn nothing_and_too_much_to_draw_have_a_picture() {
+        assert!(plans("", &[]).ends_with("</svg>\n"));
+        let many: Vec<Plan> = (0..9).map(|at| plan(&at.to_string(), 1e-9)).collect();
+        let picture = plans("", &many);
+        assert!(
+            picture.contains(">5<") && !picture.contains(">6</text>"),
+            "{picture}"
+        );
+        let still = Plan {
+            course: vec![[0.0; 6]; 2],
+            ..plan("still", 1.0)
+        };
+        assert!(plans("", &[still]).contains(">still<"));
+        let endless = Plan {
+            course: vec![[f64::INFINITY; 6]; 2],
+            ..plan("endless", 1.0)
+        };
+        assert!(plans("", &[endless]).ends_with("</svg>\n"));
+    }
+}
