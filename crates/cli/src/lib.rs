@@ -216,7 +216,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
                 svg: svg.as_deref(),
                 report: report.as_deref(),
             };
-            with_lines(file, |lines, name| plan::plan(lines, name, files, out))
+            with_lines(file, |lines, name| plan::plan_to_files(lines, name, files, out))
         }
         Command::ComparePlanners { cases } => {
             with_lines(cases, |lines, name| plan::compare(lines, name, out))

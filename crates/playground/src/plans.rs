@@ -2,7 +2,6 @@
 
 use crate::bounds;
 use crate::project::refused;
-use standstill_cli::plan::Files;
 
 /// Answers every line as `standstill plan` does; `{"refused": ".."}` for too many of them.
 ///
@@ -15,6 +14,6 @@ pub fn plan(lines: &str) -> String {
     }
     let mut answers = Vec::new();
     // What is refused stands in the answers; writing to memory cannot fail.
-    let _ = standstill_cli::plan::plan(&mut lines.as_bytes(), "lines", Files::default(), &mut answers);
+    let _ = standstill_cli::plan::plan(&mut lines.as_bytes(), "lines", &mut answers);
     String::from_utf8_lossy(&answers).into_owned()
 }

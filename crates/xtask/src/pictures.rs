@@ -41,6 +41,12 @@ impl Picture {
         }
     }
 
+    /// What is drawn.
+    #[cfg(test)]
+    pub const fn trace(&self) -> &Trace {
+        &self.trace
+    }
+
     /// The drawn picture.
     pub fn drawn(&self) -> Generated {
         Generated {

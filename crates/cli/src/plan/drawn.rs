@@ -1,9 +1,8 @@
 //! Plans as a picture and as a page.
 
 use crate::exit::{Failure, complain};
-use crate::plan::Files;
-use crate::plan::fields::Fields;
 use crate::plan::methods::Planned;
+use crate::plan::{Files, Plan};
 use crate::report::page_failure;
 use standstill_planner::Limits;
 use standstill_report::{Source, html};
@@ -32,13 +31,12 @@ pub struct Drawn {
 
 impl Drawn {
     /// Adds the plan of a line, if it is to be drawn.
-    pub fn add(
-        &mut self,
-        files: Files<'_>,
-        fields: &Fields<'_>,
-        method: &str,
-        planned: &Planned,
-    ) -> Result<(), Failure> {
+    pub fn add(&mut self, files: Files<'_>, plan: Plan<'_>) -> Result<(), Failure> {
+        let Plan {
+            fields,
+            method,
+            planned,
+        } = plan;
         if files.svg.is_none() && files.report.is_none() {
             return Ok(());
         }

@@ -17,6 +17,7 @@ use crate::exit::{Exit, Failure};
 use crate::{limit, out};
 use drawn::Drawn;
 use fields::Fields;
+use methods::Planned;
 use samples::Samples;
 use std::io::{BufRead, Write};
 use std::path::Path;
@@ -37,15 +38,48 @@ pub struct Files<'a> {
 /// Answers every line of `input` that is not blank, in order. `name` stands for the input in messages.
 ///
 /// Flushes `out` before it waits for more input, so that a program can hold a conversation.
-pub fn plan(
+pub fn plan(input: &mut dyn BufRead, name: &str, out: &mut dyn Write) -> Result<Exit, Failure> {
+    answer(input, name, out, &mut |_| Ok(()))
+}
+
+/// As [`plan`]; what is planned goes to the files as well.
+pub fn plan_to_files(
     input: &mut dyn BufRead,
     name: &str,
     files: Files<'_>,
     out: &mut dyn Write,
 ) -> Result<Exit, Failure> {
-    let mut exit = Exit::Passed;
     let mut samples = files.samples.map(Samples::create).transpose()?;
     let mut drawn = Drawn::default();
+    let exit = answer(input, name, out, &mut |plan| {
+        if let Some(samples) = &mut samples {
+            samples.add(plan.fields.id(), plan.planned)?;
+        }
+        drawn.add(files, plan)
+    })?;
+    if let Some(samples) = samples {
+        samples.finish()?;
+    }
+    drawn.finish(files)?;
+    Ok(exit)
+}
+
+/// A line that was planned.
+#[derive(Clone, Copy)]
+struct Plan<'a> {
+    fields: &'a Fields<'a>,
+    method: &'a str,
+    planned: &'a Planned,
+}
+
+/// Answers every line, and calls `each` with those that were planned.
+fn answer(
+    input: &mut dyn BufRead,
+    name: &str,
+    out: &mut dyn Write,
+    each: &mut dyn FnMut(Plan<'_>) -> Result<(), Failure>,
+) -> Result<Exit, Failure> {
+    let mut exit = Exit::Passed;
     each_line(input, name, |_, line| {
         let (id, planned) = match Fields::of_line(line) {
             Ok(fields) => {
@@ -58,10 +92,11 @@ pub fn plan(
         match planned {
             Ok(((method, planned), fields)) => {
                 writeln!(out, "{}", reply::line(id, method, &planned))?;
-                if let Some(samples) = &mut samples {
-                    samples.add(id, &planned)?;
-                }
-                drawn.add(files, &fields, method, &planned)?;
+                each(Plan {
+                    fields: &fields,
+                    method,
+                    planned: &planned,
+                })?;
             }
             Err(refusal) => {
                 exit = Exit::Failed;
@@ -71,10 +106,6 @@ pub fn plan(
         out.flush()?;
         Ok(())
     })?;
-    if let Some(samples) = samples {
-        samples.finish()?;
-    }
-    drawn.finish(files)?;
     Ok(exit)
 }
 

@@ -94,13 +94,7 @@ mod tests {
         for (case, plan, _) in replans(30) {
             let line = case.line("x");
             let mut answer = Vec::new();
-            let exit = plan::plan(
-                &mut line.as_bytes(),
-                "a line",
-                plan::Files::default(),
-                &mut answer,
-            )
-            .expect("an answer");
+            let exit = plan::plan(&mut line.as_bytes(), "a line", &mut answer).expect("an answer");
             let answer: serde_json::Value = serde_json::from_slice(&answer).expect("JSON");
             assert_eq!(exit, Exit::Passed, "{line} {answer}");
             assert_eq!(answer["scans"], plan.scans(), "{line}");

@@ -46,12 +46,7 @@ pub fn play(format_number: u8, bytes: &[u8]) {
             lacks: Vec::new(),
         })),
         "golden" => golden(bytes),
-        _ => drop(plan(
-            &mut &*bytes,
-            "lines",
-            standstill_cli::plan::Files::default(),
-            &mut std::io::sink(),
-        )),
+        _ => drop(plan(&mut &*bytes, "lines", &mut std::io::sink())),
     }
 }
 
