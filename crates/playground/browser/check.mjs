@@ -338,6 +338,14 @@ async function tabs() {
   check('the axes follow the pointer', frames > 5 && !(await told_()).includes('refused'), `${frames} frames; ${await told_()}`);
   console.log(`by the hand: ${Math.round((frames * 1000) / (performance.now() - since))} frames a second`);
   await page.waitForFunction(() => /^(order \d: there in 0 ms( · )?){3}$/.test(document.querySelector('#hand-told').textContent), null, { timeout: 20_000 });
+  // A limit is a slider: at 10 u/s a quarter of the way takes more than two seconds.
+  await page.focus('#hand-velocity');
+  await page.keyboard.press('Home');
+  await page.focus('#stage');
+  await page.keyboard.press('ArrowLeft');
+  const longest = () => Math.max(...[...document.querySelector('#hand-told').textContent.matchAll(/in (\d+) ms/g)].map(([, ms]) => Number(ms)));
+  await page.waitForFunction(`(${longest})() > 2000`, null, { timeout: 10_000 }).catch(() => {});
+  check('a slider is a limit of all three', (await page.evaluate(longest)) > 2000, await told_());
   check('no error on any tab', complaints.length === 0, complaints.join('; '));
   await close();
 }
