@@ -12,6 +12,7 @@
 mod check;
 mod coverage;
 mod dialect;
+pub mod editor;
 mod emit;
 mod error;
 mod format;
@@ -95,15 +96,20 @@ pub fn compile(sources: &[Source<'_>], options: &Options) -> Result<Compiled, Bo
     }
 }
 
+/// The library's own text as the last file of a project.
+fn library_source(prelude: &str) -> Source<'_> {
+    Source {
+        name: "library",
+        bytes: prelude.as_bytes(),
+    }
+}
+
 type Built = (Option<(Vec<u8>, Symbols)>, Report);
 
 fn build(given: &[Source<'_>], options: &Options, module: bool) -> Result<Built, Report> {
     let mut files = given.to_vec();
     let prelude = library::prelude();
-    files.push(Source {
-        name: "library",
-        bytes: prelude.as_bytes(),
-    });
+    files.push(library_source(&prelude));
     let (sources, wrong) = Sources::new(&files);
     let mut found = Found::default();
     let unreadable = !wrong.is_empty();

@@ -180,6 +180,45 @@ impl Sources {
         &self.file(span.start).name
     }
 
+    /// The file a place is in, by its number, and the bytes of it that are meant; a byte order mark does not count.
+    #[must_use]
+    pub fn locate(&self, span: Span) -> (usize, std::ops::Range<usize>) {
+        let index = self.index(span.start);
+        let start = self.files.get(index).map_or(0, |file| file.start);
+        let from = span.start.saturating_sub(start) as usize;
+        (index, from..span.end.saturating_sub(start) as usize)
+    }
+
+    /// The comment behind a declaration on its line, or else on the lines before it.
+    pub(crate) fn remark(&self, span: Span) -> String {
+        let file = self.file(span.start);
+        let at = (span.start - file.start) as usize;
+        let before = file.text.get(..at).unwrap_or_default();
+        let behind = file.text.get(at..).unwrap_or_default();
+        let line = behind.lines().next().unwrap_or_default();
+        if let Some((_, comment)) = line.split_once("//") {
+            return comment.trim().to_owned();
+        }
+        if let Some((_, comment)) = line.split_once("(*")
+            && let Some((comment, _)) = comment.split_once("*)")
+        {
+            return comment.trim().to_owned();
+        }
+        let mut lines: Vec<&str> = Vec::new();
+        for line in before.lines().rev().skip(usize::from(!before.ends_with('\n'))) {
+            let line = line.trim();
+            let comment = line
+                .strip_prefix("//")
+                .or_else(|| line.strip_prefix("(*")?.strip_suffix("*)"));
+            match comment {
+                Some(comment) => lines.push(comment.trim()),
+                None => break,
+            }
+        }
+        lines.reverse();
+        lines.join(" ")
+    }
+
     /// Line and column of a byte. Cost: logarithmic in the lines, linear in the length of this one.
     #[must_use]
     pub fn position(&self, place: u32) -> Position {

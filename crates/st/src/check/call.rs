@@ -39,6 +39,7 @@ impl<'a> Checker<'a> {
             return wrong;
         }
         if let Some(unit) = self.unit_names.get(&key).copied() {
+            self.look_at_unit(name.span, unit);
             if self.unit(unit).kind == UnitKind::Function {
                 return self.function(unit, None, call);
             }
@@ -51,6 +52,7 @@ impl<'a> Checker<'a> {
             return wrong;
         }
         if let Some(value) = self.library_call(&key, call, expected) {
+            self.look_at_function(name.span, &key);
             return value;
         }
         let names = self.unit_names.keys().map(String::as_str);
@@ -109,8 +111,12 @@ impl<'a> Checker<'a> {
                 self.no_such_argument(unit, argument, span);
                 continue;
             };
-            let member = &info.members.list[place];
+            let member = info.members.list[place].clone();
             let shown = member.name.clone();
+            if let Some(name) = &argument.name {
+                self.look_at_member(name.span, unit, place);
+            }
+            let info = self.unit(unit);
             let good = match argument.way {
                 Way::In => takes(member.kind),
                 Way::Out | Way::OutInverted => member.kind == MemberKind::Output,
@@ -282,6 +288,7 @@ impl<'a> Checker<'a> {
             let block = self.this_block()?;
             let method = self.methods.get(&(block, callee.root.key())).copied()?;
             let ty = self.block_type(block);
+            self.look_at_unit(callee.root.span, method);
             return Some((method, plain(Base::This, 0, ty)));
         };
         let key = name.key();
@@ -295,6 +302,7 @@ impl<'a> Checker<'a> {
             return None;
         };
         let method = self.methods.get(&(block, key)).copied()?;
+        self.look_at_unit(name.span, method);
         let private = self.unit(method).syntax.is_some_and(|syntax| syntax.private);
         if private && self.this_block() != Some(block) {
             let message = format!(

@@ -176,6 +176,7 @@ impl<'a> Checker<'a> {
                 self.error(Code::UnknownName, program.program.span, message, "");
                 continue;
             };
+            self.look_at_unit(program.program.span, unit);
             let Some(task) = task else { continue };
             instances.push(Instance {
                 name: program.name.text.clone(),

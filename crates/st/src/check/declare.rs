@@ -291,6 +291,7 @@ impl<'a> Checker<'a> {
         global.member.ty = ty;
         global.member.start = start;
         global.state = State::Done;
+        self.look_at_global(span, place);
     }
 
     /// Programs are made in a CONFIGURATION only.

@@ -3,6 +3,7 @@
 mod body;
 mod call;
 mod chain;
+mod complete;
 mod configuration;
 mod constant;
 mod convert;
@@ -10,6 +11,7 @@ mod declare;
 mod expression;
 mod graph;
 mod library_call;
+mod look;
 mod path;
 mod spec;
 mod start;
@@ -29,6 +31,7 @@ use standstill_fb::BlockInfo;
 use std::collections::BTreeMap;
 
 pub(crate) use configuration::{Instance, Task};
+pub(crate) use look::Look;
 
 /// What can be called or instantiated.
 #[derive(Clone, Copy, Debug)]
@@ -161,6 +164,7 @@ pub(crate) struct Checker<'a> {
     depth: usize,
     body: body::BodyState,
     edges: BTreeMap<UnitId, BTreeMap<UnitId, Span>>,
+    look: Look,
 }
 
 /// Checks a project. There is a program if nothing is wrong.
@@ -170,6 +174,49 @@ pub(crate) fn check<'a>(
     options: &'a Options,
     found: Found,
 ) -> (Option<Program<'a>>, Found) {
+    let (checker, tasks, instances, bodies) = checked(sources, items, options, found, Look::default());
+    let Checker {
+        found,
+        types,
+        units,
+        globals,
+        layout,
+        ..
+    } = checker;
+    if found.has_errors() {
+        return (None, found);
+    }
+    let program = Program {
+        types,
+        units,
+        globals,
+        bodies,
+        instances,
+        tasks,
+        layout,
+    };
+    (Some(program), found)
+}
+
+/// Checks a project for what an editor asks of one place in it.
+pub(crate) fn look<'a>(
+    sources: &'a Sources,
+    items: &'a [Item],
+    options: &'a Options,
+    look: Look,
+) -> Checker<'a> {
+    checked(sources, items, options, Found::default(), look).0
+}
+
+type Checked<'a> = (Checker<'a>, Vec<Task>, Vec<Instance<'a>>, Vec<Body>);
+
+fn checked<'a>(
+    sources: &'a Sources,
+    items: &'a [Item],
+    options: &'a Options,
+    found: Found,
+    look: Look,
+) -> Checked<'a> {
     let mut types = Types::new();
     let library_types = blocks::types(&mut types);
     let mut checker = Checker {
@@ -192,6 +239,7 @@ pub(crate) fn check<'a>(
         depth: 0,
         body: body::BodyState::default(),
         edges: BTreeMap::new(),
+        look,
     };
     checker.declare(items);
     checker.resolve();
@@ -200,27 +248,7 @@ pub(crate) fn check<'a>(
     let bodies = checker.bodies();
     checker.run(&mut tasks, &instances);
     checker.check_calls();
-    let Checker {
-        found,
-        types,
-        units,
-        globals,
-        layout,
-        ..
-    } = checker;
-    if found.has_errors() {
-        return (None, found);
-    }
-    let program = Program {
-        types,
-        units,
-        globals,
-        bodies,
-        instances,
-        tasks,
-        layout,
-    };
-    (Some(program), found)
+    (checker, tasks, instances, bodies)
 }
 
 impl<'a> Checker<'a> {

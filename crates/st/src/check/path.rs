@@ -36,8 +36,10 @@ impl<'a> Checker<'a> {
             return self.named_of_this(path, selectors);
         }
         if let Some(value) = self.constant_named(&key, selectors, path.root.span) {
+            self.look_at_constant(path, &key, selectors);
             return Named::Value(value);
         }
+        let mut listed = None;
         let root = self.variable(&key, path.root.span).or_else(|| {
             // A list of global variables by the name of its file: GVL.x
             let file = self.files.get(&key).copied()?;
@@ -49,8 +51,12 @@ impl<'a> Checker<'a> {
                 return None;
             }
             selectors = rest;
+            listed = Some((place, name.span));
             Some(self.global_place(place))
         });
+        if let Some((place, span)) = listed {
+            self.look_at_global(span, place);
+        }
         if let Some((place, fixed)) = root {
             return self.select(place, fixed, selectors);
         }
@@ -80,6 +86,7 @@ impl<'a> Checker<'a> {
             self.tell(Diagnostic::error(Code::UnknownName, path.root.span, message).maybe_help(guess));
             return Named::Nothing;
         };
+        self.look_at_member(path.root.span, block, place);
         if selectors.is_empty()
             && let Some(value) = self.constant(Some(block), &path.root.key(), path.root.span)
         {
@@ -149,12 +156,14 @@ impl<'a> Checker<'a> {
     }
 
     /// A variable of the unit, or a global one.
-    fn variable(&mut self, key: &str, _span: Span) -> Option<(Place, Option<String>)> {
+    fn variable(&mut self, key: &str, span: Span) -> Option<(Place, Option<String>)> {
         if let Some((unit, place)) = self.local(key) {
+            self.look_at_member(span, unit, place);
             return Some(self.member_place(unit, place));
         }
         let place = self.global_names.get(key).copied()?;
         self.global(place);
+        self.look_at_global(span, place);
         Some(self.global_place(place))
     }
 
@@ -283,6 +292,7 @@ impl<'a> Checker<'a> {
                 return false;
             }
         }
+        self.look_at_part(name.span, place.ty, &key);
         place.ty = ty;
         place.offset = place.offset.saturating_add(offset);
         true
@@ -448,11 +458,15 @@ impl<'a> Checker<'a> {
         let wanted = ours.as_deref().unwrap_or(&name.text);
         let found = of.elements.iter().find(|(it, _)| it.eq_ignore_ascii_case(wanted));
         match found {
-            Some((_, number)) => Some(Expr {
-                kind: Kind::Integer(*number),
-                ty,
-                span: name.span,
-            }),
+            Some((element, number)) => {
+                let (number, text) = (*number, format!("{element} := {number}"));
+                self.look_at_element(name.span, ty, text);
+                Some(Expr {
+                    kind: Kind::Integer(number),
+                    ty,
+                    span: name.span,
+                })
+            }
             None => {
                 let guess = self.guess(&name.text, of.elements.iter().map(|(name, _)| name.as_str()));
                 let message = format!("{} has no element `{}`", of.name, name.text);

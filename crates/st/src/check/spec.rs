@@ -40,6 +40,7 @@ impl<'a> Checker<'a> {
     pub(super) fn type_by_name(&mut self, name: &Ident) -> (TypeId, Start) {
         let key = name.key();
         if let Some(found) = self.find_type(&key, name.span) {
+            self.look_at_type(name.span, found.0, &key);
             return found;
         }
         if let Some((_, instead)) = REFUSED_TYPES.iter().find(|(it, _)| *it == key) {
@@ -333,6 +334,7 @@ impl<'a> Checker<'a> {
                     retain: false,
                     address: None,
                 };
+                self.look_at(name.span, |checker| checker.told_of(&member, ""));
                 members.add(member, size, align);
             }
         }

@@ -270,9 +270,15 @@ impl<'a> Checker<'a> {
         let member = self.local(&key);
         let path_span = each.variable.span;
         let found = match member {
-            Some((unit, place)) => Some(self.member_place(unit, place)),
+            Some((unit, place)) => {
+                self.look_at_member(path_span, unit, place);
+                Some(self.member_place(unit, place))
+            }
             None => match self.global_names.get(&key).copied() {
-                Some(place) => Some(self.global_place(place)),
+                Some(place) => {
+                    self.look_at_global(path_span, place);
+                    Some(self.global_place(place))
+                }
                 None => {
                     let message = format!("there is no variable `{}`", each.variable.text);
                     self.error(

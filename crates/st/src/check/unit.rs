@@ -212,7 +212,9 @@ impl<'a> Checker<'a> {
             retain,
             address: address.map(|address| address.text.clone()),
         };
+        let place = self.unit(id).members.list.len();
         self.unit_mut(id).members.add(member, size, align);
+        self.look_at_member(name.span, id, place);
     }
 
     /// VAR_EXTERNAL: names of global variables, with their types.
@@ -262,6 +264,7 @@ impl<'a> Checker<'a> {
                 ..global.clone()
             };
             self.unit_mut(id).members.put(member);
+            self.look_at_global(name.span, place);
         }
     }
 }
