@@ -80,6 +80,16 @@ pub fn complete(sources: &[Source<'_>], options: &Options, file: usize, byte: us
     found.unwrap_or_default()
 }
 
+/// The variable that a script calls by this path behind the key of its program: `State`, `Units[1].Mv.Done`, `Left.State`
+/// for one of an instance of a CONFIGURATION. Its span says nothing. Cost: linear in the bytes of the sources.
+#[must_use]
+pub fn variable(sources: &[Source<'_>], options: &Options, path: &str) -> (Sources, Option<Hover>) {
+    let (sources, found) = asked(sources, 0, 0, |sources, items, _, _| {
+        check::look(sources, items, options, Look::default()).variable_called(path)
+    });
+    (sources, found.flatten())
+}
+
 /// Reads the sources and asks something of a place; nothing if it is not in them or they are too large.
 fn asked<T>(
     given: &[Source<'_>],
@@ -87,7 +97,7 @@ fn asked<T>(
     byte: usize,
     ask: impl FnOnce(&Sources, &[crate::syntax::Item], usize, u32) -> T,
 ) -> (Sources, Option<T>) {
-    let prelude = crate::library::prelude();
+    let prelude = crate::library::prelude(given);
     let mut files = given.to_vec();
     files.push(crate::library_source(&prelude));
     let (sources, wrong) = Sources::new(&files);

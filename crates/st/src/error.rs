@@ -246,6 +246,12 @@ impl Report {
         self.diagnostics.iter().any(|it| it.severity == Severity::Error)
     }
 
+    /// The files that its spans are in.
+    #[must_use]
+    pub const fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
     /// Name of the file a place is in, with `/`.
     #[must_use]
     pub fn file_name(&self, span: Span) -> &str {

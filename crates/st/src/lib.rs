@@ -108,7 +108,7 @@ type Built = (Option<(Vec<u8>, Symbols)>, Report);
 
 fn build(given: &[Source<'_>], options: &Options, module: bool) -> Result<Built, Report> {
     let mut files = given.to_vec();
-    let prelude = library::prelude();
+    let prelude = library::prelude(given);
     files.push(library_source(&prelude));
     let (sources, wrong) = Sources::new(&files);
     let mut found = Found::default();

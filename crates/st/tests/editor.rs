@@ -1,6 +1,6 @@
 //! What an editor is told of names, and what it may offer, at places marked by `|`.
 
-use standstill_st::editor::{Completion, CompletionKind, Hover, complete, hover};
+use standstill_st::editor::{Completion, CompletionKind, Hover, complete, hover, variable};
 use standstill_st::{Options, Source, Sources};
 
 const TYPES: &str = "TYPE E_State : (Idle, Moving := 5) DINT; END_TYPE
@@ -302,4 +302,39 @@ fn no_place_of_a_broken_text_leads_to_a_panic() {
     }
     assert!(complete(&[], &options(), 0, 0).is_empty());
     assert!(complete(&[], &options(), 3, 7).is_empty());
+}
+
+#[test]
+fn variables_are_found_by_the_paths_that_scripts_have() {
+    let (text, _) = marked(&program("|"));
+    let configured = "VAR_GLOBAL Guard : BOOL; // closed
+END_VAR CONFIGURATION C RESOURCE R ON PLC TASK t(INTERVAL := T#1ms); PROGRAM Left WITH t : Main; END_RESOURCE END_CONFIGURATION";
+    let sources = [
+        ("types.st", TYPES),
+        ("main.st", text.as_str()),
+        ("conf.st", configured),
+    ];
+    let sources = sources.map(|(name, text)| Source {
+        name,
+        bytes: text.as_bytes(),
+    });
+    for (path, declared, file) in [
+        ("State", "State : E_State", Some("main.st")),
+        ("valves[2].IsOpen", "IsOpen : BOOL", Some("types.st")),
+        ("Left.r.Length", "Length : LREAL := 40.0", Some("types.st")),
+        ("Main.i", "i : INT", Some("main.st")),
+        ("Guard", "Guard : BOOL", Some("conf.st")),
+        ("Mv.Done", "Done : BOOL", None),
+    ] {
+        let (all, found) = variable(&sources, &options(), path);
+        let found = found.expect(path);
+        assert!(found.text.starts_with(declared), "{path}: {}", found.text);
+        assert_eq!(found.declared.map(|span| all.file_name(span)), file, "{path}");
+    }
+    for nothing in [
+        "", "Stat", "State.x", "Valves[", "]", "Left", "Guard.x", "Mv.Don", "1",
+    ] {
+        let (_, found) = variable(&sources, &options(), nothing);
+        assert_eq!(found, None, "{nothing}");
+    }
 }

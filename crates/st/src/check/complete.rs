@@ -2,7 +2,7 @@
 
 use super::look::{function_text, functions, library_blocks, pin_doc};
 use super::{Checker, UnitKind};
-use crate::editor::{Completion, CompletionKind};
+use crate::editor::{Completion, CompletionKind, Hover};
 use crate::error::Found;
 use crate::lex::{Token, Word, lex};
 use crate::source::Span;
@@ -214,6 +214,76 @@ impl Checker<'_> {
         let mut found = self.by_token(&before, &around);
         found.truncate(MOST);
         found
+    }
+
+    /// The variable that a script calls so: a global one, one of a program, or of an instance of a program.
+    pub(crate) fn variable_called(mut self, path: &str) -> Option<Hover> {
+        let tokens = lex(path, 0, &mut Found::default());
+        let before = Before {
+            text: path,
+            start: 0,
+            tokens: tokens
+                .into_iter()
+                .filter(|(token, _)| *token != Token::End)
+                .collect(),
+        };
+        let (parts, _) = before.path(0)?;
+        let (Part::Name(root), behind) = parts.split_first()? else {
+            return None;
+        };
+        if self.global_names.contains_key(root) {
+            return self.declared_by(&parts);
+        }
+        let programs = self
+            .units
+            .iter()
+            .enumerate()
+            .filter(|(_, it)| it.kind == UnitKind::Program);
+        let programs = programs.map(|(index, it)| (it.name.to_ascii_uppercase(), UnitId(index as u32)));
+        let scopes: Vec<_> = self.running.iter().cloned().chain(programs).collect();
+        for (name, unit) in scopes {
+            self.scope = Some(unit);
+            let found = match self.declared_by(&parts) {
+                None if name == *root => self.declared_by(behind),
+                found => found,
+            };
+            if found.is_some() {
+                return found;
+            }
+        }
+        None
+    }
+
+    /// The declaration of the last name of a path.
+    fn declared_by(&mut self, parts: &[Part]) -> Option<Hover> {
+        let last = parts.iter().rposition(|part| matches!(part, Part::Name(_)))?;
+        let Part::Name(name) = parts.get(last)? else {
+            return None;
+        };
+        let mut found = match parts.get(..last)? {
+            [] => match self.local(name) {
+                Some((unit, place)) => self.told_of(self.unit(unit).members.list.get(place)?, ""),
+                None => self.told_of(&self.globals.get(*self.global_names.get(name)?)?.member, ""),
+            },
+            owner => {
+                let ty = self.type_of(owner, false)?;
+                match self.types.get(ty) {
+                    Type::Structure(of) => self.told_of(of.members.find(name)?.1, ""),
+                    Type::Block(unit) => {
+                        let member = self.unit(*unit).members.find(name)?.1;
+                        Hover {
+                            doc: self.doc_in(*unit, member),
+                            ..self.told_of(member, &format!(" of {}", self.unit(*unit).name))
+                        }
+                    }
+                    _ => return None,
+                }
+            }
+        };
+        found.declared = found
+            .declared
+            .filter(|span| *span != Span::default() && !self.in_prelude(*span));
+        Some(found)
     }
 
     fn unit_at(&self, around: &Around) -> Option<UnitId> {

@@ -165,6 +165,8 @@ pub(crate) struct Checker<'a> {
     body: body::BodyState,
     edges: BTreeMap<UnitId, BTreeMap<UnitId, Span>>,
     look: Look,
+    /// Names of the instances of programs, for editors.
+    running: Vec<(String, UnitId)>,
 }
 
 /// Checks a project. There is a program if nothing is wrong.
@@ -205,7 +207,12 @@ pub(crate) fn look<'a>(
     options: &'a Options,
     look: Look,
 ) -> Checker<'a> {
-    checked(sources, items, options, Found::default(), look).0
+    let (mut checker, _, instances, _) = checked(sources, items, options, Found::default(), look);
+    let instances = instances
+        .into_iter()
+        .map(|it| (it.name.to_ascii_uppercase(), it.unit));
+    checker.running = instances.collect();
+    checker
 }
 
 type Checked<'a> = (Checker<'a>, Vec<Task>, Vec<Instance<'a>>, Vec<Body>);
@@ -240,6 +247,7 @@ fn checked<'a>(
         body: body::BodyState::default(),
         edges: BTreeMap::new(),
         look,
+        running: Vec::new(),
     };
     checker.declare(items);
     checker.resolve();

@@ -2,6 +2,7 @@
 
 pub(crate) mod blocks;
 
+use crate::source::Source;
 use crate::types::Elementary;
 
 macro_rules! functions {
@@ -128,16 +129,44 @@ pub(crate) fn conversion(name: &str) -> Option<(Option<&str>, Elementary)> {
 }
 
 /// What the table of blocks does not have, in Structured Text: counters for numbers of other widths than INT, and
-/// conversions to strings and back.
-pub(crate) fn prelude() -> String {
-    use Elementary::{Byte, Dint, Dword, Int, Lint, Lword, Sint, Udint, Uint, Ulint, Usint, Word};
-    let counters = [Dint, Lint, Udint, Ulint].map(|ty| {
+/// conversions to strings and back; each where a source may name one, because to check them takes longer than to check a
+/// short program. Cost: linear in the sources.
+pub(crate) fn prelude(sources: &[Source<'_>]) -> String {
+    let counts = names(sources, &["CTU_", "CTD_", "CTUD_"]);
+    let converts = names(sources, &["TO_STRING", "STRING_TO"]);
+    let counters = if counts { counters() } else { String::new() };
+    let strings = if converts { strings() } else { String::new() };
+    [counters, strings].join("\n")
+}
+
+/// Whether one of these pieces of names stands in a source, in letters of any case.
+fn names(sources: &[Source<'_>], pieces: &[&str]) -> bool {
+    let stands = |bytes: &[u8], place: usize, piece: &str| {
+        let before = piece.find('_').unwrap_or(0);
+        let from = place.checked_sub(before);
+        let found = from.and_then(|from| bytes.get(from..from + piece.len()));
+        found.is_some_and(|found| found.eq_ignore_ascii_case(piece.as_bytes()))
+    };
+    sources.iter().any(|source| {
+        let mut underscores = source.bytes.iter().enumerate().filter(|(_, byte)| **byte == b'_');
+        underscores.any(|(place, _)| pieces.iter().any(|piece| stands(source.bytes, place, piece)))
+    })
+}
+
+fn counters() -> String {
+    use Elementary::{Dint, Lint, Udint, Ulint};
+    let each = [Dint, Lint, Udint, Ulint].map(|ty| {
         let (lowest, highest) = ty.range();
         include_str!("counters.st")
             .replace("LOWEST", &lowest.to_string())
             .replace("HIGHEST", &highest.to_string())
             .replace("NUMBER", ty.name())
     });
+    each.concat()
+}
+
+fn strings() -> String {
+    use Elementary::{Byte, Dint, Dword, Int, Lword, Sint, Udint, Uint, Usint, Word};
     let signed = [(Sint, "LINT"), (Int, "LINT"), (Dint, "LINT")];
     let unsigned = [Usint, Uint, Udint, Byte, Word, Dword, Lword].map(|ty| (ty, "ULINT"));
     let conversions = signed.iter().chain(&unsigned).map(|(ty, widest)| {
@@ -148,7 +177,6 @@ pub(crate) fn prelude() -> String {
     let back = "FUNCTION STRING_TO_ULINT : ULINT VAR_INPUT IN : STRING[254]; END_VAR
         STRING_TO_ULINT := LINT_TO_ULINT(STRING_TO_LINT(IN)); END_FUNCTION";
     [
-        counters.concat(),
         include_str!("strings.st").to_owned(),
         back.to_owned(),
         conversions.collect(),
@@ -159,6 +187,22 @@ pub(crate) fn prelude() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_library_in_text_is_there_where_it_is_named() {
+        let named = |text: &str| {
+            let source = Source {
+                name: "",
+                bytes: text.as_bytes(),
+            };
+            let prelude = prelude(&[source]);
+            (prelude.contains("CTUD_LINT"), prelude.contains("DINT_TO_STRING"))
+        };
+        assert_eq!(named("a : INT; END_VAR _ STRING TO CTU"), (false, false));
+        assert_eq!(named("c : ctu_Dint;"), (true, false));
+        assert_eq!(named("s := To_String(3);"), (false, true));
+        assert_eq!(named("i := STRING_TO_INT(s); c : CTUD_"), (true, true));
+    }
 
     #[test]
     fn names_of_conversions_are_taken_apart_at_the_last_to() {

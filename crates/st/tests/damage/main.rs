@@ -1,5 +1,6 @@
 //! Random damage to programs: bytes are changed, lost, doubled and moved. The same on every machine; libFuzzer does it with
-//! the same play ([contributing](../../../../docs/contributing.md#fuzzing)).
+//! the same play ([contributing](../../../../docs/contributing.md#fuzzing)). `STANDSTILL_ST_DAMAGE=10000000` does it as often,
+//! `STANDSTILL_ST_SEED` with others.
 
 mod play;
 
@@ -67,7 +68,16 @@ fn no_damage_to_a_program_leads_to_a_panic() {
     let programs = programs();
     assert!(programs.len() > 10);
     programs.iter().for_each(|program| play::play(program));
-    for seed in 0..3000 {
+    let number = |variable: &str, usual: u64| {
+        let set = std::env::var(variable).ok().and_then(|text| text.parse().ok());
+        set.unwrap_or(usual)
+    };
+    let first = number("STANDSTILL_ST_SEED", 0);
+    for seed in first..first + number("STANDSTILL_ST_DAMAGE", 3000) {
+        // Beyond, so many lines tell how far it is.
+        if seed % 100_000 == 99_999 {
+            eprintln!("{} done", seed + 1 - first);
+        }
         let text = damaged(&mut Random(seed), &programs);
         let shown = String::from_utf8_lossy(&text).into_owned();
         let result = std::panic::catch_unwind(|| play::play(&text));
