@@ -212,6 +212,15 @@ pub enum Command {
         #[arg(long, value_name = "NAME")]
         dialect: Option<String>,
     },
+    /// Serve an editor on standard input and output: mistakes, declarations and completions in Structured Text and scan scripts
+    Lsp {
+        /// Understand names and numbers of this system, too: codesys, twincat or omron
+        #[arg(long, value_name = "NAME")]
+        dialect: Option<String>,
+        /// What editors say of their own accord; it is the only way
+        #[arg(long, hide = true)]
+        stdio: bool,
+    },
     /// Check, lint or compile programs in Structured Text
     St {
         /// What to do

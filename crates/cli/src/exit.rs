@@ -64,6 +64,7 @@ impl Failure {
     #[cfg(not(all(
         feature = "live",
         feature = "serve",
+        feature = "lsp",
         feature = "st",
         feature = "sweep",
         feature = "watch"

@@ -21,6 +21,8 @@ mod junit;
 mod limit;
 #[cfg(feature = "live")]
 mod live;
+#[cfg(feature = "lsp")]
+mod lsp;
 mod mutate;
 mod out;
 mod outcome;
@@ -99,6 +101,7 @@ fn is_data(command: &Command) -> bool {
         Command::Live(_)
         | Command::Watch(_)
         | Command::Serve(_)
+        | Command::Lsp { .. }
         | Command::Report { .. }
         | Command::Compare { .. }
         | Command::Init { .. }
@@ -130,6 +133,10 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Serve(arguments) => serve::serve(arguments),
         #[cfg(not(feature = "serve"))]
         Command::Serve(_) => Err(Failure::left_out("serve")),
+        #[cfg(feature = "lsp")]
+        Command::Lsp { dialect, .. } => lsp::lsp(dialect.as_deref()),
+        #[cfg(not(feature = "lsp"))]
+        Command::Lsp { .. } => Err(Failure::left_out("lsp")),
         #[cfg(not(feature = "live"))]
         Command::Live(_) => Err(Failure::left_out("live")),
         #[cfg(not(feature = "watch"))]

@@ -31,13 +31,13 @@ fn sources(files: &[(String, Vec<u8>)]) -> Vec<Source<'_>> {
 }
 
 /// The names and numbers of another system, if one is named.
-fn dialect(given: &StSources) -> Result<Dialect, Failure> {
-    let Some(name) = &given.dialect else {
+pub fn dialect(name: Option<&str>) -> Result<Dialect, Failure> {
+    let Some(name) = name else {
         return Ok(Dialect::default());
     };
     let known = standstill_export::Dialect::new(name).map_err(|error| Failure::usage(&error.to_string()))?;
     Ok(Dialect {
-        name: name.clone(),
+        name: name.to_owned(),
         types: known.types().to_vec(),
         elements: known.names().to_vec(),
         numbers: known.numbers().to_vec(),
@@ -52,7 +52,7 @@ pub fn check(given: &StSources, json: bool, lint: bool, out: &mut dyn Write) -> 
         program: given.program.clone(),
         library: true,
         lint,
-        dialect: dialect(given)?,
+        dialect: dialect(given.dialect.as_deref())?,
         ..Options::default()
     };
     let report = standstill_st::check(&sources(&files), &options);
@@ -124,7 +124,7 @@ pub fn build(
     let options = Options {
         program: given.program.clone(),
         axes: axes.to_vec(),
-        dialect: dialect(given)?,
+        dialect: dialect(given.dialect.as_deref())?,
         ..Options::default()
     };
     let compiled = standstill_st::compile(&sources(&files), &options)

@@ -262,6 +262,16 @@ fn layers_depend_only_downwards() {
         ),
         ("crates/live", "standstill-live", &["standstill-script"]),
         (
+            "crates/lsp",
+            "standstill-lsp",
+            &[
+                "standstill-blocks",
+                "standstill-fb",
+                "standstill-script",
+                "standstill-st",
+            ],
+        ),
+        (
             "crates/cli",
             "standstill-cli",
             &[
@@ -269,6 +279,7 @@ fn layers_depend_only_downwards() {
                 "standstill-export",
                 "standstill-fb",
                 "standstill-live",
+                "standstill-lsp",
                 "standstill-planner",
                 "standstill-report",
                 "standstill-script",

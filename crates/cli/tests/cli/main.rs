@@ -9,6 +9,8 @@ mod fmt;
 mod init;
 mod live;
 mod lookup;
+#[cfg(feature = "lsp")]
+mod lsp;
 mod machine;
 mod plan;
 mod reports;

@@ -1,0 +1,57 @@
+//! A language server for Structured Text and scan scripts.
+//!
+//! What stands here: the protocol on standard input and output, the documents that an editor has open, and what it is told of
+//! them: mistakes, declarations, completions, layout. What does not: the language itself, which is the compiler's, and the
+//! script format, which is the reader's; both are asked anew after each change.
+#![forbid(unsafe_code)]
+
+mod documents;
+mod frames;
+mod position;
+mod script;
+mod server;
+mod text;
+mod tree;
+mod uri;
+
+pub use frames::{FRAME_MOST, FrameError};
+pub use server::{Ended, serve};
+
+use lsp_server::Connection;
+use standstill_st::Dialect;
+use std::io::{self, BufReader};
+use std::thread;
+
+/// Serves an editor on standard input and output until it says `exit` or closes its end. Memory and work are bounded by the
+/// documents that it has open.
+///
+/// # Errors
+/// [`FrameError`], where what is read is no frame of the protocol; what follows cannot be found again.
+pub fn stdio(dialect: &Dialect) -> Result<Ended, FrameError> {
+    let (ours, theirs) = Connection::memory();
+    let outgoing = theirs.receiver;
+    let writer = thread::spawn(move || -> io::Result<()> {
+        for message in outgoing {
+            message.write(&mut io::stdout().lock())?;
+        }
+        Ok(())
+    });
+    let incoming = theirs.sender;
+    // It ends with the process: a read of standard input cannot be called off.
+    let reader = thread::spawn(move || {
+        let put = |message| incoming.send(message).is_ok();
+        frames::read_all(&mut BufReader::new(io::stdin().lock()), &put)
+    });
+    let ended = serve(&ours, dialect);
+    drop(ours);
+    match writer.join() {
+        // An editor that is gone hears nothing; that is no fault of the server.
+        Ok(Ok(()) | Err(_)) | Err(_) => {}
+    }
+    if ended == Ended::Closed
+        && let Ok(Err(error)) = reader.join()
+    {
+        return Err(error);
+    }
+    Ok(ended)
+}
