@@ -12,6 +12,12 @@ const BITS: u32 = 53;
 /// Whole turns must stay below this, so that their products fit into 128 bits.
 const WHOLE_MOST: u128 = 1 << 63;
 
+/// Products with larger numbers might overflow: 2^900.
+const LARGE: f64 = 8.452_712_498_170_644e270;
+
+/// What larger numbers are multiplied by first, which changes no bit of them: 2^-120.
+const SMALLER: f64 = 7.523_163_845_262_64e-37;
+
 /// Where an axis is: whole turns, and the position (u), in the first turn on an axis that has turns. An axis without turns has 0
 /// of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -183,6 +189,17 @@ impl Gear {
     /// `start` and `way` times numerator by denominator: divided once, after what is exact has been added, so that nothing is
     /// lost where the one takes away most of the other.
     fn geared(&self, start: Double, way: Double) -> Double {
+        if start.0.abs() > LARGE || way.0.abs() > LARGE {
+            // What is divided at last must not overflow before.
+            let times = |number: Double, by: f64| (number.0 * by, number.1 * by);
+            let position = self.geared_small(times(start, SMALLER), times(way, SMALLER));
+            return times(position, 1.0 / SMALLER);
+        }
+        self.geared_small(start, way)
+    }
+
+    /// The same for numbers up to [`LARGE`].
+    fn geared_small(&self, start: Double, way: Double) -> Double {
         let (numerator, denominator) = (f64::from(self.numerator), f64::from(self.denominator));
         let coarse = add(two_product(denominator, start.0), two_product(numerator, way.0));
         let fine = two_product(numerator, way.1);
@@ -321,6 +338,27 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn the_largest_positions_have_a_law() {
+        let anchor = Anchor {
+            slave: at(-2e300),
+            ..Anchor::default()
+        };
+        for (numerator, denominator) in [(1, 3), (-1, 65535), (i16::MAX, 7)] {
+            let gear = gear(numerator, denominator);
+            assert_eq!(gear.slave(&anchor, at(40.0)).position, -2e300);
+            assert_eq!(gear.slave(&Anchor::default(), at(f64::MAX / 32768.0)).position, {
+                f64::MAX / 32768.0 * f64::from(numerator) / f64::from(denominator)
+            });
+        }
+        assert_eq!(gear(1, 1).slave(&Anchor::default(), at(f64::MAX)).position, f64::MAX);
+        let far = Anchor {
+            slave: at(f64::MAX / 2.0),
+            ..Anchor::default()
+        };
+        assert_eq!(gear(1, 2).slave(&far, at(-f64::MAX)).position, 0.0);
     }
 
     /// The exact law in integers, rounded once: positions are multiples of 2^-20.
