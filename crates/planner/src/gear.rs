@@ -62,7 +62,7 @@ pub struct Gear {
 }
 
 /// A number of about 106 bits: the rounded value, and what rounding took away.
-type Double = (f64, f64);
+pub(crate) type Double = (f64, f64);
 
 impl Gear {
     /// The slave moves `numerator` / `denominator` times as far as the master. The turns (u) are those of modulo axes, above 0
@@ -212,14 +212,14 @@ impl Gear {
     }
 }
 
-fn add(a: Double, b: Double) -> Double {
+pub(crate) fn add(a: Double, b: Double) -> Double {
     let (sum, error) = two_sum(a.0, b.0);
     let (low, low_error) = two_sum(a.1, b.1);
     let (sum, error) = two_sum(sum, error + low);
     two_sum(sum, error + low_error)
 }
 
-fn divided(value: Double, by: f64) -> Double {
+pub(crate) fn divided(value: Double, by: f64) -> Double {
     let rest = |quotient: f64, of: Double| {
         let (product, error) = two_product(quotient, by);
         add(of, (-product, -error))
@@ -232,7 +232,7 @@ fn divided(value: Double, by: f64) -> Double {
 }
 
 /// Whole turns, and the rest in [0, `length`).
-fn in_first_turn(position: Double, length: f64) -> (i64, f64) {
+pub(crate) fn in_first_turn(position: Double, length: f64) -> (i64, f64) {
     let rest = |turns: i64| {
         let (whole, error) = two_product(turns as f64, length);
         add(position, (-whole, -error))

@@ -14,6 +14,7 @@
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
+pub mod cam;
 mod error;
 mod gear;
 pub mod grid;
@@ -29,6 +30,7 @@ mod setpoint;
 mod sum;
 pub mod turns;
 
+pub use cam::{Cam, CamBounds, CamBuild, CamCause, CamFault, CamHead, CamPiece, CamRow, CamShape};
 pub use error::{Field, PlanError};
 pub use gear::{Anchor, Gear, Place};
 pub use grid::{GridPlan, Method, UnequalPlan};

@@ -71,7 +71,7 @@ impl Piece {
 }
 
 /// The control points of both halves.
-fn halved<const N: usize>(points: [f64; N]) -> ([f64; N], [f64; N]) {
+pub(crate) fn halved<const N: usize>(points: [f64; N]) -> ([f64; N], [f64; N]) {
     let (mut row, mut before, mut after) = (points, [0.0; N], [0.0; N]);
     let slots = before.iter_mut().zip(after.iter_mut().rev());
     for (level, (first, last)) in slots.enumerate() {
@@ -128,7 +128,7 @@ impl Pieces {
 }
 
 /// Smallest and largest.
-fn hull<const N: usize>(points: &[f64; N]) -> (f64, f64) {
+pub(crate) fn hull<const N: usize>(points: &[f64; N]) -> (f64, f64) {
     let first = points.first().copied().unwrap_or_default();
     points.iter().fold((first, first), |(least, most), point| {
         (

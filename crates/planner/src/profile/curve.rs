@@ -3,6 +3,9 @@
 use super::Node;
 use crate::Setpoint;
 
+/// What a curve meets at an end: the first three derivatives.
+pub(crate) type Slopes = [f64; 3];
+
 /// A stretch as its control points: a curve stays between the smallest and the largest of them, and so does each
 /// derivative between those of its own.
 #[derive(Clone, Copy, Debug)]
@@ -18,19 +21,27 @@ pub struct Curve {
 impl Curve {
     /// From one node to the next.
     pub(super) fn between(from: &Node, to: &Node) -> Self {
-        let time = to.time - from.time;
-        let end = to.position - from.position;
-        let scaled = |node: &Node| {
-            let velocity = node.velocity * time / 7.0;
-            let acceleration = node.acceleration * time * time / 42.0;
-            let jerk = node.jerk * time * time * time / 210.0;
+        let slopes = |node: &Node| [node.velocity, node.acceleration, node.jerk];
+        let way = to.position - from.position;
+        Self {
+            from: from.position,
+            ..Self::meeting(to.time - from.time, way, slopes(from), slopes(to))
+        }
+    }
+
+    /// Over `time` (s) by `end` (u), with these derivatives where it begins and where it ends.
+    pub(crate) fn meeting(time: f64, end: f64, from: Slopes, to: Slopes) -> Self {
+        let scaled = |[velocity, acceleration, jerk]: Slopes| {
+            let velocity = velocity * time / 7.0;
+            let acceleration = acceleration * time * time / 42.0;
+            let jerk = jerk * time * time * time / 210.0;
             (velocity, acceleration, jerk)
         };
         let (v0, a0, j0) = scaled(from);
         let (v1, a1, j1) = scaled(to);
         Self {
             time,
-            from: from.position,
+            from: 0.0,
             points: [
                 0.0,
                 v0,
@@ -46,14 +57,17 @@ impl Curve {
 
     /// The state `time` (s) after its begin, the position counted from the same place as that of its nodes.
     pub fn at(&self, time: f64) -> Setpoint {
-        let (_, [position, velocity, acceleration, jerk, snap]) = self.cut(time / self.time);
+        let way = self.way_at(time);
         Setpoint {
-            position: self.from + position,
-            velocity,
-            acceleration,
-            jerk,
-            snap,
+            position: self.from + way.position,
+            ..way
         }
+    }
+
+    /// The same, the position counted from where it begins.
+    pub(crate) fn way_at(&self, time: f64) -> Setpoint {
+        let (_, state) = self.cut(time / self.time);
+        Setpoint::of(state)
     }
 
     /// What is left of it `time` (s) after its begin.

@@ -5,9 +5,9 @@
 //! the state it starts in to its end. What the points leave open is estimated from their neighbours (`nodes`), then
 //! the whole curve is checked against the limits before anything moves (`check`). docs/profiles.md tells it for users.
 
-mod check;
-mod curve;
-mod nodes;
+pub(crate) mod check;
+pub(crate) mod curve;
+pub(crate) mod nodes;
 
 use crate::ramp;
 use crate::{Limits, Order, RampPlan, Setpoint};

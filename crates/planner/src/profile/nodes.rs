@@ -9,7 +9,7 @@ use crate::math::sqrt;
 use crate::{Limits, Setpoint};
 
 /// Neighbours and the point itself.
-const STENCIL: usize = 5;
+pub(crate) const STENCIL: usize = 5;
 
 /// An acceleration fades out this much slower than it may: what rounding takes of that is far less.
 const MARGIN: f64 = 1.0 + 1e-6;
@@ -20,11 +20,11 @@ const SHORTEST: f64 = 1e-9;
 
 /// A value with its derivatives, all of them known or, between anchors, yet to be estimated.
 #[derive(Clone, Copy, Debug, Default)]
-struct Knot {
-    time: f64,
+pub(crate) struct Knot {
+    pub time: f64,
     /// The value and its first three derivatives.
-    value: [f64; 4],
-    anchor: bool,
+    pub value: [f64; 4],
+    pub anchor: bool,
 }
 
 impl ProfileKind {
@@ -238,7 +238,7 @@ fn estimated(knots: &[Knot; NODES], count: usize, index: usize, kind: ProfileKin
 
 /// The first four Taylor coefficients at `time` of the polynomial through the knots, of which equal ones share
 /// derivatives.
-fn taylor(knots: [Knot; STENCIL], time: f64) -> [f64; 4] {
+pub(crate) fn taylor(knots: [Knot; STENCIL], time: f64) -> [f64; 4] {
     // Divided differences in place: after each round `table` holds those of one order more.
     let mut table = knots.map(|knot| knot.value.first().copied().unwrap_or_default());
     let mut newton = [0.0; STENCIL];

@@ -1,0 +1,271 @@
+//! What the derivatives of a cam are bounded by, and what that leaves to its master.
+
+use super::CamPiece;
+use crate::math::{cbrt, sqrt};
+use crate::profile::check::{halved, hull};
+use crate::{Limits, Setpoint};
+
+/// Halvings of a piece on the way to its bounds.
+const DEPTH: usize = 6;
+
+/// Most parts of a piece that are looked at for one of its derivatives.
+const PARTS: u32 = 2 << DEPTH;
+
+/// A bound may be this much above the largest value.
+const CLOSE: f64 = 1.01;
+
+/// Rounding of a bound, relative to it.
+const ROUNDING: f64 = 1e-9;
+
+/// How often limits of a shadow are halved at most.
+const HALVINGS: u32 = 40;
+
+/// What the first four derivatives of a cam are bounded by, each at most one per cent above its largest magnitude.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CamBounds {
+    /// Slope (y/u).
+    pub first: f64,
+    /// Curvature (y/u^2).
+    pub second: f64,
+    /// Third derivative (y/u^3).
+    pub third: f64,
+    /// Fourth derivative (y/u^4).
+    pub fourth: f64,
+}
+
+/// What is left to look at: parts and how often they were halved.
+struct Parts<const N: usize> {
+    waiting: [([f64; N], usize); DEPTH + 2],
+    count: usize,
+}
+
+impl<const N: usize> Parts<N> {
+    fn push(&mut self, part: [f64; N], depth: usize) {
+        if let Some(slot) = self.waiting.get_mut(self.count) {
+            *slot = (part, depth);
+            self.count += 1;
+        }
+    }
+
+    fn pop(&mut self) -> Option<([f64; N], usize)> {
+        self.count = self.count.checked_sub(1)?;
+        self.waiting.get(self.count).copied()
+    }
+}
+
+/// The largest of values above 0.
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The largest magnitude of a curve of these control points, or up to one per cent more: a part whose control points are close
+/// enough to a value of the curve is not halved. Cost: at most [`PARTS`] parts, of a smooth piece some ten.
+fn bound<const N: usize>(points: [f64; N]) -> f64 {
+    let mut parts = Parts {
+        waiting: [([0.0; N], 0); DEPTH + 2],
+        count: 0,
+    };
+    parts.push(points, 0);
+    let (mut least, mut most) = (0.0_f64, 0.0_f64);
+    for _ in 0..PARTS {
+        let Some((part, depth)) = parts.pop() else { break };
+        let (low, high) = hull(&part);
+        let ends = [part.first(), part.last()];
+        for end in ends.into_iter().flatten() {
+            least = larger(least, end.abs());
+        }
+        let outer = larger(-low, high);
+        if outer <= CLOSE * least || depth >= DEPTH {
+            most = larger(most, outer);
+        } else {
+            let (before, after) = halved(part);
+            parts.push(after, depth + 1);
+            parts.push(before, depth + 1);
+        }
+    }
+    larger(most, least)
+}
+
+impl CamPiece {
+    /// What its derivatives are bounded by, from its control points.
+    pub(super) fn bounded(&self) -> CamBounds {
+        let (first, second, third, fourth) = self.curve().derivatives();
+        CamBounds {
+            first: bound(first),
+            second: bound(second),
+            third: bound(third),
+            fourth: bound(fourth),
+        }
+    }
+
+    /// The lowest and the highest place of the slave in it, by control points of its eighths.
+    pub(super) fn range(&self) -> (f64, f64) {
+        let (mut low, mut high) = (0.0_f64, 0.0_f64);
+        let both = |points: [f64; 8]| {
+            let (before, after) = halved(points);
+            [before, after]
+        };
+        for half in both(self.points) {
+            for quarter in both(half) {
+                for eighth in both(quarter) {
+                    let (least, most) = hull(&eighth);
+                    low = if least < low { least } else { low };
+                    high = larger(high, most);
+                }
+            }
+        }
+        (self.from + low, self.from + high)
+    }
+}
+
+impl CamBounds {
+    /// The larger of both, each.
+    #[must_use]
+    pub fn or_larger(&self, other: &Self) -> Self {
+        Self {
+            first: larger(self.first, other.first),
+            second: larger(self.second, other.second),
+            third: larger(self.third, other.third),
+            fourth: larger(self.fourth, other.fourth),
+        }
+    }
+
+    /// Behind scalings: lengths of the slave times `slave`, those of the master times `master`, neither 0.
+    #[must_use]
+    pub fn scaled(&self, master: f64, slave: f64) -> Self {
+        let (per, by) = (1.0 / master.abs(), slave.abs());
+        Self {
+            first: self.first * by * per,
+            second: self.second * by * per * per,
+            third: self.third * by * per * per * per,
+            fourth: self.fourth * by * per * per * per * per,
+        }
+    }
+
+    /// The highest velocity of a master without acceleration (u/s) with which the slave keeps `limits`; infinite for a cam that
+    /// does not move the slave.
+    pub fn highest_velocity(&self, limits: &Limits) -> f64 {
+        // Infinite where the derivative is 0, which is what is meant; 0 by 0 does not come up, as no limit is 0.
+        let [by_velocity, by_acceleration, by_jerk, by_snap] = [
+            limits.velocity / self.first,
+            sqrt(limits.lower_acceleration() / self.second),
+            root_of_third(limits.jerk / self.third),
+            sqrt(sqrt(limits.snap / self.fourth)),
+        ];
+        by_velocity.min(by_acceleration).min(by_jerk).min(by_snap)
+    }
+
+    /// The most that the slave can have where the derivatives of its master are at most those of `master` (its position means
+    /// nothing).
+    pub fn most(&self, master: &Setpoint) -> Setpoint {
+        let [v, a, j, s] = [
+            master.velocity.abs(),
+            master.acceleration.abs(),
+            master.jerk.abs(),
+            master.snap.abs(),
+        ];
+        let Self {
+            first,
+            second,
+            third,
+            fourth,
+        } = *self;
+        Setpoint {
+            position: 0.0,
+            velocity: first * v,
+            acceleration: second * v * v + first * a,
+            jerk: third * v * v * v + 3.0 * second * v * a + first * j,
+            snap: fourth * v * v * v * v
+                + 6.0 * third * v * v * a
+                + second * (3.0 * a * a + 4.0 * v * j)
+                + first * s,
+        }
+    }
+
+    /// Limits of a master of the slave's own, which the slave keeps `limits` behind, wherever that is on the cam: a velocity just
+    /// above `speed` (u/s) if that leaves something, and what then is left to the other three. `own` are limits it has besides.
+    ///
+    /// `None` if nothing is left: with limits of 0 only. Cost: at most 40 halvings.
+    pub fn shadow(&self, limits: &Limits, speed: f64, own: &Limits) -> Option<Limits> {
+        let most = self.highest_velocity(limits);
+        let velocity = (0.98 * most).min(1.05 * speed).min(own.velocity);
+        let room = |limit: f64, used: f64| {
+            if limit == f64::INFINITY {
+                f64::INFINITY
+            } else {
+                (limit - used) / self.first
+            }
+        };
+        let v = velocity;
+        let rate = limits.lower_acceleration();
+        let mut acceleration = room(rate, self.second * v * v).min(own.lower_acceleration());
+        // At order 2 the jerk has no limit; at order 3 the snap.
+        let mut jerk = f64::INFINITY;
+        if limits.jerk.is_finite() {
+            let mut is_found = false;
+            for _ in 0..HALVINGS {
+                let used = self.third * v * v * v + 3.0 * self.second * v * acceleration;
+                jerk = room(limits.jerk, used).min(own.jerk);
+                is_found = jerk > 0.0;
+                if is_found {
+                    break;
+                }
+                acceleration *= 0.5;
+            }
+            if !is_found {
+                return None;
+            }
+        }
+        let mut snap = f64::INFINITY;
+        if limits.snap.is_finite() {
+            let mut is_found = false;
+            for halving in 0..HALVINGS {
+                let a = acceleration;
+                let used = self.fourth * v * v * v * v
+                    + 6.0 * self.third * v * v * a
+                    + self.second * (3.0 * a * a + 4.0 * v * jerk);
+                snap = room(limits.snap, used).min(own.snap);
+                is_found = snap > 0.0;
+                if is_found {
+                    break;
+                }
+                jerk *= 0.5;
+                // What the acceleration takes does not shrink with the jerk.
+                if halving & 1 == 1 {
+                    acceleration *= 0.5;
+                }
+            }
+            if !is_found {
+                return None;
+            }
+        }
+        let found = Limits {
+            velocity,
+            acceleration,
+            deceleration: acceleration,
+            jerk,
+            snap,
+        };
+        let all = [velocity, acceleration, jerk, snap];
+        all.into_iter()
+            .all(|limit| limit > 0.0 && !limit.is_nan())
+            .then_some(found)
+    }
+
+    /// The first of `most` that is beyond `limits`: its name, its value and the limit.
+    pub fn beyond(most: &Setpoint, limits: &Limits) -> Option<(&'static str, f64, f64)> {
+        let told = [
+            ("velocity", most.velocity, limits.velocity),
+            ("acceleration", most.acceleration, limits.lower_acceleration()),
+            ("jerk", most.jerk, limits.jerk),
+            ("snap", most.snap, limits.snap),
+        ];
+        told.into_iter()
+            .find(|(_, value, limit)| !(*value <= limit * (1.0 + ROUNDING)))
+    }
+}
+
+/// The cube root of what may be infinite.
+fn root_of_third(x: f64) -> f64 {
+    if x.is_finite() { cbrt(x) } else { x }
+}

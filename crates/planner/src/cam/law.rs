@@ -1,0 +1,207 @@
+//! Where a cam lies between two axes: the place of the slave as a pure function of that of its master.
+//!
+//! Periods are counted in integers from the place of the master alone, so nothing adds up: a master that comes back to a place
+//! brings the slave back to the same bits.
+
+use super::{Cam, CamBounds};
+use crate::gear::{Double, add, divided, in_first_turn};
+use crate::turns::{two_product, two_sum};
+use crate::{Anchor, Place, Setpoint};
+
+/// How a cam lies between a master and its slave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CamLaw {
+    /// Lengths of the master's side of the cam are this much longer at the master, those of the slave's side at the slave;
+    /// neither is 0.
+    pub master_scaling: f64,
+    /// Of the slave's side.
+    pub slave_scaling: f64,
+    /// The place of the cam's master side (u) at the master's place in the anchor.
+    pub origin: f64,
+    /// Length of a turn (u), of an axis that has turns.
+    pub master_turn: Option<f64>,
+    /// Of the slave.
+    pub slave_turn: Option<f64>,
+}
+
+/// A place on a cam.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CamAt {
+    /// Of the slave.
+    pub place: Place,
+    /// Its derivatives; the position is that of `place`.
+    pub state: Setpoint,
+    /// Whole periods before this one; on a cam without periods -1 before its first row and 1 from its last on.
+    pub periods: i64,
+    /// Place on the master's side of the cam (u), in its period.
+    pub x: f64,
+    /// The piece it lies in.
+    pub piece: u16,
+}
+
+impl CamLaw {
+    /// The master's place on its side of the cam (u), as far from the first row as the sum of two numbers says.
+    fn way(&self, cam: &Cam<'_>, anchor: &Anchor, master: Place) -> Double {
+        let from = &anchor.master;
+        let turns = master.turns.wrapping_sub(from.turns);
+        let within = two_sum(master.position, -from.position);
+        let way = match self.master_turn {
+            Some(length) => add(two_product(turns as f64, length), within),
+            None => within,
+        };
+        let phase = two_sum(master.phase, -from.phase);
+        let way = if phase.0 == 0.0 { way } else { add(way, phase) };
+        add(
+            divided(way, self.master_scaling),
+            two_sum(self.origin, -cam.head.begin),
+        )
+    }
+
+    /// The master's place on its side of the cam (u), not taken back into one period.
+    pub fn unwound(&self, cam: &Cam<'_>, anchor: &Anchor, master: Place) -> f64 {
+        add(self.way(cam, anchor, master), (cam.head.begin, 0.0)).0
+    }
+
+    /// Where the slave is for a `master` that is there and moves as `moving` says; `near` is the piece to look at first.
+    ///
+    /// Cost: some 300 operations, and a search of at most 9 steps for a piece that is not next to `near`.
+    pub fn at(&self, cam: &Cam<'_>, anchor: &Anchor, master: Place, moving: &Setpoint, near: u16) -> CamAt {
+        let head = cam.head;
+        let way = self.way(cam, anchor, master);
+        let length = two_sum(head.end, -head.begin);
+        let (periods, left) = if head.periodic {
+            whole_and_rest(way, length)
+        } else if way.0 < 0.0 {
+            (-1, (0.0, 0.0))
+        } else if add(way, (-length.0, -length.1)).0 >= 0.0 {
+            (1, length)
+        } else {
+            (0, way)
+        };
+        let x = add(left, (head.begin, 0.0));
+        let piece = cam.find(x.0, near);
+        let rests = !head.periodic && periods != 0;
+        let (from, curve) = if rests {
+            let end = if periods < 0 { head.from } else { head.to };
+            (end, Setpoint::default())
+        } else {
+            cam.at(x, piece)
+        };
+        let mut position = add(
+            two_product(self.slave_scaling, from),
+            two_product(self.slave_scaling, curve.position),
+        );
+        if head.periodic && periods != 0 && head.from != head.to {
+            let rise = two_sum(head.to, -head.from);
+            let (risen, error) = two_product(periods as f64, rise.0);
+            let risen = add((risen, error), (periods as f64 * rise.1, 0.0));
+            let (coarse, error) = two_product(self.slave_scaling, risen.0);
+            position = add(position, (coarse, error + self.slave_scaling * risen.1));
+        }
+        let position = add(position, two_sum(anchor.slave.position, anchor.slave.phase));
+        let place = self.placed(anchor, position);
+        CamAt {
+            place,
+            state: Setpoint {
+                position: place.position,
+                ..self.moved(&curve, moving)
+            },
+            periods,
+            x: x.0,
+            piece,
+        }
+    }
+
+    fn placed(&self, anchor: &Anchor, position: Double) -> Place {
+        let (turns, position) = match self.slave_turn {
+            None => (0, position.0 + 0.0),
+            Some(length) => {
+                let (further, position) = in_first_turn(position, length);
+                (anchor.slave.turns.wrapping_add(further), position)
+            }
+        };
+        Place {
+            turns,
+            position,
+            ..Place::default()
+        }
+    }
+
+    /// The chain rule: how the slave moves on a curve of these derivatives behind a master that moves so.
+    fn moved(&self, curve: &Setpoint, master: &Setpoint) -> Setpoint {
+        let per = 1.0 / self.master_scaling;
+        let first = self.slave_scaling * curve.velocity * per;
+        let second = self.slave_scaling * curve.acceleration * per * per;
+        let third = self.slave_scaling * curve.jerk * per * per * per;
+        let fourth = self.slave_scaling * curve.snap * per * per * per * per;
+        let Setpoint {
+            velocity: v,
+            acceleration: a,
+            jerk: j,
+            snap: s,
+            ..
+        } = *master;
+        Setpoint {
+            position: 0.0,
+            // Adding 0 takes the sign from -0.
+            velocity: first * v + 0.0,
+            acceleration: second * v * v + first * a + 0.0,
+            jerk: third * v * v * v + 3.0 * second * v * a + first * j + 0.0,
+            snap: fourth * v * v * v * v
+                + 6.0 * third * v * v * a
+                + second * (3.0 * a * a + 4.0 * v * j)
+                + first * s
+                + 0.0,
+        }
+    }
+
+    /// What the derivatives of the slave by the master are bounded by where the master goes this far from its place, down and up
+    /// (u): those of the pieces it passes.
+    ///
+    /// Cost: a look at each of at most `most` pieces; where it passes more, those of the whole cam are taken.
+    pub fn bounds_ahead(&self, cam: &Cam<'_>, at: &CamAt, (down, up): (f64, f64), most: usize) -> CamBounds {
+        let all = || cam.head.bounds.scaled(self.master_scaling, self.slave_scaling);
+        let per = 1.0 / self.master_scaling;
+        let (one, other) = (at.x + down * per, at.x + up * per);
+        let (low, high) = if one < other { (one, other) } else { (other, one) };
+        let inside = low >= cam.head.begin && high < cam.head.end;
+        if !inside && cam.head.periodic {
+            return all();
+        }
+        let (from, to) = (cam.find(low, at.piece), cam.find(high, at.piece));
+        let count = usize::from(to.saturating_sub(from)) + 1;
+        if count > most {
+            return all();
+        }
+        let passed = cam.pieces.iter().skip(usize::from(from)).take(count);
+        let bounds = passed.fold(CamBounds::default(), |bounds, piece| {
+            bounds.or_larger(piece.bounds())
+        });
+        bounds.scaled(self.master_scaling, self.slave_scaling)
+    }
+}
+
+/// How often `length` is in `way`, and what is left, in [0, `length`).
+fn whole_and_rest(way: Double, length: Double) -> (i64, Double) {
+    let rest = |whole: i64| {
+        let (coarse, error) = two_product(whole as f64, length.0);
+        add(way, (-coarse, -(error + whole as f64 * length.1)))
+    };
+    let mut whole = (way.0 / length.0) as i64;
+    let mut left = rest(whole);
+    // The quotient is cut towards 0, and off by one at most.
+    for _ in 0..2 {
+        if left.0 < 0.0 {
+            whole = whole.wrapping_sub(1);
+            left = rest(whole);
+        } else if add(left, (-length.0, -length.1)).0 >= 0.0 {
+            whole = whole.wrapping_add(1);
+            left = rest(whole);
+        }
+    }
+    if left.0 < 0.0 {
+        (whole, (0.0, 0.0))
+    } else {
+        (whole, left)
+    }
+}

@@ -1,0 +1,216 @@
+//! Cams: where a slave is for each place of its master, as curves of degree 7 from point to point.
+//!
+//! What stands here: rows into pieces ([`CamBuild`]), what they are bounded by and how smooth they are, the value and four
+//! derivatives at any place of the master, and where a cam lies between two axes ([`CamLaw`]). What does not: how a slave comes
+//! onto the curve, and who keeps the pieces.
+//!
+//! | file | subject |
+//! | --- | --- |
+//! | [`build`] | rows into pieces, some in each call |
+//! | [`rows`] | the derivatives that a row leaves open |
+//! | [`bounds`] | what a piece is bounded by, and what that leaves to the master |
+//! | [`law`] | the place of the slave for a place of the master: periods, scalings, the chain rule |
+//!
+//! All lengths on the master's side are in units of the master (u), those of the slave in units of the slave (y).
+
+mod bounds;
+mod build;
+mod law;
+mod rows;
+
+use crate::Setpoint;
+use crate::profile::curve::Curve;
+pub use bounds::CamBounds;
+pub use build::CamBuild;
+pub use law::{CamAt, CamLaw};
+
+/// Most rows of a cam.
+pub const CAM_ROWS: usize = 512;
+
+/// Steps of a search among the pieces of a cam.
+const STEPS: u32 = 9;
+
+/// How the curve runs from one row to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CamShape {
+    /// Derivatives at rows are estimated from the row and two neighbours on each side; degree 7 between.
+    #[default]
+    Through,
+    /// Degree 7, with the slope, the curvature and the third derivative of both rows.
+    Poly7,
+    /// Degree 5, with the slope and the curvature of both rows.
+    Poly5,
+    /// Straight.
+    Line,
+    /// Degree 7, level at both rows up to the third derivative (4-5-6-7 polynomial).
+    Rest7,
+    /// Degree 5, level at both rows up to the second derivative (3-4-5 polynomial).
+    Rest5,
+}
+
+/// A row of a cam.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CamRow {
+    /// Place of the master (u).
+    pub master: f64,
+    /// Place of the slave (y).
+    pub slave: f64,
+    /// First derivative (y/u).
+    pub slope: f64,
+    /// Second derivative (y/u^2).
+    pub curvature: f64,
+    /// Third derivative (y/u^3).
+    pub third: f64,
+    /// How it goes on to the next row; of the last row it says nothing.
+    pub shape: CamShape,
+}
+
+/// A piece of a cam, from one row to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CamPiece {
+    /// Where it begins: of the master (u), of the slave (y).
+    begin: f64,
+    from: f64,
+    /// How long it is (u), and its control points, counted from where it begins (y).
+    width: f64,
+    points: [f64; 8],
+    bounds: CamBounds,
+}
+
+impl CamPiece {
+    fn curve(&self) -> Curve {
+        Curve {
+            time: self.width,
+            from: self.from,
+            points: self.points,
+        }
+    }
+
+    /// What its derivatives are bounded by.
+    pub const fn bounds(&self) -> &CamBounds {
+        &self.bounds
+    }
+}
+
+/// What is known of a cam as a whole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CamHead {
+    /// First and last place of the master (u).
+    pub begin: f64,
+    /// The last one.
+    pub end: f64,
+    /// Place of the slave in the first row (y).
+    pub from: f64,
+    /// In the last one.
+    pub to: f64,
+    /// The lowest and the highest place of the slave (y), within a thousandth of the way between them.
+    pub range: (f64, f64),
+    /// It goes on behind its last row as at its first.
+    pub periodic: bool,
+    /// What its derivatives are bounded by.
+    pub bounds: CamBounds,
+    /// The highest order up to which all derivatives go on without a jump: 0 for corners, at most 3.
+    pub continuity: u8,
+    /// The largest jump of the derivative that is the first to jump: at which row, from 1, and by how much.
+    pub jump: (usize, f64),
+}
+
+impl Default for CamHead {
+    fn default() -> Self {
+        Self {
+            begin: 0.0,
+            end: 1.0,
+            from: 0.0,
+            to: 0.0,
+            range: (0.0, 0.0),
+            periodic: false,
+            bounds: CamBounds::default(),
+            continuity: 3,
+            jump: (0, 0.0),
+        }
+    }
+}
+
+/// What of the rows of a cam is no good.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CamCause {
+    /// Fewer than two rows, or more than [`CAM_ROWS`].
+    Count,
+    /// A number is not finite, or so large or so small that a curve through it is not.
+    NotFinite,
+    /// The place of the master is not after that of the row before.
+    Order,
+}
+
+/// Why the rows of a cam are no good.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CamFault {
+    /// What it is.
+    pub cause: CamCause,
+    /// The row, from 1.
+    pub row: usize,
+    /// The value.
+    pub value: f64,
+    /// What it must be above, or may be at most; NaN if there is nothing to name.
+    pub limit: f64,
+}
+
+/// A cam: what is known of it, and its pieces.
+#[derive(Clone, Copy, Debug)]
+pub struct Cam<'a> {
+    /// As a whole.
+    pub head: &'a CamHead,
+    /// In order of the master.
+    pub pieces: &'a [CamPiece],
+}
+
+impl<'a> Cam<'a> {
+    /// The piece `place` (u) lies in, of which the first and the last have no outer end; `near` is where to look first.
+    ///
+    /// Cost: three looks for a piece next to `near`, at most 9 more for any other.
+    pub fn find(&self, place: f64, near: u16) -> u16 {
+        let near = usize::from(near);
+        let begins_before = |index: usize| self.pieces.get(index).is_some_and(|piece| piece.begin <= place);
+        let holds = |index: usize| {
+            let last = index + 1 >= self.pieces.len();
+            (index == 0 || begins_before(index)) && (last || !begins_before(index + 1))
+        };
+        let beside = [near, near.saturating_add(1), near.saturating_sub(1)];
+        let found = beside
+            .into_iter()
+            .find(|index| *index < self.pieces.len() && holds(*index));
+        let index = found.unwrap_or_else(|| {
+            let (mut low, mut high) = (0, self.pieces.len());
+            for _ in 0..STEPS {
+                if high - low <= 1 {
+                    break;
+                }
+                let middle = usize::midpoint(low, high);
+                if begins_before(middle) {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            low
+        });
+        u16::try_from(index).unwrap_or_default()
+    }
+
+    /// The piece of that number.
+    pub fn piece(&self, index: u16) -> Option<&'a CamPiece> {
+        self.pieces.get(usize::from(index))
+    }
+
+    /// Where the slave is at `place` (u) and four derivatives by the master, as position to snap, in the piece of that number.
+    /// The place is the sum of two numbers, the second far smaller.
+    ///
+    /// Returns the place of the slave as where the piece begins and the way from there. Cost: some 80 operations.
+    pub(crate) fn at(&self, place: (f64, f64), index: u16) -> (f64, Setpoint) {
+        let Some(piece) = self.piece(index) else {
+            return (self.head.from, Setpoint::default());
+        };
+        let within = (place.0 - piece.begin) + place.1;
+        (piece.from, piece.curve().way_at(within))
+    }
+}
