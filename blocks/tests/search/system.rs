@@ -311,6 +311,7 @@ impl System {
                     scan: self.scans,
                     instance: InstanceId(place),
                     log,
+                    cams: standstill_axis::Cams::default(),
                 },
                 axes: &mut self.axis,
                 tables: &[],

@@ -1,6 +1,6 @@
 //! The words blocks and axes share: who, what, and in which order.
 
-use crate::Edge;
+use crate::{CamId, Edge, StartMode};
 
 /// Handle of an axis: its place in the slice of axes. It holds no live state, so it means the same when
 /// copied in and out around a call as when passed by reference (IEC 61131-3 VAR_IN_OUT).
@@ -118,13 +118,15 @@ macro_rules! iec_enum {
             }
         }
 
-        impl From<$name> for Raw<$name> {
+        impl From<$name> for $crate::Raw<$name> {
             fn from(element: $name) -> Self {
                 Self::new(element as i32)
             }
         }
     };
 }
+
+pub(crate) use iec_enum;
 
 iec_enum! {
     /// How a command follows the one before it (MC_BUFFER_MODE, numbers in table order: V8a).
@@ -359,6 +361,55 @@ pub enum Command {
     },
     /// MC_GearOut: no longer behind a master; the velocity is kept.
     GearOut,
+    /// MC_CamIn: behind a master on a cam. Give it by [`couple`](crate::couple).
+    CamIn(CamIn),
+    /// MC_CamOut: no longer on a cam; the velocity is kept.
+    CamOut,
+}
+
+/// MC_CamIn: values as they stand at the pins, unchecked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CamIn {
+    /// The master.
+    pub master: Master,
+    /// Which values of it are followed.
+    pub source: Raw<ValueSource>,
+    /// The cam.
+    pub table: CamId,
+    /// Where the cam lies.
+    pub start_mode: Raw<StartMode>,
+    /// Where the cam's place 0 of the master lies (u of the master).
+    pub master_offset: f64,
+    /// Where its place 0 of the slave lies (u).
+    pub slave_offset: f64,
+    /// The master's side of the cam is this much longer.
+    pub master_scaling: f64,
+    /// The slave's side.
+    pub slave_scaling: f64,
+    /// How far before the sync position the slave sets off (u of the master).
+    pub start_distance: f64,
+    /// Where in the cam the slave is to be in sync first (u of the cam's master side); 0 leaves it open.
+    pub sync_position: f64,
+}
+
+impl CamIn {
+    /// All but the master, as bits.
+    fn bits(&self) -> ([u64; 6], [i64; 3]) {
+        let values = [
+            self.master_offset,
+            self.slave_offset,
+            self.master_scaling,
+            self.slave_scaling,
+            self.start_distance,
+            self.sync_position,
+        ];
+        let numbers = [
+            i64::from(self.source.number()),
+            i64::from(self.start_mode.number()),
+            i64::from(self.table.number()),
+        ];
+        (values.map(f64::to_bits), numbers)
+    }
 }
 
 /// How a master is followed: values as they stand at the pins, unchecked.
@@ -427,8 +478,13 @@ impl Command {
             }
             _ => ([[0; 3]; 2], 0, None),
         };
+        let cam = |command: &Self| match command {
+            Self::CamIn(cam) => Some(cam.bits()),
+            _ => None,
+        };
         core::mem::discriminant(self) == core::mem::discriminant(other)
             && self.bits() == other.bits()
+            && cam(self) == cam(other)
             && law(self) == law(other)
     }
 
@@ -470,7 +526,7 @@ impl Command {
             Self::Halt { dynamics } | Self::Stop { dynamics } => (0.0, 0.0, 0, dynamics),
             Self::Home { position } => (*position, 0.0, 0, &none),
             Self::GearIn { dynamics, .. } => (0.0, 0.0, 0, dynamics),
-            Self::CombineAxes { .. } | Self::GearOut => (0.0, 0.0, 0, &none),
+            Self::CombineAxes { .. } | Self::GearOut | Self::CamIn(_) | Self::CamOut => (0.0, 0.0, 0, &none),
         };
         ([first.to_bits(), second.to_bits()], direction, dynamics.bits())
     }

@@ -35,6 +35,14 @@ pub fn couple<P: Planner>(
             of(["Master1", "MasterValueSourceM1"], first)
                 .or_else(|| of(["Master2", "MasterValueSourceM2"], second))
         }
+        Command::CamIn(cam) => of(
+            ["Master", "MasterValueSource"],
+            &Followed {
+                master: cam.master,
+                source: cam.source,
+                ..Followed::default()
+            },
+        ),
         _ => None,
     };
     let axis = axes.get_mut(slave.index()).ok_or(ErrorId::AxisUnknown)?;
@@ -235,7 +243,13 @@ fn advance_one<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope
     start_at_point(axes, index, scope);
     let masters = axes.get(index).map_or([None; 2], Axis::followed_values);
     if let [Some(first), second] = masters {
-        look(axes, index, (first, second), scope, Axis::advance_behind);
+        let is_on_cam = axes.get(index).is_some_and(Axis::is_on_cam);
+        let act = if is_on_cam {
+            Axis::advance_on_cam
+        } else {
+            Axis::advance_behind
+        };
+        look(axes, index, (first, second), scope, act);
     } else if let Some(axis) = axes.get_mut(index) {
         axis.advance(scope);
     }

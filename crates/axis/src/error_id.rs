@@ -145,10 +145,18 @@ error_ids! {
         "Give a denominator from 1; a RatioNumerator of 0 brings the slave to rest.";
     CouplingRing = 151, "Master is the slave itself, or an axis that follows it.",
         "Wire another axis to Master, or end the coupling that closes the ring first.";
-    SyncModeInvalid = 152, "SyncMode or CombineMode is a number that is not defined.",
+    SyncModeInvalid = 152, "SyncMode, CombineMode or StartMode is a number that is not defined.",
         "Use mcShortest (0), mcCatchUp (1) or mcSlowDown (2).";
+    CamTableInvalid = 153, "The rows of a cam are no cam: fewer than 2 or more than 512, a Master that is not above the one before, a number that is NaN or infinite, or a Law that is not defined; or the store of cams has no room for it.",
+        "The record in the log names the row and the field, or what the store lacks; the size of the store is set up with the machine (cams).";
+    CamNotSmooth = 154, "A derivative of the cam jumps that the slave can't let jump: its order asks for as many continuous ones.",
+        "The record in the log names the row, the derivative and the jump. Use mcCamRest7 or mcCamThrough for slaves with a snap limit, mcCamRest5 for those with a jerk limit; without periods begin and end at rest.";
+    CamUnknown = 155, "CamTableID is no cam: it was never selected, is not complete yet, or was selected anew since.",
+        "Wire CamTableID of MC_CamTableSelect and wait for its Done.";
     SyncPositionInvalid = 156, "MasterSyncPosition, SlaveSyncPosition or MasterStartDistance is NaN or infinite, or on a modulo axis not in its first turn.",
         "Give finite positions; on a modulo axis at least 0 and less than the length of a turn, and a distance shorter than a turn.";
+    CamScalingInvalid = 157, "MasterScaling or SlaveScaling is 0, NaN or infinite, or an offset is NaN or infinite.",
+        "Give finite numbers, and scalings other than 0; a negative SlaveScaling mirrors the cam.";
     CouplingRatioTooFine = 158, "Master and slave both have turns, and a turn of the one is no ratio of integers below 2^63 turns of the other.",
         "Give lengths of turns that have a common measure, such as 360 and 400, or a simpler ratio.";
     MasterSourceInvalid = 159, "MasterValueSource is mcCommandedValue, which is no motion that could be followed, or mcActualValue of a master that counts no increments, which the filter of actual values needs.",
@@ -193,13 +201,15 @@ error_ids! {
     TriggerTaken = 215, "Another instance waits for this probe.",
         "Wait for it, or abort it with MC_AbortTrigger; each probe serves one instance at a time.";
 
-    NotCoupled = 216, "MC_GearOut finds no slave of MC_GearIn or MC_GearInPos, or MC_PhasingAbsolute or MC_PhasingRelative none of its Master.",
-        "Call it while MC_GearIn or MC_GearInPos is Active; what moves an axis by itself is ended by MC_Halt or MC_Stop.";
+    NotCoupled = 216, "MC_GearOut finds no slave of MC_GearIn or MC_GearInPos, MC_CamOut none of MC_CamIn, or MC_PhasingAbsolute or MC_PhasingRelative none of its Master.",
+        "Call it while MC_GearIn, MC_GearInPos or MC_CamIn is Active; what moves an axis by itself is ended by MC_Halt or MC_Stop.";
 
     MasterTooFast = 218, "The slave of MC_GearInPos is behind a master that is at least as fast as its Velocity, so it can't catch up.",
         "Raise Velocity, or slow the master down until InSync.";
-    SyncNotReachable = 219, "The slave can't be in sync when its master, on its present plan, comes to MasterSyncPosition.",
+    SyncNotReachable = 219, "The slave can't be in sync when its master, on its present plan, comes to MasterSyncPosition, or comes past the last row of a cam without periods.",
         "Give a longer MasterStartDistance or higher dynamics, or bring the slave nearer to its place before.";
+    CamBeyondLimits = 220, "The slave can't follow the cam at the velocity limit of its master, and is set to stop with an error where it can't (on_limit error).",
+        "Lower the velocity limit of the master to MaxMasterVelocity, raise the limits of the slave, or make the cam wider.";
     BufferModeNotHere = 221, "MC_GearInPos with a MasterStartDistance has a BufferMode other than mcAborting: where its start point is when the motion before it ends is not known.",
         "Use mcAborting, or a MasterStartDistance of 0.";
 
@@ -250,6 +260,9 @@ error_ids! {
     FeedbackInvalid = 602, "The drive told a position or torque that is NaN or infinite, or a position that means an infinite velocity.",
         "Mend what makes such numbers, an encoder or a scaling in the drive's own code, then call MC_Reset.";
 
+
+    CamBesideUnsupported = 706, "MC_MoveSuperimposed, MC_PhasingAbsolute, MC_PhasingRelative, MasterStartDistance and on_limit slow_master are not supported on the slave of a cam in this version.",
+        "Shift the cam by MasterOffset or SlaveOffset with ContinuousUpdate, give MasterSyncPosition alone, or use on_limit lag or error.";
 
     SetpointBroken = 901, "A plan gave a set-point that is not finite.",
         "This is a defect of standstill: please report the trace.";

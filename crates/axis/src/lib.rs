@@ -11,6 +11,7 @@
 extern crate std;
 
 mod axis;
+mod cam_store;
 mod command;
 mod config;
 mod couple;
@@ -30,8 +31,11 @@ pub use axis::{
     Axis, Beside, CamTrack, Coupled, Factors, MotionState, Outlook, Pace, Permission, Profile, ProfileRow,
     TouchProbe, Way, WorkKind,
 };
+pub use cam_store::{
+    CAM_PIECES, CAM_ROWS_PER_CALL, CAM_SLOTS, CamCurve, CamId, CamSelection, CamSlot, Cams, NoRoom, StartMode,
+};
 pub use command::{
-    AxisId, BufferMode, CombineMode, Command, CommandId, Direction, Dynamics, ExecutionMode, Followed,
+    AxisId, BufferMode, CamIn, CombineMode, Command, CommandId, Direction, Dynamics, ExecutionMode, Followed,
     IecEnum, InstanceId, Master, PhaseShift, QUEUE_MAX, Raw, Request, Superimpose, SyncMode, SyncPoint,
     Trigger, ValueSource,
 };
@@ -54,7 +58,8 @@ pub use scaling::{Scaling, Turn};
 pub use scope::Scope;
 pub use standstill_planner::turns::split;
 pub use standstill_planner::{
-    Anchor, Excess, Gear, Limits, MoveProfile, Order, PROFILE_POINTS, Passage, Place, Plan, PlanError,
-    Planner, ProfileFault, ProfileKind, ProfilePoint, Setpoint, Standard, StandardPlan,
+    Anchor, Cam, CamCause, CamFault, CamHead, CamPiece, CamRow, Excess, Gear, Limits, MoveProfile, Order,
+    PROFILE_POINTS, Passage, Place, Plan, PlanError, Planner, ProfileFault, ProfileKind, ProfilePoint,
+    Setpoint, Standard, StandardPlan,
 };
 pub use state::{ARROWS, Arrow, AxisEvent, AxisState, Refused, next};

@@ -1,6 +1,6 @@
 //! What an axis did with the commands it was given: a ring of fixed size a host can read.
 
-use crate::{AxisId, ErrorId, InstanceId};
+use crate::{AxisId, CamId, ErrorId, InstanceId};
 use standstill_planner::Excess;
 
 /// Records the ring holds; older ones are overwritten.
@@ -31,6 +31,8 @@ pub enum Approach {
     Stretch,
     /// As fast as it may.
     Pace,
+    /// On a cam: a move in its own coordinates to a place of the curve.
+    Move,
 }
 
 impl Approach {
@@ -40,6 +42,7 @@ impl Approach {
             Self::Difference => "difference",
             Self::Stretch => "stretch",
             Self::Pace => "pace",
+            Self::Move => "move",
         }
     }
 }
@@ -169,6 +172,46 @@ pub enum Event {
         value: f64,
         /// The limit.
         limit: f64,
+    },
+    /// A cam was selected: the highest constant velocity of its master with which the slave can follow it.
+    CamSelected {
+        /// That (u/s of the master).
+        velocity: f64,
+        /// The velocity limit of the master.
+        limit: f64,
+    },
+    /// The axis goes onto a cam.
+    OnCam {
+        /// Behind which master.
+        master: AxisId,
+        /// Which cam.
+        cam: CamId,
+    },
+    /// The slave goes onto its cam, or along it into step with its master.
+    OntoCam {
+        /// How.
+        way: Approach,
+        /// Where a move leads (u); else the velocity a shadow comes to (u/s of the master), that to be taken off beside the
+        /// master.
+        value: f64,
+        /// Its scans.
+        scans: u32,
+    },
+    /// From this scan on the slave is on its cam at the place of its master.
+    InSync,
+    /// The slave can't stay there: that asks for more than a limit.
+    SyncLost {
+        /// Of what.
+        what: &'static str,
+        /// What it asks for.
+        value: f64,
+        /// The limit.
+        limit: f64,
+    },
+    /// More than one end of the cam was passed in one scan.
+    CamPassed {
+        /// So many.
+        periods: u32,
     },
     /// The axis entered ErrorStop.
     Fault {

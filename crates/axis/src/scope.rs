@@ -1,8 +1,8 @@
-//! What every call of an axis is made in: the scan, who speaks, and the ring that records go to.
+//! What every call of an axis is made in: the scan, who speaks, the ring that records go to, and the cams.
 
-use crate::{InstanceId, Log};
+use crate::{Cams, InstanceId, Log};
 
-/// The scan a call belongs to, the block instance that makes it, and the ring its records go to.
+/// The scan a call belongs to, the block instance that makes it, the ring its records go to, and the store of cams.
 #[derive(Debug)]
 pub struct Scope<'a> {
     /// The scan.
@@ -11,6 +11,8 @@ pub struct Scope<'a> {
     pub instance: InstanceId,
     /// The ring of records.
     pub log: &'a mut Log,
+    /// The cams; a store without memory (its default) where there are none.
+    pub cams: Cams<'a>,
 }
 
 impl<'a> Scope<'a> {
@@ -20,6 +22,7 @@ impl<'a> Scope<'a> {
             scan,
             instance: InstanceId::default(),
             log,
+            cams: Cams::default(),
         }
     }
 
@@ -30,6 +33,7 @@ impl<'a> Scope<'a> {
             scan: self.scan,
             instance,
             log: self.log,
+            cams: self.cams.lend(),
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::{AxisSetup, AxisStatus, Code, ConfigFault, DriveSetup, Mishap, Record
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicU32, AtomicUsize};
 use standstill_axis::{
-    Axis, AxisId, AxisState, Drive, DriveFeedback, ErrorId, InstanceId, Log, Scope, Standard, steps,
+    Axis, AxisId, AxisState, Cams, Drive, DriveFeedback, ErrorId, InstanceId, Log, Scope, Standard, steps,
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_drives::simulated::{DriveChange, SimulatedDrive};
@@ -66,6 +66,7 @@ fn nobody(scan: u64, log: &mut Log) -> Scope<'_> {
         scan,
         instance: NOBODY,
         log,
+        cams: Cams::default(),
     }
 }
 
@@ -421,6 +422,7 @@ impl Inner {
                 // At most 65534, so no cut is made.
                 instance: InstanceId(key as u16),
                 log: &mut self.log,
+                cams: Cams::default(),
             },
             axes: self.axes.slice_mut(),
             tables: &self.cells,

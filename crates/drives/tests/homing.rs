@@ -55,6 +55,7 @@ fn place_of_zero(homing: Homing, start: f64, delay: usize) -> f64 {
                     scan,
                     instance: InstanceId(1),
                     log: &mut log,
+                    cams: standstill_axis::Cams::default(),
                 },
             )
             .unwrap_or_else(|error| panic!("{homing:?} from {start}: {error:?}"))

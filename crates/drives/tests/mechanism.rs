@@ -249,6 +249,7 @@ impl Rig {
             scan: self.scan,
             instance: InstanceId(1),
             log: &mut self.log,
+            cams: standstill_axis::Cams::default(),
         };
         self.axis.follow_feedback(&feedback, scope);
         self.axis.set_power(true, Permission::BOTH, scope);

@@ -27,20 +27,21 @@ pub const FIELDS: [(&str, &str, &str, usize); 11] = [
         "i32",
         "1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position, 8 planned \
          to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault, 14 orphaned, 15 coupled, 16 approaching \
-         the law of a gear, 17 in gear, 18 no longer in gear, 19 in sync late, 20 phase shift planned, 21 lowered to what a slave can follow.",
+         the law of a gear, 17 in gear, 18 no longer in gear, 19 in sync late, 20 phase shift planned, 21 lowered to what a slave can follow, 22 cam \
+         selected, 23 onto a cam, 24 plan onto a cam, 25 in sync, 26 no longer in sync, 27 more than one end of a cam passed in a scan.",
         24,
     ),
     ("error_id", "u32", "ErrorID, 0 without one.", 28),
     (
         "count",
         "u64",
-        "Scans of a plan, number of a point or of a master, or code of a drive.",
+        "Scans of a plan, number of a point or of a master, ends of a cam, or code of a drive.",
         32,
     ),
     (
         "value",
         "f64",
-        "What was asked for; the excess of velocity; where to; the velocity; the numerator of a ratio.",
+        "What was asked for; the excess of velocity; where to; the velocity; the numerator of a ratio; the number of a cam.",
         40,
     ),
     (
@@ -186,6 +187,31 @@ impl FlatRecord {
                 record.event = 21;
                 (record.value, record.limit) = (value, limit);
                 record.name = pin;
+            }
+            Event::CamSelected { velocity, limit } => {
+                record.event = 22;
+                (record.value, record.limit) = (velocity, limit);
+            }
+            Event::OnCam { master, cam } => {
+                record.event = 23;
+                record.count = master.number().into();
+                record.value = cam.number().into();
+            }
+            Event::OntoCam { way, value, scans } => {
+                record.event = 24;
+                record.count = scans.into();
+                record.value = value;
+                record.name = way.name();
+            }
+            Event::InSync => record.event = 25,
+            Event::SyncLost { what, value, limit } => {
+                record.event = 26;
+                (record.value, record.limit) = (value, limit);
+                record.name = what;
+            }
+            Event::CamPassed { periods } => {
+                record.event = 27;
+                record.count = periods.into();
             }
             Event::SyncLate { by } => {
                 record.event = 19;

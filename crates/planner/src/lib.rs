@@ -30,7 +30,9 @@ mod setpoint;
 mod sum;
 pub mod turns;
 
-pub use cam::{Cam, CamBounds, CamBuild, CamCause, CamFault, CamHead, CamPiece, CamRow, CamShape};
+pub use cam::{
+    Cam, CamAt, CamBounds, CamBuild, CamCause, CamFault, CamHead, CamLaw, CamPiece, CamRow, CamShape,
+};
 pub use error::{Field, PlanError};
 pub use gear::{Anchor, Gear, Place};
 pub use grid::{GridPlan, Method, UnequalPlan};

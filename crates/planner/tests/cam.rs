@@ -1,8 +1,9 @@
 //! Cams: the laws between two rows, what joins them, what bounds them, and where they lie between two axes.
 
-use standstill_planner::cam::{CAM_ROWS, CamAt, CamLaw};
+use standstill_planner::cam::CAM_ROWS;
 use standstill_planner::{
-    Anchor, Cam, CamBuild, CamCause, CamFault, CamHead, CamPiece, CamRow, CamShape, Limits, Place, Setpoint,
+    Anchor, Cam, CamAt, CamBuild, CamCause, CamFault, CamHead, CamLaw, CamPiece, CamRow, CamShape, Limits,
+    Place, Setpoint,
 };
 use standstill_testkit::Random;
 
@@ -398,6 +399,32 @@ fn bounds_hold_and_are_close() {
     }
 }
 
+/// A part of a cam is bounded by no more than the whole, and by no less than what is in it.
+#[test]
+fn parts_of_a_cam_have_bounds_of_their_own() {
+    let made = up_and_back();
+    let mut random = Random(12);
+    for _ in 0..2000 {
+        let low = random.between(-2000.0, 2000.0);
+        let high = low + random.between(0.0, 1.0) * random.one_of(&[1.0, 100.0, 500.0]);
+        let bounds = law().bounds_between(&made.cam(), low, high);
+        let bounds = [bounds.first, bounds.second, bounds.third, bounds.fourth];
+        let all = made.head.bounds;
+        let all = [all.first, all.second, all.third, all.fourth];
+        let found = peaks(&made, low, high, 50);
+        for ((found, bound), all) in found.into_iter().zip(bounds).zip(all) {
+            assert!(
+                found <= bound * (1.0 + 1e-9) + 1e-15,
+                "{low} {high} {found} {bound}"
+            );
+            assert!(bound <= all, "{low} {high} {bound} {all}");
+        }
+    }
+    // Near the end of a rise little is left of the curvature in its middle.
+    let near = law().bounds_between(&made.cam(), 175.0, 180.0);
+    assert!(near.second < 0.2 * made.head.bounds.second, "{near:?}");
+}
+
 /// Covers: G69, G31
 #[test]
 fn periods_are_exact_however_many() {
@@ -552,7 +579,7 @@ fn limits_of_a_shadow_leave_the_slave_within_its_own() {
             snap,
         };
         for speed in [1e-6, 100.0, 200.0, 1e6] {
-            let shadow = bounds.shadow(&limits, speed, &Limits::NONE).unwrap();
+            let shadow = bounds.shadow(&limits, speed, 0.0).unwrap();
             let most = bounds.most(&Setpoint {
                 position: 0.0,
                 velocity: shadow.velocity,

@@ -4,8 +4,8 @@ use crate::{NotOff, ScanTime};
 use alloc::vec::Vec;
 use core::fmt;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, ConfigError, Drive, DriveFeedback, InstanceId, Log, Planner, Scope, Standard,
-    steps,
+    Axis, AxisConfig, AxisId, CAM_PIECES, CAM_SLOTS, CamPiece, CamSlot, Cams, ConfigError, Drive,
+    DriveFeedback, InstanceId, Log, Planner, Scope, Standard, steps,
 };
 use standstill_fb::{Context, Record, TableRef, Value};
 
@@ -22,6 +22,8 @@ pub struct Machine<P: Planner = Standard, D: Drive = standstill_axis::IdealDrive
     log: Log,
     /// The numbers of all tables.
     tables: Vec<f64>,
+    /// The slots of the store of cams, and their pieces.
+    cams: (Vec<CamSlot>, Vec<CamPiece>),
 }
 
 impl<P: Planner, D: Drive> Default for Machine<P, D> {
@@ -32,6 +34,7 @@ impl<P: Planner, D: Drive> Default for Machine<P, D> {
             feedback: Vec::new(),
             log: Log::default(),
             tables: Vec::new(),
+            cams: (Vec::new(), Vec::new()),
         }
     }
 }
@@ -72,6 +75,25 @@ impl<P: Planner, D: Drive> Machine<P, D> {
             self.tables.extend(cells);
         }
         Some(place)
+    }
+
+    /// Sets up the store of cams: so many slots, and so many pieces in all, one less for each cam than it has rows; uses the
+    /// heap, about 120 bytes for a piece. Without it MC_CamTableSelect has no room. What was selected before is gone, so call it
+    /// before the first scan.
+    pub fn set_cam_store(&mut self, slots: usize, pieces: usize) {
+        self.cams = (Vec::new(), Vec::new());
+        self.cams.0.resize(slots, CamSlot::default());
+        self.cams.1.resize(pieces, CamPiece::default());
+    }
+
+    /// The same with [`CAM_SLOTS`] slots and [`CAM_PIECES`] pieces.
+    pub fn set_usual_cam_store(&mut self) {
+        self.set_cam_store(CAM_SLOTS, CAM_PIECES);
+    }
+
+    /// The cams that were selected.
+    pub fn cams(&mut self) -> Cams<'_> {
+        Cams::new(&mut self.cams.0, &mut self.cams.1)
     }
 
     /// The numbers of all tables: places in here are those of [`TableRef`]. A change counts from the next call on.
@@ -117,6 +139,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
                 scan: time.scan,
                 instance,
                 log: &mut self.log,
+                cams: Cams::new(&mut self.cams.0, &mut self.cams.1),
             },
             axes: &mut self.axes,
             tables: &self.tables,
@@ -138,7 +161,9 @@ impl<P: Planner, D: Drive> Machine<P, D> {
 
     /// The motion step: advances every axis by one nominal tick.
     pub(crate) fn advance(&mut self, time: ScanTime) {
-        steps::advance(&mut self.axes, &mut runtime_scope(time.scan, &mut self.log));
+        let mut scope = runtime_scope(time.scan, &mut self.log);
+        scope.cams = Cams::new(&mut self.cams.0, &mut self.cams.1);
+        steps::advance(&mut self.axes, &mut scope);
     }
 
     /// Writes every drive once, in axis order.
@@ -167,6 +192,7 @@ fn runtime_scope(scan: u64, log: &mut Log) -> Scope<'_> {
         scan,
         instance: RUNTIME,
         log,
+        cams: Cams::default(),
     }
 }
 

@@ -105,6 +105,10 @@ impl<P: Planner> Axis<P> {
             let start = self.is_coupled().then_some(Start::Now);
             return start.ok_or(("Slave", ErrorId::NotCoupled));
         }
+        if matches!(request.command, Command::CamOut) {
+            let start = self.is_on_cam().then_some(Start::Now);
+            return start.ok_or(("Slave", ErrorId::NotCoupled));
+        }
         if self.power.is_going_off() {
             return Err(("", ErrorId::PoweringOff));
         }
@@ -273,7 +277,12 @@ impl<P: Planner> Axis<P> {
                 // The block has no dynamic values.
                 Ok((Work::Gear(gearing), self.parameters.limits))
             }
-            Command::GearOut => Ok(self.release()),
+            Command::CamIn(ref cam) => {
+                let camming = self.check_cam_in(cam, scope)?;
+                // The block has no dynamic values.
+                Ok((Work::Cam(camming), self.parameters.limits))
+            }
+            Command::GearOut | Command::CamOut => Ok(self.release()),
         }
     }
 
@@ -428,7 +437,7 @@ impl<P: Planner> Axis<P> {
                 self.not_outward(start.position, velocity)?;
                 self.planner.ramp_to(start, velocity, &entry.limits, before)
             }
-            Work::Gear(_) => return self.gear_motion(entry, start),
+            Work::Gear(_) | Work::Cam(_) => return self.gear_motion(entry, start),
             Work::Release(velocity) => self.planner.ramp_to(start, velocity, &entry.limits, before),
             Work::Halt | Work::Stop => self.planner.ramp_to(start, 0.0, &entry.limits, before),
             Work::Torque { .. } => {
@@ -468,6 +477,7 @@ impl<P: Planner> Axis<P> {
             } => ("Distance", distance),
             Work::Velocity { velocity, .. } => ("Velocity", velocity),
             Work::Gear(gearing) => ("Master", f64::from(gearing.first.master.number())),
+            Work::Cam(camming) => ("Master", f64::from(camming.master.number())),
             Work::Release(velocity) => ("Slave", velocity),
             Work::Torque { torque, .. } => ("Torque", torque),
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),

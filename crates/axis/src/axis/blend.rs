@@ -170,7 +170,8 @@ impl<P: Planner> Axis<P> {
 
     /// What becomes of the owner when another takes over in motion: what has an end has passed it.
     pub(super) fn fate_at_hand_over(&self) -> Fate {
-        if self.passes_on() {
+        // A cam at its end is done, whatever follows.
+        if self.passes_on() || self.is_on_cam() {
             Fate::Done
         } else {
             Fate::Aborted

@@ -1,10 +1,10 @@
 //! Commands as the axis keeps them: what each does, when it starts, and how it ends. Values only; nothing here knows an axis.
 
 use crate::{
-    AxisEvent, AxisId, BufferMode, Command, CommandId, Direction, ErrorId, InstanceId, Parameter,
+    AxisEvent, AxisId, BufferMode, CamId, Command, CommandId, Direction, ErrorId, InstanceId, Parameter,
     ParameterValue, SyncMode, ValueSource,
 };
-use standstill_planner::{Field, Gear, Limits, Passage, PlanError, ProfileKind};
+use standstill_planner::{CamLaw, Field, Gear, Limits, Passage, PlanError, ProfileKind};
 
 /// How far, relative to a limit, rounding may carry a state beyond it (contract: limits hold to 1e-9).
 pub(super) const ROUNDING: f64 = 1e-9;
@@ -69,6 +69,8 @@ pub(super) enum Work {
     Torque { torque: f64, ramp: f64, along: bool },
     /// Behind a master.
     Gear(Gearing),
+    /// Behind a master on a cam.
+    Cam(Camming),
     /// On with a velocity (u/s), no longer behind a master.
     Release(f64),
     /// To velocity zero.
@@ -118,6 +120,24 @@ impl Gearing {
     pub fn waits_for_start(&self) -> bool {
         self.sync.is_some_and(|sync| sync.start_distance != 0.0)
     }
+}
+
+/// On which cam a slave follows which master, checked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Camming {
+    pub master: AxisId,
+    /// Which values of it are followed: set or actual ones.
+    pub source: ValueSource,
+    pub cam: CamId,
+    /// Scalings and turns; where the cam begins is found when it is laid.
+    pub law: CamLaw,
+    /// The places of the table are those of the axes.
+    pub master_absolute: bool,
+    pub slave_absolute: bool,
+    pub master_offset: f64,
+    pub slave_offset: f64,
+    /// Where in the cam the slave is to be in sync first, if that is given (u of the cam's master side).
+    pub sync: Option<f64>,
 }
 
 /// What a kind of work is: said here once for all who ask. What only one of them asks stands there.
@@ -209,6 +229,8 @@ pub enum WorkKind {
     Torque,
     /// Behind a master.
     Gear,
+    /// Behind a master on a cam.
+    Cam,
     /// On with a velocity, no longer behind a master.
     Release,
     /// To velocity zero.
@@ -300,6 +322,15 @@ impl Manner {
 }
 
 impl Work {
+    /// Behind a master.
+    const GEAR: Manner = Manner {
+        kind: WorkKind::Gear,
+        start: AxisEvent::StartSynchronized,
+        ending: Ending::Follows,
+        overridden: false,
+        ..Manner::ENDLESS
+    };
+
     /// What it is.
     #[inline]
     pub const fn manner(&self) -> Manner {
@@ -350,12 +381,10 @@ impl Work {
                 overridden: false,
                 ..Manner::ENDLESS
             },
-            Self::Gear(_) => Manner {
-                kind: WorkKind::Gear,
-                start: AxisEvent::StartSynchronized,
-                ending: Ending::Follows,
-                overridden: false,
-                ..Manner::ENDLESS
+            Self::Gear(_) => Self::GEAR,
+            Self::Cam(_) => Manner {
+                kind: WorkKind::Cam,
+                ..Self::GEAR
             },
             Self::Release(velocity) => Manner {
                 kind: WorkKind::Release,
@@ -527,7 +556,9 @@ pub(super) fn direction_of(command: &Command) -> Option<Direction> {
         | Command::Home { .. }
         | Command::GearIn { .. }
         | Command::CombineAxes { .. }
-        | Command::GearOut => None,
+        | Command::GearOut
+        | Command::CamIn(_)
+        | Command::CamOut => None,
     }
 }
 

@@ -13,6 +13,7 @@
 //! | [`needs`] | what a step from one set-point to the next needs of the limits |
 //! | [`approach`] | the rungs: how a slave comes onto the law |
 //! | [`bound`] | what the limits of slaves leave to their master |
+//! | [`cam`] | the same on a cam, in a folder of its own |
 //! | [`phasing`] | a shift between the master and what the slave sees of it |
 //! | [`sync`] | MC_GearInPos: a law that is given, and a start that waits for a place of the master |
 //!
@@ -21,6 +22,7 @@
 
 mod approach;
 mod bound;
+mod cam;
 mod follow;
 mod needs;
 mod phasing;
@@ -34,6 +36,7 @@ use crate::{
     ValueSource,
 };
 pub(super) use bound::Bound;
+pub(super) use cam::OnCam;
 pub(super) use phasing::Phasing;
 use standstill_planner::{Anchor, Gear, Limits, Place, Planner, Setpoint};
 pub(super) use sync::Awaited;
@@ -78,6 +81,8 @@ pub struct Coupled {
     pub second: Option<(AxisId, f64)>,
     /// What was superimposed on the law since it lies where it does (u).
     pub superimposed: f64,
+    /// On a cam: the place of the master the slave is at (u of the master), if it is on the curve.
+    pub shadow: Option<f64>,
 }
 
 /// The names of the pins that say how a master is followed.
@@ -237,12 +242,14 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub fn is_in_gear(&self) -> bool {
         let is_locked = |coupling: &Coupling| coupling.rung == Rung::Locked;
-        self.coupling.as_ref().is_some_and(is_locked) && !self.is_paused()
+        let is_locked = self.coupling.as_ref().is_some_and(is_locked);
+        (is_locked || self.is_in_sync_on_cam()) && !self.is_paused()
     }
 
     /// How the owner follows its master; `None` while it follows none.
     pub fn coupled(&self) -> Option<Coupled> {
-        self.coupling.as_ref().map(|coupling| Coupled {
+        let on_cam = self.coupled_on_cam();
+        let gear = self.coupling.as_ref().map(|coupling| Coupled {
             master: coupling.gearing.first.master,
             deviation: coupling.deviation,
             phase: self.phases()[0],
@@ -251,7 +258,9 @@ impl<P: Planner> Axis<P> {
                 .second
                 .map(|second| (second.master, self.phases()[1])),
             superimposed: coupling.superimposed(),
-        })
+            shadow: None,
+        });
+        gear.or(on_cam)
     }
 
     /// The master the owner follows, the first one of two.
@@ -262,13 +271,16 @@ impl<P: Planner> Axis<P> {
     /// The masters the owner follows.
     pub fn followed(&self) -> [Option<AxisId>; 2] {
         let coupling = self.coupling.as_ref();
-        coupling.map_or([None; 2], |coupling| coupling.gearing.masters())
+        coupling.map_or([self.master_on_cam(), None], |coupling| {
+            coupling.gearing.masters()
+        })
     }
 
     /// The masters the owner follows, and which values of each.
     pub(crate) fn followed_values(&self) -> [Option<Values>; 2] {
         let coupling = self.coupling.as_ref();
-        coupling.map_or([None; 2], |coupling| coupling.gearing.values())
+        let on_cam = [self.values_on_cam(), None];
+        coupling.map_or(on_cam, |coupling| coupling.gearing.values())
     }
 
     /// The owner follows actual values of a master, not where that is to be.
@@ -291,7 +303,7 @@ impl<P: Planner> Axis<P> {
 
     /// The master went out of operation, and the slave rests until a block couples it anew.
     pub fn has_lost_master(&self) -> bool {
-        matches!(self.rung(), Some(Rung::Lost))
+        matches!(self.rung(), Some(Rung::Lost)) || self.has_lost_master_on_cam()
     }
 
     /// On the way to the sync point it was given, and not there yet.
@@ -302,7 +314,10 @@ impl<P: Planner> Axis<P> {
     /// By how much a slave is off the law of its gear (u); 0 in gear, before it was there without a sync point, and for any
     /// other axis.
     pub fn deviation(&self) -> f64 {
-        self.coupling.as_ref().map_or(0.0, |coupling| coupling.deviation)
+        let on_cam = self.deviation_on_cam();
+        self.coupling
+            .as_ref()
+            .map_or(on_cam, |coupling| coupling.deviation)
     }
 
     /// The values at the pins of MC_GearIn and MC_GearInPos that say which law holds.
@@ -440,6 +455,9 @@ impl<P: Planner> Axis<P> {
 
     /// `entry` follows a master from the next motion step on, or has new values for it.
     pub(super) fn await_master(&mut self, entry: &Entry, scope: &mut Scope<'_>) {
+        if let Work::Cam(camming) = entry.work {
+            return self.await_master_on_cam(camming, entry, scope);
+        }
         let Work::Gear(gearing) = entry.work else { return };
         self.is_bound = true;
         let known = self.coupling.as_ref().map(|coupling| coupling.gearing);
@@ -479,6 +497,7 @@ impl<P: Planner> Axis<P> {
             coupling.rung = Rung::Due;
             coupling.told = None;
         }
+        self.leave_cam();
     }
 
     /// The owner, or a command that waits, may follow a master.
@@ -515,13 +534,14 @@ impl<P: Planner> Axis<P> {
 
     /// A command that follows a master waits.
     pub(super) fn note_bound(&mut self, entry: &Entry) {
-        self.is_bound |= matches!(entry.work, Work::Gear(_));
+        self.is_bound |= matches!(entry.work, Work::Gear(_) | Work::Cam(_));
     }
 
     /// Notes anew whether the owner, or a command that waits, may follow a master. Returns whether one that waits may.
     pub(crate) fn renew_bound(&mut self) -> bool {
-        let waits = self.queue.iter().any(|entry| matches!(entry.work, Work::Gear(_)));
-        self.is_bound = self.is_coupled() || self.awaited.is_some() || waits;
+        let couples = |entry: &Entry| matches!(entry.work, Work::Gear(_) | Work::Cam(_));
+        let waits = self.queue.iter().any(couples);
+        self.is_bound = self.is_coupled() || self.is_on_cam() || self.awaited.is_some() || waits;
         waits
     }
 
@@ -529,8 +549,10 @@ impl<P: Planner> Axis<P> {
     pub(crate) fn masters_of_waiting(&self) -> [[Option<Values>; 2]; QUEUE_MAX] {
         let mut masters = [[None; 2]; QUEUE_MAX];
         for (masters, entry) in masters.iter_mut().zip(self.queue.iter()) {
-            if let Work::Gear(gearing) = entry.work {
-                *masters = gearing.values();
+            match entry.work {
+                Work::Gear(gearing) => *masters = gearing.values(),
+                Work::Cam(camming) => *masters = [Some((camming.master, camming.source)), None],
+                _ => {}
             }
         }
         masters

@@ -279,6 +279,8 @@ pub struct Axis<P: Planner = Standard> {
     owner: Option<Entry>,
     /// How the owner follows a master.
     coupling: Option<coupling::Coupling>,
+    /// The same on a cam.
+    on_cam: Option<coupling::OnCam>,
     /// The shift between its master and what it sees of that.
     phasing: coupling::Phasing<P::Plan>,
     /// What follows a master from a place of it on, and waits for that.
@@ -358,6 +360,7 @@ impl<P: Planner> Axis<P> {
             last_velocity: 1.0,
             owner: None,
             coupling: None,
+            on_cam: None,
             phasing: coupling::Phasing::default(),
             awaited: None,
             is_bound: false,
@@ -694,6 +697,7 @@ impl<P: Planner> Axis<P> {
         if self.coupling.take().is_some() {
             self.end_phasing();
         }
+        self.on_cam = None;
     }
 
     fn record(&self, event: Event, scope: &mut Scope<'_>) {

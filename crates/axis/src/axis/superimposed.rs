@@ -219,6 +219,7 @@ impl<P: Planner> Axis<P> {
     ) -> Result<CommandId, ErrorId> {
         self.admit_superimposed()
             .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, scope))?;
+        self.beside_no_cam("Axis", scope)?;
         let layer = self
             .layer
             .unwrap_or_else(|| Layer::on(self.setpoint, &self.config.limits));

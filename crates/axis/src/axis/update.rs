@@ -101,6 +101,7 @@ impl<P: Planner> Axis<P> {
         let is_same_kind = match (work, entry.work) {
             // Another master is another coupling.
             (Work::Gear(new), Work::Gear(old)) => new.masters() == old.masters(),
+            (Work::Cam(new), Work::Cam(old)) => new.master == old.master,
             (new, old) => mem::discriminant(&new) == mem::discriminant(&old),
         };
         Ok((is_same_kind && work.manner().updated).then_some((work, limits)))

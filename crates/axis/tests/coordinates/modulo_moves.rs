@@ -326,6 +326,7 @@ fn an_axis_a_thousand_million_turns_out_moves_as_one_at_home() {
                     scan: rig.scan,
                     instance: InstanceId(1),
                     log: &mut rig.log,
+                    cams: standstill_axis::Cams::default(),
                 },
             );
             if scan == 10 {
@@ -403,6 +404,7 @@ fn buffered_moves_find_their_way_from_where_they_start() {
                 scan: rig.scan,
                 instance: InstanceId(1),
                 log: &mut rig.log,
+                cams: standstill_axis::Cams::default(),
             },
         )
         .unwrap();

@@ -50,6 +50,7 @@ impl Rig {
                     scan: self.scan,
                     instance: InstanceId(1),
                     log: &mut self.log,
+                    cams: standstill_axis::Cams::default(),
                 },
             )
             .unwrap()

@@ -70,6 +70,7 @@ fn increments_and_velocity_have_no_step() {
                             scan: rig.scan,
                             instance: InstanceId(1),
                             log: &mut rig.log,
+                            cams: standstill_axis::Cams::default(),
                         },
                     )
                     .unwrap();

@@ -56,6 +56,7 @@ impl RustHost {
                 scan: 0,
                 instance: InstanceId(1),
                 log: &mut self.log,
+                cams: standstill_axis::Cams::default(),
             },
             axes: &mut self.axes,
             tables: &[],

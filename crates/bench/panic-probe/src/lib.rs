@@ -90,6 +90,7 @@ impl Image {
                 scan: *scan,
                 instance: InstanceId(any(0)),
                 log,
+                cams: standstill_axis::Cams::default(),
             },
             axes,
             tables: &any([0.0; 64]),
@@ -135,6 +136,7 @@ fn command(axis: &mut Axis, log: &mut Log) {
         scan: any(0),
         instance: InstanceId(any(0)),
         log,
+        cams: standstill_axis::Cams::default(),
     };
     let request = Request {
         command: any(Command::Home { position: any(0.0) }),

@@ -86,6 +86,7 @@ impl Machine {
                     scan,
                     instance: InstanceId(instance),
                     log: &mut self.log,
+                    cams: standstill_axis::Cams::default(),
                 },
                 axes: &mut self.axes,
                 tables: &self.tables,

@@ -271,6 +271,7 @@ impl Rig {
             scan: self.scan,
             instance: InstanceId(1),
             log: &mut self.log,
+            cams: standstill_axis::Cams::default(),
         };
         self.axis.set_power(power, permitted, scope);
         during(&mut self.axis, scope);

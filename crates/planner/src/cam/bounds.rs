@@ -1,7 +1,7 @@
 //! What the derivatives of a cam are bounded by, and what that leaves to its master.
 
-use super::CamPiece;
-use crate::math::{cbrt, sqrt};
+use super::{Cam, CamPiece};
+use crate::math::{cbrt, floor, sqrt};
 use crate::profile::check::{halved, hull};
 use crate::{Limits, Setpoint};
 
@@ -16,6 +16,9 @@ const CLOSE: f64 = 1.01;
 
 /// Rounding of a bound, relative to it.
 const ROUNDING: f64 = 1e-9;
+
+/// Most pieces of a cam whose parts are looked at one by one.
+const PASSED: usize = 4;
 
 /// How often limits of a shadow are halved at most.
 const HALVINGS: u32 = 40;
@@ -118,6 +121,97 @@ impl CamPiece {
     }
 }
 
+/// The control points of the part of a curve between two shares of it.
+fn part<const N: usize>(points: [f64; N], (from, to): (f64, f64)) -> [f64; N] {
+    let cut = |points: [f64; N], share: f64| {
+        let (mut row, mut before, mut after) = (points, [0.0; N], [0.0; N]);
+        let slots = before.iter_mut().zip(after.iter_mut().rev());
+        for (level, (first, last)) in slots.enumerate() {
+            *first = row.first().copied().unwrap_or_default();
+            *last = row.get(N - 1 - level).copied().unwrap_or_default();
+            let mut next = row;
+            for (slot, (left, right)) in next.iter_mut().zip(row.iter().zip(row.iter().skip(1))) {
+                *slot = left + share * (right - left);
+            }
+            row = next;
+        }
+        (before, after)
+    };
+    let points = if to < 1.0 { cut(points, to).0 } else { points };
+    if from > 0.0 {
+        cut(points, from / to).1
+    } else {
+        points
+    }
+}
+
+impl CamPiece {
+    /// What its derivatives are bounded by between two shares of it: by control points of that part.
+    fn bounded_between(&self, shares: (f64, f64)) -> CamBounds {
+        fn most<const N: usize>(points: [f64; N], shares: (f64, f64)) -> f64 {
+            let (low, high) = hull(&part(points, shares));
+            larger(-low, high)
+        }
+        let (first, second, third, fourth) = self.curve().derivatives();
+        CamBounds {
+            first: most(first, shares).min(self.bounds.first),
+            second: most(second, shares).min(self.bounds.second),
+            third: most(third, shares).min(self.bounds.third),
+            fourth: most(fourth, shares).min(self.bounds.fourth),
+        }
+    }
+}
+
+impl Cam<'_> {
+    /// What its derivatives are bounded by from `low` to `high`, neither taken back into one period.
+    pub(super) fn bounds_between(&self, low: f64, high: f64) -> CamBounds {
+        let head = self.head;
+        let length = head.end - head.begin;
+        if !head.periodic {
+            return self.bounds_within(low.max(head.begin), high.min(head.end));
+        }
+        let periods = {
+            let periods = (low - head.begin) / length;
+            let whole = floor(periods.abs());
+            if periods < 0.0 { -whole - 1.0 } else { whole }
+        };
+        let (low, high) = (low - periods * length, high - periods * length);
+        if !(high - low < length) {
+            return head.bounds;
+        }
+        if high <= head.end {
+            return self.bounds_within(low, high);
+        }
+        let rest = self.bounds_within(head.begin, high - length);
+        self.bounds_within(low, head.end).or_larger(&rest)
+    }
+
+    /// The same inside one period; nothing where `high` is below `low`.
+    fn bounds_within(&self, low: f64, high: f64) -> CamBounds {
+        if !(low <= high) {
+            return CamBounds::default();
+        }
+        let (from, to) = (self.find(low, 0), self.find(high, 0));
+        let count = usize::from(to.saturating_sub(from)) + 1;
+        if count > PASSED {
+            return self.head.bounds;
+        }
+        let passed = self.pieces.iter().skip(usize::from(from)).take(count);
+        passed.fold(CamBounds::default(), |bounds, piece| {
+            let share = |place: f64| ((place - piece.begin) / piece.width).clamp(0.0, 1.0);
+            let shares = (share(low), share(high));
+            let own = if shares == (0.0, 1.0) {
+                piece.bounds
+            } else if shares.1 > 0.0 {
+                piece.bounded_between(shares)
+            } else {
+                piece.bounded_between((0.0, f64::MIN_POSITIVE))
+            };
+            bounds.or_larger(&own)
+        })
+    }
+}
+
 impl CamBounds {
     /// The larger of both, each.
     #[must_use]
@@ -182,13 +276,15 @@ impl CamBounds {
         }
     }
 
-    /// Limits of a master of the slave's own, which the slave keeps `limits` behind, wherever that is on the cam: a velocity just
-    /// above `speed` (u/s) if that leaves something, and what then is left to the other three. `own` are limits it has besides.
+    /// Limits of a master of the slave's own, behind which the slave keeps `limits` wherever that is on the cam: as fast as `wanted`
+    /// (u/s), or 0.98 of the highest velocity if that is less, and what then is left to the other three while it is no
+    /// faster than it is at `present` (u/s).
     ///
-    /// `None` if nothing is left: with limits of 0 only. Cost: at most 40 halvings.
-    pub fn shadow(&self, limits: &Limits, speed: f64, own: &Limits) -> Option<Limits> {
+    /// `None` if nothing is left: at rest with nothing wanted, or already at the highest velocity. Cost: at most 40 halvings.
+    pub fn shadow(&self, limits: &Limits, wanted: f64, present: f64) -> Option<Limits> {
         let most = self.highest_velocity(limits);
-        let velocity = (0.98 * most).min(1.05 * speed).min(own.velocity);
+        let velocity = (0.98 * most).min(wanted);
+        let v = larger(velocity, present.abs());
         let room = |limit: f64, used: f64| {
             if limit == f64::INFINITY {
                 f64::INFINITY
@@ -196,16 +292,15 @@ impl CamBounds {
                 (limit - used) / self.first
             }
         };
-        let v = velocity;
         let rate = limits.lower_acceleration();
-        let mut acceleration = room(rate, self.second * v * v).min(own.lower_acceleration());
+        let mut acceleration = room(rate, self.second * v * v);
         // At order 2 the jerk has no limit; at order 3 the snap.
         let mut jerk = f64::INFINITY;
         if limits.jerk.is_finite() {
             let mut is_found = false;
             for _ in 0..HALVINGS {
                 let used = self.third * v * v * v + 3.0 * self.second * v * acceleration;
-                jerk = room(limits.jerk, used).min(own.jerk);
+                jerk = room(limits.jerk, used);
                 is_found = jerk > 0.0;
                 if is_found {
                     break;
@@ -224,7 +319,7 @@ impl CamBounds {
                 let used = self.fourth * v * v * v * v
                     + 6.0 * self.third * v * v * a
                     + self.second * (3.0 * a * a + 4.0 * v * jerk);
-                snap = room(limits.snap, used).min(own.snap);
+                snap = room(limits.snap, used);
                 is_found = snap > 0.0;
                 if is_found {
                     break;

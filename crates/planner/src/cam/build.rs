@@ -55,6 +55,11 @@ impl CamBuild {
         })
     }
 
+    /// No piece has been made yet.
+    pub const fn is_new(&self) -> bool {
+        self.next == 0
+    }
+
     /// Makes the next pieces, at most `most`, of the rows that `row` gives by number, from 0, into `pieces`, one fewer than there
     /// are rows. The rows must stay the same from call to call. Returns the cam when it is complete.
     ///

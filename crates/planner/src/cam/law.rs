@@ -155,29 +155,13 @@ impl CamLaw {
         }
     }
 
-    /// What the derivatives of the slave by the master are bounded by where the master goes this far from its place, down and up
-    /// (u): those of the pieces it passes.
+    /// What the derivatives of the slave by its master are bounded by from `low` to `high` on the master's side of the cam, neither
+    /// taken back into one period ([`CamLaw::unwound`]).
     ///
-    /// Cost: a look at each of at most `most` pieces; where it passes more, those of the whole cam are taken.
-    pub fn bounds_ahead(&self, cam: &Cam<'_>, at: &CamAt, (down, up): (f64, f64), most: usize) -> CamBounds {
-        let all = || cam.head.bounds.scaled(self.master_scaling, self.slave_scaling);
-        let per = 1.0 / self.master_scaling;
-        let (one, other) = (at.x + down * per, at.x + up * per);
-        let (low, high) = if one < other { (one, other) } else { (other, one) };
-        let inside = low >= cam.head.begin && high < cam.head.end;
-        if !inside && cam.head.periodic {
-            return all();
-        }
-        let (from, to) = (cam.find(low, at.piece), cam.find(high, at.piece));
-        let count = usize::from(to.saturating_sub(from)) + 1;
-        if count > most {
-            return all();
-        }
-        let passed = cam.pieces.iter().skip(usize::from(from)).take(count);
-        let bounds = passed.fold(CamBounds::default(), |bounds, piece| {
-            bounds.or_larger(piece.bounds())
-        });
-        bounds.scaled(self.master_scaling, self.slave_scaling)
+    /// Cost: a look at each piece between them, at most 4; where there are more, those of the whole cam are taken.
+    pub fn bounds_between(&self, cam: &Cam<'_>, low: f64, high: f64) -> CamBounds {
+        cam.bounds_between(low, high)
+            .scaled(self.master_scaling, self.slave_scaling)
     }
 }
 

@@ -197,6 +197,16 @@ impl<'a> Cam<'a> {
         u16::try_from(index).unwrap_or_default()
     }
 
+    /// Where the piece of that number begins and ends (u); the last one for a larger number.
+    pub fn ends_of(&self, index: u16) -> (f64, f64) {
+        let last = self.pieces.len().saturating_sub(1);
+        let piece = self.pieces.get(usize::from(index).min(last));
+        piece.map_or((self.head.begin, self.head.end), |piece| {
+            let next = self.pieces.get(usize::from(index).min(last) + 1);
+            (piece.begin, next.map_or(self.head.end, |next| next.begin))
+        })
+    }
+
     /// The piece of that number.
     pub fn piece(&self, index: u16) -> Option<&'a CamPiece> {
         self.pieces.get(usize::from(index))

@@ -25,6 +25,7 @@ pub fn subject<'n>(names: &'n impl Called, record: &Record) -> &'n str {
         | Event::Slowed { .. }
         | Event::Superimposed { .. }
         | Event::RoomAwaited
+        | Event::CamSelected { .. }
         | Event::Orphaned => names.instance(record.instance.0).unwrap_or(axis),
         Event::Unavoidable(_)
         | Event::Planned { .. }
@@ -36,6 +37,11 @@ pub fn subject<'n>(names: &'n impl Called, record: &Record) -> &'n str {
         | Event::GearLost { .. }
         | Event::SyncLate { .. }
         | Event::Phasing { .. }
+        | Event::OnCam { .. }
+        | Event::OntoCam { .. }
+        | Event::InSync
+        | Event::SyncLost { .. }
+        | Event::CamPassed { .. }
         | Event::Shifted { .. } => axis,
     }
 }
@@ -187,6 +193,46 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
             in_scans(out, scans)
         }
         Event::InGear => out.write_str("in gear"),
+        Event::CamSelected { velocity, limit } if velocity < limit => {
+            out.write_str("cam limits the master to ")?;
+            real(out, velocity)?;
+            out.write_str(", below its limit ")?;
+            real(out, limit)
+        }
+        Event::CamSelected { velocity, .. } => {
+            out.write_str("cam fast enough: the master may go up to ")?;
+            real(out, velocity)
+        }
+        Event::OnCam { master, .. } => {
+            out.write_str("onto a cam behind ")?;
+            out.write_str(names.axis(master.index()))
+        }
+        Event::OntoCam { way, value, scans } => {
+            out.write_str("plan")?;
+            if let Some(name) = names.instance(record.instance.0) {
+                out.write_str(" for ")?;
+                out.write_str(name)?;
+            }
+            out.write_str(": ")?;
+            out.write_str(way.name())?;
+            if way != Approach::Difference {
+                out.write_str(if way == Approach::Move { " to " } else { " at " })?;
+                real(out, value)?;
+            }
+            in_scans(out, scans)
+        }
+        Event::InSync => out.write_str("in sync"),
+        Event::SyncLost { what, value, limit } => {
+            out.write_str("sync lost: ")?;
+            out.write_str(what)?;
+            out.write_str(" ")?;
+            real(out, value)?;
+            limited(out, limit)
+        }
+        Event::CamPassed { periods } => {
+            whole(out, periods.into())?;
+            out.write_str(" ends of the cam in one scan")
+        }
         Event::Phasing { to, scans } => {
             out.write_str("phase")?;
             if let Some(name) = names.instance(record.instance.0) {

@@ -519,6 +519,12 @@ impl<H: Hands> Run<'_, H> {
                 | Event::GearLost { .. }
                 | Event::SyncLate { .. }
                 | Event::Phasing { .. }
+                | Event::CamSelected { .. }
+                | Event::OnCam { .. }
+                | Event::OntoCam { .. }
+                | Event::InSync
+                | Event::SyncLost { .. }
+                | Event::CamPassed { .. }
                 | Event::Fault { .. } => {}
             }
         }

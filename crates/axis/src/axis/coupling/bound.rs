@@ -254,6 +254,7 @@ impl<P: Planner> Axis<P> {
             Work::Profile { .. }
             | Work::Torque { .. }
             | Work::Gear(_)
+            | Work::Cam(_)
             | Work::SetPosition { .. }
             | Work::Write(_) => false,
         }

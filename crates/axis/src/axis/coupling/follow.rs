@@ -519,7 +519,7 @@ impl<P: Planner> Axis<P> {
     /// What of the state `next` at `place` is beyond `limits`. Where nothing is known of what
     /// comes (`rough` says how the master moves), a step that no motion within them makes, and a state that can only lead beyond
     /// them, are, too. Cost: then a ramp.
-    fn beyond(
+    pub(super) fn beyond(
         &self,
         place: Option<Place>,
         next: &Setpoint,
@@ -594,7 +594,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Publishes `next`, whose whole turns are those of `place`, if it may follow the last set-point.
-    fn publish_behind(&mut self, place: Place, mut next: Setpoint, scope: &mut Scope<'_>) {
+    pub(super) fn publish_behind(&mut self, place: Place, mut next: Setpoint, scope: &mut Scope<'_>) {
         let before = self.setpoint.position;
         let mut turns = place.turns;
         if let Some(modulo) = &self.modulo {

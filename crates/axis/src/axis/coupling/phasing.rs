@@ -120,6 +120,9 @@ impl<P: Planner> Axis<P> {
             return Err(self.refuse("BufferMode", number, f64::NAN, ErrorId::BufferModeInvalid, scope));
         };
         self.finite("PhaseShift", request.shift, scope)?;
+        if self.master_on_cam() == Some(request.master) {
+            self.beside_no_cam("Master", scope)?;
+        }
         let limits = self.limits_of_shift(request, scope)?;
         let is_asked = |master: &Option<AxisId>| *master == Some(request.master);
         let leg = self.followed().iter().position(is_asked);

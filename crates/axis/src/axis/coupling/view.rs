@@ -363,5 +363,6 @@ impl<P: Planner> Axis<P> {
         if let Some(coupling) = &mut self.coupling {
             coupling.was = seen;
         }
+        self.note_master_on_cam(seen[0]);
     }
 }

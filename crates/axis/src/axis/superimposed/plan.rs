@@ -346,7 +346,7 @@ impl<P: Planner> Axis<P> {
                 return Err(ErrorId::InMotion);
             }
         }
-        if matches!(entry.work, Work::Torque { .. } | Work::Gear(_)) && self.layer.is_some() {
+        if matches!(entry.work, Work::Torque { .. } | Work::Gear(_) | Work::Cam(_)) && self.layer.is_some() {
             if self.layer.as_ref().is_some_and(Layer::moves) {
                 return Ok(None);
             }

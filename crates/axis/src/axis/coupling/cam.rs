@@ -1,0 +1,434 @@
+//! On a cam: MC_CamIn and MC_CamOut on the slave's side.
+//!
+//! In sync the set-point *is* the cam at the master's place of the same scan ([`CamLaw`]). A slave that can't be there stays on the
+//! curve all the same, at the place of a master of its own that lags, its shadow: a lag in position would lead a tool off the
+//! curve, and into what it is to avoid. Only before it has come onto the curve the slave moves in its own coordinates, by a move
+//! to a place of the curve at which it rests.
+//!
+//! | file | subject |
+//! | --- | --- |
+//! | [`follow`] | the motion step of a slave on a cam |
+//! | [`onto`] | how it comes onto the curve, and its shadow in step with the master |
+//! | [`ahead`] | whether it keeps its limits along what the master does next |
+//! | [`ends`], [`after`] | ends of periods, and what follows then |
+//!
+//! Source: PLCopen Motion Control Part 1, MC_CamTableSelect, MC_CamIn, MC_CamOut; V20 to V20b, S8. What the standard leaves open is
+//! told in docs/cams.md.
+
+mod after;
+mod ahead;
+mod ends;
+mod follow;
+mod onto;
+
+use super::super::Axis;
+use super::super::commands::{Camming, Entry};
+use super::view::{Known, Seen};
+use super::{Coupled, Values};
+use crate::{AxisId, CamId, CamIn, CamSelection, ErrorId, Event, OnLimit, Scope, StartMode, ValueSource};
+use ends::Ends;
+use standstill_planner::{Anchor, Cam, CamAt, CamBounds, CamHead, CamLaw, Limits, Place, Planner, Setpoint};
+
+/// Where the slave is, and what moves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Rung {
+    /// The next motion step decides.
+    Due,
+    /// It is in sync.
+    Locked,
+    /// On the curve, at a place of its own: a plan beside the line from `start` with this velocity (u/s of the master), which the
+    /// master follows from so many scans after the start of the plan on.
+    BesideLine { start: Place, velocity: f64, begin: u64 },
+    /// The same beside the master itself.
+    BesideMaster,
+    /// A move in the slave's own coordinates, in its turn of this number, to where the curve is when the master is at this place.
+    Moving { turns: i64, to: Place },
+    /// It waits where it is: there is no way onto the curve yet.
+    Waiting,
+    /// The master went out of operation: the slave rests until a block couples it anew.
+    Lost,
+}
+
+/// The place of a master on its own way, and how it moves there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Shadow {
+    place: Place,
+    at: Setpoint,
+}
+
+/// How the owner is on a cam.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::axis) struct OnCam {
+    camming: Camming,
+    /// Where the cam lies, once it does.
+    anchor: Option<Anchor>,
+    rung: Rung,
+    /// It has been in sync.
+    was_in_sync: bool,
+    /// Where the slave is on the curve, if it is, as a place of its master.
+    shadow: Option<Shadow>,
+    /// The limits of the shadow in motion.
+    shadow_limits: Limits,
+    /// The place on the cam at the end of the scan before.
+    at: CamAt,
+    ends: Ends,
+    /// The master at the end of the scan before, in its coordinates of now.
+    was: Seen,
+    /// What was known of its way ahead.
+    known: Known,
+    /// Scans until the way is looked for again; the largest number for never.
+    left: u64,
+    /// The limits it was last held against.
+    limits: Limits,
+    /// How often the slave's own coordinates had moved.
+    moves: u32,
+    /// By how much the slave is off the cam at its master's place (u).
+    deviation: f64,
+}
+
+/// A cam as it lies.
+#[derive(Clone, Copy)]
+struct Curve<'a> {
+    cam: Cam<'a>,
+    law: CamLaw,
+    anchor: Anchor,
+}
+
+impl Curve<'_> {
+    /// Where the slave is for a master at `place`.
+    fn at(&self, place: Place, moving: &Setpoint, near: u16) -> CamAt {
+        self.law.at(&self.cam, &self.anchor, place, moving, near)
+    }
+
+    /// The master's place on its side of the cam, not taken back into one period (u).
+    fn unwound(&self, place: Place) -> f64 {
+        self.law.unwound(&self.cam, &self.anchor, place)
+    }
+
+    /// The same the other way round: a place of the master at `x` (u), as seen from `near`.
+    fn place_of(&self, x: f64, near: Place) -> Place {
+        let further = (x - self.unwound(near)) * self.law.master_scaling;
+        Place {
+            position: near.position + further,
+            ..near
+        }
+    }
+
+    /// What its derivatives are bounded by anywhere.
+    fn bounds(&self) -> CamBounds {
+        let head = self.cam.head;
+        head.bounds
+            .scaled(self.law.master_scaling, self.law.slave_scaling)
+    }
+
+    /// A period later the slave is where it was.
+    fn repeats(&self) -> bool {
+        let head = self.cam.head;
+        head.periodic && head.from == head.to
+    }
+
+    /// One period of the master (u of the master), without its sign.
+    fn period(&self) -> f64 {
+        ((self.cam.head.end - self.cam.head.begin) * self.law.master_scaling).abs()
+    }
+}
+
+impl OnCam {
+    fn new(camming: Camming, limits: Limits, moves: u32) -> Self {
+        Self {
+            camming,
+            anchor: None,
+            rung: Rung::Due,
+            was_in_sync: false,
+            shadow: None,
+            shadow_limits: Limits::NONE,
+            at: CamAt::default(),
+            ends: Ends::default(),
+            was: Seen::default(),
+            known: Known::default(),
+            left: u64::MAX,
+            limits,
+            moves,
+            deviation: 0.0,
+        }
+    }
+
+    /// The cam as it lies, once it does.
+    fn curve<'a>(&self, cam: Cam<'a>) -> Option<Curve<'a>> {
+        Some(Curve {
+            cam,
+            law: self.camming.law,
+            anchor: self.anchor?,
+        })
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// The owner is on a cam.
+    #[inline]
+    pub(crate) fn is_on_cam(&self) -> bool {
+        self.on_cam.is_some()
+    }
+
+    /// The owner is on this cam, or a command that waits is for it.
+    pub fn uses_cam(&self, id: CamId) -> bool {
+        let is_of = |entry: &Entry| matches!(entry.work, super::super::commands::Work::Cam(camming) if camming.cam == id);
+        let runs = self
+            .on_cam
+            .as_ref()
+            .is_some_and(|on_cam| on_cam.camming.cam == id);
+        runs || self.owner.as_ref().is_some_and(is_of) || self.queue.iter().any(is_of)
+    }
+
+    /// How often an end of the cam was reached since the owner is on it: a number that only grows, until it wraps.
+    pub fn cam_ends(&self) -> u32 {
+        self.on_cam.as_ref().map_or(0, |on_cam| on_cam.ends.count())
+    }
+
+    /// What MC_CamTableSelect tells of a complete cam: the highest constant velocity of `master` (u/s) with which this axis can
+    /// follow it, without scalings.
+    ///
+    /// # Errors
+    /// What of the cam this axis can't follow: [`ErrorId::CamNotSmooth`], [`ErrorId::TargetOutsideSoftwareLimits`] of an absolute
+    /// cam, [`ErrorId::CamBeyondLimits`]. It is recorded.
+    pub fn check_cam(
+        &self,
+        head: &CamHead,
+        selection: &CamSelection,
+        master_velocity: f64,
+        scope: &mut Scope<'_>,
+    ) -> Result<f64, ErrorId> {
+        let limits = self.slowed(&self.parameters.limits);
+        let needed = limits.order().degree().saturating_sub(1);
+        if usize::from(head.continuity) < needed {
+            let what = ["Slope", "Curvature", "Third"]
+                .get(usize::from(head.continuity))
+                .copied()
+                .unwrap_or_default();
+            let (row, jump) = head.jump;
+            return Err(self.refuse_row(row, what, jump, 0.0, ErrorId::CamNotSmooth, scope));
+        }
+        if selection.slave_absolute && self.modulo.is_none() {
+            let (low, high) = head.range;
+            for place in [high, low] {
+                if let Err(error) = self.allowed(place) {
+                    let limit = self.broken_software_limit(place);
+                    return Err(self.refuse("CamTable", place, limit, error, scope));
+                }
+            }
+        }
+        let highest = head.bounds.highest_velocity(&limits);
+        let is_slower = highest < master_velocity;
+        if is_slower && self.config.following.on_limit == OnLimit::Error {
+            let error = ErrorId::CamBeyondLimits;
+            return Err(self.refuse("CamTable", master_velocity, highest, error, scope));
+        }
+        let event = Event::CamSelected {
+            velocity: highest,
+            limit: master_velocity,
+        };
+        self.record(event, scope);
+        Ok(highest)
+    }
+
+    /// Records that a row of a table is refused, and passes its error on.
+    pub fn refuse_row(
+        &self,
+        row: usize,
+        what: &'static str,
+        value: f64,
+        limit: f64,
+        error: ErrorId,
+        scope: &mut Scope<'_>,
+    ) -> ErrorId {
+        let refused = Event::PointRefused {
+            point: u16::try_from(row).unwrap_or(u16::MAX),
+            what,
+            value,
+            limit,
+            error,
+        };
+        self.record(refused, scope);
+        error
+    }
+
+    pub(in crate::axis) fn master_on_cam(&self) -> Option<AxisId> {
+        self.on_cam.as_ref().map(|on_cam| on_cam.camming.master)
+    }
+
+    pub(super) fn values_on_cam(&self) -> Option<Values> {
+        let on_cam = self.on_cam.as_ref()?;
+        Some((on_cam.camming.master, on_cam.camming.source))
+    }
+
+    pub(super) fn has_lost_master_on_cam(&self) -> bool {
+        self.on_cam
+            .as_ref()
+            .is_some_and(|on_cam| on_cam.rung == Rung::Lost)
+    }
+
+    pub(super) fn deviation_on_cam(&self) -> f64 {
+        self.on_cam.as_ref().map_or(0.0, |on_cam| on_cam.deviation)
+    }
+
+    /// In sync, and where the cam has not begun yet that is not told.
+    pub(super) fn is_in_sync_on_cam(&self) -> bool {
+        let is_in_sync = |on_cam: &OnCam| on_cam.rung == Rung::Locked && on_cam.ends.has_begun();
+        self.on_cam.as_ref().is_some_and(is_in_sync)
+    }
+
+    pub(super) fn coupled_on_cam(&self) -> Option<Coupled> {
+        let on_cam = self.on_cam.as_ref()?;
+        let place = on_cam.shadow.map(|shadow| shadow.place);
+        let turn = on_cam.camming.law.master_turn;
+        let shadow = place.map(|place| match turn {
+            Some(length) => standstill_planner::turns::split(place.position, length).1,
+            None => place.position,
+        });
+        Some(Coupled {
+            master: on_cam.camming.master,
+            deviation: on_cam.deviation,
+            phase: 0.0,
+            second: None,
+            superimposed: 0.0,
+            shadow,
+        })
+    }
+
+    /// Before any axis has moved in this scan: its master is there.
+    pub(super) fn note_master_on_cam(&mut self, seen: Seen) {
+        if let Some(on_cam) = &mut self.on_cam {
+            on_cam.was = seen;
+        }
+    }
+
+    /// The motion is not on the curve for a while.
+    pub(super) fn leave_cam(&mut self) {
+        if let Some(on_cam) = &mut self.on_cam {
+            on_cam.rung = Rung::Due;
+            on_cam.shadow = None;
+        }
+    }
+
+    /// What can't be beside a cam is refused at `pin`.
+    ///
+    /// # Errors
+    /// [`ErrorId::CamBesideUnsupported`].
+    pub(in crate::axis) fn beside_no_cam(
+        &self,
+        pin: &'static str,
+        scope: &mut Scope<'_>,
+    ) -> Result<(), ErrorId> {
+        if !self.is_on_cam() {
+            return Ok(());
+        }
+        let error = ErrorId::CamBesideUnsupported;
+        Err(self.refuse(pin, f64::from(self.id.number()), f64::NAN, error, scope))
+    }
+
+    /// The values at the pins of MC_CamIn.
+    pub(in crate::axis) fn check_cam_in(
+        &self,
+        cam: &CamIn,
+        scope: &mut Scope<'_>,
+    ) -> Result<Camming, ErrorId> {
+        let mut refuse = |pin, value: f64, limit, error| Err(self.refuse(pin, value, limit, error, scope));
+        if cam.master.axis == self.id {
+            let number = f64::from(cam.master.axis.number());
+            return refuse("Master", number, f64::NAN, ErrorId::CouplingRing);
+        }
+        let number = f64::from(cam.source.number());
+        let source = match cam.source.get() {
+            Some(source @ (ValueSource::Set | ValueSource::Actual)) => source,
+            Some(ValueSource::Commanded) => {
+                return refuse("MasterValueSource", number, 1.0, ErrorId::MasterSourceInvalid);
+            }
+            None => return refuse("MasterValueSource", number, 2.0, ErrorId::SourceInvalid),
+        };
+        let Some(mode) = cam.start_mode.get() else {
+            let number = f64::from(cam.start_mode.number());
+            return refuse("StartMode", number, 2.0, ErrorId::SyncModeInvalid);
+        };
+        for (pin, value) in [
+            ("MasterScaling", cam.master_scaling),
+            ("SlaveScaling", cam.slave_scaling),
+        ] {
+            // So far from 1 that a cam and its derivatives are not finite any more.
+            if !(value.is_normal() && value.abs() > 1e-30 && value.abs() < 1e30) {
+                return refuse(pin, value, f64::NAN, ErrorId::CamScalingInvalid);
+            }
+        }
+        for (pin, value) in [
+            ("MasterOffset", cam.master_offset),
+            ("SlaveOffset", cam.slave_offset),
+        ] {
+            if !value.is_finite() {
+                return refuse(pin, value, f64::NAN, ErrorId::CamScalingInvalid);
+            }
+        }
+        if !cam.sync_position.is_finite() {
+            let error = ErrorId::SyncPositionInvalid;
+            return refuse("MasterSyncPosition", cam.sync_position, f64::NAN, error);
+        }
+        if cam.start_distance != 0.0 {
+            let error = ErrorId::CamBesideUnsupported;
+            return refuse("MasterStartDistance", cam.start_distance, 0.0, error);
+        }
+        if self.config.following.on_limit == OnLimit::SlowMaster {
+            let number = f64::from(self.id.number());
+            return refuse("Slave", number, f64::NAN, ErrorId::CamBesideUnsupported);
+        }
+        let Some(selection) = scope.cams.selection(cam.table) else {
+            let number = f64::from(cam.table.number());
+            return Err(self.refuse("CamTableID", number, f64::NAN, ErrorId::CamUnknown, scope));
+        };
+        let slave_turn = self.modulo.as_ref().map(|modulo| modulo.length);
+        Ok(Camming {
+            master: cam.master.axis,
+            source,
+            cam: cam.table,
+            law: CamLaw {
+                master_scaling: cam.master_scaling,
+                slave_scaling: cam.slave_scaling,
+                origin: 0.0,
+                master_turn: cam.master.turn,
+                slave_turn,
+            },
+            master_absolute: selection.master_absolute,
+            slave_absolute: selection.slave_absolute && mode != StartMode::Relative,
+            master_offset: cam.master_offset,
+            slave_offset: cam.slave_offset,
+            sync: (cam.sync_position != 0.0).then_some(cam.sync_position),
+        })
+    }
+
+    /// `entry` goes onto a cam from the next motion step on, or has new values for it.
+    pub(super) fn await_master_on_cam(&mut self, camming: Camming, entry: &Entry, scope: &mut Scope<'_>) {
+        self.is_bound = true;
+        let known = self.on_cam.as_ref().map(|on_cam| on_cam.camming);
+        if known != Some(camming) {
+            let event = Event::OnCam {
+                master: camming.master,
+                cam: camming.cam,
+            };
+            self.record(event, &mut scope.with(entry.instance));
+        }
+        let (limits, moves) = (self.slowed(&self.parameters.limits), self.frame.moves());
+        let on_cam = self
+            .on_cam
+            .get_or_insert_with(|| OnCam::new(camming, limits, moves));
+        let is_lost = on_cam.rung == Rung::Lost;
+        if on_cam.camming != camming {
+            // Where the master was lost other values are no wish to move again.
+            let ends = on_cam.ends;
+            *on_cam = OnCam {
+                was: on_cam.was,
+                known: on_cam.known,
+                ends: ends.anew(),
+                ..OnCam::new(camming, limits, moves)
+            };
+        }
+        on_cam.rung = if is_lost { Rung::Lost } else { Rung::Due };
+        self.stir();
+    }
+}

@@ -1,0 +1,397 @@
+//! The motion step of a slave on a cam: after that of its master.
+
+use super::super::super::power::Reaction;
+use super::super::super::{Axis, Motion};
+use super::super::follow::{Beyond, ROUNDING, off};
+use super::super::needs::RESOLVED;
+use super::super::view::{Kind, View};
+use super::{Curve, OnCam, Rung, Shadow};
+use crate::{ErrorId, Event, OnLimit, OnMasterLost, Scope};
+use standstill_planner::{CamAt, Lead, Place, Plan, Planner, Setpoint};
+
+impl<P: Planner> Axis<P> {
+    /// [`Axis::advance`] of an axis on a cam, with a look at its master.
+    ///
+    /// Cost: in sync one evaluation of the cam, and one ramp while what the master does next is not known or there are software
+    /// limits; where the master got another plan, a look along it ([`Axis::beyond_on_cam`]) and at most ten plans.
+    #[inline(never)]
+    pub(crate) fn advance_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        self.apply_power(scope);
+        self.follow_torque_order();
+        if !self.is_on_cam() {
+            return self.advance(scope);
+        }
+        self.end_idle_halt();
+        if !view.is_operating() && !self.has_lost_master() {
+            match self.config.following.on_master_lost {
+                OnMasterLost::Error => {
+                    self.fail(ErrorId::MasterLost, scope);
+                    return self.finish_reset();
+                }
+                OnMasterLost::Hold => self.hold_on_cam(scope),
+            }
+        }
+        // One that no block follows has become a halt.
+        if self.has_lost_master() || !self.is_on_cam() {
+            return self.advance(scope);
+        }
+        self.rebase_cam(view, scope.scan);
+        let is_new = self.look_ahead_on_cam(view);
+        if self.is_paused() {
+            if is_new {
+                self.resume(scope);
+            }
+            if self.is_paused() {
+                self.advance(scope);
+                return self.measure_on_cam(view, scope);
+            }
+        }
+        // A slave that must not lag is in sync until it can't be.
+        let is_locked = self.cam_rung() == Some(Rung::Locked);
+        let stays = is_locked && self.config.following.on_limit == OnLimit::Error;
+        if (is_new && !stays) || self.cam_rung() == Some(Rung::Due) {
+            self.decide_on_cam(view, true, scope);
+            self.note_source();
+        }
+        if self.is_on_cam() {
+            self.step_on_cam(view, scope);
+        }
+        self.measure_on_cam(view, scope);
+        self.end_of_cam(view, scope);
+        self.finish_reset();
+    }
+
+    pub(super) fn cam_rung(&self) -> Option<Rung> {
+        self.on_cam.as_ref().map(|on_cam| on_cam.rung)
+    }
+
+    /// Coordinates of master or slave have moved: the cam moves with them, and nobody else.
+    fn rebase_cam(&mut self, view: &View<'_, P::Plan>, scan: u64) {
+        let moves = self.frame.moves();
+        let own = self.coordinates_moved(scan);
+        let Some(on_cam) = &mut self.on_cam else { return };
+        // What moved in the motion step itself was not seen before it.
+        let late = view.now.moved - on_cam.was.moved;
+        on_cam.was.place.position += late;
+        on_cam.was.at.position += late;
+        let slave_moved = on_cam.moves != moves;
+        on_cam.moves = moves;
+        let (by, own) = (view.now.moved, if slave_moved { own } else { 0.0 });
+        if by == 0.0 && own == 0.0 {
+            return;
+        }
+        if let Some(shadow) = &mut on_cam.shadow {
+            shadow.place.position += by;
+        }
+        if let Some(anchor) = &mut on_cam.anchor {
+            anchor.master.position += by;
+            anchor.slave.position += own;
+        }
+        on_cam.at.place.position += own;
+        match &mut on_cam.rung {
+            Rung::BesideLine { start, .. } => start.position += by,
+            Rung::Moving { to, .. } => to.position += by,
+            Rung::Due | Rung::Locked | Rung::BesideMaster | Rung::Waiting | Rung::Lost => {}
+        }
+        if let (Motion::Closing { plan, .. }, Rung::Moving { .. }) = (&mut self.motion, on_cam.rung) {
+            plan.shift(own);
+        }
+    }
+
+    /// Notes what the master does next. Returns whether that, or a limit, is another one than in the scan before, or the way is to
+    /// be looked for again.
+    fn look_ahead_on_cam(&mut self, view: &View<'_, P::Plan>) -> bool {
+        let limits = self.slowed(&self.parameters.limits);
+        let Some(on_cam) = &mut self.on_cam else {
+            return false;
+        };
+        let (known, goes_on) = view.future.compare(&on_cam.known);
+        on_cam.known = known;
+        let is_over = on_cam.left == 0;
+        on_cam.left = match on_cam.left {
+            u64::MAX => u64::MAX,
+            left => left.saturating_sub(1),
+        };
+        let lowered = on_cam.limits != limits;
+        on_cam.limits = limits;
+        !goes_on || lowered || (is_over && on_cam.rung != Rung::Locked)
+    }
+
+    /// The plan of the master, if it is known.
+    pub(super) fn lead_of_master<'a>(&self, view: &View<'a, P::Plan>) -> Option<Lead<'a, P::Plan>> {
+        let leads = view
+            .future
+            .leads(|leg, factor| if leg == 0 { factor } else { 0.0 })?;
+        let [lead, _] = leads;
+        lead
+    }
+
+    /// Whether the cam keeps the limits of the slave as far as is known, with the slave at the place of its master: from the end of
+    /// this scan on if it `is_over`, else from the end of the one before. What is beyond them is told.
+    pub(super) fn keeps_on_cam(
+        &self,
+        curve: &Curve<'_>,
+        view: &View<'_, P::Plan>,
+        is_over: bool,
+    ) -> Result<(), Beyond> {
+        let Some(on_cam) = &self.on_cam else { return Ok(()) };
+        let is_late = view.future.is_late();
+        let found = match (view.future.kind(), self.lead_of_master(view)) {
+            (Kind::Plan, Some(mut lead)) if self.planner.stretch(&[Some(lead), None]).is_some() => {
+                // A step that was not of this plan was never looked at.
+                let now = is_late.then(|| self.beyond_on_cam_now(curve, view)).flatten();
+                let place = if is_late || is_over {
+                    view.now.place
+                } else {
+                    on_cam.was.place
+                };
+                if is_over && !is_late {
+                    lead.elapsed = lead.elapsed.saturating_add(1);
+                }
+                now.or_else(|| self.beyond_on_cam(curve, &lead, place, &on_cam.limits))
+            }
+            _ => self.beyond_on_cam_now(curve, view),
+        };
+        found.map_or(Ok(()), Err)
+    }
+
+    /// What the cam asks for beyond the limits in this scan, where nothing is known of what comes.
+    fn beyond_on_cam_now(&self, curve: &Curve<'_>, view: &View<'_, P::Plan>) -> Option<Beyond> {
+        let on_cam = self.on_cam.as_ref()?;
+        let at = curve.at(view.now.place, &view.now.at, on_cam.at.piece);
+        self.beyond(Some(at.place), &at.state, &on_cam.limits, Some(false))
+    }
+
+    fn step_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        match (&self.motion, self.cam_rung()) {
+            (Motion::Geared, Some(Rung::Locked)) => self.step_in_sync(view, scope),
+            (Motion::Closing { .. }, Some(Rung::Moving { turns, to })) => {
+                self.step_to_cam(turns, to, view, scope);
+            }
+            (Motion::Closing { .. }, Some(Rung::BesideLine { .. } | Rung::BesideMaster)) => {
+                self.step_along_cam(view, scope);
+            }
+            _ => self.advance(scope),
+        }
+    }
+
+    /// Where the slave is on the curve for a master there.
+    fn on_curve(&self, place: Place, moving: &Setpoint, scope: &Scope<'_>) -> Option<CamAt> {
+        let on_cam = self.on_cam.as_ref()?;
+        let curve = on_cam.curve(scope.cams.cam(on_cam.camming.cam)?)?;
+        Some(curve.at(place, moving, on_cam.at.piece))
+    }
+
+    /// In sync: the set-point is the cam.
+    fn step_in_sync(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let held = self.held_end();
+        let at = held.or_else(|| self.on_curve(view.now.place, &view.now.at, scope));
+        let (Some(at), Some(on_cam)) = (at, &self.on_cam) else {
+            return self.fail(ErrorId::SetpointBroken, scope);
+        };
+        let limits = on_cam.limits;
+        let rough = match view.future.kind() {
+            _ if self.config.following.on_limit == OnLimit::Error => Some(false),
+            Kind::Unknown | Kind::Measured | Kind::Still | Kind::NotSeen => Some(false),
+            Kind::Plan if view.future.is_late() => Some(false),
+            Kind::Plan => None,
+        };
+        let rough = rough.filter(|_| held.is_none());
+        if let Some(reason) = self.beyond(Some(at.place), &at.state, &limits, rough) {
+            self.lose_sync(reason, scope);
+            if self.config.following.on_limit == OnLimit::Error {
+                return self.fail(ErrorId::DeviationTooLarge, scope);
+            }
+            self.decide_on_cam(view, false, scope);
+            if self.is_on_cam() {
+                self.step_on_cam(view, scope);
+            }
+            return;
+        }
+        self.in_force = limits;
+        self.before = limits;
+        let shadow = Shadow {
+            place: view.now.place,
+            at: view.now.at,
+        };
+        self.publish_on_cam(&at, shadow, scope);
+    }
+
+    /// Publishes a place of the curve, at which the slave is from now on.
+    fn publish_on_cam(&mut self, at: &CamAt, shadow: Shadow, scope: &mut Scope<'_>) {
+        if let Some(on_cam) = &mut self.on_cam {
+            on_cam.at = *at;
+            on_cam.shadow = Some(shadow);
+        }
+        self.publish_behind(at.place, at.state, scope);
+    }
+
+    /// Along the curve by a plan for the place of a master of its own.
+    fn step_along_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let cycle = self.planner.cycle();
+        let Motion::Closing { plan, elapsed, scans } = &mut self.motion else {
+            return;
+        };
+        *elapsed = elapsed.wrapping_add(1);
+        let (elapsed, is_over) = (*elapsed, *elapsed >= *scans);
+        let beside = plan.next(elapsed);
+        let now = &view.now;
+        let (frame_place, frame, arrives) = match self.cam_rung() {
+            Some(Rung::BesideLine {
+                start,
+                velocity,
+                begin,
+            }) => {
+                let line = Setpoint {
+                    velocity,
+                    ..Setpoint::at_rest(start.position + velocity * (elapsed as f64 * cycle))
+                };
+                let is_even = now.at.acceleration == 0.0 && now.at.jerk == 0.0;
+                (start, line, is_over && is_even && elapsed >= begin)
+            }
+            _ => (now.place, now.at, is_over),
+        };
+        let next = frame.plus(&beside);
+        let shadow = Shadow {
+            place: Place {
+                position: next.position,
+                ..frame_place
+            },
+            at: next,
+        };
+        if arrives && self.arrive_on_cam(&shadow, view, scope) {
+            return;
+        }
+        let Some(at) = self.on_curve(shadow.place, &shadow.at, scope) else {
+            return self.fail(ErrorId::SetpointBroken, scope);
+        };
+        self.publish_on_cam(&at, shadow, scope);
+    }
+
+    /// The shadow has come to its master: in sync from now on, if that keeps the limits. Returns whether it is.
+    fn arrive_on_cam(&mut self, shadow: &Shadow, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
+        let Some(on_cam) = &self.on_cam else { return false };
+        let turn = on_cam.camming.law.master_turn.unwrap_or(0.0);
+        let numbers = shadow.place.position.abs() + view.now.place.position.abs() + turn;
+        let is_there = off(shadow.place, view.now.place, turn).abs() <= RESOLVED * 4.0 * numbers;
+        let speed = on_cam.shadow_limits.velocity.min(f64::MAX);
+        let is_even = (shadow.at.velocity - view.now.at.velocity).abs() <= ROUNDING * speed;
+        let cam = scope.cams.cam(on_cam.camming.cam);
+        let curve = cam.and_then(|cam| on_cam.curve(cam));
+        let Some(curve) = curve.filter(|_| is_there && is_even) else {
+            if let Some(on_cam) = &mut self.on_cam {
+                on_cam.left = 0;
+            }
+            return false;
+        };
+        if self.keeps_on_cam(&curve, view, true).is_err() {
+            return false;
+        }
+        let at = curve.at(view.now.place, &view.now.at, on_cam.at.piece);
+        let shadow = Shadow {
+            place: view.now.place,
+            at: view.now.at,
+        };
+        self.publish_on_cam(&at, shadow, scope);
+        if self.is_on_cam() && !self.is_paused() {
+            self.lock_on_cam(scope);
+        }
+        true
+    }
+
+    /// By a move of its own to a place of the curve.
+    fn step_to_cam(&mut self, turns: i64, to: Place, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let Motion::Closing { plan, elapsed, scans } = &mut self.motion else {
+            return;
+        };
+        *elapsed = elapsed.wrapping_add(1);
+        let is_over = *elapsed >= *scans;
+        let next = plan.next(*elapsed);
+        let place = Place {
+            turns,
+            position: next.position,
+            ..Place::default()
+        };
+        self.publish_behind(place, next, scope);
+        if !is_over || !self.is_on_cam() || self.is_paused() {
+            return;
+        }
+        let shadow = Shadow {
+            place: to,
+            at: Setpoint::at_rest(to.position),
+        };
+        let at = self.on_curve(to, &shadow.at, scope);
+        let is_there = to == view.now.place && view.now.at.is_at_rest() && view.future.kind() == Kind::Still;
+        if let (Some(on_cam), Some(at)) = (&mut self.on_cam, at) {
+            on_cam.at = at;
+            on_cam.shadow = Some(shadow);
+            on_cam.rung = Rung::Due;
+        }
+        if is_there {
+            self.lock_on_cam(scope);
+        }
+    }
+
+    /// In sync from now on.
+    pub(super) fn lock_on_cam(&mut self, scope: &mut Scope<'_>) {
+        if let Some(on_cam) = &mut self.on_cam {
+            on_cam.rung = Rung::Locked;
+            on_cam.left = u64::MAX;
+            on_cam.deviation = 0.0;
+            on_cam.was_in_sync = true;
+            self.in_force = on_cam.limits;
+            self.before = on_cam.limits;
+        }
+        self.motion = Motion::Geared;
+        self.stir();
+        self.record(Event::InSync, &mut self.owner_scope(scope));
+    }
+
+    /// No longer in sync: the cam asks for more than a limit.
+    pub(super) fn lose_sync(&mut self, (what, value, limit): Beyond, scope: &mut Scope<'_>) {
+        if let Some(on_cam) = &mut self.on_cam {
+            on_cam.rung = Rung::Due;
+        }
+        self.stir();
+        let event = Event::SyncLost { what, value, limit };
+        self.record(event, &mut self.owner_scope(scope));
+    }
+
+    /// The master went out of operation: to rest, and no way onto the cam is looked for.
+    #[cold]
+    fn hold_on_cam(&mut self, scope: &mut Scope<'_>) {
+        self.pause(ErrorId::MasterLost, scope);
+        if let Some(on_cam) = &mut self.on_cam {
+            on_cam.rung = Rung::Lost;
+            on_cam.anchor = None;
+            on_cam.deviation = 0.0;
+        }
+    }
+
+    /// By how much it is off the cam at its master's place, and whether that is too much.
+    fn measure_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        let here = self.place();
+        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let is_off = self.cam_rung() != Some(Rung::Locked);
+        let at = is_off
+            .then(|| self.on_curve(view.now.place, &view.now.at, scope))
+            .flatten();
+        let Some(on_cam) = &mut self.on_cam else { return };
+        on_cam.deviation = at.map_or(0.0, |at| off(here, at.place, length));
+        let most = self.config.following.max_deviation;
+        let most = most.filter(|_| on_cam.was_in_sync);
+        if most.is_some_and(|most| on_cam.deviation.abs() > most) {
+            self.trip(ErrorId::DeviationTooLarge, 0, Reaction::Ramp, scope);
+        }
+    }
+
+    /// The end of a cam without periods at which the slave holds.
+    pub(super) fn held_end(&self) -> Option<CamAt> {
+        let is_held = |on_cam: &&OnCam| on_cam.ends.is_over();
+        let on_cam = self.on_cam.as_ref().filter(is_held)?;
+        Some(CamAt {
+            state: Setpoint::at_rest(on_cam.at.place.position),
+            ..on_cam.at
+        })
+    }
+}

@@ -1,0 +1,868 @@
+//! How a slave comes onto its cam, and in step with its master: looked for whenever the master gets another plan, or a way ended.
+//!
+//! | the slave is | way |
+//! | --- | --- |
+//! | on the cam at its master's place, moving as that asks | in sync at once, if that keeps its limits as far as is known |
+//! | on the curve elsewhere | its shadow, a master of its own, comes in step with the real one: beside it, or onto its next stretch of constant velocity, or as fast as it may |
+//! | off the curve, master at rest | a move to the cam at the master's place |
+//! | off the curve, master moving | a move to a place of the curve further on, where it rests until its shadow sets off to be in step with the arriving master |
+
+use super::super::super::commands::Entry;
+use super::super::super::{Axis, Motion};
+use super::super::follow::{ROUNDING, off};
+use super::super::needs::RESOLVED;
+use super::super::view::{Kind, UNKNOWN, View};
+use super::{Curve, OnCam, Rung, Shadow};
+use crate::{Approach, ErrorId, Event, Fate, Scope};
+use standstill_planner::{Anchor, DirectedLimits, Limits, MoveProfile, Place, Plan, Planner, Setpoint};
+
+/// A velocity left beside that of a line must be at least this part of the limit.
+const LEAST: f64 = 1e-6;
+
+/// Places of the cam ahead of the master that are looked at, one by one.
+const PLACES: u32 = 4;
+
+/// Velocities of a shadow that are tried.
+const SPEEDS: usize = 4;
+
+/// The master's next stretch of constant velocity: in how many scans it begins and ends, its velocity (u/s), and where a line of
+/// that velocity through it is now.
+#[derive(Clone, Copy)]
+struct Stretch {
+    begin: u64,
+    end: u64,
+    velocity: f64,
+    now: Place,
+}
+
+/// A way onto the cam.
+struct Way<Q> {
+    motion: Motion<Q>,
+    rung: Rung,
+    /// Scans until in sync; the largest number if not along this way.
+    lock: u64,
+    /// Scans until it is looked for again.
+    left: u64,
+    name: Approach,
+    velocity: f64,
+    /// Limits of the shadow along it.
+    shadow: Limits,
+    /// Its place is called so much more (u of the master): whole periods, as the master comes by once more.
+    laps: f64,
+}
+
+/// What is to be done.
+enum Choice<Q> {
+    Lock,
+    Take(Way<Q>),
+    /// There is no way now, it is looked for again after so many scans.
+    Wait(u64),
+    Fail(ErrorId),
+}
+
+impl<P: Planner> Axis<P> {
+    /// Finds the way onto the cam, from the state at the end of the scan before; in sync at once only if it `may_lock`.
+    pub(super) fn decide_on_cam(&mut self, view: &View<'_, P::Plan>, may_lock: bool, scope: &mut Scope<'_>) {
+        let Some(on_cam) = self.on_cam else { return };
+        if on_cam.ends.is_over() {
+            // It holds its last place, whatever the master does.
+            return self.lock_at_end(scope);
+        }
+        let Some(owner) = self.owner else { return };
+        let was_locked = on_cam.rung == Rung::Locked;
+        let chosen = {
+            let Some(cam) = scope.cams.cam(on_cam.camming.cam) else {
+                return self.fail(ErrorId::CamUnknown, scope);
+            };
+            let anchor = on_cam.anchor.unwrap_or_else(|| self.laid(&on_cam, &cam));
+            let mut camming = on_cam.camming;
+            if on_cam.anchor.is_none() && !camming.master_absolute {
+                // A cam that is counted from where its master is begins there.
+                camming.law.origin = cam.head.begin;
+            }
+            if let Some(on_cam) = &mut self.on_cam {
+                on_cam.anchor = Some(anchor);
+                on_cam.camming.law = camming.law;
+            }
+            let curve = Curve {
+                cam,
+                law: camming.law,
+                anchor,
+            };
+            self.find_shadow(&curve);
+            self.drop_periods(&curve);
+            let beyond = self.keeps_on_cam(&curve, view, false);
+            let choice = self.choose(&curve, view, &owner, may_lock && beyond.is_ok());
+            (choice, beyond)
+        };
+        let (choice, beyond) = chosen;
+        if let (true, Choice::Take(_) | Choice::Wait(_), Err(reason)) = (was_locked, &choice, beyond) {
+            self.lose_sync(reason, scope);
+        }
+        match choice {
+            Choice::Lock if was_locked => {}
+            Choice::Lock => self.lock_on_cam(scope),
+            Choice::Take(way) => {
+                if way.laps != 0.0 {
+                    self.lap_shadow(way.laps, scope);
+                }
+                self.take_way_on_cam(way, scope);
+            }
+            Choice::Wait(left) => self.wait_on_cam(left, scope),
+            Choice::Fail(error) => self.give_up_cam(error, scope),
+        }
+    }
+
+    /// Where the cam lies, from the places of both at the end of the scan before.
+    fn laid(&self, on_cam: &OnCam, cam: &standstill_planner::Cam<'_>) -> Anchor {
+        let camming = &on_cam.camming;
+        let was = on_cam.was.place;
+        let master = Place {
+            turns: was.turns,
+            position: camming.master_offset,
+            phase: if camming.master_absolute {
+                0.0
+            } else {
+                was.position
+            },
+        };
+        let law = standstill_planner::CamLaw {
+            origin: if camming.master_absolute {
+                0.0
+            } else {
+                cam.head.begin
+            },
+            ..camming.law
+        };
+        let offset = Place {
+            turns: 0,
+            position: camming.slave_offset,
+            ..Place::default()
+        };
+        let mut anchor = Anchor {
+            master,
+            slave: offset,
+            ..Anchor::default()
+        };
+        let straight = standstill_planner::CamLaw {
+            slave_turn: None,
+            ..law
+        };
+        let here = self.place();
+        let without = Anchor {
+            slave: Place::default(),
+            ..anchor
+        };
+        let on_curve = straight.at(cam, &without, was, &on_cam.was.at, 0).place.position;
+        if camming.slave_absolute {
+            // Of the turns that mean the same the nearest one.
+            if let Some(modulo) = &self.modulo {
+                let length = modulo.length;
+                let place = law.at(cam, &anchor, was, &on_cam.was.at, 0).place;
+                let off = off(here, place, length) / length;
+                let nearest = if off < 0.0 { off - 0.5 } else { off + 0.5 };
+                anchor.slave.turns = nearest as i64;
+            }
+        } else {
+            // The cam passes through where the slave is, but for the offset.
+            anchor.slave = Place {
+                turns: here.turns,
+                position: here.position,
+                phase: camming.slave_offset - on_curve,
+            };
+        }
+        anchor
+    }
+
+    /// A slave that is not known to be on the curve may be, at its master's place.
+    fn find_shadow(&mut self, curve: &Curve<'_>) {
+        let here = self.place();
+        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let limits = self.slowed(&self.parameters.limits);
+        let last = self.setpoint;
+        let Some(on_cam) = &mut self.on_cam else { return };
+        if on_cam.shadow.is_some() {
+            return;
+        }
+        let at = curve.at(on_cam.was.place, &on_cam.was.at, on_cam.at.piece);
+        on_cam.at = at;
+        let resolved = RESOLVED * 4.0 * (here.position.abs() + at.place.position.abs() + length);
+        if off(here, at.place, length).abs() > resolved {
+            return;
+        }
+        if goes_on(&last, &at.state, &limits) {
+            on_cam.shadow = Some(Shadow {
+                place: on_cam.was.place,
+                at: on_cam.was.at,
+            });
+        } else if last.is_at_rest() {
+            on_cam.shadow = Some(Shadow {
+                place: on_cam.was.place,
+                at: Setpoint::at_rest(on_cam.was.place.position),
+            });
+        }
+    }
+
+    /// A shadow that is whole periods behind is where it would be without them.
+    fn drop_periods(&mut self, curve: &Curve<'_>) {
+        let Some(on_cam) = &self.on_cam else { return };
+        let (Some(shadow), true) = (on_cam.shadow, curve.repeats()) else {
+            return;
+        };
+        let turn = curve.law.master_turn.unwrap_or(0.0);
+        let behind = off(on_cam.was.place, shadow.place, turn);
+        let period = curve.period();
+        let whole = (behind / period) as i64 as f64;
+        // Ahead it lets the master come.
+        if whole * on_cam.was.at.velocity > 0.0 {
+            self.move_shadow(curve, whole * period);
+        }
+    }
+
+    /// The place of the shadow is called so much more (u of the master): whole periods.
+    fn move_shadow(&mut self, curve: &Curve<'_>, by: f64) {
+        let Some(on_cam) = &mut self.on_cam else { return };
+        let Some(shadow) = &mut on_cam.shadow else { return };
+        shadow.place.position += by;
+        let periods = by / ((curve.cam.head.end - curve.cam.head.begin) * curve.law.master_scaling);
+        let whole = if periods < 0.0 {
+            periods - 0.5
+        } else {
+            periods + 0.5
+        };
+        on_cam.ends.renumber(whole as i64);
+    }
+
+    fn choose(
+        &self,
+        curve: &Curve<'_>,
+        view: &View<'_, P::Plan>,
+        owner: &Entry,
+        may_lock: bool,
+    ) -> Choice<P::Plan> {
+        let Some(on_cam) = &self.on_cam else {
+            return Choice::Wait(u64::MAX);
+        };
+        let stretch = self.stretch_of_master(on_cam, view);
+        let Some(shadow) = on_cam.shadow else {
+            return self.onto_curve(curve, owner, &stretch);
+        };
+        let turn = curve.law.master_turn.unwrap_or(0.0);
+        let was = &on_cam.was;
+        let difference = Setpoint {
+            position: off(shadow.place, was.place, turn),
+            velocity: shadow.at.velocity - was.at.velocity,
+            acceleration: shadow.at.acceleration - was.at.acceleration,
+            jerk: shadow.at.jerk - was.at.jerk,
+            snap: 0.0,
+        };
+        let is_there = difference.position == 0.0 && difference.is_at_rest();
+        // Where the curve is level the slave rests, however its master moves.
+        let is_there = is_there
+            || (difference.position == 0.0 && {
+                let at = curve.at(was.place, &was.at, on_cam.at.piece);
+                goes_on(&self.setpoint, &at.state, &on_cam.limits)
+            });
+        if is_there && may_lock {
+            return Choice::Lock;
+        }
+        self.in_step(curve, view, &shadow, &difference, &stretch)
+    }
+
+    /// The stretch of its master's plan that the shadow is to be led onto.
+    fn stretch_of_master(&self, on_cam: &OnCam, view: &View<'_, P::Plan>) -> Stretch {
+        let (was, now) = (&on_cam.was, &view.now);
+        let cycle = self.planner.cycle();
+        let turn = on_cam.camming.law.master_turn.unwrap_or(0.0);
+        let step = off(now.place, was.place, turn);
+        let at = |further: f64| Place {
+            position: was.place.position + further,
+            ..was.place
+        };
+        if view.future.kind() == Kind::Still {
+            return Stretch {
+                begin: 0,
+                end: u64::MAX,
+                velocity: 0.0,
+                now: at(step),
+            };
+        }
+        let scans = view.future.measured().unwrap_or(UNKNOWN);
+        let unknown = Stretch {
+            begin: 0,
+            end: scans,
+            velocity: now.at.velocity,
+            now: at(step - now.at.velocity * cycle),
+        };
+        let Some(lead) = self.lead_of_master(view) else {
+            return unknown;
+        };
+        let Some((begin, end)) = self.planner.stretch(&[Some(lead), None]) else {
+            return unknown;
+        };
+        let late = u64::from(view.future.is_late());
+        let then = lead
+            .plan
+            .at(lead.elapsed.saturating_add(begin))
+            .times(lead.factor);
+        let way = then.position - lead.plan.at(lead.elapsed).position * lead.factor;
+        let way = if late > 0 { way + step } else { way };
+        let begin = begin.saturating_add(late);
+        Stretch {
+            begin,
+            end: end.saturating_add(late),
+            velocity: then.velocity,
+            now: at(way - then.velocity * (begin as f64 * cycle)),
+        }
+    }
+
+    /// Limits of the shadow with a velocity of its own (u/s of the master). `None` if nothing is left of the slave's.
+    fn limits_of_shadow(&self, curve: &Curve<'_>, shadow: &Setpoint, wanted: f64) -> Option<Limits> {
+        let limits = self.slowed(&self.parameters.limits);
+        let bounds = curve.bounds();
+        let highest = bounds.highest_velocity(&limits).min(f64::MAX);
+        // As fast as it is already it may be in any case.
+        let present = shadow.velocity.abs().min(0.999 * highest);
+        let found = bounds.shadow(&limits, wanted.max(present), present)?;
+        // A cam that hardly moves leaves more than numbers hold.
+        let most = |limit: f64, most: f64| if limit.is_finite() { limit.min(most) } else { limit };
+        Some(Limits {
+            velocity: found.velocity.min(1e12),
+            acceleration: found.acceleration.min(1e15),
+            deceleration: found.deceleration.min(1e15),
+            jerk: most(found.jerk, 1e18),
+            snap: most(found.snap, 1e21),
+        })
+    }
+
+    /// Velocities of a shadow that comes into step with a stretch: hardly more than that leaves most of the acceleration, the highest
+    /// one least; which is soonest is a matter of the way.
+    fn speeds_of_shadow(&self, curve: &Curve<'_>, stretch: &Stretch) -> [f64; SPEEDS] {
+        let limits = self.slowed(&self.parameters.limits);
+        let highest = curve.bounds().highest_velocity(&limits).min(1e12);
+        let speed = stretch.velocity.abs();
+        let between = |share: f64| speed + share * (0.98 * highest - speed).max(0.0);
+        [between(0.1), between(0.5), between(0.8), between(1.0)]
+    }
+
+    /// The way of the shadow into step with its master that is soonest there.
+    fn in_step(
+        &self,
+        curve: &Curve<'_>,
+        view: &View<'_, P::Plan>,
+        shadow: &Shadow,
+        difference: &Setpoint,
+        stretch: &Stretch,
+    ) -> Choice<P::Plan> {
+        let mut best: Option<Way<P::Plan>> = None;
+        let take = |best: &mut Option<Way<P::Plan>>, way: Option<Way<P::Plan>>| {
+            let Some(way) = way else { return };
+            if best.as_ref().is_none_or(|best| way.lock < best.lock) {
+                *best = Some(way);
+            }
+        };
+        // Where it is now the master comes by once more a period later.
+        let can_wait = curve.repeats() && stretch.velocity != 0.0;
+        let mut pace = None;
+        for wanted in self.speeds_of_shadow(curve, stretch) {
+            let Some(limits) = self.limits_of_shadow(curve, &shadow.at, wanted) else {
+                continue;
+            };
+            let before = self.shadow_before(&limits);
+            pace = Some((limits, before));
+            let way = self.beside_stretch_of_master(shadow, stretch, &limits, &before, curve, 0.0);
+            take(&mut best, way);
+            take(&mut best, self.beside_master(view, difference, &limits));
+            if can_wait {
+                let period = curve.period().copysign(stretch.velocity);
+                let way = self.beside_stretch_of_master(shadow, stretch, &limits, &before, curve, period);
+                take(&mut best, way);
+            }
+        }
+        if let Some(mut way) = best {
+            if view.future.is_late() {
+                way.left = 0;
+            }
+            return Choice::Take(way);
+        }
+        let way =
+            pace.and_then(|(limits, before)| self.at_shadow_pace(view, shadow, stretch, &limits, &before));
+        way.map_or(Choice::Wait(UNKNOWN), Choice::Take)
+    }
+
+    /// The limits that held for the shadow before, with those it has now.
+    fn shadow_before(&self, limits: &Limits) -> Limits {
+        let of_shadow = |on_cam: &OnCam| match on_cam.rung {
+            Rung::BesideLine { .. } | Rung::BesideMaster => Some(on_cam.shadow_limits),
+            _ => None,
+        };
+        let before = self.on_cam.as_ref().and_then(of_shadow);
+        before.map_or(*limits, |before| limits.or_larger(&before))
+    }
+
+    /// Beside the master: the difference comes to 0. None where that is not known to keep the limits, or leads ahead of it.
+    fn beside_master(
+        &self,
+        view: &View<'_, P::Plan>,
+        difference: &Setpoint,
+        limits: &Limits,
+    ) -> Option<Way<P::Plan>> {
+        if view.future.is_late() || (difference.is_at_rest() && difference.position == 0.0) {
+            return None;
+        }
+        let lead = self.lead_of_master(view)?;
+        let on_cam = self.on_cam.as_ref()?;
+        let now = Setpoint {
+            position: difference.position,
+            velocity: difference.velocity + on_cam.was.at.velocity,
+            acceleration: difference.acceleration + on_cam.was.at.acceleration,
+            jerk: difference.jerk + on_cam.was.at.jerk,
+            snap: 0.0,
+        };
+        let leads = [Some(lead), None];
+        let own = self.room_beside(&leads, limits)?;
+        let plan = self
+            .planner
+            .move_to(MoveProfile::Online, difference, 0.0, &own, &own)
+            .ok()?;
+        let (up, down) = self.planner.ways((&plan, 0));
+        // It comes from behind and stays there, and it never goes back.
+        let forwards = 1.0_f64.copysign(lead.plan.at(lead.elapsed.saturating_add(1)).velocity * lead.factor);
+        let over = if difference.position * forwards <= 0.0 {
+            (if forwards > 0.0 { up } else { down }) - difference.position.abs()
+        } else {
+            0.0
+        };
+        let lowest = self.planner.velocities_behind(&leads, (&plan, 0));
+        let turns = lowest.is_none_or(|(lowest, highest)| {
+            let least = if forwards > 0.0 { lowest } else { -highest };
+            least < -ROUNDING * limits.velocity
+        });
+        let fits = self.planner.fits_behind(&leads, &now, Some((&plan, 0)), limits);
+        let resolved = RESOLVED * 4.0 * (difference.position.abs() + on_cam.was.place.position.abs());
+        if over > resolved || turns || !fits {
+            return None;
+        }
+        let lock = u64::from(plan.scans());
+        Some(Way {
+            motion: closing(plan),
+            rung: Rung::BesideMaster,
+            lock,
+            left: u64::MAX,
+            name: Approach::Difference,
+            velocity: difference.velocity,
+            shadow: *limits,
+            laps: 0.0,
+        })
+    }
+
+    /// Onto the next stretch of the master, or where that comes by so many `laps` later (u of the master).
+    fn beside_stretch_of_master(
+        &self,
+        shadow: &Shadow,
+        stretch: &Stretch,
+        limits: &Limits,
+        before: &Limits,
+        curve: &Curve<'_>,
+        laps: f64,
+    ) -> Option<Way<P::Plan>> {
+        let speed = stretch.velocity.abs();
+        let along = limits.velocity - speed;
+        let turn = curve.law.master_turn.unwrap_or(0.0);
+        let start = Setpoint {
+            position: off(shadow.place, stretch.now, turn) + laps,
+            velocity: shadow.at.velocity - stretch.velocity,
+            ..shadow.at
+        };
+        if !(along > LEAST * limits.velocity) {
+            return None;
+        }
+        // Ahead of the line it lets it come, which is never against the master. Onto a master at rest it may go either way.
+        let against = if speed > 0.0 { speed } else { limits.velocity };
+        let own = |limits: &Limits, along: f64, against: f64| {
+            let (positive, negative) = if stretch.velocity < 0.0 {
+                (against, along)
+            } else {
+                (along, against)
+            };
+            DirectedLimits {
+                positive,
+                negative,
+                limits: *limits,
+            }
+        };
+        let wider = before.velocity + speed;
+        let plan = self
+            .planner
+            .move_by_direction(
+                &start,
+                0.0,
+                &own(limits, along, against),
+                &own(before, wider, wider),
+            )
+            .ok()?;
+        let scans = u64::from(plan.scans());
+        let arrives = scans.max(stretch.begin);
+        let is_in_time = arrives <= stretch.end;
+        Some(Way {
+            motion: closing(plan),
+            rung: Rung::BesideLine {
+                start: stretch.now,
+                velocity: stretch.velocity,
+                begin: stretch.begin,
+            },
+            lock: if is_in_time { arrives } else { u64::MAX },
+            left: stretch.end,
+            name: Approach::Stretch,
+            velocity: stretch.velocity,
+            shadow: *limits,
+            laps,
+        })
+    }
+
+    /// As fast as the shadow may go, the way its master goes.
+    fn at_shadow_pace(
+        &self,
+        view: &View<'_, P::Plan>,
+        shadow: &Shadow,
+        stretch: &Stretch,
+        limits: &Limits,
+        before: &Limits,
+    ) -> Option<Way<P::Plan>> {
+        let start = Setpoint {
+            position: 0.0,
+            ..shadow.at
+        };
+        let goal = limits.velocity.copysign(stretch.velocity);
+        let plan = self.planner.ramp_to(&start, goal, limits, before).ok()?;
+        let left = match self.lead_of_master(view) {
+            Some(lead) => {
+                let switch = self.planner.next_switch((lead.plan, lead.elapsed));
+                let scans = switch.saturating_sub(lead.elapsed);
+                if scans > 0 { scans } else { u64::MAX }
+            }
+            None => UNKNOWN,
+        };
+        Some(Way {
+            motion: closing(plan),
+            rung: Rung::BesideLine {
+                start: shadow.place,
+                velocity: 0.0,
+                begin: u64::MAX,
+            },
+            lock: u64::MAX,
+            left,
+            name: Approach::Pace,
+            velocity: goal,
+            shadow: *limits,
+            laps: 0.0,
+        })
+    }
+
+    /// A move onto the curve: to the master's place where that rests, else to one it comes to.
+    fn onto_curve(&self, curve: &Curve<'_>, owner: &Entry, stretch: &Stretch) -> Choice<P::Plan> {
+        let Some(on_cam) = &self.on_cam else {
+            return Choice::Wait(u64::MAX);
+        };
+        if stretch.velocity == 0.0 {
+            return match self.move_onto(curve, owner, stretch.now) {
+                Ok(way) => Choice::Take(way),
+                Err(error) => Choice::Fail(error),
+            };
+        }
+        let head = curve.cam.head;
+        let cycle = self.planner.cycle();
+        let speed = stretch.velocity / curve.law.master_scaling;
+        let forwards = speed > 0.0;
+        // The way the master gains on a shadow that sets off at rest, on the cam's side; none if it can't be reached at all.
+        let gained = self.gained(curve, stretch);
+        let Some(gained) = gained else {
+            return self.never_in_step(curve, owner, stretch, head.periodic);
+        };
+        let (here, line) = (curve.unwound(on_cam.was.place), curve.unwound(stretch.now));
+        let length = head.end - head.begin;
+        let period = if head.periodic { length } else { 0.0 };
+        let mut place = match on_cam.camming.sync {
+            Some(sync) => {
+                let over = (here - sync) / length;
+                let whole = if head.periodic { over as i64 as f64 } else { 0.0 };
+                let place = sync + whole * length;
+                let is_past = if forwards { place < here } else { place > here };
+                let next = if is_past { period.copysign(speed) } else { 0.0 };
+                place + next
+            }
+            None => curve.next_row(here, forwards),
+        };
+        let mut last = None;
+        for look in 0..PLACES {
+            let beyond = !head.periodic && (place < head.begin || place > head.end);
+            if beyond {
+                break;
+            }
+            let to = curve.place_of(place, on_cam.was.place);
+            let way = match self.move_onto(curve, owner, to) {
+                Ok(way) => way,
+                Err(error) => return Choice::Fail(error),
+            };
+            let needed = line + speed * (scans_of(&way.motion) as f64 * cycle);
+            // How much earlier the master is there than the slave is ready.
+            let missing = if forwards { needed - place } else { place - needed } + gained;
+            if missing <= 0.0 {
+                return Choice::Take(way);
+            }
+            if head.periodic && look + 2 >= PLACES {
+                // Nothing near: as many periods on as it takes, and one more for the way there, which may be another one.
+                let periods = (missing / length) as i64 as f64 + 1.0;
+                place += (periods * length).copysign(speed);
+            } else if on_cam.camming.sync.is_some() {
+                if !head.periodic {
+                    break;
+                }
+                place += period.copysign(speed);
+            } else {
+                place = curve.next_row(place, forwards);
+            }
+            last = Some(way);
+        }
+        match last {
+            // Onto the last place ahead, from which the shadow catches up.
+            Some(way) if self.catches_up(curve, stretch) => Choice::Take(way),
+            _ => Choice::Fail(ErrorId::SyncNotReachable),
+        }
+    }
+
+    /// The shadow can be faster than the stretch of its master.
+    fn catches_up(&self, curve: &Curve<'_>, stretch: &Stretch) -> bool {
+        let [.., fastest] = self.speeds_of_shadow(curve, stretch);
+        fastest > stretch.velocity.abs() * (1.0 + LEAST)
+    }
+
+    /// No shadow comes into step: with periods the slave goes onto the curve all the same and lags, without it can't be.
+    fn never_in_step(
+        &self,
+        curve: &Curve<'_>,
+        owner: &Entry,
+        stretch: &Stretch,
+        periodic: bool,
+    ) -> Choice<P::Plan> {
+        if !periodic {
+            return Choice::Fail(ErrorId::SyncNotReachable);
+        }
+        let Some(on_cam) = &self.on_cam else {
+            return Choice::Wait(u64::MAX);
+        };
+        let here = curve.unwound(on_cam.was.place);
+        let forwards = stretch.velocity * curve.law.master_scaling > 0.0;
+        let to = curve.place_of(curve.next_row(here, forwards), on_cam.was.place);
+        match self.move_onto(curve, owner, to) {
+            Ok(way) => Choice::Take(way),
+            Err(error) => Choice::Fail(error),
+        }
+    }
+
+    /// By how much (u of the cam's master side) the master comes nearer to a shadow that sets off at rest and comes to its velocity;
+    /// `None` if it can't.
+    fn gained(&self, curve: &Curve<'_>, stretch: &Stretch) -> Option<f64> {
+        let rest = Setpoint::default();
+        let [wanted, ..] = self.speeds_of_shadow(curve, stretch);
+        let limits = self.limits_of_shadow(curve, &rest, wanted)?;
+        if limits.velocity <= stretch.velocity.abs() {
+            return None;
+        }
+        let ramp = self
+            .planner
+            .ramp_to(&rest, stretch.velocity, &limits, &limits)
+            .ok()?;
+        let scans = u64::from(ramp.scans());
+        let of_master = stretch.velocity * (scans as f64 * self.planner.cycle());
+        let gained = (of_master - ramp.at(scans).position) / curve.law.master_scaling;
+        Some(gained.abs())
+    }
+
+    /// A move to where the curve is for a master at `to`.
+    ///
+    /// # Errors
+    /// Why the slave may not go there.
+    fn move_onto(&self, curve: &Curve<'_>, owner: &Entry, to: Place) -> Result<Way<P::Plan>, ErrorId> {
+        let near = self.on_cam.as_ref().map_or(0, |on_cam| on_cam.at.piece);
+        let at = curve.at(to, &Setpoint::default(), near);
+        let here = self.place();
+        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let target = off(at.place, here, length) + here.position;
+        self.allowed(target)?;
+        let start = Setpoint {
+            position: here.position,
+            ..self.setpoint
+        };
+        let limits = self.limits_of_approach(owner);
+        let before = self.limits_before(&limits);
+        let plan = self
+            .planner
+            .move_to(self.config.profile, &start, target, &limits, &before)
+            .map_err(|_| ErrorId::PlanRefused)?;
+        if self.bars_any() {
+            let (up, down) = self.planner.ways((&plan, 0));
+            let barred = self.way_barred(if up > down { 1.0 } else { -1.0 });
+            if let Some(error) = barred.filter(|_| up + down > 0.0) {
+                return Err(error);
+            }
+        }
+        let lock = u64::from(plan.scans());
+        Ok(Way {
+            motion: closing(plan),
+            rung: Rung::Moving {
+                turns: here.turns,
+                to,
+            },
+            lock,
+            left: u64::MAX,
+            name: Approach::Move,
+            velocity: target,
+            shadow: Limits::NONE,
+            laps: 0.0,
+        })
+    }
+
+    /// The place of the shadow is called a period more.
+    fn lap_shadow(&mut self, by: f64, scope: &Scope<'_>) {
+        let Some(on_cam) = self.on_cam else { return };
+        let cam = scope.cams.cam(on_cam.camming.cam);
+        if let Some(curve) = cam.and_then(|cam| on_cam.curve(cam)) {
+            self.move_shadow(&curve, by);
+        }
+    }
+
+    /// From now on along `way`.
+    fn take_way_on_cam(&mut self, way: Way<P::Plan>, scope: &mut Scope<'_>) {
+        let limits = self.slowed(&self.parameters.limits);
+        self.before = self.limits_before(&limits);
+        self.in_force = limits;
+        let scans = scans_of(&way.motion);
+        self.motion = way.motion;
+        self.arrival = Default::default();
+        self.replan_due = false;
+        self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
+        if let Some(on_cam) = &mut self.on_cam {
+            on_cam.rung = way.rung;
+            on_cam.left = way.left;
+            on_cam.shadow_limits = way.shadow;
+            if matches!(way.rung, Rung::Moving { .. }) {
+                on_cam.shadow = None;
+            }
+        }
+        self.stir();
+        let event = Event::OntoCam {
+            way: way.name,
+            value: way.velocity,
+            scans: u32::try_from(scans).unwrap_or(u32::MAX),
+        };
+        self.record(event, &mut self.owner_scope(scope));
+    }
+
+    /// There is no way now: it stays where it is.
+    fn wait_on_cam(&mut self, left: u64, scope: &mut Scope<'_>) {
+        if !self.setpoint.is_at_rest() {
+            // Only a cam without room for any shadow leads here in motion.
+            return self.fail(ErrorId::DeviationTooLarge, scope);
+        }
+        if let Some(on_cam) = &mut self.on_cam {
+            on_cam.rung = Rung::Waiting;
+            on_cam.left = left;
+        }
+        self.motion = Motion::Hold;
+    }
+
+    /// It holds the last place of a cam that is over.
+    fn lock_at_end(&mut self, scope: &mut Scope<'_>) {
+        if self.setpoint.is_at_rest() {
+            if self.cam_rung() != Some(Rung::Locked) {
+                self.lock_on_cam(scope);
+            }
+        } else {
+            self.fail(ErrorId::DeviationTooLarge, scope);
+        }
+    }
+
+    /// The owner can't come onto its cam.
+    #[cold]
+    fn give_up_cam(&mut self, error: ErrorId, scope: &mut Scope<'_>) {
+        match error {
+            ErrorId::PositiveBarred | ErrorId::NegativeBarred | ErrorId::OutwardFromLimitSwitch => {
+                if let Some(on_cam) = &mut self.on_cam {
+                    on_cam.rung = Rung::Due;
+                }
+                self.pause(error, scope);
+                return;
+            }
+            _ => {}
+        }
+        let Some(owner) = self.owner else { return };
+        let scope = &mut self.owner_scope(scope);
+        self.refuse_plan(&owner, error, scope);
+        self.end_owner(Fate::Failed(error));
+        self.lose_heir(owner.id, scope);
+        let stopped = Entry {
+            limits: self.stop_limits(),
+            ..owner
+        };
+        self.halt_after(&stopped, scope);
+        self.advance(scope);
+    }
+}
+
+impl Curve<'_> {
+    /// The next place at which a row of the table lies, on the way of the master from `x`, neither taken back into one period; on a
+    /// cam without periods infinite where there is none.
+    fn next_row(&self, x: f64, forwards: bool) -> f64 {
+        let cam = &self.cam;
+        let (first, length) = (cam.head.begin, cam.head.end - cam.head.begin);
+        let base = if cam.head.periodic {
+            let over = (x - first) / length;
+            let whole = over as i64 as f64;
+            length * if whole > over { whole - 1.0 } else { whole }
+        } else {
+            0.0
+        };
+        let within = x - base;
+        let slack = LEAST * length;
+        let look = if forwards { within + slack } else { within - slack };
+        let (begin, end) = cam.ends_of(cam.find(look, 0));
+        let (is_before, is_behind) = (look < begin, look >= cam.head.end);
+        match (forwards, cam.head.periodic) {
+            (true, _) if is_before => base + begin,
+            (true, true) if is_behind => base + length + cam.ends_of(0).1,
+            (true, false) if is_behind || end >= cam.head.end => f64::INFINITY,
+            (true, _) => base + end,
+            (false, false) if is_behind => base + end,
+            (false, true) if is_before => base - length + cam.ends_of(u16::MAX).0,
+            (false, false) if is_before || begin <= first => f64::NEG_INFINITY,
+            (false, _) => base + begin,
+        }
+    }
+}
+
+/// Whether a motion in one state may go on in another at the same place: what `limits` do not let jump is the same.
+pub(super) fn goes_on(last: &Setpoint, next: &Setpoint, limits: &Limits) -> bool {
+    let near = |one: f64, other: f64, limit: f64, bound: f64| {
+        !bound.is_finite() || (one - other).abs() <= ROUNDING * limit
+    };
+    let rate = limits.acceleration.max(limits.deceleration);
+    near(last.velocity, next.velocity, limits.velocity, rate)
+        && near(last.acceleration, next.acceleration, rate, limits.jerk)
+        && near(last.jerk, next.jerk, limits.jerk, limits.snap)
+}
+
+fn closing<Q: Plan>(plan: Q) -> Motion<Q> {
+    Motion::Closing {
+        plan,
+        elapsed: 0,
+        scans: u64::from(plan.scans()),
+    }
+}
+
+fn scans_of<Q>(motion: &Motion<Q>) -> u64 {
+    match motion {
+        Motion::Closing { scans, .. } => *scans,
+        _ => 0,
+    }
+}

@@ -1,0 +1,413 @@
+//! How a slave comes onto its cam, and what it does where it can't follow.
+
+use crate::rig::{L1, MASTER, RELATIVE, Rig, SLAVE, WIDE, config, row, up_and_back};
+use standstill_axis::{
+    AxisState, BufferMode, CamIn, CamSelection, Command, Dynamics, ErrorId, Event, Fate, Limits, OnLimit,
+    Raw, Request, Scope, StartMode, ValueSource,
+};
+use standstill_planner::CamShape;
+
+const ABSOLUTE: CamSelection = CamSelection {
+    master_absolute: true,
+    slave_absolute: true,
+    ..RELATIVE
+};
+
+/// Where the cam of the table is for a master there.
+fn table(master: f64) -> f64 {
+    let x = master.rem_euclid(360.0);
+    let u = if x < 180.0 { x / 180.0 } else { (360.0 - x) / 180.0 };
+    // 4-5-6-7 polynomial.
+    100.0 * u * u * u * u * (35.0 + u * (-84.0 + u * (70.0 - 20.0 * u)))
+}
+
+/// Covers: G77
+#[test]
+fn onto_a_master_at_rest_it_moves_and_is_in_sync() {
+    let mut rig = Rig::new(config(L1, 60.0, None), config(WIDE, -20.0, None));
+    let cam = rig.select(&up_and_back(), ABSOLUTE);
+    let cam_in = rig.cam_in(cam);
+    let id = rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    let mut scans = 0;
+    while !rig.slave().is_in_gear() {
+        rig.step();
+        scans += 1;
+        assert!(scans < 1000);
+    }
+    assert!((rig.at() - table(60.0)).abs() < 1e-12);
+    assert_eq!(rig.slave().fate(id), Fate::Active { reached: true });
+    // As long as MC_MoveAbsolute takes, whose scans are the least.
+    let mut other = Rig::new(config(L1, 0.0, None), config(WIDE, -20.0, None));
+    let moved = other.command(
+        SLAVE,
+        Command::MoveAbsolute {
+            position: rig.at(),
+            dynamics: Dynamics {
+                velocity: 400.0,
+                ..Dynamics::default()
+            },
+            direction: Raw::default(),
+        },
+    );
+    let mut least = 0;
+    while other.slave().fate(moved) != Fate::Done {
+        other.step();
+        least += 1;
+    }
+    assert_eq!(scans, least);
+    rig.run(200.0);
+    rig.steps(2000);
+    assert!(rig.slave().is_in_gear());
+    let master = rig.axes[MASTER].setpoint().position;
+    assert!((rig.at() - table(master)).abs() < 1e-9);
+    rig.keeps_limits().unwrap();
+}
+
+/// The slave waits on the curve ahead of its master, and sets off so as to be in step with it.
+///
+/// Covers: G77, G78
+#[test]
+fn onto_a_moving_master_it_joins_ahead() {
+    for (start, slave) in [(0.0, -20.0), (100.0, 50.0), (170.0, 30.0), (300.0, 0.5)] {
+        let mut rig = Rig::new(config(L1, start, None), config(WIDE, slave, None));
+        let cam = rig.select(&up_and_back(), ABSOLUTE);
+        rig.run(200.0);
+        rig.steps(400);
+        let cam_in = rig.cam_in(cam);
+        rig.engage(cam_in, BufferMode::Aborting).unwrap();
+        assert_eq!(rig.slave().state(), AxisState::SynchronizedMotion);
+        let mut scans = 0;
+        let mut on_curve = false;
+        while !rig.slave().is_in_gear() {
+            rig.step();
+            scans += 1;
+            assert!(scans < 4000, "{start} {slave}");
+            let shadow = rig.slave().coupled().and_then(|coupled| coupled.shadow);
+            // Once on the curve it does not leave it.
+            assert!(shadow.is_some() || !on_curve);
+            on_curve |= shadow.is_some();
+            if let Some(shadow) = shadow {
+                assert!((rig.at() - table(shadow)).abs() < 1e-9, "{scans}");
+            }
+        }
+        rig.steps(3000);
+        assert!(rig.slave().is_in_gear());
+        assert!((rig.at() - table(rig.axes[MASTER].setpoint().position)).abs() < 1e-9);
+        rig.keeps_limits().unwrap();
+    }
+}
+
+/// Covers: G77: where the cam is to be met first.
+#[test]
+fn a_sync_position_is_where_it_joins() {
+    let mut rig = Rig::new(config(L1, 10.0, None), config(WIDE, -20.0, None));
+    let cam = rig.select(&up_and_back(), ABSOLUTE);
+    rig.run(200.0);
+    rig.steps(300);
+    let cam_in = CamIn {
+        sync_position: 270.0,
+        ..rig.cam_in(cam)
+    };
+    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    let mut rested = false;
+    while !rig.slave().is_in_gear() {
+        rig.step();
+        assert!(rig.scan < 4000);
+        rested |= rig.state().is_at_rest() && (rig.at() - 50.0).abs() < 1e-12;
+    }
+    assert!(rested);
+    rig.keeps_limits().unwrap();
+}
+
+/// Covers: G72
+#[test]
+fn just_below_the_highest_velocity_it_is_in_sync_and_just_above_it_lags() {
+    let one = |shape| {
+        vec![
+            row(0.0, 0.0, shape),
+            row(180.0, 100.0, shape),
+            row(360.0, 0.0, CamShape::Through),
+        ]
+    };
+    let third = Limits {
+        snap: f64::INFINITY,
+        ..WIDE
+    };
+    let through: Vec<_> = (0..=12)
+        .map(|index| {
+            let x = f64::from(index) * 30.0;
+            row(x, table(x), CamShape::Through)
+        })
+        .collect();
+    for (rows, limits) in [
+        (one(CamShape::Rest7), WIDE),
+        (one(CamShape::Rest5), third),
+        (through, WIDE),
+        (
+            one(CamShape::Rest7),
+            Limits {
+                velocity: 4e3,
+                ..WIDE
+            },
+        ),
+        (
+            one(CamShape::Rest7),
+            Limits {
+                velocity: 4e3,
+                acceleration: 1e5,
+                deceleration: 1e5,
+                ..WIDE
+            },
+        ),
+    ] {
+        for (share, follows) in [(0.999, true), (1.03, false)] {
+            let fast = Limits {
+                velocity: 1e4,
+                acceleration: 20.0,
+                deceleration: 20.0,
+                jerk: 100.0,
+                snap: 1e4,
+            };
+            let mut rig = Rig::new(config(fast, 0.0, None), config(limits, 0.0, None));
+            let cam = rig.select(&rows, RELATIVE);
+            let velocity = rig.highest(cam) * share;
+            let cam_in = rig.cam_in(cam);
+            rig.engage(cam_in, BufferMode::Aborting).unwrap();
+            rig.step();
+            rig.run(velocity);
+            for _ in 0..60_000 {
+                rig.step();
+                if follows {
+                    assert!(rig.slave().is_in_gear(), "{limits:?} {}", rig.scan);
+                }
+            }
+            assert_eq!(rig.axes[MASTER].setpoint().velocity, velocity);
+            assert_eq!(rig.slave().is_in_gear(), follows);
+            rig.keeps_limits().unwrap();
+        }
+    }
+}
+
+/// Covers: G47, G48, G78
+#[test]
+fn a_master_too_fast_is_followed_on_the_curve_and_caught_up_with() {
+    let narrow = Limits {
+        velocity: 300.0,
+        acceleration: 1200.0,
+        deceleration: 1200.0,
+        jerk: 1e4,
+        snap: 3e5,
+    };
+    let fast = Limits {
+        velocity: 600.0,
+        ..L1
+    };
+    let mut rig = Rig::new(config(fast, 0.0, None), config(narrow, 0.0, None));
+    let cam = rig.select(&up_and_back(), RELATIVE);
+    let cam_in = rig.cam_in(cam);
+    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.run(80.0);
+    rig.steps(3000);
+    assert!(rig.slave().is_in_gear());
+    rig.events();
+    rig.run(500.0);
+    rig.step();
+    let lost = |event: &Event| matches!(event, Event::SyncLost { .. });
+    assert!(rig.events().iter().any(lost));
+    assert!(!rig.slave().is_in_gear());
+    let highest = rig.highest(cam);
+    let mut last = None;
+    for scan in 0..20_000 {
+        if scan == 6000 {
+            rig.run(100.0);
+        }
+        rig.step();
+        let master = rig.axes[MASTER].setpoint().position;
+        let shadow = rig.slave().coupled().unwrap().shadow.unwrap();
+        assert!((rig.at() - table(shadow)).abs() < 1e-9, "{scan}");
+        // Never ahead, but that it is called by the period that the master is in next.
+        assert!(shadow <= master + 360.0, "{scan}: {shadow} {master}");
+        if let Some(last) = last {
+            let way: f64 = shadow - last;
+            let speed = (way - 360.0 * (way / 360.0).round()) / 1e-3;
+            assert!(speed >= -1e-9 && speed <= highest, "{scan}: {speed}");
+        }
+        last = Some(shadow);
+    }
+    assert!(
+        rig.slave().is_in_gear(),
+        "{:?} {:?}",
+        rig.slave().coupled(),
+        rig.events()
+    );
+    assert_eq!(rig.slave().deviation(), 0.0);
+    rig.keeps_limits().unwrap();
+}
+
+/// Covers: G50
+#[test]
+fn with_on_limit_error_it_stops_before_a_limit() {
+    let mut slave = config(WIDE, 0.0, None);
+    slave.following.on_limit = OnLimit::Error;
+    let fast = Limits {
+        velocity: 800.0,
+        ..L1
+    };
+    let mut rig = Rig::new(config(fast, 0.0, None), slave);
+    let cam = rig.select(&up_and_back(), RELATIVE);
+    let cam_in = rig.cam_in(cam);
+    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.step();
+    rig.run(800.0);
+    rig.steps(300);
+    assert!(rig.slave().is_in_gear());
+    rig.steps(2000);
+    assert_eq!(rig.slave().state(), AxisState::ErrorStop);
+    assert_eq!(rig.slave().error_id(), ErrorId::DeviationTooLarge);
+    rig.keeps_limits().unwrap();
+}
+
+/// Covers: G55, G58
+#[test]
+fn moved_coordinates_and_stops_of_the_master_do_not_end_it() {
+    let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
+    let cam = rig.select(&up_and_back(), RELATIVE);
+    let cam_in = rig.cam_in(cam);
+    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.run(150.0);
+    rig.steps(700);
+    for (axis, by) in [(MASTER, 1000.0), (SLAVE, -30.0)] {
+        let scope = &mut Scope::new(rig.scan, &mut rig.log);
+        rig.axes[axis]
+            .set_position(
+                by,
+                true,
+                standstill_axis::ExecutionMode::Immediately.into(),
+                scope,
+            )
+            .unwrap();
+        let before = rig.state();
+        rig.step();
+        let after = rig.state();
+        assert!((after.velocity - before.velocity).abs() < 2.0, "{axis}");
+        rig.steps(200);
+        assert!(rig.slave().is_in_gear());
+    }
+    rig.command(
+        MASTER,
+        Command::Stop {
+            dynamics: Dynamics::default(),
+        },
+    );
+    rig.steps(1000);
+    assert!(rig.slave().is_in_gear() && rig.axes[MASTER].setpoint().is_at_rest());
+    let master = rig.axes[MASTER].setpoint().position;
+    assert!((rig.at() + 30.0 - table(master - 1000.0)).abs() < 1e-9);
+}
+
+/// Covers: G80, G76: what MC_CamIn refuses.
+#[test]
+fn what_is_no_good_is_refused_by_number() {
+    let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
+    let cam = rig.select(&up_and_back(), RELATIVE);
+    let good = rig.cam_in(cam);
+    let mut refused = |cam_in: CamIn| rig.engage(cam_in, BufferMode::Aborting).unwrap_err();
+    for scaling in [0.0, f64::NAN, f64::INFINITY, 1e-40] {
+        let wrong = CamIn {
+            master_scaling: scaling,
+            ..good
+        };
+        assert_eq!(refused(wrong), ErrorId::CamScalingInvalid);
+        let wrong = CamIn {
+            slave_scaling: scaling,
+            ..good
+        };
+        assert_eq!(refused(wrong), ErrorId::CamScalingInvalid);
+    }
+    let wrong = CamIn {
+        slave_offset: f64::NAN,
+        ..good
+    };
+    assert_eq!(refused(wrong), ErrorId::CamScalingInvalid);
+    let wrong = CamIn {
+        sync_position: f64::INFINITY,
+        ..good
+    };
+    assert_eq!(refused(wrong), ErrorId::SyncPositionInvalid);
+    let wrong = CamIn {
+        start_distance: 10.0,
+        ..good
+    };
+    assert_eq!(refused(wrong), ErrorId::CamBesideUnsupported);
+    let wrong = CamIn {
+        start_mode: Raw::new(7),
+        ..good
+    };
+    assert_eq!(refused(wrong), ErrorId::SyncModeInvalid);
+    let wrong = CamIn {
+        source: ValueSource::Commanded.into(),
+        ..good
+    };
+    assert_eq!(refused(wrong), ErrorId::MasterSourceInvalid);
+    let wrong = CamIn {
+        table: standstill_axis::CamId::NONE,
+        ..good
+    };
+    assert_eq!(refused(wrong), ErrorId::CamUnknown);
+    rig.retire(cam);
+    assert_eq!(rig.engage(good, BufferMode::Aborting), Err(ErrorId::CamUnknown));
+}
+
+/// Covers: G74
+#[test]
+fn a_cam_selected_anew_does_not_change_the_one_in_use() {
+    let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
+    let cam = rig.select(&up_and_back(), RELATIVE);
+    let cam_in = rig.cam_in(cam);
+    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.run(200.0);
+    rig.steps(500);
+    rig.retire(cam);
+    let other = [
+        row(0.0, 0.0, CamShape::Rest7),
+        row(180.0, 1.0, CamShape::Rest7),
+        row(360.0, 0.0, CamShape::Through),
+    ];
+    for _ in 0..3 {
+        let id = rig.select(&other, RELATIVE);
+        rig.retire(id);
+    }
+    rig.steps(500);
+    assert!(rig.slave().is_in_gear());
+    assert!((rig.at() - table(rig.axes[MASTER].setpoint().position)).abs() < 1e-9);
+}
+
+/// Covers: G49, S5: what is not supported beside a cam is told.
+#[test]
+fn nothing_is_superimposed_on_a_cam() {
+    let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
+    let cam = rig.select(&up_and_back(), RELATIVE);
+    let cam_in = CamIn {
+        start_mode: StartMode::Relative.into(),
+        ..rig.cam_in(cam)
+    };
+    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.steps(2);
+    let scope = &mut Scope::new(rig.scan, &mut rig.log);
+    let added = standstill_axis::Superimpose {
+        distance: 1.0,
+        dynamics: Dynamics {
+            velocity: 1.0,
+            ..Dynamics::default()
+        },
+    };
+    assert_eq!(
+        rig.axes[SLAVE].superimpose(&added, scope),
+        Err(ErrorId::CamBesideUnsupported)
+    );
+    let gear_out = Request::aborting(Command::GearOut);
+    assert_eq!(
+        rig.axes[SLAVE].command(&gear_out, scope),
+        Err(ErrorId::NotCoupled)
+    );
+}
