@@ -47,6 +47,9 @@ macro_rules! for_every_block {
             single_axis::mc_move_superimposed::McMoveSuperimposed
             single_axis::mc_halt_superimposed::McHaltSuperimposed
             single_axis::mc_jog::McJog
+            multi_axis::mc_cam_table_select::McCamTableSelect
+            multi_axis::mc_cam_in::McCamIn
+            multi_axis::mc_cam_out::McCamOut
             multi_axis::mc_gear_in::McGearIn
             multi_axis::mc_gear_out::McGearOut
             multi_axis::mc_gear_in_pos::McGearInPos

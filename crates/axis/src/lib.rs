@@ -56,6 +56,7 @@ pub use log::{Approach, Event, Goal, LOG_KEPT, Log, Record};
 pub use parameter::{Parameter, ParameterValue};
 pub use scaling::{Scaling, Turn};
 pub use scope::Scope;
+pub use standstill_planner::cam::CAM_ROWS;
 pub use standstill_planner::turns::split;
 pub use standstill_planner::{
     Anchor, Cam, CamCause, CamFault, CamHead, CamPiece, CamRow, Excess, Gear, Limits, MoveProfile, Order,

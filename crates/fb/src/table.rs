@@ -84,6 +84,24 @@ impl<R, const N: usize> TableOf<R, N> {
 }
 
 impl<R: Record, const N: usize> TableOf<R, N> {
+    /// Reads record `index`, from 0, from the numbers of the runtime; `None` if it does not stand there.
+    ///
+    /// Numbers that do not fit a field become the nearest that does. Cost: a few operations for each field.
+    pub fn row(&self, tables: &[f64], index: usize) -> Option<R> {
+        let width = R::PINS.len();
+        if index >= usize::from(self.place.records) {
+            return None;
+        }
+        let first = usize::try_from(self.place.first).ok()?;
+        let first = first.checked_add(index.checked_mul(width)?)?;
+        let cells = tables.get(first..first.checked_add(width)?)?;
+        let mut row = R::default();
+        for (index, (field, cell)) in R::PINS.iter().zip(cells).enumerate() {
+            row.set(index, field.ty.of_cell(*cell)?).ok()?;
+        }
+        Some(row)
+    }
+
     /// Reads the records from the numbers of the runtime; `None` if they do not stand there or are more than `N`.
     ///
     /// Numbers that do not fit a field become the nearest that does. Cost: a few operations for each field.

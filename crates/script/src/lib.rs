@@ -9,6 +9,7 @@ mod advice;
 pub mod bare;
 mod changes;
 pub mod claims;
+pub mod csv;
 mod error;
 mod format;
 pub mod golden;

@@ -28,6 +28,8 @@ pub struct Script {
     pub inputs: Vec<Input>,
     /// The numbers of all tables, one after the other.
     pub tables: Vec<f64>,
+    /// The store of cams: slots, and pieces in all.
+    pub cams: (usize, usize),
     /// Block instances in call order.
     pub blocks: Vec<Instance>,
     /// Guest programs; each runs in its task after the task's instances.
@@ -78,6 +80,8 @@ pub struct Axis {
     pub masters: usize,
     /// It has a master, and a block with it at its `Axis` pin superimposes motions.
     pub superimposed: bool,
+    /// MC_CamIn has it at its `Slave` pin.
+    pub on_cam: bool,
     /// Where it stands.
     pub place: Place,
 }
@@ -428,13 +432,15 @@ pub enum AxisNumber {
     Phase2,
     /// What is superimposed on the law of a slave.
     Superimposed,
+    /// The place of the master at which a slave on a cam is.
+    Shadow,
 }
 
 impl AxisNumber {
     /// How many masters an axis may have at least to have it.
     pub(crate) const fn least_masters(self) -> usize {
         match self {
-            Self::Deviation | Self::Phase | Self::Superimposed => 1,
+            Self::Deviation | Self::Phase | Self::Superimposed | Self::Shadow => 1,
             Self::Phase2 => 2,
             _ => 0,
         }

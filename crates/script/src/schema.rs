@@ -12,7 +12,7 @@ use crate::read::program::{FUEL_MAX, MEMORY_MAX, SYMBOL_TYPES};
 use crate::read::shape::{self, Shape};
 use crate::read::step::FAULT_KINDS;
 use crate::read::value::NUMBER_WORDS;
-use crate::read::{CLAMPS, SCANS_MAX, VERSION};
+use crate::read::{CAM_PIECES_MOST, CAM_SLOTS_MOST, CLAMPS, SCANS_MAX, VERSION};
 use serde_json::{Map, Value, json};
 use standstill_axis::{ACTUAL_FILTER_MAX, DELAY_MAX, DIGITAL, PROBES, QUEUE_MAX};
 use standstill_blocks::REGISTRY;
@@ -135,6 +135,11 @@ pub(crate) fn script_key(key: &str) -> Value {
         "clamps" => words(&CLAMPS),
         "tasks" => names(of("task")),
         "blocks" => list(of("block"), 0),
+        "tables" => names(of("table")),
+        "cams" => object(&shape::CAMS, |key| match key {
+            "slots" => integer(0, CAM_SLOTS_MOST as i64),
+            _ => integer(0, CAM_PIECES_MOST as i64),
+        }),
         "programs" => names(of("program")),
         "steps" => list(of("step"), 0),
         "expect" => list(of("claim"), 0),
@@ -191,6 +196,16 @@ fn parts() -> Vec<(String, Value)> {
                 required(&["wasm"], object(&shape::PROGRAM_MODULE, program_key)),
                 required(&["st"], object(&shape::PROGRAM_TEXT, program_key)),
             ]}),
+        ),
+        (
+            "table",
+            required(
+                &["type"],
+                object(&shape::TABLE, |key| match key {
+                    "rows" => list(json!({"type": "object"}), 0),
+                    _ => text(),
+                }),
+            ),
         ),
         ("wire", wire()),
         ("expression", expression()),
@@ -476,11 +491,12 @@ fn table(info: TableInfo) -> Value {
         add(&mut schema, "description", json!(field.doc.trim()));
         properties.insert(field.name.to_owned(), schema);
     }
-    json!({
+    let rows = json!({
         "type": "array",
         "maxItems": info.most,
         "items": {"type": "object", "properties": properties, "additionalProperties": false},
-    })
+    });
+    any(&[rows, required(&["table"], object(&shape::TABLE_USE, |_| text()))])
 }
 
 fn wire() -> Value {

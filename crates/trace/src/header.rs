@@ -32,6 +32,10 @@ pub const COMBINED_SIGNALS: [&str; 2] = ["Master2", "Phase2"];
 /// superimposed on its law (u).
 pub const SUPERIMPOSED_SIGNALS: [&str; 1] = ["Superimposed"];
 
+/// The column behind those, of every axis at the `Slave` pin of MC_CamIn ([`Axis::on_cam`]): the place of the master (u of the master)
+/// at which the slave is on the curve; in sync that of its master, 0 while it is not on the curve.
+pub const CAM_SIGNALS: [&str; 1] = ["Shadow"];
+
 /// A run in a few words: everything but its rows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Header {
@@ -89,6 +93,9 @@ pub struct Axis {
     /// It stands at a `Slave` pin and at the `Axis` pin of MC_MoveSuperimposed, and has the column of [`SUPERIMPOSED_SIGNALS`], too.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub superimposed: bool,
+    /// It stands at the `Slave` pin of MC_CamIn, and has the column of [`CAM_SIGNALS`], too.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub on_cam: bool,
 }
 
 impl Axis {
@@ -102,7 +109,8 @@ impl Axis {
             &[]
         };
         let all = AXIS_SIGNALS.iter().chain(of_slave).chain(of_combined);
-        all.chain(superimposed).copied()
+        let of_cam = if self.on_cam { &CAM_SIGNALS[..] } else { &[] };
+        all.chain(superimposed).chain(of_cam).copied()
     }
 }
 

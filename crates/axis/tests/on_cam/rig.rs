@@ -38,6 +38,8 @@ pub struct Rig {
     /// Differences of published positions of the slave, newest first, and the largest of each order.
     positions: [f64; 5],
     pub peaks: [f64; 4],
+    /// The largest number its positions were made of.
+    pub largest: f64,
     told: u64,
 }
 
@@ -95,6 +97,7 @@ impl Rig {
             cycle,
             positions: [slave.position; 5],
             peaks: [0.0; 4],
+            largest: 0.0,
             told: 0,
         }
     }
@@ -197,6 +200,8 @@ impl Rig {
             }
         }
         self.positions[0] = now;
+        let master = self.axes[MASTER].setpoint().position;
+        self.largest = self.largest.max(now.abs()).max(master.abs());
         let [a, b, c, d, e] = self.positions;
         let differences = [
             a - b,

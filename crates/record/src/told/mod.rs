@@ -34,6 +34,7 @@ pub fn axis(name: &str, unit: &str, config: &AxisConfig) -> trace::Axis {
         slave: false,
         combined: false,
         superimposed: false,
+        on_cam: false,
     }
 }
 

@@ -82,6 +82,7 @@ impl Reader {
             drive: drive?,
             masters: self.masters_of(index),
             superimposed: self.is_superimposed(index),
+            on_cam: self.on_cams.contains(&index),
             place,
         })
     }

@@ -15,7 +15,7 @@ use standstill_st::Elementary;
 use std::collections::BTreeSet;
 
 /// The numeric columns of an axis by name.
-pub(crate) const AXIS_NUMBERS: [(&str, AxisNumber); 10] = [
+pub(crate) const AXIS_NUMBERS: [(&str, AxisNumber); 11] = [
     ("Position", AxisNumber::Position),
     ("Velocity", AxisNumber::Velocity),
     ("Acceleration", AxisNumber::Acceleration),
@@ -26,6 +26,7 @@ pub(crate) const AXIS_NUMBERS: [(&str, AxisNumber); 10] = [
     ("Phase", AxisNumber::Phase),
     ("Phase2", AxisNumber::Phase2),
     ("Superimposed", AxisNumber::Superimposed),
+    ("Shadow", AxisNumber::Shadow),
 ];
 
 /// What values a signal has.
@@ -446,6 +447,11 @@ impl Reader {
             Some((
                 "`Axis` pin of MC_MoveSuperimposed",
                 "Superimposed is a signal of axes that have a master and are moved by MC_MoveSuperimposed",
+            ))
+        } else if number == Some(AxisNumber::Shadow) && !self.on_cams.contains(&axis) {
+            Some((
+                "`Slave` pin of MC_CamIn",
+                "Shadow is a signal of axes that MC_CamIn couples to a master",
             ))
         } else {
             None

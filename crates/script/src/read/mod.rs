@@ -36,7 +36,8 @@ use crate::model::{Conditions, DriveSetup, Formula, Input, Place, Program, Scrip
 use json::{Json, Key, Node};
 use names::{Entity, Names, identifier_error};
 pub use program::GUEST_MEMORY;
-use standstill_fb::{PinType, Value};
+use standstill_axis::{CAM_PIECES, CAM_SLOTS};
+use standstill_fb::{PinType, TableInfo, TableRef, Value};
 use standstill_trace::digest::Fnv1a;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -50,6 +51,12 @@ pub const CELLS_MAX: u64 = 100_000_000;
 
 /// Most looks at rows that the conditions of a script's claims and steps may take, each in every scan: some minutes of work.
 pub const LOOKS_MAX: u64 = 10_000_000_000;
+
+/// Most slots of the store of cams, and most pieces; a million of those take 120 MB.
+pub const CAM_SLOTS_MOST: usize = 65_000;
+
+/// See [`CAM_SLOTS_MOST`].
+pub const CAM_PIECES_MOST: usize = 1_000_000;
 
 /// Most axes, inputs or instances of one script each: their numbers are 16 bits wide.
 pub const ENTITIES_MAX: usize = 65_000;
@@ -72,6 +79,8 @@ struct Reader {
     wires: circle::Wires,
     /// The numbers of the tables read so far.
     tables: Vec<f64>,
+    /// Those of the script by name: none where it was no good.
+    named_tables: BTreeMap<String, (Option<TableRef>, TableInfo)>,
     /// The guest programs read so far.
     programs: Vec<Option<Program>>,
     terms: Terms,
@@ -85,6 +94,8 @@ struct Reader {
     slaves: BTreeMap<usize, usize>,
     /// Axes at the `Axis` pin of MC_MoveSuperimposed.
     superimposed: BTreeSet<usize>,
+    /// Axes at the `Slave` pin of MC_CamIn.
+    on_cams: BTreeSet<usize>,
     /// The expressions read so far.
     formulas: Vec<Formula>,
     /// What is wrong with sources in Structured Text.
@@ -245,6 +256,8 @@ impl Reader {
         let inputs = self.inputs(&fields);
         // Before whatever may name a variable of theirs.
         let programs = self.programs(&fields, guest);
+        let tables = self.tables(&fields, guest);
+        let cams = self.cams(&fields);
         let mut tasks = self.tasks(&fields);
         self.program_calls(&fields, &mut tasks);
         let blocks = self.blocks(&fields, tasks.as_deref());
@@ -264,6 +277,7 @@ impl Reader {
             .get("clamps")
             .map_or(Some(false), |node| self.choice(node, "`clamps`", &CLAMPS));
         programs?;
+        tables?;
         let programs: Option<Vec<Program>> = std::mem::take(&mut self.programs).into_iter().collect();
         let script = Script {
             title: title?.to_owned(),
@@ -280,6 +294,7 @@ impl Reader {
             stop_when: stop_when?,
             formulas: std::mem::take(&mut self.formulas),
             tables: std::mem::take(&mut self.tables),
+            cams: cams?,
             parameters: std::mem::take(&mut self.parameters),
             golden: golden?,
             clamps_expected: clamps?,
@@ -463,6 +478,10 @@ impl Reader {
                     Some(Json::Text(name)) => standstill_blocks::registry::find(name),
                     _ => None,
                 };
+                if info.is_some_and(|info| info.name == "MC_CamIn") {
+                    let slave = member("pins").and_then(|pins| self.axis_at(pins, "Slave"));
+                    self.on_cams.extend(slave);
+                }
                 if info.is_some_and(|info| info.name == "MC_MoveSuperimposed") {
                     let axis = member("pins").and_then(|pins| self.axis_at(pins, "Axis"));
                     self.superimposed.extend(axis);
@@ -494,6 +513,24 @@ impl Reader {
     /// The most masters that a block of the script gives an axis.
     fn masters_of(&self, axis: usize) -> usize {
         self.slaves.get(&axis).copied().unwrap_or(0)
+    }
+
+    /// The store of cams: slots, and pieces in all.
+    fn cams(&mut self, fields: &Fields<'_>) -> Option<(usize, usize)> {
+        let Some(node) = fields.get("cams") else {
+            return Some((CAM_SLOTS, CAM_PIECES));
+        };
+        let fields = self.fields(node, &shape::CAMS)?;
+        let mut number = |key: &str, most: usize, usual: usize| match fields.get(key) {
+            None => Some(usual),
+            Some(node) => {
+                let value = self.whole(node, &quoted(key), 0..=most as i64)?;
+                usize::try_from(value).ok()
+            }
+        };
+        let slots = number("slots", CAM_SLOTS_MOST, CAM_SLOTS);
+        let pieces = number("stretches", CAM_PIECES_MOST, CAM_PIECES);
+        slots.zip(pieces)
     }
 
     /// It has a master, and motions may be superimposed on it.

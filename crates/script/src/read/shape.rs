@@ -35,6 +35,8 @@ pub(crate) const SCRIPT: Shape = shape(
         "inputs",
         "tasks",
         "blocks",
+        "tables",
+        "cams",
         "programs",
         "steps",
         "expect",
@@ -61,6 +63,12 @@ pub(crate) const MACHINE: Shape = shape(
         "note",
     ],
 );
+/// A table of a script.
+pub(crate) const TABLE: Shape = shape("a table", &["type", "rows", "csv", "note"]);
+/// Where a pin takes it.
+pub(crate) const TABLE_USE: Shape = shape("a table's use", &["table", "note"]);
+/// The store of cams.
+pub(crate) const CAMS: Shape = shape("`cams`", &["slots", "stretches", "note"]);
 pub(crate) const PARAM: Shape = shape("a parameter's use", &["param", "note"]);
 
 pub(crate) const AXIS: Shape = Shape {

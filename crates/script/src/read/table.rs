@@ -1,14 +1,120 @@
 //! Tables at pins: a list of objects with the fields of the record.
 
-use super::Reader;
 use super::json::{Json, Node};
 use super::names::suggestion;
+use super::program::LoadGuest;
+use super::value::Fields;
+use super::{Reader, shape};
+use crate::csv;
 use crate::error::{Code, Diagnostic, quoted};
 use standstill_fb::{TableInfo, TableRef, Value};
 
 impl Reader {
     /// The records at a pin of a table's type; they join the numbers of all tables.
     pub(super) fn table(&mut self, node: &Node, info: TableInfo, what: &str) -> Option<TableRef> {
+        if let Json::Map(_) = &node.json {
+            return self.named_table(node, info, what);
+        }
+        self.rows_of_table(node, info, what)
+    }
+
+    /// A table of the script, by its name.
+    fn named_table(&mut self, node: &Node, info: TableInfo, what: &str) -> Option<TableRef> {
+        let fields = self.fields(node, &shape::TABLE_USE)?;
+        let node = self.require(&fields, "table", "a table's use")?;
+        let name = self.text(node, "`table`")?;
+        let Some((place, found)) = self.named_tables.get(name).copied() else {
+            let help = suggestion(name, self.named_tables.keys().map(String::as_str));
+            let help = help.or_else(|| Some("declare it under \"tables\"".to_owned()));
+            let message = format!("there is no table {}", quoted(name));
+            self.report(Diagnostic::new(Code::UnknownSignal, node.span, message).maybe_help(help));
+            return None;
+        };
+        if found.name != info.name {
+            let message = format!(
+                "{what} takes a table of {}, and {} is one of {}",
+                info.name,
+                quoted(name),
+                found.name
+            );
+            self.report(Diagnostic::new(Code::WrongType, node.span, message));
+            return None;
+        }
+        // One that is no good was reported where it stands.
+        place
+    }
+
+    /// The tables that the script names; `load` gives the bytes of a file.
+    pub(super) fn tables(&mut self, fields: &Fields<'_>, load: LoadGuest<'_>) -> Option<()> {
+        let Some(node) = fields.get("tables") else {
+            return Some(());
+        };
+        let members = self.map(node, "`tables`")?;
+        let mut good = true;
+        for (key, node) in members.iter() {
+            let Some((info, place)) = self.declared_table(node, load) else {
+                good = false;
+                continue;
+            };
+            good &= place.is_some();
+            self.named_tables.insert(key.text.clone(), (place, info));
+        }
+        good.then_some(())
+    }
+
+    fn declared_table(&mut self, node: &Node, load: LoadGuest<'_>) -> Option<(TableInfo, Option<TableRef>)> {
+        let fields = self.fields(node, &shape::TABLE)?;
+        let kind = self.require(&fields, "type", "a table")?;
+        let name = self.text(kind, "`type`")?;
+        let Some(info) = csv::table_info(name) else {
+            let message = format!("no pin takes a table of {}", quoted(name));
+            let help = "the rows of a cam are MC_CAM_POINT";
+            self.report(Diagnostic::new(Code::BadValue, kind.span, message).help(help));
+            return None;
+        };
+        let place = match (fields.get("rows"), fields.get("csv")) {
+            (Some(rows), None) => self.rows_of_table(rows, info, "`rows`"),
+            (None, Some(file)) => self.file_of_table(file, info, load),
+            _ => {
+                let message = "a table has either `rows` or `csv`";
+                self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
+                None
+            }
+        };
+        Some((info, place))
+    }
+
+    fn file_of_table(&mut self, node: &Node, info: TableInfo, load: LoadGuest<'_>) -> Option<TableRef> {
+        let name = self.text(node, "`csv`")?;
+        let rows = match load(name) {
+            Ok(bytes) => csv::read(&bytes, &info).map_err(|fault| {
+                let message = format!("{name}:{}:{}: {}", fault.line, fault.column, fault.message);
+                (message, Some(fault.help))
+            }),
+            Err(why) => Err((format!("the table {} can't be read: {why}", quoted(name)), None)),
+        };
+        match rows {
+            Ok(rows) => self.placed(rows),
+            Err((message, help)) => {
+                let message: String = message.chars().filter(|c| !c.is_control()).collect();
+                self.report(Diagnostic::new(Code::BadValue, node.span, message).maybe_help(help));
+                None
+            }
+        }
+    }
+
+    /// Records join the numbers of all tables.
+    fn placed(&mut self, records: Vec<Vec<f64>>) -> Option<TableRef> {
+        let place = TableRef {
+            first: u32::try_from(self.tables.len()).ok()?,
+            records: u16::try_from(records.len()).ok()?,
+        };
+        self.tables.extend(records.into_iter().flatten());
+        Some(place)
+    }
+
+    /// The records of a list.
+    fn rows_of_table(&mut self, node: &Node, info: TableInfo, what: &str) -> Option<TableRef> {
         let Json::List(items) = &node.json else {
             let diagnostic = self.wrong_type(node, what, "a list of objects");
             self.report(diagnostic.help("for example [{}]; what is left out of a record is 0 or FALSE"));
@@ -20,12 +126,7 @@ impl Reader {
             return None;
         }
         let records = self.each(items, |reader, item| reader.record(item, info))?;
-        let place = TableRef {
-            first: u32::try_from(self.tables.len()).ok()?,
-            records: u16::try_from(records.len()).ok()?,
-        };
-        self.tables.extend(records.into_iter().flatten());
-        Some(place)
+        self.placed(records)
     }
 
     fn record(&mut self, node: &Node, info: TableInfo) -> Option<Vec<f64>> {

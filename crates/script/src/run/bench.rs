@@ -29,6 +29,7 @@ pub(crate) fn instance_id(index: usize) -> InstanceId {
 pub(crate) fn machine(script: &Script) -> Result<ScriptMachine, RunError> {
     let mut machine = Machine::new();
     machine.tables_mut().clone_from(&script.tables);
+    machine.set_cam_store(script.cams.0, script.cams.1);
     let planner = Standard::new(script.cycle_ns as f64 / 1e9);
     for axis in &script.axes {
         let drive = SimulatedDrive::new(&axis.drive, &axis.config, script.cycle_ns).map_err(|error| {
@@ -390,12 +391,17 @@ impl<'a> Bench<'a> {
             let superimposed = configured
                 .superimposed
                 .then(|| Cell::Real(coupled.map_or(0.0, |coupled| coupled.superimposed)));
+            let shadow = configured.on_cam.then(|| {
+                let shadow = coupled.and_then(|coupled| coupled.shadow);
+                Cell::Real(shadow.unwrap_or(0.0))
+            });
             let of_slave = of_slave.into_iter().flatten();
             of_all
                 .into_iter()
                 .chain(of_slave)
                 .chain(of_combined.into_iter().flatten())
                 .chain(superimposed)
+                .chain(shadow)
         });
         let named = &self.cells;
         let variables = self

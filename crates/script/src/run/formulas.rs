@@ -195,6 +195,7 @@ pub(crate) fn of_reading(input: &FormulaInput, reading: &Reading) -> Option<Valu
                 second.map_or(0.0, |(_, phase)| phase)
             }
             AxisNumber::Superimposed => reading.coupled.map_or(0.0, |coupled| coupled.superimposed),
+            AxisNumber::Shadow => reading.coupled.and_then(|coupled| coupled.shadow).unwrap_or(0.0),
         }),
         Signal::Point(_) | Signal::Master(..) | Signal::Difference(..) | Signal::Formula(_) => return None,
     })

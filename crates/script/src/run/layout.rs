@@ -16,6 +16,8 @@ pub(crate) struct Layout {
     axes: Vec<Range<usize>>,
     /// The column of what is superimposed on the law of each, if it has one.
     superimposed: Vec<Option<usize>>,
+    /// That of the shadow of each, if it has one.
+    shadows: Vec<Option<usize>>,
     /// First column of the input variables.
     variables: usize,
     /// First column of each instance.
@@ -31,6 +33,7 @@ impl Layout {
         let mut next = 0;
         let mut axes = Vec::with_capacity(script.axes.len());
         let mut superimposed = Vec::with_capacity(script.axes.len());
+        let mut shadows = Vec::with_capacity(script.axes.len());
         for axis in &script.axes {
             let first = next;
             let of_slave = match axis.masters {
@@ -42,6 +45,10 @@ impl Layout {
             superimposed.push(axis.superimposed.then_some(next));
             if axis.superimposed {
                 next += trace::SUPERIMPOSED_SIGNALS.len();
+            }
+            shadows.push(axis.on_cam.then_some(next));
+            if axis.on_cam {
+                next += trace::CAM_SIGNALS.len();
             }
             axes.push(first..next);
         }
@@ -60,6 +67,7 @@ impl Layout {
         Self {
             axes,
             superimposed,
+            shadows,
             variables,
             instances,
             programs,
@@ -131,6 +139,7 @@ impl Layout {
             AxisNumber::Phase => 9,
             AxisNumber::Phase2 => 11,
             AxisNumber::Superimposed => return self.place((*self.superimposed.get(axis)?)?),
+            AxisNumber::Shadow => return self.place((*self.shadows.get(axis)?)?),
         };
         self.of_axis(axis, place)
     }
@@ -155,6 +164,7 @@ pub(crate) fn header(script: &Script) -> trace::Header {
                 slave: axis.masters > 0,
                 combined: axis.masters > 1,
                 superimposed: axis.superimposed,
+                on_cam: axis.on_cam,
                 ..told::axis(&axis.name, &axis.unit, &axis.config)
             })
             .collect(),

@@ -94,6 +94,7 @@ pub fn header() -> Header {
             slave: false,
             combined: false,
             superimposed: false,
+            on_cam: false,
         }],
         inputs: vec![Input {
             name: "GO".into(),

@@ -170,6 +170,11 @@ impl<P: Planner> Axis<P> {
         self.on_cam.is_some()
     }
 
+    /// The owner follows a master on a cam.
+    pub fn is_on_a_cam(&self) -> bool {
+        self.is_on_cam()
+    }
+
     /// The owner is on this cam, or a command that waits is for it.
     pub fn uses_cam(&self, id: CamId) -> bool {
         let is_of = |entry: &Entry| matches!(entry.work, super::super::commands::Work::Cam(camming) if camming.cam == id);

@@ -14,7 +14,9 @@ use super::super::needs::RESOLVED;
 use super::super::view::{Kind, UNKNOWN, View};
 use super::{Curve, OnCam, Rung, Shadow};
 use crate::{Approach, ErrorId, Event, Fate, Scope};
-use standstill_planner::{Anchor, DirectedLimits, Limits, MoveProfile, Place, Plan, Planner, Setpoint};
+use standstill_planner::{
+    Anchor, DirectedLimits, Excess, Limits, MoveProfile, Place, Plan, Planner, Setpoint,
+};
 
 /// A velocity left beside that of a line must be at least this part of the limit.
 const LEAST: f64 = 1e-6;
@@ -24,6 +26,12 @@ const PLACES: u32 = 4;
 
 /// Velocities of a shadow that are tried.
 const SPEEDS: usize = 4;
+
+/// So many scans ahead a shadow looks that has to slow down.
+const AHEAD: [f64; 7] = [10.0, 25.0, 50.0, 100.0, 200.0, 400.0, 800.0];
+
+/// The most a shadow may have of the highest velocity of its cam: above it nothing is left to its acceleration.
+const FASTEST: f64 = 0.98;
 
 /// The master's next stretch of constant velocity: in how many scans it begins and ends, its velocity (u/s), and where a line of
 /// that velocity through it is now.
@@ -49,6 +57,8 @@ struct Way<Q> {
     shadow: Limits,
     /// Its place is called so much more (u of the master): whole periods, as the master comes by once more.
     laps: f64,
+    /// It begins outside them.
+    exceeds: bool,
 }
 
 /// What is to be done.
@@ -324,28 +334,24 @@ impl<P: Planner> Axis<P> {
         // As fast as it is already it may be in any case.
         let present = shadow.velocity.abs().min(0.999 * highest);
         let found = bounds.shadow(&limits, wanted.max(present), present)?;
-        // A cam that hardly moves leaves more than numbers hold.
-        let most = |limit: f64, most: f64| if limit.is_finite() { limit.min(most) } else { limit };
-        Some(Limits {
-            velocity: found.velocity.min(1e12),
-            acceleration: found.acceleration.min(1e15),
-            deceleration: found.deceleration.min(1e15),
-            jerk: most(found.jerk, 1e18),
-            snap: most(found.snap, 1e21),
-        })
+        Some(bounded(&found))
     }
 
     /// Velocities of a shadow that comes into step with a stretch: hardly more than that leaves most of the acceleration, the highest
-    /// one least; which is soonest is a matter of the way.
+    /// one least; which is soonest is a matter of the way. Where the stretch is too fast, those that fall behind.
     fn speeds_of_shadow(&self, curve: &Curve<'_>, stretch: &Stretch) -> [f64; SPEEDS] {
         let limits = self.slowed(&self.parameters.limits);
         let highest = curve.bounds().highest_velocity(&limits).min(1e12);
         let speed = stretch.velocity.abs();
-        let between = |share: f64| speed + share * (0.98 * highest - speed).max(0.0);
-        [between(0.1), between(0.5), between(0.8), between(1.0)]
+        if speed >= FASTEST * highest {
+            return [0.9, 0.7, 0.5, 0.3].map(|share| share * highest);
+        }
+        [0.1, 0.4, 0.7, 1.0].map(|share| speed + share * (FASTEST * highest - speed))
     }
 
     /// The way of the shadow into step with its master that is soonest there.
+    ///
+    /// What brings a shadow inside lower limits than it has now keeps neither: such a way is taken only where there is no other.
     fn in_step(
         &self,
         curve: &Curve<'_>,
@@ -357,47 +363,111 @@ impl<P: Planner> Axis<P> {
         let mut best: Option<Way<P::Plan>> = None;
         let take = |best: &mut Option<Way<P::Plan>>, way: Option<Way<P::Plan>>| {
             let Some(way) = way else { return };
-            if best.as_ref().is_none_or(|best| way.lock < best.lock) {
+            let order = |way: &Way<P::Plan>| (way.exceeds, way.lock);
+            if best.as_ref().is_none_or(|best| order(&way) < order(best)) {
                 *best = Some(way);
             }
         };
         // Where it is now the master comes by once more a period later.
         let can_wait = curve.repeats() && stretch.velocity != 0.0;
-        let mut pace = None;
-        for wanted in self.speeds_of_shadow(curve, stretch) {
-            let Some(limits) = self.limits_of_shadow(curve, &shadow.at, wanted) else {
-                continue;
-            };
-            let before = self.shadow_before(&limits);
-            pace = Some((limits, before));
-            let way = self.beside_stretch_of_master(shadow, stretch, &limits, &before, curve, 0.0);
+        let speeds = self.speeds_of_shadow(curve, stretch);
+        let wanted = speeds.map(|wanted| self.limits_of_shadow(curve, &shadow.at, wanted));
+        let all = wanted.into_iter().chain([self.shadow_limits_now()]).flatten();
+        for limits in all.clone() {
+            let way = self.beside_stretch_of_master(shadow, stretch, &limits, curve, 0.0);
             take(&mut best, way);
             take(&mut best, self.beside_master(view, difference, &limits));
             if can_wait {
                 let period = curve.period().copysign(stretch.velocity);
-                let way = self.beside_stretch_of_master(shadow, stretch, &limits, &before, curve, period);
+                let way = self.beside_stretch_of_master(shadow, stretch, &limits, curve, period);
                 take(&mut best, way);
             }
         }
-        if let Some(mut way) = best {
-            if view.future.is_late() {
-                way.left = 0;
+        if best
+            .as_ref()
+            .is_none_or(|way| way.exceeds || way.lock == u64::MAX)
+        {
+            for limits in all {
+                let pace = self.at_shadow_pace(view, shadow, stretch, &limits);
+                take(&mut best, pace);
             }
-            return Choice::Take(way);
         }
-        let way =
-            pace.and_then(|(limits, before)| self.at_shadow_pace(view, shadow, stretch, &limits, &before));
-        way.map_or(Choice::Wait(UNKNOWN), Choice::Take)
+        if best.as_ref().is_none_or(|way| way.exceeds) {
+            take(&mut best, self.slowing_down(curve, shadow));
+        }
+        let Some(mut way) = best else {
+            return Choice::Wait(UNKNOWN);
+        };
+        if view.future.is_late() {
+            way.left = 0;
+        }
+        Choice::Take(way)
     }
 
-    /// The limits that held for the shadow before, with those it has now.
-    fn shadow_before(&self, limits: &Limits) -> Limits {
-        let of_shadow = |on_cam: &OnCam| match on_cam.rung {
+    /// The shadow is faster than it may be anywhere on the cam, where the cam is flat: it comes down to less as fast as that part
+    /// allows, before it is at a steeper one.
+    fn slowing_down(&self, curve: &Curve<'_>, shadow: &Shadow) -> Option<Way<P::Plan>> {
+        let limits = self.slowed(&self.parameters.limits);
+        let speed = shadow.at.velocity.abs();
+        let goal = 0.5 * FASTEST * curve.bounds().highest_velocity(&limits).min(1e12);
+        let start = Setpoint {
+            position: 0.0,
+            ..shadow.at
+        };
+        let x = curve.unwound(shadow.place);
+        let mut found: Option<Way<P::Plan>> = None;
+        for scans in AHEAD {
+            let reach = shadow.at.velocity * (scans * self.planner.cycle());
+            let further = x + reach / curve.law.master_scaling;
+            let bounds = curve
+                .law
+                .bounds_between(&curve.cam, x.min(further), x.max(further));
+            let Some(own) = bounds.shadow(&limits, speed.max(goal), speed) else {
+                continue;
+            };
+            let own = Limits {
+                velocity: speed.max(goal),
+                ..bounded(&own)
+            };
+            let goal = goal.copysign(shadow.at.velocity);
+            let Ok(plan) = self.planner.ramp_to(&start, goal, &own, &own) else {
+                continue;
+            };
+            let scans = u64::from(plan.scans());
+            let is_inside = plan.at(scans).position.abs() <= reach.abs();
+            let exceeds = !is_inside || plan.excess().is_some_and(|excess| leaves(&excess, &own));
+            if found.is_some() && exceeds {
+                continue;
+            }
+            found = Some(Way {
+                exceeds,
+                motion: closing(plan),
+                rung: Rung::BesideLine {
+                    start: shadow.place,
+                    velocity: 0.0,
+                    begin: u64::MAX,
+                },
+                lock: u64::MAX,
+                left: scans,
+                name: Approach::Pace,
+                velocity: goal,
+                shadow: own,
+                laps: 0.0,
+            });
+            if !exceeds {
+                break;
+            }
+        }
+        found
+    }
+
+    /// The limits of the shadow in motion, inside which it is.
+    fn shadow_limits_now(&self) -> Option<Limits> {
+        let on_cam = self.on_cam.as_ref()?;
+        match on_cam.rung {
             Rung::BesideLine { .. } | Rung::BesideMaster => Some(on_cam.shadow_limits),
             _ => None,
-        };
-        let before = self.on_cam.as_ref().and_then(of_shadow);
-        before.map_or(*limits, |before| limits.or_larger(&before))
+        }
     }
 
     /// Beside the master: the difference comes to 0. None where that is not known to keep the limits, or leads ahead of it.
@@ -445,6 +515,7 @@ impl<P: Planner> Axis<P> {
         }
         let lock = u64::from(plan.scans());
         Some(Way {
+            exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
             motion: closing(plan),
             rung: Rung::BesideMaster,
             lock,
@@ -462,7 +533,6 @@ impl<P: Planner> Axis<P> {
         shadow: &Shadow,
         stretch: &Stretch,
         limits: &Limits,
-        before: &Limits,
         curve: &Curve<'_>,
         laps: f64,
     ) -> Option<Way<P::Plan>> {
@@ -491,20 +561,21 @@ impl<P: Planner> Axis<P> {
                 limits: *limits,
             }
         };
-        let wider = before.velocity + speed;
+        let wider = limits.velocity + speed;
         let plan = self
             .planner
             .move_by_direction(
                 &start,
                 0.0,
                 &own(limits, along, against),
-                &own(before, wider, wider),
+                &own(limits, wider, wider),
             )
             .ok()?;
         let scans = u64::from(plan.scans());
         let arrives = scans.max(stretch.begin);
         let is_in_time = arrives <= stretch.end;
         Some(Way {
+            exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
             motion: closing(plan),
             rung: Rung::BesideLine {
                 start: stretch.now,
@@ -527,14 +598,13 @@ impl<P: Planner> Axis<P> {
         shadow: &Shadow,
         stretch: &Stretch,
         limits: &Limits,
-        before: &Limits,
     ) -> Option<Way<P::Plan>> {
         let start = Setpoint {
             position: 0.0,
             ..shadow.at
         };
         let goal = limits.velocity.copysign(stretch.velocity);
-        let plan = self.planner.ramp_to(&start, goal, limits, before).ok()?;
+        let plan = self.planner.ramp_to(&start, goal, limits, limits).ok()?;
         let left = match self.lead_of_master(view) {
             Some(lead) => {
                 let switch = self.planner.next_switch((lead.plan, lead.elapsed));
@@ -544,6 +614,7 @@ impl<P: Planner> Axis<P> {
             None => UNKNOWN,
         };
         Some(Way {
+            exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
             motion: closing(plan),
             rung: Rung::BesideLine {
                 start: shadow.place,
@@ -709,6 +780,7 @@ impl<P: Planner> Axis<P> {
         }
         let lock = u64::from(plan.scans());
         Ok(Way {
+            exceeds: false,
             motion: closing(plan),
             rung: Rung::Moving {
                 turns: here.turns,
@@ -850,6 +922,28 @@ pub(super) fn goes_on(last: &Setpoint, next: &Setpoint, limits: &Limits) -> bool
     near(last.velocity, next.velocity, limits.velocity, rate)
         && near(last.acceleration, next.acceleration, rate, limits.jerk)
         && near(last.jerk, next.jerk, limits.jerk, limits.snap)
+}
+
+/// A cam that hardly moves leaves more than numbers hold.
+fn bounded(limits: &Limits) -> Limits {
+    let most = |limit: f64, most: f64| if limit.is_finite() { limit.min(most) } else { limit };
+    Limits {
+        velocity: limits.velocity.min(1e12),
+        acceleration: limits.acceleration.min(1e15),
+        deceleration: limits.deceleration.min(1e15),
+        jerk: most(limits.jerk, 1e18),
+        snap: most(limits.snap, 1e21),
+    }
+}
+
+/// Whether an excess is more than rounding of `limits`.
+fn leaves(excess: &Excess, limits: &Limits) -> bool {
+    let parts = [
+        (excess.velocity, limits.velocity),
+        (excess.acceleration, limits.acceleration),
+        (excess.jerk, limits.jerk),
+    ];
+    parts.into_iter().any(|(excess, limit)| excess > ROUNDING * limit)
 }
 
 fn closing<Q: Plan>(plan: Q) -> Motion<Q> {

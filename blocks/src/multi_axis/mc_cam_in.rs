@@ -1,0 +1,141 @@
+//! `MC_CamIn`: a slave follows a master on a cam.
+//!
+//! Source: PLCopen Motion Control Part 1, section of that name; V20 to V20b.
+
+use standstill_axis::{
+    AxisId, BufferMode, CamId, CamIn, Command, ErrorId, Master, Planner, Raw, Request, StartMode,
+    ValueSource, couple,
+};
+use standstill_fb::{Block, Context, Group, Move, UpdateCore, pins};
+
+pins! {
+    in_outs {
+        /// The axis to follow.
+        Master => master: AxisId;
+        /// The axis that follows.
+        Slave => slave: AxisId;
+    }
+    inputs {
+        /// A rising edge couples the axes with the values of that call.
+        Execute => execute: bool = false, "";
+        /// Changed inputs hold for the cam in progress while TRUE, if it was TRUE at the rising edge.
+        ContinuousUpdate => continuous_update: bool = false, "";
+        /// Where place 0 of the cam lies at the master.
+        MasterOffset => master_offset: f64 = 0.0, "u of the master";
+        /// Where place 0 of the cam lies at the slave.
+        SlaveOffset => slave_offset: f64 = 0.0, "u";
+        /// The master's side of the cam is so many times as long: above 1 it takes the master longer.
+        MasterScaling => master_scaling: f64 = 1.0, "";
+        /// The slave's side of the cam is so many times as long; negative mirrors it.
+        SlaveScaling => slave_scaling: f64 = 1.0, "";
+        /// Master distance before MasterSyncPosition in which the slave starts to synchronise; only 0 is supported.
+        MasterStartDistance => master_start_distance: f64 = 0.0, "u of the master";
+        /// Place of the cam's master side at which the slave is in sync first; 0 for the first row that it can reach in time.
+        MasterSyncPosition => master_sync_position: f64 = 0.0, "u of the master";
+        /// mcAbsolute as selected, mcRelative so that the cam passes through where the slave is, mcRampIn as mcAbsolute.
+        StartMode => start_mode: Raw<StartMode> = Raw::new(0), "";
+        /// mcSetValue, or mcActualValue for what the drive of the master tells, filtered.
+        MasterValueSource => master_value_source: Raw<ValueSource> = Raw::new(1), "";
+        /// The cam, from MC_CamTableSelect.
+        CamTableID => cam_table_id: u32 = 0, "";
+        /// How the command follows the one before it.
+        BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
+    }
+    vendor_inputs {}
+    outputs {
+        /// The set position of the slave is the one the cam asks for.
+        InSync => in_sync: bool, "";
+        /// Not finished.
+        Busy => busy: bool, "";
+        /// The block controls the slave.
+        Active => active: bool, "";
+        /// Interrupted by another command.
+        CommandAborted => command_aborted: bool, "";
+        /// Refused, or ended by an error.
+        Error => error: bool, "";
+        /// Why; 0 without an error.
+        ErrorID => error_id: ErrorId, "";
+        /// TRUE for one call each time the end of the cam is reached; running backwards at its first row.
+        EndOfProfile => end_of_profile: bool, "";
+    }
+    vendor_outputs {
+        /// How far the slave is from where the cam is at its master's place; 0 in sync.
+        Deviation => deviation: f64, "u";
+        /// The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost).
+        MasterLost => master_lost: bool, "";
+    }
+}
+
+/// State kept between calls.
+#[doc(alias = "MC_CamIn")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct McCamIn {
+    core: UpdateCore<Command>,
+    /// Ends of the cam that were shown, while it is active.
+    ends: Option<u32>,
+}
+
+impl Block for McCamIn {
+    const NAME: &'static str = "MC_CamIn";
+    const GROUP: Group = Group::MultiAxis;
+    const DOC: &'static str = "Lets one axis follow another on a cam.";
+    type Inputs = Inputs;
+    type Outputs = Outputs;
+
+    fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
+        let pins = Move {
+            axis: inputs.slave,
+            execute: inputs.execute,
+            continuous_update: inputs.continuous_update,
+        };
+        let master = context.axes.get(inputs.master.index());
+        let turn = master.and_then(|master| master.config().modulo);
+        let values = || {
+            Command::CamIn(CamIn {
+                master: Master {
+                    axis: inputs.master,
+                    turn,
+                },
+                source: inputs.master_value_source,
+                table: CamId::from_number(inputs.cam_table_id),
+                start_mode: inputs.start_mode,
+                master_offset: inputs.master_offset,
+                slave_offset: inputs.slave_offset,
+                master_scaling: inputs.master_scaling,
+                slave_scaling: inputs.slave_scaling,
+                start_distance: inputs.master_start_distance,
+                sync_position: inputs.master_sync_position,
+            })
+        };
+        let phase = self
+            .core
+            .scan_among(pins, context, values, |context, command, replaces| {
+                let request = Request {
+                    command,
+                    buffer_mode: inputs.buffer_mode,
+                    replaces,
+                };
+                couple(context.axes, inputs.slave, &request, &mut context.scope)
+            });
+        let slave = context.axes.get(inputs.slave.index());
+        let slave = slave.filter(|_| phase.is_active());
+        let ends = slave.map(|slave| slave.cam_ends());
+        let shown = self.ends;
+        self.ends = ends;
+        // Done is what ended with the cam, and passed the slave on.
+        let passed_on = phase.is_done() && shown.is_some();
+        let passed = ends.zip(shown).is_some_and(|(ends, shown)| ends != shown);
+        let first = ends.is_some_and(|ends| ends > 0 && shown.is_none());
+        Outputs {
+            in_sync: phase.is_reached(),
+            busy: phase.is_busy(),
+            active: phase.is_active(),
+            command_aborted: phase.is_aborted(),
+            error: phase.is_error(),
+            error_id: phase.error_id(),
+            end_of_profile: passed || passed_on || first,
+            deviation: slave.map(|slave| slave.deviation()).unwrap_or_default(),
+            master_lost: slave.is_some_and(|slave| slave.has_lost_master()),
+        }
+    }
+}
