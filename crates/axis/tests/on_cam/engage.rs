@@ -411,3 +411,30 @@ fn nothing_is_superimposed_on_a_cam() {
         Err(ErrorId::NotCoupled)
     );
 }
+
+/// A plan whose switches lie between scans is held against the cam piece by piece all the same.
+#[test]
+fn a_stop_from_speed_is_followed() {
+    let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
+    let cam = rig.select(&up_and_back(), RELATIVE);
+    let cam_in = rig.cam_in(cam);
+    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.run(-200.0);
+    rig.steps(3291);
+    rig.command(
+        MASTER,
+        Command::MoveAbsolute {
+            position: -720.05,
+            dynamics: Dynamics {
+                velocity: 100.0,
+                ..Dynamics::default()
+            },
+            direction: Raw::default(),
+        },
+    );
+    for _ in 0..1500 {
+        rig.step();
+        assert!(rig.slave().is_in_gear(), "{:?}", rig.events());
+    }
+    rig.keeps_limits().unwrap();
+}

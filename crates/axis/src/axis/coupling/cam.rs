@@ -8,7 +8,8 @@
 //! | file | subject |
 //! | --- | --- |
 //! | [`follow`] | the motion step of a slave on a cam |
-//! | [`onto`] | how it comes onto the curve, and its shadow in step with the master |
+//! | [`onto`] | how it comes onto the curve |
+//! | [`shadow`] | its shadow in step with the master |
 //! | [`ahead`] | whether it keeps its limits along what the master does next |
 //! | [`ends`], [`after`] | ends of periods, and what follows then |
 //!
@@ -20,6 +21,7 @@ mod ahead;
 mod ends;
 mod follow;
 mod onto;
+mod shadow;
 
 use super::super::Axis;
 use super::super::commands::{Camming, Entry};

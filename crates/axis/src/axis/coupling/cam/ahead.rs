@@ -73,11 +73,13 @@ impl<P: Planner> Axis<P> {
             } else {
                 (switch.saturating_sub(scan) >> PARTS).max(1)
             };
-            for _ in 0..=2_u32 << PARTS {
+            for _ in 0..=4_u32 << PARTS {
                 if scan >= switch {
                     break;
                 }
-                let next = scan.saturating_add(step).min(switch);
+                // The last scan may end in the next piece, and is a part of its own.
+                let inside = switch.saturating_sub(1).max(scan.saturating_add(1));
+                let next = scan.saturating_add(step).min(inside);
                 let most = part_of(&path, scan, next, cycle);
                 let (low, high) = most.0;
                 let per = 1.0 / curve.law.master_scaling;

@@ -14,55 +14,44 @@ use super::super::needs::RESOLVED;
 use super::super::view::{Kind, UNKNOWN, View};
 use super::{Curve, OnCam, Rung, Shadow};
 use crate::{Approach, ErrorId, Event, Fate, Scope};
-use standstill_planner::{
-    Anchor, DirectedLimits, Excess, Limits, MoveProfile, Place, Plan, Planner, Setpoint,
-};
+use standstill_planner::{Anchor, Limits, Place, Plan, Planner, Setpoint};
 
 /// A velocity left beside that of a line must be at least this part of the limit.
-const LEAST: f64 = 1e-6;
+pub(super) const LEAST: f64 = 1e-6;
 
 /// Places of the cam ahead of the master that are looked at, one by one.
 const PLACES: u32 = 4;
 
-/// Velocities of a shadow that are tried.
-const SPEEDS: usize = 4;
-
-/// So many scans ahead a shadow looks that has to slow down.
-const AHEAD: [f64; 7] = [10.0, 25.0, 50.0, 100.0, 200.0, 400.0, 800.0];
-
-/// The most a shadow may have of the highest velocity of its cam: above it nothing is left to its acceleration.
-const FASTEST: f64 = 0.98;
-
 /// The master's next stretch of constant velocity: in how many scans it begins and ends, its velocity (u/s), and where a line of
 /// that velocity through it is now.
 #[derive(Clone, Copy)]
-struct Stretch {
-    begin: u64,
-    end: u64,
-    velocity: f64,
-    now: Place,
+pub(super) struct Stretch {
+    pub begin: u64,
+    pub end: u64,
+    pub velocity: f64,
+    pub now: Place,
 }
 
 /// A way onto the cam.
-struct Way<Q> {
-    motion: Motion<Q>,
-    rung: Rung,
+pub(super) struct Way<Q> {
+    pub motion: Motion<Q>,
+    pub rung: Rung,
     /// Scans until in sync; the largest number if not along this way.
-    lock: u64,
+    pub lock: u64,
     /// Scans until it is looked for again.
-    left: u64,
-    name: Approach,
-    velocity: f64,
+    pub left: u64,
+    pub name: Approach,
+    pub velocity: f64,
     /// Limits of the shadow along it.
-    shadow: Limits,
+    pub shadow: Limits,
     /// Its place is called so much more (u of the master): whole periods, as the master comes by once more.
-    laps: f64,
+    pub laps: f64,
     /// It begins outside them.
-    exceeds: bool,
+    pub exceeds: bool,
 }
 
 /// What is to be done.
-enum Choice<Q> {
+pub(super) enum Choice<Q> {
     Lock,
     Take(Way<Q>),
     /// There is no way now, it is looked for again after so many scans.
@@ -326,310 +315,6 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Limits of the shadow with a velocity of its own (u/s of the master). `None` if nothing is left of the slave's.
-    fn limits_of_shadow(&self, curve: &Curve<'_>, shadow: &Setpoint, wanted: f64) -> Option<Limits> {
-        let limits = self.slowed(&self.parameters.limits);
-        let bounds = curve.bounds();
-        let highest = bounds.highest_velocity(&limits).min(f64::MAX);
-        // As fast as it is already it may be in any case.
-        let present = shadow.velocity.abs().min(0.999 * highest);
-        let found = bounds.shadow(&limits, wanted.max(present), present)?;
-        Some(bounded(&found))
-    }
-
-    /// Velocities of a shadow that comes into step with a stretch: hardly more than that leaves most of the acceleration, the highest
-    /// one least; which is soonest is a matter of the way. Where the stretch is too fast, those that fall behind.
-    fn speeds_of_shadow(&self, curve: &Curve<'_>, stretch: &Stretch) -> [f64; SPEEDS] {
-        let limits = self.slowed(&self.parameters.limits);
-        let highest = curve.bounds().highest_velocity(&limits).min(1e12);
-        let speed = stretch.velocity.abs();
-        if speed >= FASTEST * highest {
-            return [0.9, 0.7, 0.5, 0.3].map(|share| share * highest);
-        }
-        [0.1, 0.4, 0.7, 1.0].map(|share| speed + share * (FASTEST * highest - speed))
-    }
-
-    /// The way of the shadow into step with its master that is soonest there.
-    ///
-    /// What brings a shadow inside lower limits than it has now keeps neither: such a way is taken only where there is no other.
-    fn in_step(
-        &self,
-        curve: &Curve<'_>,
-        view: &View<'_, P::Plan>,
-        shadow: &Shadow,
-        difference: &Setpoint,
-        stretch: &Stretch,
-    ) -> Choice<P::Plan> {
-        let mut best: Option<Way<P::Plan>> = None;
-        let take = |best: &mut Option<Way<P::Plan>>, way: Option<Way<P::Plan>>| {
-            let Some(way) = way else { return };
-            let order = |way: &Way<P::Plan>| (way.exceeds, way.lock);
-            if best.as_ref().is_none_or(|best| order(&way) < order(best)) {
-                *best = Some(way);
-            }
-        };
-        // Where it is now the master comes by once more a period later.
-        let can_wait = curve.repeats() && stretch.velocity != 0.0;
-        let speeds = self.speeds_of_shadow(curve, stretch);
-        let wanted = speeds.map(|wanted| self.limits_of_shadow(curve, &shadow.at, wanted));
-        let all = wanted.into_iter().chain([self.shadow_limits_now()]).flatten();
-        for limits in all.clone() {
-            let way = self.beside_stretch_of_master(shadow, stretch, &limits, curve, 0.0);
-            take(&mut best, way);
-            take(&mut best, self.beside_master(view, difference, &limits));
-            if can_wait {
-                let period = curve.period().copysign(stretch.velocity);
-                let way = self.beside_stretch_of_master(shadow, stretch, &limits, curve, period);
-                take(&mut best, way);
-            }
-        }
-        if best
-            .as_ref()
-            .is_none_or(|way| way.exceeds || way.lock == u64::MAX)
-        {
-            for limits in all {
-                let pace = self.at_shadow_pace(view, shadow, stretch, &limits);
-                take(&mut best, pace);
-            }
-        }
-        if best.as_ref().is_none_or(|way| way.exceeds) {
-            take(&mut best, self.slowing_down(curve, shadow));
-        }
-        let Some(mut way) = best else {
-            return Choice::Wait(UNKNOWN);
-        };
-        if view.future.is_late() {
-            way.left = 0;
-        }
-        Choice::Take(way)
-    }
-
-    /// The shadow is faster than it may be anywhere on the cam, where the cam is flat: it comes down to less as fast as that part
-    /// allows, before it is at a steeper one.
-    fn slowing_down(&self, curve: &Curve<'_>, shadow: &Shadow) -> Option<Way<P::Plan>> {
-        let limits = self.slowed(&self.parameters.limits);
-        let speed = shadow.at.velocity.abs();
-        let goal = 0.5 * FASTEST * curve.bounds().highest_velocity(&limits).min(1e12);
-        let start = Setpoint {
-            position: 0.0,
-            ..shadow.at
-        };
-        let x = curve.unwound(shadow.place);
-        let mut found: Option<Way<P::Plan>> = None;
-        for scans in AHEAD {
-            let reach = shadow.at.velocity * (scans * self.planner.cycle());
-            let further = x + reach / curve.law.master_scaling;
-            let bounds = curve
-                .law
-                .bounds_between(&curve.cam, x.min(further), x.max(further));
-            let Some(own) = bounds.shadow(&limits, speed.max(goal), speed) else {
-                continue;
-            };
-            let own = Limits {
-                velocity: speed.max(goal),
-                ..bounded(&own)
-            };
-            let goal = goal.copysign(shadow.at.velocity);
-            let Ok(plan) = self.planner.ramp_to(&start, goal, &own, &own) else {
-                continue;
-            };
-            let scans = u64::from(plan.scans());
-            let is_inside = plan.at(scans).position.abs() <= reach.abs();
-            let exceeds = !is_inside || plan.excess().is_some_and(|excess| leaves(&excess, &own));
-            if found.is_some() && exceeds {
-                continue;
-            }
-            found = Some(Way {
-                exceeds,
-                motion: closing(plan),
-                rung: Rung::BesideLine {
-                    start: shadow.place,
-                    velocity: 0.0,
-                    begin: u64::MAX,
-                },
-                lock: u64::MAX,
-                left: scans,
-                name: Approach::Pace,
-                velocity: goal,
-                shadow: own,
-                laps: 0.0,
-            });
-            if !exceeds {
-                break;
-            }
-        }
-        found
-    }
-
-    /// The limits of the shadow in motion, inside which it is.
-    fn shadow_limits_now(&self) -> Option<Limits> {
-        let on_cam = self.on_cam.as_ref()?;
-        match on_cam.rung {
-            Rung::BesideLine { .. } | Rung::BesideMaster => Some(on_cam.shadow_limits),
-            _ => None,
-        }
-    }
-
-    /// Beside the master: the difference comes to 0. None where that is not known to keep the limits, or leads ahead of it.
-    fn beside_master(
-        &self,
-        view: &View<'_, P::Plan>,
-        difference: &Setpoint,
-        limits: &Limits,
-    ) -> Option<Way<P::Plan>> {
-        if view.future.is_late() || (difference.is_at_rest() && difference.position == 0.0) {
-            return None;
-        }
-        let lead = self.lead_of_master(view)?;
-        let on_cam = self.on_cam.as_ref()?;
-        let now = Setpoint {
-            position: difference.position,
-            velocity: difference.velocity + on_cam.was.at.velocity,
-            acceleration: difference.acceleration + on_cam.was.at.acceleration,
-            jerk: difference.jerk + on_cam.was.at.jerk,
-            snap: 0.0,
-        };
-        let leads = [Some(lead), None];
-        let own = self.room_beside(&leads, limits)?;
-        let plan = self
-            .planner
-            .move_to(MoveProfile::Online, difference, 0.0, &own, &own)
-            .ok()?;
-        let (up, down) = self.planner.ways((&plan, 0));
-        // It comes from behind and stays there, and it never goes back.
-        let forwards = 1.0_f64.copysign(lead.plan.at(lead.elapsed.saturating_add(1)).velocity * lead.factor);
-        let over = if difference.position * forwards <= 0.0 {
-            (if forwards > 0.0 { up } else { down }) - difference.position.abs()
-        } else {
-            0.0
-        };
-        let lowest = self.planner.velocities_behind(&leads, (&plan, 0));
-        let turns = lowest.is_none_or(|(lowest, highest)| {
-            let least = if forwards > 0.0 { lowest } else { -highest };
-            least < -ROUNDING * limits.velocity
-        });
-        let fits = self.planner.fits_behind(&leads, &now, Some((&plan, 0)), limits);
-        let resolved = RESOLVED * 4.0 * (difference.position.abs() + on_cam.was.place.position.abs());
-        if over > resolved || turns || !fits {
-            return None;
-        }
-        let lock = u64::from(plan.scans());
-        Some(Way {
-            exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
-            motion: closing(plan),
-            rung: Rung::BesideMaster,
-            lock,
-            left: u64::MAX,
-            name: Approach::Difference,
-            velocity: difference.velocity,
-            shadow: *limits,
-            laps: 0.0,
-        })
-    }
-
-    /// Onto the next stretch of the master, or where that comes by so many `laps` later (u of the master).
-    fn beside_stretch_of_master(
-        &self,
-        shadow: &Shadow,
-        stretch: &Stretch,
-        limits: &Limits,
-        curve: &Curve<'_>,
-        laps: f64,
-    ) -> Option<Way<P::Plan>> {
-        let speed = stretch.velocity.abs();
-        let along = limits.velocity - speed;
-        let turn = curve.law.master_turn.unwrap_or(0.0);
-        let start = Setpoint {
-            position: off(shadow.place, stretch.now, turn) + laps,
-            velocity: shadow.at.velocity - stretch.velocity,
-            ..shadow.at
-        };
-        if !(along > LEAST * limits.velocity) {
-            return None;
-        }
-        // Ahead of the line it lets it come, which is never against the master. Onto a master at rest it may go either way.
-        let against = if speed > 0.0 { speed } else { limits.velocity };
-        let own = |limits: &Limits, along: f64, against: f64| {
-            let (positive, negative) = if stretch.velocity < 0.0 {
-                (against, along)
-            } else {
-                (along, against)
-            };
-            DirectedLimits {
-                positive,
-                negative,
-                limits: *limits,
-            }
-        };
-        let wider = limits.velocity + speed;
-        let plan = self
-            .planner
-            .move_by_direction(
-                &start,
-                0.0,
-                &own(limits, along, against),
-                &own(limits, wider, wider),
-            )
-            .ok()?;
-        let scans = u64::from(plan.scans());
-        let arrives = scans.max(stretch.begin);
-        let is_in_time = arrives <= stretch.end;
-        Some(Way {
-            exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
-            motion: closing(plan),
-            rung: Rung::BesideLine {
-                start: stretch.now,
-                velocity: stretch.velocity,
-                begin: stretch.begin,
-            },
-            lock: if is_in_time { arrives } else { u64::MAX },
-            left: stretch.end,
-            name: Approach::Stretch,
-            velocity: stretch.velocity,
-            shadow: *limits,
-            laps,
-        })
-    }
-
-    /// As fast as the shadow may go, the way its master goes.
-    fn at_shadow_pace(
-        &self,
-        view: &View<'_, P::Plan>,
-        shadow: &Shadow,
-        stretch: &Stretch,
-        limits: &Limits,
-    ) -> Option<Way<P::Plan>> {
-        let start = Setpoint {
-            position: 0.0,
-            ..shadow.at
-        };
-        let goal = limits.velocity.copysign(stretch.velocity);
-        let plan = self.planner.ramp_to(&start, goal, limits, limits).ok()?;
-        let left = match self.lead_of_master(view) {
-            Some(lead) => {
-                let switch = self.planner.next_switch((lead.plan, lead.elapsed));
-                let scans = switch.saturating_sub(lead.elapsed);
-                if scans > 0 { scans } else { u64::MAX }
-            }
-            None => UNKNOWN,
-        };
-        Some(Way {
-            exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
-            motion: closing(plan),
-            rung: Rung::BesideLine {
-                start: shadow.place,
-                velocity: 0.0,
-                begin: u64::MAX,
-            },
-            lock: u64::MAX,
-            left,
-            name: Approach::Pace,
-            velocity: goal,
-            shadow: *limits,
-            laps: 0.0,
-        })
-    }
-
     /// A move onto the curve: to the master's place where that rests, else to one it comes to.
     fn onto_curve(&self, curve: &Curve<'_>, owner: &Entry, stretch: &Stretch) -> Choice<P::Plan> {
         let Some(on_cam) = &self.on_cam else {
@@ -696,8 +381,8 @@ impl<P: Planner> Axis<P> {
             last = Some(way);
         }
         match last {
-            // Onto the last place ahead, from which the shadow catches up.
-            Some(way) if self.catches_up(curve, stretch) => Choice::Take(way),
+            // Onto the last place ahead, from which the shadow catches up, or waits for the next time round.
+            Some(way) if head.periodic || self.catches_up(curve, stretch) => Choice::Take(way),
             _ => Choice::Fail(ErrorId::SyncNotReachable),
         }
     }
@@ -924,29 +609,7 @@ pub(super) fn goes_on(last: &Setpoint, next: &Setpoint, limits: &Limits) -> bool
         && near(last.jerk, next.jerk, limits.jerk, limits.snap)
 }
 
-/// A cam that hardly moves leaves more than numbers hold.
-fn bounded(limits: &Limits) -> Limits {
-    let most = |limit: f64, most: f64| if limit.is_finite() { limit.min(most) } else { limit };
-    Limits {
-        velocity: limits.velocity.min(1e12),
-        acceleration: limits.acceleration.min(1e15),
-        deceleration: limits.deceleration.min(1e15),
-        jerk: most(limits.jerk, 1e18),
-        snap: most(limits.snap, 1e21),
-    }
-}
-
-/// Whether an excess is more than rounding of `limits`.
-fn leaves(excess: &Excess, limits: &Limits) -> bool {
-    let parts = [
-        (excess.velocity, limits.velocity),
-        (excess.acceleration, limits.acceleration),
-        (excess.jerk, limits.jerk),
-    ];
-    parts.into_iter().any(|(excess, limit)| excess > ROUNDING * limit)
-}
-
-fn closing<Q: Plan>(plan: Q) -> Motion<Q> {
+pub(super) fn closing<Q: Plan>(plan: Q) -> Motion<Q> {
     Motion::Closing {
         plan,
         elapsed: 0,
