@@ -3,8 +3,9 @@
 #![allow(dead_code, reason = "each test target uses its own part")]
 
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, Comms, DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals,
-    Limits, Log, Scope, Standard, StartState, TorqueReport, steps,
+    Axis, AxisConfig, AxisId, CamCurve, CamId, CamPiece, CamRow, CamSelection, CamSlot, Cams, Comms,
+    DriveCommand, DriveFeedback, DrivePosition, DriveRequest, DriveSignals, Limits, Log, Scope, Standard,
+    StartState, TorqueReport, steps,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, PinType, TableRef, Value};
@@ -12,8 +13,15 @@ use standstill_fb::{AnyInstance, Context, PinType, TableRef, Value};
 /// Sample time (s).
 const CYCLE: f64 = 0.001;
 
-/// A table with one point for the profile blocks: in 4 s (DeltaTime in ns) to 1, not level.
-const POINTS: [f64; 3] = [4e9, 1.0, 0.0];
+/// A table with one point for the profile blocks: in 4 s (DeltaTime in ns) to 1, not level. Behind it two rows of a cam.
+const POINTS: [f64; 15] = [
+    4e9, 1.0, 0.0, // the point
+    0.0, 0.0, 0.0, 0.0, 0.0, 4.0, // from rest
+    100.0, 1.0, 0.0, 0.0, 0.0, 4.0, // to rest
+];
+
+/// The rows.
+const ROWS: TableRef = TableRef { first: 3, records: 2 };
 
 /// The axis the blocks are wired to.
 pub const AXIS: AxisId = AxisId::new(0);
@@ -24,6 +32,10 @@ pub struct Bench {
     pub log: Log,
     drives: [DriveCommand; 2],
     pub scan: u64,
+    slots: [CamSlot; 3],
+    pieces: [CamPiece; 3],
+    /// A cam that is selected.
+    cam: CamId,
 }
 
 impl Bench {
@@ -74,7 +86,30 @@ impl Bench {
             log: Log::default(),
             drives: [drive; 2],
             scan: 0,
+            slots: Default::default(),
+            pieces: Default::default(),
+            cam: CamId::NONE,
         }
+        .with_cam()
+    }
+
+    /// The rows are selected.
+    fn with_cam(mut self) -> Self {
+        let mut cams = Cams::new(&mut self.slots, &mut self.pieces);
+        let selection = CamSelection {
+            periodic: true,
+            ..CamSelection::default()
+        };
+        self.cam = cams.begin(2, selection, |_| false).unwrap().unwrap();
+        let row = |index: usize| {
+            Some(CamRow {
+                master: index as f64 * 100.0,
+                shape: CamCurve::Rest7.shape(),
+                ..CamRow::default()
+            })
+        };
+        cams.go_on(self.cam, &row).unwrap().unwrap();
+        self
     }
 
     /// An instance of the block, wired to the first axis, with values a motion can start with.
@@ -88,6 +123,8 @@ impl Bench {
             ("VelocityDiff", Value::Lreal(1.0)),
             ("Torque", Value::Lreal(1.0)),
             ("WindowOnly", Value::Bool(true)),
+            ("CamTableID", Value::Dword(self.cam.number())),
+            ("CamTable", Value::Table(ROWS)),
             ("RatioNumerator", Value::Int(1)),
             ("RatioDenominator", Value::Word(1)),
             ("LastPosition", Value::Lreal(f64::MAX)),
@@ -168,7 +205,10 @@ impl Bench {
     pub fn call(&mut self, block: &mut BlockInstance) {
         block.call(&mut Context {
             now_ns: self.scan as i64 * 1_000_000,
-            scope: Scope::new(self.scan, &mut self.log),
+            scope: Scope {
+                cams: Cams::new(&mut self.slots, &mut self.pieces),
+                ..Scope::new(self.scan, &mut self.log)
+            },
             axes: &mut self.axes,
             tables: &POINTS,
         });
@@ -176,7 +216,11 @@ impl Bench {
 
     /// Both axes move on, and stay finite.
     pub fn advance(&mut self) {
-        steps::advance(&mut self.axes, &mut Scope::new(self.scan, &mut self.log));
+        let scope = &mut Scope {
+            cams: Cams::new(&mut self.slots, &mut self.pieces),
+            ..Scope::new(self.scan, &mut self.log)
+        };
+        steps::advance(&mut self.axes, scope);
         for (axis, drive) in self.axes.iter_mut().zip(&mut self.drives) {
             assert!(axis.setpoint().is_finite(), "scan {}", self.scan);
             // It is there at once, in the coordinates of the command.

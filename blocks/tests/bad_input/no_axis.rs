@@ -52,7 +52,9 @@ fn an_axis_that_does_not_exist_is_an_error_until_the_next_edge() {
             bench.scan(&mut [&mut block]);
             // What ends a coupling finds none.
             let error = match info.name {
-                "MC_GearOut" | "MC_PhasingAbsolute" | "MC_PhasingRelative" => ErrorId::NotCoupled,
+                "MC_GearOut" | "MC_CamOut" | "MC_PhasingAbsolute" | "MC_PhasingRelative" => {
+                    ErrorId::NotCoupled
+                }
                 _ => ErrorId::None,
             };
             assert_eq!(bench.error(&block), error.number(), "{}", info.name);

@@ -155,7 +155,7 @@ error_ids! {
         "Wire CamTableID of MC_CamTableSelect and wait for its Done.";
     SyncPositionInvalid = 156, "MasterSyncPosition, SlaveSyncPosition or MasterStartDistance is NaN or infinite, or on a modulo axis not in its first turn.",
         "Give finite positions; on a modulo axis at least 0 and less than the length of a turn, and a distance shorter than a turn.";
-    CamScalingInvalid = 157, "MasterScaling or SlaveScaling is 0, NaN or infinite, or an offset is NaN or infinite.",
+    CamScalingInvalid = 157, "MasterScaling or SlaveScaling is 0, NaN or infinite, or an offset is NaN or beyond 1e15.",
         "Give finite numbers, and scalings other than 0; a negative SlaveScaling mirrors the cam.";
     CouplingRatioTooFine = 158, "Master and slave both have turns, and a turn of the one is no ratio of integers below 2^63 turns of the other.",
         "Give lengths of turns that have a common measure, such as 360 and 400, or a simpler ratio.";

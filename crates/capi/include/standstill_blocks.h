@@ -56,6 +56,13 @@ enum standstill_mc_source {
     STANDSTILL_MC_ACTUAL_VALUE = 2,
 };
 
+/** MC_START_MODE */
+enum standstill_mc_start_mode {
+    STANDSTILL_MC_ABSOLUTE = 0,
+    STANDSTILL_MC_RELATIVE = 1,
+    STANDSTILL_MC_RAMP_IN = 2,
+};
+
 /** MC_SYNC_MODE */
 enum standstill_mc_sync_mode {
     STANDSTILL_MC_SHORTEST = 0,
@@ -118,6 +125,18 @@ typedef struct standstill_mc_ta_ref {
     uint8_t reserved_17[7];
 } standstill_mc_ta_ref;
 STANDSTILL_ASSERT(mc_ta_ref, sizeof(standstill_mc_ta_ref) == 24);
+
+/** A record of MC_CAM_REF, of which a block takes at most 512. */
+typedef struct standstill_mc_cam_ref {
+    double master; /* Master: Place of the master, above that of the row before. (u of the master) */
+    double slave; /* Slave: Place of the slave. (u) */
+    double slope; /* Slope: First derivative there, for mcCamPoly7 and mcCamPoly5. */
+    double curvature; /* Curvature: Second derivative there, for mcCamPoly7 and mcCamPoly5. */
+    double third; /* Third: Third derivative there, for mcCamPoly7. */
+    int32_t law; /* Law: How the cam runs on to the next row. */
+    uint8_t reserved_44[4];
+} standstill_mc_cam_ref;
+STANDSTILL_ASSERT(mc_cam_ref, sizeof(standstill_mc_cam_ref) == 48);
 
 /** MC_Power: Switches the power stage of an axis. */
 typedef struct standstill_mc_power_in {
@@ -1668,6 +1687,154 @@ static inline standstill_mc_jog_out standstill_mc_jog_out_default(void) {
     return out;
 }
 
+/** MC_CamTableSelect: Checks a table and makes it a cam. */
+typedef struct standstill_mc_cam_table_select_in {
+    uint32_t size; /* sizeof this structure */
+#if UINTPTR_MAX > 0xFFFFFFFFu
+    int32_t master; /* Master: The master, whose velocity limit the cam is held against. */
+    int32_t slave; /* Slave: The slave, whose limits the cam is held against. */
+    uint8_t reserved_12[4];
+    const struct standstill_mc_cam_ref *cam_table; /* CamTable: The rows, 2 to 512; they are copied, and must not change while the block is Busy. */
+    uint32_t cam_table_count; /* records of it */
+    uint8_t execute; /* Execute: A rising edge selects the table with the values of that call. */
+    uint8_t periodic; /* Periodic: Behind its last row the cam goes on as at its first. */
+    uint8_t master_absolute; /* MasterAbsolute: Places of the master are those of the axis; else the first row lies where the master is when MC_CamIn begins. */
+    uint8_t slave_absolute; /* SlaveAbsolute: Places of the slave are those of the axis; else the cam passes through where the slave is when MC_CamIn begins. */
+    int32_t execution_mode; /* ExecutionMode: mcImmediately, or mcQueued for the end of what the slave has been commanded before. */
+    uint8_t reserved_36[4];
+#else
+    int32_t master; /* Master: The master, whose velocity limit the cam is held against. */
+    int32_t slave; /* Slave: The slave, whose limits the cam is held against. */
+    const struct standstill_mc_cam_ref *cam_table; /* CamTable: The rows, 2 to 512; they are copied, and must not change while the block is Busy. */
+    uint32_t cam_table_count; /* records of it */
+    uint8_t execute; /* Execute: A rising edge selects the table with the values of that call. */
+    uint8_t periodic; /* Periodic: Behind its last row the cam goes on as at its first. */
+    uint8_t master_absolute; /* MasterAbsolute: Places of the master are those of the axis; else the first row lies where the master is when MC_CamIn begins. */
+    uint8_t slave_absolute; /* SlaveAbsolute: Places of the slave are those of the axis; else the cam passes through where the slave is when MC_CamIn begins. */
+    int32_t execution_mode; /* ExecutionMode: mcImmediately, or mcQueued for the end of what the slave has been commanded before. */
+    uint8_t reserved_28[4];
+#endif
+} standstill_mc_cam_table_select_in;
+STANDSTILL_ASSERT(mc_cam_table_select_in, sizeof(standstill_mc_cam_table_select_in) == (sizeof(void *) == 8 ? 40 : 32));
+
+typedef struct standstill_mc_cam_table_select_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t done; /* Done: The cam is selected, and CamTableID valid. */
+    uint8_t busy; /* Busy: Not finished: 32 rows are looked at in each call. */
+    uint8_t error; /* Error: Refused. */
+    uint8_t reserved_7[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_10[2];
+    uint32_t cam_table_id; /* CamTableID: The cam, for MC_CamIn; 0 before the first, and while the block is Busy. */
+    double max_master_velocity; /* MaxMasterVelocity: The highest constant velocity of the master with which the slave can follow the cam. (u/s of the master) */
+    int16_t continuity; /* Continuity: How many derivatives of the cam are continuous, at most 3. */
+    uint8_t reserved_26[6];
+} standstill_mc_cam_table_select_out;
+STANDSTILL_ASSERT(mc_cam_table_select_out, sizeof(standstill_mc_cam_table_select_out) == 32);
+
+static inline standstill_mc_cam_table_select_in standstill_mc_cam_table_select_in_default(void) {
+    standstill_mc_cam_table_select_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    return in;
+}
+
+static inline standstill_mc_cam_table_select_out standstill_mc_cam_table_select_out_default(void) {
+    standstill_mc_cam_table_select_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
+/** MC_CamIn: Lets one axis follow another on a cam. */
+typedef struct standstill_mc_cam_in_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t master; /* Master: The axis to follow. */
+    int32_t slave; /* Slave: The axis that follows. */
+    uint8_t execute; /* Execute: A rising edge couples the axes with the values of that call. */
+    uint8_t continuous_update; /* ContinuousUpdate: Changed inputs hold for the cam in progress while TRUE, if it was TRUE at the rising edge. */
+    uint8_t reserved_14[2];
+    double master_offset; /* MasterOffset: Where place 0 of the cam lies at the master. (u of the master) */
+    double slave_offset; /* SlaveOffset: Where place 0 of the cam lies at the slave. (u) */
+    double master_scaling; /* MasterScaling: The master's side of the cam is so many times as long: above 1 it takes the master longer. */
+    double slave_scaling; /* SlaveScaling: The slave's side of the cam is so many times as long; negative mirrors it. */
+    double master_start_distance; /* MasterStartDistance: Master distance before MasterSyncPosition in which the slave starts to synchronise; only 0 is supported. (u of the master) */
+    double master_sync_position; /* MasterSyncPosition: Place of the cam's master side at which the slave is in sync first; 0 for the first row that it can reach in time. (u of the master) */
+    int32_t start_mode; /* StartMode: mcAbsolute as selected, mcRelative so that the cam passes through where the slave is, mcRampIn as mcAbsolute. */
+    int32_t master_value_source; /* MasterValueSource: mcSetValue, or mcActualValue for what the drive of the master tells, filtered. */
+    uint32_t cam_table_id; /* CamTableID: The cam, from MC_CamTableSelect. */
+    int32_t buffer_mode; /* BufferMode: How the command follows the one before it. */
+} standstill_mc_cam_in_in;
+STANDSTILL_ASSERT(mc_cam_in_in, sizeof(standstill_mc_cam_in_in) == 80);
+
+typedef struct standstill_mc_cam_in_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t in_sync; /* InSync: The set position of the slave is the one the cam asks for. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t active; /* Active: The block controls the slave. */
+    uint8_t command_aborted; /* CommandAborted: Interrupted by another command. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint8_t reserved_9[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t end_of_profile; /* EndOfProfile: TRUE for one call each time the end of the cam is reached; running backwards at its first row. */
+    uint8_t reserved_13[3];
+    double deviation; /* Deviation: How far the slave is from where the cam is at its master's place; 0 in sync. (u) */
+    uint8_t master_lost; /* MasterLost: The master went out of operation; the slave rests until it is coupled anew (axis key coupling.on_master_lost). */
+    uint8_t reserved_25[7];
+} standstill_mc_cam_in_out;
+STANDSTILL_ASSERT(mc_cam_in_out, sizeof(standstill_mc_cam_in_out) == 32);
+
+static inline standstill_mc_cam_in_in standstill_mc_cam_in_in_default(void) {
+    standstill_mc_cam_in_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    in.master_scaling = 1.0;
+    in.slave_scaling = 1.0;
+    in.master_value_source = 1;
+    return in;
+}
+
+static inline standstill_mc_cam_in_out standstill_mc_cam_in_out_default(void) {
+    standstill_mc_cam_in_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
+/** MC_CamOut: Ends MC_CamIn; the slave keeps its velocity. */
+typedef struct standstill_mc_cam_out_in {
+    uint32_t size; /* sizeof this structure */
+    int32_t slave; /* Slave: The axis that follows another on a cam by MC_CamIn. */
+    uint8_t execute; /* Execute: A rising edge ends the coupling. */
+    uint8_t reserved_9[7];
+} standstill_mc_cam_out_in;
+STANDSTILL_ASSERT(mc_cam_out_in, sizeof(standstill_mc_cam_out_in) == 16);
+
+typedef struct standstill_mc_cam_out_out {
+    uint32_t size; /* sizeof this structure */
+    uint8_t done; /* Done: The coupling has ended. */
+    uint8_t busy; /* Busy: Not finished. */
+    uint8_t error; /* Error: Refused, or ended by an error. */
+    uint8_t reserved_7[1];
+    uint16_t error_id; /* ErrorID: Why; 0 without an error. */
+    uint8_t reserved_10[6];
+} standstill_mc_cam_out_out;
+STANDSTILL_ASSERT(mc_cam_out_out, sizeof(standstill_mc_cam_out_out) == 16);
+
+static inline standstill_mc_cam_out_in standstill_mc_cam_out_in_default(void) {
+    standstill_mc_cam_out_in in;
+    memset(&in, 0, sizeof in);
+    in.size = (uint32_t)sizeof in;
+    return in;
+}
+
+static inline standstill_mc_cam_out_out standstill_mc_cam_out_out_default(void) {
+    standstill_mc_cam_out_out out;
+    memset(&out, 0, sizeof out);
+    out.size = (uint32_t)sizeof out;
+    return out;
+}
+
 /** MC_GearIn: Lets one axis follow another by a ratio. */
 typedef struct standstill_mc_gear_in_in {
     uint32_t size; /* sizeof this structure */
@@ -2413,6 +2580,18 @@ int32_t standstill_mc_halt_superimposed(struct standstill_runtime *runtime, uint
 /** One call of MC_Jog. A key of 0 makes the instance. */
 int32_t standstill_mc_jog(struct standstill_runtime *runtime, uint64_t *key,
     const struct standstill_mc_jog_in *in, struct standstill_mc_jog_out *out);
+
+/** One call of MC_CamTableSelect. A key of 0 makes the instance. */
+int32_t standstill_mc_cam_table_select(struct standstill_runtime *runtime, uint64_t *key,
+    const struct standstill_mc_cam_table_select_in *in, struct standstill_mc_cam_table_select_out *out);
+
+/** One call of MC_CamIn. A key of 0 makes the instance. */
+int32_t standstill_mc_cam_in(struct standstill_runtime *runtime, uint64_t *key,
+    const struct standstill_mc_cam_in_in *in, struct standstill_mc_cam_in_out *out);
+
+/** One call of MC_CamOut. A key of 0 makes the instance. */
+int32_t standstill_mc_cam_out(struct standstill_runtime *runtime, uint64_t *key,
+    const struct standstill_mc_cam_out_in *in, struct standstill_mc_cam_out_out *out);
 
 /** One call of MC_GearIn. A key of 0 makes the instance. */
 int32_t standstill_mc_gear_in(struct standstill_runtime *runtime, uint64_t *key,

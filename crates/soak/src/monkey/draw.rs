@@ -17,7 +17,7 @@ const AXES: u64 = 3;
 
 /// Played more often than chance would have it: a curve, one that waits for an edge and one that ends that, or limits that
 /// are written while moves blend.
-const FAVOURED: [&[&str]; 19] = [
+const FAVOURED: [&[&str]; 22] = [
     &["MC_PositionProfile"],
     &["MC_VelocityProfile"],
     &["MC_AccelerationProfile"],
@@ -34,6 +34,9 @@ const FAVOURED: [&[&str]; 19] = [
     &["MC_CombineAxes", "MC_GearOut", "MC_MoveVelocity"],
     &["MC_CombineAxes", "MC_PhasingAbsolute", "MC_GearIn"],
     &["MC_GearInPos", "MC_PhasingRelative", "MC_MoveAbsolute"],
+    &["MC_CamTableSelect", "MC_CamIn", "MC_CamOut"],
+    &["MC_CamTableSelect", "MC_CamIn", "MC_CamIn", "MC_MoveVelocity"],
+    &["MC_CamTableSelect", "MC_CamIn", "MC_GearIn"],
     &["MC_GearIn", "MC_MoveSuperimposed", "MC_HaltSuperimposed"],
     &["MC_GearIn", "MC_MoveSuperimposed", "MC_MoveSuperimposed"],
     &["MC_GearInPos", "MC_MoveSuperimposed", "MC_PhasingAbsolute"],
@@ -225,6 +228,12 @@ fn blocks(random: &mut Random, axis: usize, limits: &Limits, cycle: f64) -> Vec<
                 .map(|(pin, _)| (pin, Value::Bool(true)))
                 .into_iter()
                 .collect(),
+            // The first cam that is selected.
+            _ if block == "MC_CamIn" => one(block)
+                .pin("CamTableID")
+                .map(|(pin, _)| (pin, Value::Dword(0x1_0001)))
+                .into_iter()
+                .collect(),
             _ => Vec::new(),
         },
         tables: tables(random, one(block), limits, cycle),
@@ -239,6 +248,7 @@ fn tables(random: &mut Random, info: &BlockInfo, limits: &Limits, cycle: f64) ->
         let PinType::Table(of) = entry.ty else { continue };
         let records = match of.name {
             "MC_TP_REF" | "MC_TV_REF" | "MC_TA_REF" => points(random, of.name, limits, cycle),
+            "MC_CAM_REF" => curve(random, limits.velocity * cycle),
             "MC_CAMSWITCH_REF" => (0..1 + random.below(3))
                 .map(|_| cam(random, limits.velocity * cycle))
                 .collect(),
@@ -279,6 +289,26 @@ fn points(random: &mut Random, of: &str, limits: &Limits, cycle: f64) -> Vec<Vec
         ]
     };
     (0..count).map(point).collect()
+}
+
+/// Rows of a cam of a few hundred scans' way: master, slave, three derivatives, law.
+fn curve(random: &mut Random, way: f64) -> Vec<Vec<f64>> {
+    let law = one_of(random, &[0.0, 4.0, 4.0, 5.0]);
+    let mut master = 0.0;
+    let mut row = |slave: f64, random: &mut Random| {
+        let row = vec![master, slave, 0.0, 0.0, 0.0, law];
+        master += way * random.log_between(30.0, 300.0);
+        row
+    };
+    let mut rows = vec![row(0.0, random)];
+    for _ in 0..1 + random.below(4) {
+        let slave = way * random.between(-60.0, 60.0);
+        rows.push(row(slave, random));
+    }
+    if random.one_in(2) {
+        rows.push(row(0.0, random));
+    }
+    rows
 }
 
 /// A cam of some scans' way: track, ends, direction, mode, duration (ns).

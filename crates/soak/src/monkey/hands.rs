@@ -157,6 +157,11 @@ impl<'a> Monkey<'a> {
             }
             PinType::Lreal => self.number(block, pin.name, axis).map(Value::Lreal),
             // Which tracks work.
+            // A slot, and how often it was given away.
+            PinType::Dword if pin.name == "CamTableID" => {
+                let (slot, generation) = (self.random.below(3) as u32, 1 + self.random.below(4) as u32);
+                Some(Value::Dword((generation << 16) | (slot + 1)))
+            }
             PinType::Dword => Some(Value::Dword(self.random.below(16) as u32)),
             // The software limits more often than others.
             PinType::Int if pin.name == "ParameterNumber" => Some(Value::Int(if self.random.one_in(3) {
@@ -204,6 +209,21 @@ impl<'a> Monkey<'a> {
             "PositionScale" | "VelocityScale" | "AccelerationScale" => Some(self.random.between(-1.0, 1.0)),
             // Of the window of a probe.
             "FirstPosition" | "LastPosition" => Some(axis.setpoint().position + self.length(way)),
+            // It is not supported, which need not be tried all the time.
+            "MasterStartDistance" => Some(if self.random.one_in(10) { way } else { 0.0 }),
+            "MasterSyncPosition" => Some(if self.random.one_in(2) {
+                0.0
+            } else {
+                self.length(way).abs()
+            }),
+            "MasterOffset" | "SlaveOffset" => Some(self.length(way)),
+            "MasterScaling" | "SlaveScaling" => Some(match self.random.below(6) {
+                0 => -1.0,
+                1 => 0.5,
+                2 => 2.0,
+                3 if self.random.one_in(4) => 0.0,
+                _ => 1.0,
+            }),
             "Distance" => Some(self.length(way)),
             "Velocity" | "VelocityDiff" | "EndVelocity" => {
                 let part = self.part(limits.velocity)?;

@@ -130,11 +130,13 @@ pub fn kind_of(info: &BlockInfo) -> Kind {
         // The drive sees no edge: it waits until it is aborted, or finds the probe taken.
         "MC_TouchProbe" => Kind::Administrative,
         "MC_DigitalCamSwitch" | "MC_ReadActualTorque" => Kind::Reading,
-        "MC_GearIn" | "MC_GearInPos" | "MC_CombineAxes" => Kind::Motion,
+        "MC_GearIn" | "MC_GearInPos" | "MC_CombineAxes" | "MC_CamIn" => Kind::Motion,
         // Beside the coupling, which owns the axis; without one it is refused.
         "MC_PhasingAbsolute" | "MC_PhasingRelative" => Kind::Administrative,
         // Its command owns the axis, but the block does not show that.
-        "MC_GearOut" => Kind::Administrative,
+        "MC_GearOut" | "MC_CamOut" => Kind::Administrative,
+        // It takes some calls, and moves nothing.
+        "MC_CamTableSelect" => Kind::Administrative,
         _ => Kind::of(info),
     }
 }
@@ -185,6 +187,7 @@ impl Scenario {
         let tables = self.blocks.iter().flat_map(|setup| &setup.tables);
         let cells = tables.flat_map(|table| table.records.iter().flatten());
         machine.tables_mut().extend(cells);
+        machine.set_usual_cam_store();
         Some(machine)
     }
 

@@ -31,6 +31,9 @@ use crate::{AxisId, CamId, CamIn, CamSelection, ErrorId, Event, OnLimit, Scope, 
 use ends::Ends;
 use standstill_planner::{Anchor, Cam, CamAt, CamBounds, CamHead, CamLaw, Limits, Place, Planner, Setpoint};
 
+/// Places further from 0 than this (u) have no cam: numbers tell them too coarsely.
+const FURTHEST: f64 = 1e15;
+
 /// Where the slave is, and what moves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rung {
@@ -369,13 +372,22 @@ impl<P: Planner> Axis<P> {
             ("MasterOffset", cam.master_offset),
             ("SlaveOffset", cam.slave_offset),
         ] {
-            if !value.is_finite() {
-                return refuse(pin, value, f64::NAN, ErrorId::CamScalingInvalid);
+            if !(value.abs() <= FURTHEST) {
+                return refuse(pin, value, FURTHEST, ErrorId::CamScalingInvalid);
             }
         }
-        if !cam.sync_position.is_finite() {
-            let error = ErrorId::SyncPositionInvalid;
-            return refuse("MasterSyncPosition", cam.sync_position, f64::NAN, error);
+        for (pin, value) in [
+            ("MasterSyncPosition", cam.sync_position),
+            ("MasterStartDistance", cam.start_distance),
+        ] {
+            let most = if pin == "MasterSyncPosition" {
+                FURTHEST
+            } else {
+                f64::MAX
+            };
+            if !(value.abs() <= most) {
+                return refuse(pin, value, most, ErrorId::SyncPositionInvalid);
+            }
         }
         if cam.start_distance != 0.0 {
             let error = ErrorId::CamBesideUnsupported;

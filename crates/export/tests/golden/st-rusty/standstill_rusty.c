@@ -40,6 +40,11 @@ struct standstill_mc_ta_ref_array {
     struct standstill_mc_ta_ref records[40];
 };
 
+struct standstill_mc_cam_ref_array {
+    int32_t count;
+    struct standstill_mc_cam_ref records[512];
+};
+
 struct standstill_mc_power_fb {
     void *table;
     struct standstill_reference *axis;
@@ -1951,6 +1956,192 @@ void MC_Jog(struct standstill_mc_jog_fb *self) {
         self->busy = out.busy;
         self->active = out.active;
         self->command_aborted = out.command_aborted;
+        self->error = out.error;
+        self->error_id = out.error_id;
+    }
+}
+
+struct standstill_mc_cam_table_select_fb {
+    void *table;
+    struct standstill_reference *master;
+    struct standstill_reference *slave;
+    struct standstill_mc_cam_ref_array *cam_table;
+    uint8_t execute;
+    uint8_t periodic;
+    uint8_t master_absolute;
+    uint8_t slave_absolute;
+    int32_t execution_mode;
+    uint8_t done;
+    uint8_t busy;
+    uint8_t error;
+    uint16_t error_id;
+    uint32_t cam_table_id;
+    double max_master_velocity;
+    int16_t continuity;
+    int32_t result;
+    uint64_t key;
+};
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_master, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, master) == 8);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_slave, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, slave) == 16);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_cam_table, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, cam_table) == 24);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_execute, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, execute) == 32);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_periodic, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, periodic) == 33);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_master_absolute, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, master_absolute) == 34);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_slave_absolute, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, slave_absolute) == 35);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_execution_mode, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, execution_mode) == 36);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_done, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, done) == 40);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, busy) == 41);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, error) == 42);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, error_id) == 44);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_cam_table_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, cam_table_id) == 48);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_max_master_velocity, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, max_master_velocity) == 56);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_continuity, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_table_select_fb, continuity) == 64);
+STANDSTILL_ASSERT(rusty_mc_cam_table_select_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_cam_table_select_fb, result) == 68 && offsetof(struct standstill_mc_cam_table_select_fb, key) == 72 && sizeof(struct standstill_mc_cam_table_select_fb) == 80));
+
+void MC_CamTableSelect(struct standstill_mc_cam_table_select_fb *self);
+
+void MC_CamTableSelect(struct standstill_mc_cam_table_select_fb *self) {
+    struct standstill_mc_cam_table_select_in in = standstill_mc_cam_table_select_in_default();
+    struct standstill_mc_cam_table_select_out out = standstill_mc_cam_table_select_out_default();
+    in.master = self->master != NULL ? self->master->number : 0;
+    in.slave = self->slave != NULL ? self->slave->number : 0;
+    if (self->cam_table != NULL) {
+        in.cam_table = self->cam_table->records;
+        in.cam_table_count = (uint32_t)self->cam_table->count;
+    }
+    in.execute = self->execute;
+    in.periodic = self->periodic;
+    in.master_absolute = self->master_absolute;
+    in.slave_absolute = self->slave_absolute;
+    in.execution_mode = (int32_t)self->execution_mode;
+    self->result = standstill_mc_cam_table_select(STANDSTILL_RUNTIME &self->key, &in, &out);
+    if (self->result == 0) {
+        self->done = out.done;
+        self->busy = out.busy;
+        self->error = out.error;
+        self->error_id = out.error_id;
+        self->cam_table_id = out.cam_table_id;
+        self->max_master_velocity = out.max_master_velocity;
+        self->continuity = out.continuity;
+    }
+}
+
+struct standstill_mc_cam_in_fb {
+    void *table;
+    struct standstill_reference *master;
+    struct standstill_reference *slave;
+    uint8_t execute;
+    uint8_t continuous_update;
+    double master_offset;
+    double slave_offset;
+    double master_scaling;
+    double slave_scaling;
+    double master_start_distance;
+    double master_sync_position;
+    int32_t start_mode;
+    int32_t master_value_source;
+    uint32_t cam_table_id;
+    int32_t buffer_mode;
+    uint8_t in_sync;
+    uint8_t busy;
+    uint8_t active;
+    uint8_t command_aborted;
+    uint8_t error;
+    uint16_t error_id;
+    uint8_t end_of_profile;
+    double deviation;
+    uint8_t master_lost;
+    int32_t result;
+    uint64_t key;
+};
+STANDSTILL_ASSERT(rusty_mc_cam_in_master, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, master) == 8);
+STANDSTILL_ASSERT(rusty_mc_cam_in_slave, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, slave) == 16);
+STANDSTILL_ASSERT(rusty_mc_cam_in_execute, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, execute) == 24);
+STANDSTILL_ASSERT(rusty_mc_cam_in_continuous_update, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, continuous_update) == 25);
+STANDSTILL_ASSERT(rusty_mc_cam_in_master_offset, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, master_offset) == 32);
+STANDSTILL_ASSERT(rusty_mc_cam_in_slave_offset, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, slave_offset) == 40);
+STANDSTILL_ASSERT(rusty_mc_cam_in_master_scaling, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, master_scaling) == 48);
+STANDSTILL_ASSERT(rusty_mc_cam_in_slave_scaling, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, slave_scaling) == 56);
+STANDSTILL_ASSERT(rusty_mc_cam_in_master_start_distance, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, master_start_distance) == 64);
+STANDSTILL_ASSERT(rusty_mc_cam_in_master_sync_position, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, master_sync_position) == 72);
+STANDSTILL_ASSERT(rusty_mc_cam_in_start_mode, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, start_mode) == 80);
+STANDSTILL_ASSERT(rusty_mc_cam_in_master_value_source, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, master_value_source) == 84);
+STANDSTILL_ASSERT(rusty_mc_cam_in_cam_table_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, cam_table_id) == 88);
+STANDSTILL_ASSERT(rusty_mc_cam_in_buffer_mode, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, buffer_mode) == 92);
+STANDSTILL_ASSERT(rusty_mc_cam_in_in_sync, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, in_sync) == 96);
+STANDSTILL_ASSERT(rusty_mc_cam_in_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, busy) == 97);
+STANDSTILL_ASSERT(rusty_mc_cam_in_active, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, active) == 98);
+STANDSTILL_ASSERT(rusty_mc_cam_in_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, command_aborted) == 99);
+STANDSTILL_ASSERT(rusty_mc_cam_in_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, error) == 100);
+STANDSTILL_ASSERT(rusty_mc_cam_in_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, error_id) == 102);
+STANDSTILL_ASSERT(rusty_mc_cam_in_end_of_profile, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, end_of_profile) == 104);
+STANDSTILL_ASSERT(rusty_mc_cam_in_deviation, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, deviation) == 112);
+STANDSTILL_ASSERT(rusty_mc_cam_in_master_lost, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, master_lost) == 120);
+STANDSTILL_ASSERT(rusty_mc_cam_in_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_cam_in_fb, result) == 124 && offsetof(struct standstill_mc_cam_in_fb, key) == 128 && sizeof(struct standstill_mc_cam_in_fb) == 136));
+
+void MC_CamIn(struct standstill_mc_cam_in_fb *self);
+
+void MC_CamIn(struct standstill_mc_cam_in_fb *self) {
+    struct standstill_mc_cam_in_in in = standstill_mc_cam_in_in_default();
+    struct standstill_mc_cam_in_out out = standstill_mc_cam_in_out_default();
+    in.master = self->master != NULL ? self->master->number : 0;
+    in.slave = self->slave != NULL ? self->slave->number : 0;
+    in.execute = self->execute;
+    in.continuous_update = self->continuous_update;
+    in.master_offset = self->master_offset;
+    in.slave_offset = self->slave_offset;
+    in.master_scaling = self->master_scaling;
+    in.slave_scaling = self->slave_scaling;
+    in.master_start_distance = self->master_start_distance;
+    in.master_sync_position = self->master_sync_position;
+    in.start_mode = (int32_t)self->start_mode;
+    in.master_value_source = (int32_t)self->master_value_source;
+    in.cam_table_id = self->cam_table_id;
+    in.buffer_mode = (int32_t)self->buffer_mode;
+    self->result = standstill_mc_cam_in(STANDSTILL_RUNTIME &self->key, &in, &out);
+    if (self->result == 0) {
+        self->in_sync = out.in_sync;
+        self->busy = out.busy;
+        self->active = out.active;
+        self->command_aborted = out.command_aborted;
+        self->error = out.error;
+        self->error_id = out.error_id;
+        self->end_of_profile = out.end_of_profile;
+        self->deviation = out.deviation;
+        self->master_lost = out.master_lost;
+    }
+}
+
+struct standstill_mc_cam_out_fb {
+    void *table;
+    struct standstill_reference *slave;
+    uint8_t execute;
+    uint8_t done;
+    uint8_t busy;
+    uint8_t error;
+    uint16_t error_id;
+    int32_t result;
+    uint64_t key;
+};
+STANDSTILL_ASSERT(rusty_mc_cam_out_slave, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_out_fb, slave) == 8);
+STANDSTILL_ASSERT(rusty_mc_cam_out_execute, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_out_fb, execute) == 16);
+STANDSTILL_ASSERT(rusty_mc_cam_out_done, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_out_fb, done) == 17);
+STANDSTILL_ASSERT(rusty_mc_cam_out_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_out_fb, busy) == 18);
+STANDSTILL_ASSERT(rusty_mc_cam_out_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_out_fb, error) == 19);
+STANDSTILL_ASSERT(rusty_mc_cam_out_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_out_fb, error_id) == 20);
+STANDSTILL_ASSERT(rusty_mc_cam_out_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_cam_out_fb, result) == 24 && offsetof(struct standstill_mc_cam_out_fb, key) == 32 && sizeof(struct standstill_mc_cam_out_fb) == 40));
+
+void MC_CamOut(struct standstill_mc_cam_out_fb *self);
+
+void MC_CamOut(struct standstill_mc_cam_out_fb *self) {
+    struct standstill_mc_cam_out_in in = standstill_mc_cam_out_in_default();
+    struct standstill_mc_cam_out_out out = standstill_mc_cam_out_out_default();
+    in.slave = self->slave != NULL ? self->slave->number : 0;
+    in.execute = self->execute;
+    self->result = standstill_mc_cam_out(STANDSTILL_RUNTIME &self->key, &in, &out);
+    if (self->result == 0) {
+        self->done = out.done;
+        self->busy = out.busy;
         self->error = out.error;
         self->error_id = out.error_id;
     }
