@@ -58,6 +58,16 @@ fn told_story(story: &Story) -> String {
             .with("last", extent.last.to_string());
         object = object.with("extent", part.text());
     }
+    if let Some(line) = &story.line {
+        let part = Object::new()
+            .with("scan", line.scan.to_string())
+            .with("signal", string(&line.signal))
+            .with("expected", string(&line.expected))
+            .with("found", string(&line.found))
+            .with("stayed", line.stayed.to_string())
+            .with("places", names(&line.places));
+        object = object.with("line", part.text());
+    }
     let causes = story.causes.iter().map(|cause| string(&cause.to_string()));
     object
         .with("causes", list(causes))

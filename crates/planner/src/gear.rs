@@ -353,7 +353,10 @@ mod tests {
                 f64::MAX / 32768.0 * f64::from(numerator) / f64::from(denominator)
             });
         }
-        assert_eq!(gear(1, 1).slave(&Anchor::default(), at(f64::MAX)).position, f64::MAX);
+        assert_eq!(
+            gear(1, 1).slave(&Anchor::default(), at(f64::MAX)).position,
+            f64::MAX
+        );
         let far = Anchor {
             slave: at(f64::MAX / 2.0),
             ..Anchor::default()

@@ -244,3 +244,119 @@ fn an_event_that_never_comes() {
     );
     insta::assert_snapshot!(story);
 }
+
+const CELL: &str = "TYPE E_State : (Idle, Feeding, Ready); END_TYPE
+FUNCTION_BLOCK Counter
+VAR_INPUT Step : INT; END_VAR
+VAR_OUTPUT Value : INT; END_VAR
+Value := Value + Step;
+END_FUNCTION_BLOCK
+PROGRAM Cell
+VAR_INPUT Go : BOOL; END_VAR
+VAR_OUTPUT State : E_State; Level : LREAL; Marks : ARRAY [0..2] OF BOOL; END_VAR
+VAR c : Counter; i : INT; END_VAR
+c(Step := 1);
+CASE State OF
+  Idle: IF Go THEN State := Feeding; END_IF;
+  Feeding: IF c.Value >= 10 THEN State := Ready; END_IF;
+  Ready: IF NOT Go THEN
+    State := Idle;
+  END_IF;
+END_CASE;
+Level := INT_TO_LREAL(c.Value) * 0.5;
+FOR i := 0 TO 2 DO Marks[i] := c.Value > i * 4; END_FOR;
+END_PROGRAM
+";
+
+/// The trace of a script with a program.
+fn trace_of_program(source: &str) -> Trace {
+    let script = r#"{"standstill": 1, "cycle": "T#1ms", "scans": 40, "axes": {}, "blocks": [],
+      "programs": {"cell": {"st": "cell.st", "trace": ["State", "Level", "Marks", "c"]}},
+      "steps": [{"at": 3, "set": {"cell.Go": true}}, {"at": 30, "set": {"cell.Go": false}}], "expect": []}"#;
+    let nothing = &mut |_: &str| Err("nothing is included".to_owned());
+    let script =
+        standstill_script::read_with_programs(script, "tests/t.scan.json", &[], nothing, &mut |_| {
+            Ok(source.as_bytes().to_vec())
+        });
+    let script = script.unwrap_or_else(|error| panic!("{error}"));
+    let trace = run(&script).unwrap_or_else(|error| panic!("{error}")).trace;
+    let mut file = Vec::new();
+    jsonl::write(&trace, &mut file).expect("a vector takes all");
+    jsonl::read(&String::from_utf8(file).expect("UTF-8"))
+        .expect("our own")
+        .trace
+}
+
+/// Where it began, after a change of the program.
+fn line_of(from: &str, to: &str) -> Option<String> {
+    assert!(CELL.contains(from), "{from}");
+    let story = told(
+        &trace_of_program(CELL),
+        &trace_of_program(&CELL.replace(from, to)),
+    );
+    story.line.map(|line| line.to_string())
+}
+
+#[test]
+fn the_line_of_a_program_whose_change_came_first() {
+    // Another value, written by the one statement there is.
+    assert_eq!(
+        line_of("* 0.5", "* 0.25").unwrap(),
+        "cell.Level in scan 0: 0.25 instead of 0.5, written at cell.st:19:1"
+    );
+    // Of the three statements that write the state, the one that writes this value.
+    assert_eq!(
+        line_of("c.Value >= 10", "c.Value >= 8").unwrap(),
+        "cell.State in scan 7: Ready instead of Feeding, written at cell.st:14:33"
+    );
+    // What does not happen any more is told by where it happened.
+    assert_eq!(
+        line_of("c.Value >= 10", "c.Value >= 12").unwrap(),
+        "cell.State in scan 9: it stays Feeding; what was expected makes it Ready at cell.st:14:34"
+    );
+    assert_eq!(
+        line_of("IF NOT Go THEN", "IF FALSE THEN").unwrap(),
+        "cell.State in scan 30: it stays Ready; what was expected makes it Idle at cell.st:16:5"
+    );
+    // An array whose element is chosen at work, and an input that a call gives; the first line of several goes first.
+    assert_eq!(
+        line_of("i * 4", "i * 5").unwrap(),
+        "cell.Marks[1] in scan 4: it stays FALSE; what was expected makes it TRUE at cell.st:20:20"
+    );
+    assert_eq!(
+        line_of("Step := 1", "Step := 2").unwrap(),
+        "cell.c.Value in scan 0: 2 instead of 1, written at cell.st:5:1"
+    );
+}
+
+#[test]
+fn a_program_that_only_follows_has_no_line() {
+    let trace = trace_of_program(CELL);
+    let mut other = Trace::new(trace.header().clone());
+    for instance in &mut trace.header().clone().instances {
+        assert!(instance.pins.iter().any(|pin| !pin.written.is_empty()));
+    }
+    // A trace that knows no statements: an older one.
+    let mut header = trace.header().clone();
+    let pins = header.instances.iter_mut().flat_map(|it| &mut it.pins);
+    pins.for_each(|pin| pin.written.clear());
+    let mut bare = Trace::new(header);
+    for scan in 0..trace.scans() {
+        let row: Vec<_> = trace.row(scan).collect();
+        bare.push_row(&row).expect("the same columns");
+        let changed = row.iter().map(|cell| match cell {
+            Cell::Integer(value) if scan == 5 => Cell::Integer(value + 1),
+            other => *other,
+        });
+        other
+            .push_row(&changed.collect::<Vec<_>>())
+            .expect("the same columns");
+    }
+    assert!(told(&trace, &other).line.is_some());
+    let mut changed = Trace::new(bare.header().clone());
+    for scan in 0..bare.scans() {
+        let row: Vec<_> = other.row(scan).collect();
+        changed.push_row(&row).expect("the same columns");
+    }
+    assert_eq!(told(&bare, &changed).line, None);
+}

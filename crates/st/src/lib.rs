@@ -38,7 +38,7 @@ pub use formula::{Reference, references};
 pub use layout::{FAULT_SITE, FAULT_VALUE, LOOP_SITE};
 pub use parse::NESTING_MOST;
 pub use source::{Position, SOURCES_MOST, Source, Sources, Span};
-pub use symbols::{BlockAt, Place, Section, Symbol, Symbols, Task, Value};
+pub use symbols::{BlockAt, Place, Section, Symbol, Symbols, Task, Value, Writer};
 pub use types::Elementary;
 
 use crate::error::Found;

@@ -193,6 +193,19 @@ pub struct Pin {
     /// The script names it; see [`Column::named`].
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub named: bool,
+    /// The statements of the program that write it, in the order of its text; of a variable of a program in Structured Text.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub written: Vec<Written>,
+}
+
+/// A statement that writes a variable.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Written {
+    /// File, line and column: `cell.st:31:5`.
+    pub at: String,
+    /// Text of the value it writes, where that is a constant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value: Option<String>,
 }
 
 /// Which way a pin points.
@@ -278,9 +291,11 @@ impl Header {
             [&mut instance.name, &mut instance.block]
                 .into_iter()
                 .chain(pins.flat_map(|pin| {
+                    let written = pin.written.iter_mut();
                     [&mut pin.name, &mut pin.iec_type]
                         .into_iter()
                         .chain(&mut pin.default)
+                        .chain(written.flat_map(|it| std::iter::once(&mut it.at).chain(&mut it.value)))
                 }))
         });
         let claims = claims.iter_mut().flat_map(Claim::texts_mut);

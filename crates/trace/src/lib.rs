@@ -56,7 +56,7 @@ pub use events::{Event, EventLog, events, events_text};
 pub use extremes::{Extreme, extremes, extremes_text};
 pub use header::{
     AXIS_SIGNALS, Axis, CAM_SIGNALS, COMBINED_SIGNALS, Claim, ClaimFailure, ClaimVerdict, Direction, Header,
-    Input, Instance, Limits, Pin, SLAVE_SIGNALS, SUPERIMPOSED_SIGNALS, Scaling,
+    Input, Instance, Limits, Pin, SLAVE_SIGNALS, SUPERIMPOSED_SIGNALS, Scaling, Written,
 };
 pub use number::{cell_text, shortest, time_literal};
 pub use printable::{printable, printable_lines};

@@ -30,6 +30,7 @@ fn header() -> Header {
         direction,
         default: None,
         named: false,
+        written: Vec::new(),
     });
     Header {
         cycle_ns: 1_000_000,

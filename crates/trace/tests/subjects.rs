@@ -75,6 +75,7 @@ fn pin(name: &str, iec_type: &str, direction: Direction, default: Option<&str>) 
         direction,
         default: default.map(str::to_owned),
         named: false,
+        written: Vec::new(),
     }
 }
 

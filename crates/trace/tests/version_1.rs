@@ -42,6 +42,7 @@ fn other_columns(trace: &Trace, value: Option<f64>, without: &str) -> Trace {
             direction: Direction::Input,
             default: Some("0.0".into()),
             named: false,
+            written: Vec::new(),
         };
         pins.insert(3, pin);
     }

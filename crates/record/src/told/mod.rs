@@ -55,6 +55,7 @@ pub fn instance(name: String, block: &BlockInfo) -> trace::Instance {
                 },
                 default: None,
                 named: false,
+                written: Default::default(),
             })
             .collect(),
     }

@@ -229,6 +229,7 @@ fn program(program: &Program) -> trace::Instance {
             direction: trace::Direction::Output,
             default: zero(Kind::of_iec_type(iec_type)),
             named: false,
+            written: written(program, symbol),
         }
     };
     trace::Instance {
@@ -236,6 +237,26 @@ fn program(program: &Program) -> trace::Instance {
         block: "PROGRAM".to_owned(),
         pins: program.symbols.iter().map(pin).collect(),
     }
+}
+
+/// The statements that write a variable of a program in Structured Text.
+fn written(program: &Program, symbol: &Symbol) -> Vec<trace::Written> {
+    let Some(text) = &program.text else {
+        return Vec::new();
+    };
+    let Some(found) = text.symbols.find(&symbol.name) else {
+        return Vec::new();
+    };
+    let each = text.symbols.writers(&found).into_iter();
+    each.map(|it| {
+        // The same wherever the script is called from.
+        let file = it.file.strip_prefix(&text.folder).unwrap_or(&it.file);
+        trace::Written {
+            at: format!("{file}:{}:{}", it.position.line, it.position.column),
+            value: it.value,
+        }
+    })
+    .collect()
 }
 
 /// What a variable of a guest has by itself.

@@ -2,9 +2,11 @@
 
 mod bind;
 mod columns;
+mod writers;
 
 pub(crate) use bind::bind;
 pub use columns::BlockAt;
+pub use writers::Writer;
 
 use crate::check::{Instance, Program, UnitKind};
 use crate::coverage::Counter;
@@ -109,6 +111,7 @@ pub struct Symbols {
     places: Vec<Place>,
     counters: Vec<Counter>,
     tasks: Vec<Task>,
+    writes: Vec<writers::Write>,
 }
 
 /// A part of a variable while a path is followed.
@@ -135,6 +138,7 @@ impl Symbols {
             kind: site.kind,
         });
         let places = places.collect();
+        let writes = writers::writes(&program, sources);
         let globals = program.globals.iter().map(|global| Root {
             address: global.member.offset,
             member: global.member.clone(),
@@ -170,6 +174,7 @@ impl Symbols {
             roots,
             places,
             counters,
+            writes,
         }
     }
 

@@ -2,11 +2,13 @@
 //! cause leaves such marks.
 
 mod cause;
+mod line;
 mod tell;
 
 use std::fmt;
 
 pub use cause::{Cause, Setting};
+pub use line::Line;
 
 use crate::column::Cell;
 use crate::compare::{Difference, compare, pairs};
@@ -20,6 +22,9 @@ pub struct Story {
     pub difference: Difference,
     /// How far they part; `None` if the rows that both have are equal.
     pub extent: Option<Extent>,
+    /// Where in the text of a program it began; `None` if what differs first is no variable of one, or if its statements are not
+    /// known.
+    pub line: Option<Line>,
     /// What may be behind it, the likeliest first; never empty.
     pub causes: Vec<Cause>,
 }
@@ -58,9 +63,11 @@ pub fn story(expected: &Trace, found: &Trace) -> Option<Story> {
     let difference = compare(expected, found)?;
     let extent = extent(expected, found, &difference);
     let causes = cause::causes(expected, found, &difference, extent.as_ref());
+    let line = line::line(expected, found, &difference);
     Some(Story {
         difference,
         extent,
+        line,
         causes,
     })
 }
@@ -119,6 +126,9 @@ impl fmt::Display for Story {
         write!(out, "{}", self.difference)?;
         if let Some(extent) = &self.extent {
             writeln!(out, "how far it goes\n  {extent}")?;
+        }
+        if let Some(line) = &self.line {
+            writeln!(out, "where it began\n  {line}")?;
         }
         let mut causes = self.causes.iter();
         if let Some(first) = causes.next() {

@@ -32,6 +32,7 @@ fn pin(name: &str, iec_type: &str, direction: Direction) -> Pin {
         direction,
         default: None,
         named: false,
+        written: Vec::new(),
     }
 }
 
