@@ -28,7 +28,7 @@ pub fn watch(arguments: &WatchArguments, out: &mut dyn Write) -> Result<Exit, Fa
         outside,
     } = arguments;
     let name = shown(path);
-    let (script, text) = suite::read_file(path, set, &outside.allowed()).map_err(crate::run::failure)?;
+    let (script, text) = suite::read_counted(path, set, &outside.allowed()).map_err(crate::run::failure)?;
     let save = Box::new(|changes: &[_]| save(path, &text, !set.is_empty(), changes));
     let mut app = App::new(&script, &name, save).map_err(|source| SuiteError::Run {
         path: path.clone(),

@@ -38,7 +38,9 @@ pub use read::time::parse as parse_time;
 pub use read::{
     CELLS_MAX, ENTITIES_MAX, GUEST_MEMORY, LOOKS_MAX, SCANS_MAX, VERSION, read, read_with, read_with_programs,
 };
-pub use run::{Change, Outcome, RecordingError, RunError, Session, judge_recording, run, run_with};
+pub use run::{
+    Change, Counted, Outcome, RecordingError, RunError, Session, Shown, judge_recording, run, run_with,
+};
 pub use schema::schema;
 pub use schema_machine::machine_schema;
 pub use schema_map::map_schema;

@@ -179,6 +179,8 @@ pub struct ProgramText {
     pub blocks: BTreeMap<u32, String>,
     /// What the compiler finds doubtful: place in the sources, what it is, and what to do about it.
     pub doubtful: Vec<Doubt>,
+    /// Its files: their names in messages, and what stands in them, without a byte order mark.
+    pub sources: Vec<(String, String)>,
     /// The script's folder, which the names of its files begin with.
     pub folder: String,
 }

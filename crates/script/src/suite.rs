@@ -227,12 +227,33 @@ pub fn read_file(
     parameters: &[(String, f64)],
     allowed: &Allowed,
 ) -> Result<(Script, String), SuiteError> {
+    read_as(path, parameters, allowed, false)
+}
+
+/// As [`read_file`]; the statements of its programs in Structured Text are counted, and may take more fuel.
+///
+/// # Errors
+/// As [`read_file`].
+pub fn read_counted(
+    path: &Path,
+    parameters: &[(String, f64)],
+    allowed: &Allowed,
+) -> Result<(Script, String), SuiteError> {
+    read_as(path, parameters, allowed, true)
+}
+
+fn read_as(
+    path: &Path,
+    parameters: &[(String, f64)],
+    allowed: &Allowed,
+    coverage: bool,
+) -> Result<(Script, String), SuiteError> {
     let text = read_text(path)?;
     let mut load = |inner: &str| included(path, inner, allowed);
     let mut guest = |inner: &str| module(path, inner, allowed);
     let terms = Terms {
         guest_memory: allowed.guest_memory,
-        ..Terms::default()
+        coverage,
     };
     let script = read_within(&text, &shown(path), parameters, &mut load, &mut guest, terms)?;
     Ok((script, text))
@@ -244,14 +265,7 @@ pub fn read_file(
 /// # Errors
 /// As [`run_file`].
 pub fn coverage(path: &Path, allowed: &Allowed) -> Result<Option<Vec<Counted>>, SuiteError> {
-    let text = read_text(path)?;
-    let mut load = |inner: &str| included(path, inner, allowed);
-    let mut guest = |inner: &str| module(path, inner, allowed);
-    let terms = Terms {
-        guest_memory: allowed.guest_memory,
-        coverage: true,
-    };
-    let script = read_within(&text, &shown(path), &[], &mut load, &mut guest, terms)?;
+    let (script, _) = read_counted(path, &[], allowed)?;
     if script.programs.iter().all(|program| program.text.is_none()) {
         return Ok(None);
     }

@@ -1,9 +1,13 @@
 //! The state of the watching, and what keys do to it. It reads no clock and no terminal, so tests drive it.
 
 use crate::points::{Line, lines};
+use crate::program::{self, Side, View};
 use standstill_script::model::{Point, Script};
 use standstill_script::{Outcome, RunError, Session, Standing};
 use standstill_trace::{Event, EventLog};
+
+/// Lines of a program among which that of a fault is brought to the middle.
+const LINES_AROUND: usize = 16;
 
 /// Events that the list remembers.
 const EVENTS_KEPT: usize = 1000;
@@ -73,6 +77,8 @@ pub struct App<'a> {
     pub(crate) over: Over,
     pub(crate) message: String,
     pub(crate) broken: bool,
+    /// The program that is looked at, if any.
+    pub(crate) view: Option<View>,
     quit: bool,
     save: Save<'a>,
 }
@@ -102,6 +108,7 @@ impl<'a> App<'a> {
             over: Over::Nothing,
             message: "? for help".to_owned(),
             broken: false,
+            view: None,
             quit: false,
             save,
         })
@@ -195,7 +202,11 @@ impl<'a> App<'a> {
                 return false;
             }
         }
+        if let Some(view) = &mut self.view {
+            view.look(&self.session);
+        }
         let events = self.log.take(self.session.trace());
+        self.tell_fault(&events);
         let some = !events.is_empty();
         self.events.extend(events);
         let surplus = self.events.len().saturating_sub(EVENTS_KEPT);
@@ -206,6 +217,57 @@ impl<'a> App<'a> {
             self.message = format!("the run is over: {held} claims hold, {failed} fail; r starts again");
         }
         some
+    }
+
+    /// Tells where a program faulted, and shows the line.
+    fn tell_fault(&mut self, events: &[Event]) {
+        let fault = events.iter().find(|event| event.text.starts_with("faults: "));
+        let Some(event) = fault else { return };
+        let text = event.text.trim_start_matches("faults: ");
+        let text = text.split("; the resource").next().unwrap_or(text);
+        self.message = format!("scan {}: {text}", event.scan);
+        let named = |program: &standstill_script::model::Program| program.name == event.subject;
+        let program = self.script.programs.iter().position(named);
+        if let (Some(program), Some(view)) = (program, &mut self.view)
+            && view.program == program
+            && let Some(row) = program::fault_row(self.script, program, &event.text)
+        {
+            view.go_to(row, LINES_AROUND);
+        }
+    }
+
+    /// The next program, and behind the last one the axes again.
+    fn next_view(&mut self) {
+        let after = self.view.as_ref().map(|view| view.program);
+        let next = program::next(self.script, after);
+        if after.is_none() && next.is_none() {
+            "this script has no program in Structured Text".clone_into(&mut self.message);
+        }
+        self.view = next.map(|program| View::new(program, &self.session));
+    }
+
+    /// What keys do while a program is looked at; FALSE if they do what they do otherwise.
+    fn view_key(&mut self, key: Key) -> bool {
+        let Some(view) = &mut self.view else {
+            return false;
+        };
+        let rows = || program::rows(self.script, view.program).len();
+        match key {
+            Key::Tab => {
+                view.side = match view.side {
+                    Side::Source => Side::Variables,
+                    Side::Variables => Side::Source,
+                };
+            }
+            Key::Down(lines) => view.scroll(lines, rows()),
+            Key::Char('j') => view.scroll(1, rows()),
+            Key::Char('k') => view.scroll(-1, rows()),
+            Key::Enter => {
+                "inputs are changed where the blocks are; v leads there".clone_into(&mut self.message)
+            }
+            _ => return false,
+        }
+        true
     }
 
     /// Takes a key.
@@ -222,8 +284,12 @@ impl<'a> App<'a> {
         if !self.broken {
             self.message.clear();
         }
+        if self.view_key(key) {
+            return;
+        }
         match key {
             Key::Char('q') | Key::Escape => self.quit = true,
+            Key::Char('v') => self.next_view(),
             Key::Char('?' | 'h') => self.over = Over::Help,
             Key::Char(' ') => self.go(if self.mode == Mode::Paused {
                 Mode::Running
@@ -277,6 +343,10 @@ impl<'a> App<'a> {
         self.events.clear();
         self.standings.fill(Standing::Open);
         (self.mode, self.owed, self.broken) = (Mode::Paused, 0.0, false);
+        self.view = self
+            .view
+            .take()
+            .map(|view| View::new(view.program, &self.session));
         "from the start, without the changes".clone_into(&mut self.message);
     }
 

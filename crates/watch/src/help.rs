@@ -1,7 +1,7 @@
 //! The keys, as the help shows them.
 
 /// Key and what it does.
-pub const KEYS: [(&str, &str); 13] = [
+pub const KEYS: [(&str, &str); 14] = [
     ("space", "run, pause"),
     ("s  S", "a scan, ten scans"),
     ("e", "to the next event"),
@@ -10,6 +10,7 @@ pub const KEYS: [(&str, &str); 13] = [
     ("tab", "the next axis"),
     ("up down", "select a pin (also k j, page keys)"),
     ("enter", "change it: a BOOL turns over"),
+    ("v", "the next program, or the axes"),
     ("w", "write the changed run as a script"),
     ("r", "start again"),
     ("?", "this help; any key closes it"),

@@ -9,6 +9,7 @@ mod app;
 mod help;
 mod panes;
 mod points;
+mod program;
 mod terminal;
 mod view;
 

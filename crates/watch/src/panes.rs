@@ -1,6 +1,7 @@
 //! The parts of the screen.
 
 use crate::app::App;
+use crate::program::{Row, Side, View, rows};
 use crate::view::Look;
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -232,6 +233,57 @@ pub(crate) fn claims(frame: &mut Frame<'_>, area: Rect, app: &App<'_>, look: Loo
                 Span::styled(format!("{word:<13} "), style),
                 Span::raw(cut(says, room)),
             ])
+        })
+        .collect();
+    frame.render_widget(Paragraph::new(lines), inner);
+}
+
+/// The text of a program; lines that were executed in the last scan are marked.
+pub(crate) fn source(frame: &mut Frame<'_>, area: Rect, app: &App<'_>, view: &View, look: Look) {
+    let name = app
+        .script
+        .programs
+        .get(view.program)
+        .map_or("", |program| &program.name);
+    let mark = if view.side == Side::Source { "> " } else { "" };
+    let inner = boxed(frame, area, &format!("{mark}{name}: the source"));
+    let width = usize::from(inner.width);
+    let rows = rows(app.script, view.program);
+    let shown = rows.iter().skip(view.top[0]).take(usize::from(inner.height));
+    let lines: Vec<Line<'_>> = shown
+        .map(|row| match row {
+            Row::File(name) => Line::styled(cut(name, width), look.on()),
+            Row::Line(file, number, text) => {
+                let ran = view.ran.contains(&((*file).to_owned(), *number));
+                let mark = if ran { '>' } else { ' ' };
+                // A tab has no width of its own.
+                let text = text.replace('\t', "    ");
+                let style = if ran { look.on() } else { Style::new() };
+                Line::styled(cut(&format!("{number:>4}{mark} {text}"), width), style)
+            }
+        })
+        .collect();
+    frame.render_widget(Paragraph::new(lines), inner);
+}
+
+/// The variables of a program; those that changed in the last scan are marked.
+pub(crate) fn variables(frame: &mut Frame<'_>, area: Rect, view: &View, look: Look) {
+    let mark = if view.side == Side::Variables { "> " } else { "" };
+    let inner = boxed(frame, area, &format!("{mark}variables"));
+    let width = usize::from(inner.width);
+    let shown = view.variables.iter().enumerate().skip(view.top[1]);
+    let lines: Vec<Line<'_>> = shown
+        .take(usize::from(inner.height))
+        .map(|(index, variable)| {
+            let changed = view.changed.contains(&index);
+            let mark = if changed { '*' } else { ' ' };
+            let room = width.saturating_sub(variable.value.chars().count() + 3);
+            let name = cut(&variable.path, room);
+            let style = if changed { look.on() } else { Style::new() };
+            Line::styled(
+                cut(&format!("{mark}{name:<room$} {}", variable.value), width),
+                style,
+            )
         })
         .collect();
     frame.render_widget(Paragraph::new(lines), inner);

@@ -3,6 +3,7 @@
 use crate::app::{App, Mode, Over};
 use crate::help::KEYS;
 use crate::panes;
+use crate::program::View;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
@@ -57,6 +58,10 @@ pub fn draw(frame: &mut Frame<'_>, app: &App<'_>, color: bool) {
     if area.width < columns || area.height < lines {
         return too_small(frame, area);
     }
+    if let Some(view) = &app.view {
+        program_view(frame, area, app, view, look);
+        return over(frame, area, app);
+    }
     let [head, top, bottom, foot] = Layout::vertical([
         Constraint::Length(1),
         Constraint::Length(10),
@@ -77,6 +82,23 @@ pub fn draw(frame: &mut Frame<'_>, app: &App<'_>, color: bool) {
     panes::events(frame, events, app);
     panes::claims(frame, claims, app, look);
     footer(frame, foot, app, look);
+    over(frame, area, app);
+}
+
+/// A program: its text and its variables.
+fn program_view(frame: &mut Frame<'_>, area: Rect, app: &App<'_>, view: &View, look: Look) {
+    let [head, main, foot] =
+        Layout::vertical([Constraint::Length(1), Constraint::Min(12), Constraint::Length(1)]).areas(area);
+    let [source, variables] =
+        Layout::horizontal([Constraint::Percentage(58), Constraint::Percentage(42)]).areas(main);
+    header(frame, head, app, look);
+    panes::source(frame, source, app, view, look);
+    panes::variables(frame, variables, view, look);
+    footer(frame, foot, app, look);
+}
+
+/// What lies over the screen.
+fn over(frame: &mut Frame<'_>, area: Rect, app: &App<'_>) {
     match &app.over {
         Over::Nothing => {}
         Over::Help => help(frame, area),

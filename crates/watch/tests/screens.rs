@@ -286,3 +286,106 @@ fn the_guide_shows_this_screen() {
         }
     }
 }
+
+/// Two axes of a program, in files of their own, as they are read to be watched.
+fn watched_program() -> Script {
+    let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("watched_program");
+    std::fs::create_dir_all(&folder).unwrap();
+    let cell = "PROGRAM Cell
+VAR_INPUT Go : BOOL; END_VAR
+VAR State : (Idle, Busy); n : INT; parts : ARRAY [0..3] OF INT; wait : TIME; END_VAR
+CASE State OF
+\tIdle:
+\t\tIF Go THEN State := Busy; END_IF;
+\tBusy:
+\t\tparts[n] := 7;
+\t\tn := n + 1;
+END_CASE;
+wait := T#20ms * n;
+END_PROGRAM
+";
+    let script = r#"{"standstill": 1, "cycle": "T#1ms", "scans": 20, "axes": {}, "blocks": [],
+      "programs": {"cell": {"st": "cell.st", "may_fault": true}},
+      "steps": [{"at": 2, "set": {"cell.Go": true}}], "expect": []}"#;
+    std::fs::write(folder.join("cell.st"), cell).unwrap();
+    let path = folder.join("t.scan.json");
+    std::fs::write(&path, script).unwrap();
+    let read =
+        standstill_script::suite::read_counted(&path, &[], &standstill_script::suite::Allowed::default());
+    read.unwrap_or_else(|error| panic!("{error}")).0
+}
+
+/// The lines of the screen, with one space for several.
+fn program_screen(app: &App<'_>) -> Vec<String> {
+    let screen = screen(app);
+    let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
+    screen.lines().map(words).collect()
+}
+
+#[test]
+fn a_program_is_looked_at_line_by_line() {
+    let script = watched_program();
+    let mut app = app(&script);
+    let has = |screen: &[String], text: &str| screen.iter().any(|line| line.contains(text));
+    keys(&mut app, "v");
+    let before = program_screen(&app);
+    for text in [
+        "> cell: the source",
+        "│cell.st",
+        "8 parts[n] := 7;",
+        " State Idle",
+        "wait T#0ms",
+    ] {
+        assert!(has(&before, text), "{text} {before:#?}");
+    }
+    // In scan 2 it is told to go.
+    keys(&mut app, "sss");
+    let going = program_screen(&app);
+    for text in ["6> IF Go THEN State := Busy;", "8 parts[n] := 7;", "*State Busy"] {
+        assert!(has(&going, text), "{text} {going:#?}");
+    }
+    keys(&mut app, "s");
+    let busy = program_screen(&app);
+    for text in [
+        "8> parts[n] := 7;",
+        "6 IF Go",
+        "*parts[0] 7",
+        "*wait T#20ms",
+        " State Busy",
+    ] {
+        assert!(has(&busy, text), "{text} {busy:#?}");
+    }
+    // A fault names the place, the value and the scan.
+    keys(&mut app, "S");
+    let over = program_screen(&app);
+    let fault = "scan 7: cell.st:8:9: an index outside the bounds of its array: the index is 4";
+    assert!(has(&over, fault), "{over:#?}");
+    // The sides scroll by themselves.
+    keys(&mut app, "VVV");
+    let scrolled = program_screen(&app);
+    assert!(
+        !has(&scrolled, "1 PROGRAM Cell") && has(&scrolled, "8 parts"),
+        "{scrolled:#?}"
+    );
+    keys(&mut app, "\tVV");
+    let scrolled = program_screen(&app);
+    assert!(
+        has(&scrolled, "> variables") && !has(&scrolled, "State Busy"),
+        "{scrolled:#?}"
+    );
+    keys(&mut app, "\n");
+    assert!(has(&program_screen(&app), "v leads there"));
+    keys(&mut app, "v");
+    assert!(
+        has(&program_screen(&app), "events"),
+        "behind the last program the axes are back"
+    );
+}
+
+#[test]
+fn a_script_without_a_program_says_so() {
+    let script = script();
+    let mut app = app(&script);
+    keys(&mut app, "v");
+    assert!(screen(&app).contains("no program in Structured Text"));
+}

@@ -28,6 +28,12 @@ const BLOCKS_MAX: usize = 4096;
 /// Most variables among which the one that was meant is looked for.
 const GUESSES_MAX: usize = 2000;
 
+/// Without a byte order mark.
+fn text(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    text.strip_prefix('\u{FEFF}').unwrap_or(&text).to_owned()
+}
+
 /// The warnings of a report.
 fn doubtful(report: &st::Report) -> Vec<Doubt> {
     let each = report.diagnostics().iter();
@@ -68,7 +74,8 @@ impl Reader {
         if options.coverage {
             settings.fuel = settings.fuel.saturating_mul(COUNTING);
         }
-        let compiled = self.compiled(&files?, &options, fields)?;
+        let files = files?;
+        let compiled = self.compiled(&files, &options, fields)?;
         let guest = match standstill_guest::Program::compile(&compiled.wasm, settings) {
             Ok(guest) => guest,
             Err(why) => {
@@ -86,6 +93,11 @@ impl Reader {
         let text = ProgramText {
             blocks: blocks.into_iter().map(named).collect(),
             doubtful: doubtful(&compiled.report),
+            // What was compiled is UTF-8.
+            sources: files
+                .into_iter()
+                .map(|(name, bytes)| (name, text(&bytes)))
+                .collect(),
             folder: self.folder.clone(),
             symbols: compiled.symbols,
         };

@@ -188,6 +188,11 @@ impl<'a> Bench<'a> {
         self.error.take().map_or(Ok(()), Err)
     }
 
+    /// The variables of a program in Structured Text.
+    pub(crate) fn variables(&self, program: usize) -> Vec<super::Shown> {
+        self.guests.variables(self.script, program)
+    }
+
     /// How often statements of the guests were executed.
     pub(crate) fn counted(&self) -> Vec<super::Counted> {
         self.guests.counted(self.script)

@@ -81,6 +81,14 @@ impl Guests {
         all
     }
 
+    /// The variables of a program in Structured Text.
+    pub(crate) fn variables(&self, script: &Script, program: usize) -> Vec<super::Shown> {
+        match (self.all.get(program), script.programs.get(program)) {
+            (Some(running), Some(program)) => super::variables::shown(program, &running.guest),
+            _ => Vec::new(),
+        }
+    }
+
     pub(crate) fn has_fault(&self) -> bool {
         self.all.iter().any(|running| running.fault.is_some())
     }

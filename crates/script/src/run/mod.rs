@@ -11,6 +11,7 @@ mod rows;
 mod schedule;
 mod session;
 mod values;
+mod variables;
 
 pub(crate) use formulas::turned;
 pub use guests::Counted;
@@ -18,6 +19,7 @@ pub use recorded::{RecordingError, judge_recording};
 pub(crate) use rows::{Derivatives, Rows};
 use schedule::PENDING_MAX;
 pub use session::{Change, Session};
+pub use variables::Shown;
 
 use crate::CELLS_MAX;
 use crate::claims::{Failure, Verdict};

@@ -138,9 +138,17 @@ impl<'a> Session<'a> {
         Some((&axis.name, on.state.name()))
     }
 
-    /// How often statements of Structured Text were executed, where the script was read so that they are counted.
+    /// All variables of a program in Structured Text as they are now, at most 2000; none of another program. Cost: linear in
+    /// their number.
     #[must_use]
-    pub(crate) fn counted(&self) -> Vec<super::Counted> {
+    pub fn variables(&self, program: usize) -> Vec<super::Shown> {
+        self.bench.variables(program)
+    }
+
+    /// How often statements of Structured Text were executed, where the script was read so that they are counted. Cost:
+    /// linear in the statements.
+    #[must_use]
+    pub fn counted(&self) -> Vec<super::Counted> {
         self.bench.counted()
     }
 
