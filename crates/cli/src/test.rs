@@ -18,6 +18,7 @@ use standstill_script::{Warnings, judge_recording};
 use standstill_trace::compare::{Tolerance, Yardstick};
 use std::collections::BTreeSet;
 use std::fmt;
+use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -129,6 +130,10 @@ fn told(wish: Wish<'_>, first: &BTreeSet<String>, out: &mut dyn Write) -> Result
     if let Some(path) = wish.coverage {
         let coverage = Coverage::of(&found(wish.paths, wish.word)?, wish.allowed);
         writeln!(out, "{}", coverage.save(path)?)?;
+        if let Some(folder) = wish.report {
+            fs::create_dir_all(folder).map_err(|error| Failure::io(&suite::shown(folder), &error))?;
+            writeln!(out, "    report: {}", coverage.page(folder)?)?;
+        }
     }
     Ok(tally)
 }

@@ -169,7 +169,8 @@ END_PROGRAM
     .unwrap();
     let ended = standstill(&place, &["test", "--coverage", "cov.lcov", "a.scan.json"]);
     assert_eq!(ended.status, 0, "{} {}", ended.out, ended.err);
-    let line = "coverage: 5 of 7 (71.4 %) statements, 5 of 6 (83.3 %) branches: cov.lcov\n";
+    let line = "  cell.st: not executed: lines 3, 14; a branch not taken: line 11
+coverage: 5 of 7 (71.4 %) statements, 5 of 6 (83.3 %) branches: cov.lcov\n";
     assert!(ended.out.ends_with(line), "{}", ended.out);
     let lcov = fs::read_to_string(place.join("cov.lcov")).unwrap();
     let expected = "TN:
@@ -194,6 +195,24 @@ LH:5
 end_of_record
 ";
     assert_eq!(lcov, expected);
+    // With a folder for reports there is a page of the sources.
+    let arguments = ["test", "--coverage", "cov.lcov", "--report", "out", "a.scan.json"];
+    let ended = standstill(&place, &arguments);
+    assert!(
+        ended.out.ends_with("    report: out/coverage.html\n"),
+        "{}",
+        ended.out
+    );
+    let page = fs::read_to_string(place.join("out/coverage.html")).unwrap();
+    for row in [
+        "<h2>cell.st</h2>\n<p>5 of 7 (71.4 %) statements, 5 of 6 (83.3 %) branches</p>",
+        "<tr class=\"no\"><td class=\"n\">3</td><td class=\"n\">0</td><td>Half := x / 2;</td></tr>",
+        "<tr class=\"yes\"><td class=\"n\">9</td><td class=\"n\">3</td><td>  Count := Count + 1;</td></tr>",
+        "<tr class=\"part\"><td class=\"n\">11</td>",
+        "<tr class=\"\"><td class=\"n\">1</td><td class=\"n\"></td><td>FUNCTION Half : INT</td></tr>",
+    ] {
+        assert!(page.contains(row), "{row}\n{page}");
+    }
     // The trace of the judged run is the same with and without.
     for (name, more) in [("with", &["--coverage", "x.lcov"][..]), ("without", &[][..])] {
         let trace = place.join(name);
