@@ -86,7 +86,42 @@ impl<P: Planner> Axis<P> {
                 }
             }
         }
+        if self.is_slowed() {
+            kept = self.planned_free(entry, kept, start, before);
+        }
         Ok(kept)
+    }
+
+    /// Where what slaves leave of the limits would take the axis out of its own, it has its own: the slaves lag.
+    fn planned_free(
+        &self,
+        entry: &mut Entry,
+        motion: Motion<P::Plan>,
+        start: &Setpoint,
+        before: &Limits,
+    ) -> Motion<P::Plan> {
+        let axis = &self.config.limits;
+        let leaves = |motion: &Motion<P::Plan>| match motion {
+            Motion::Run { plan, .. } => plan.excess_over(axis).is_some(),
+            _ => false,
+        };
+        let free = Entry {
+            limits: Limits {
+                velocity: entry.limits.velocity,
+                ..*axis
+            },
+            ..*entry
+        };
+        if !leaves(&motion) {
+            return motion;
+        }
+        match self.plan_from(&free, start, before) {
+            Ok(planned) if !leaves(&planned) => {
+                *entry = free;
+                planned
+            }
+            _ => motion,
+        }
     }
 
     /// The same for a ramp to rest nobody commanded, on an axis that has limits of `axis`.

@@ -104,7 +104,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Every limit of a velocity is finite, so there is a bound where that is.
-    fn is_slowed(&self) -> bool {
+    pub(in crate::axis) fn is_slowed(&self) -> bool {
         self.bound.now.velocity.is_finite()
     }
 
