@@ -67,7 +67,7 @@ const ROWS: &[Row] = &[
     row(TYPES, "BYTE, WORD, DWORD, LWORD", "DWORD#16#FFFF_FFFF", "", "r : DWORD;", "r := @;", 0xFFFF_FFFF),
     row(TYPES, "REAL, LREAL", "LREAL#2.5", "", "r : INT;", "r := LREAL_TO_INT(@ * 4.0);", 10),
     row(TYPES, "TIME, LTIME: 64 bits of ns", "LTIME#5us", "", "r : LTIME;", "r := @;", 5000),
-    row(TYPES, "STRING, STRING[n], n up to 254", "STRING[5]", "", "s : @; r : INT;", "s := 'abcdefgh'; r := LEN(s);", 5),
+    row(TYPES, "STRING, STRING[n], n up to 254", "STRING[5]", "", "s : @; t : STRING := 'abcdefgh'; r : INT;", "s := t; r := LEN(s);", 5),
     row(TYPES, "enumerations", "(Red, Green := 5, Blue)", "TYPE C : @; END_TYPE", "c : C := Blue; r : INT;", "r := C_TO_INT(c);", 6),
     row(TYPES, "elements by `E#a` and `E.a`", "C#Green = C.Green", "TYPE C : (Red, Green) DINT; END_TYPE", "r : BOOL;", "r := @;", 1),
     row(TYPES, "subranges", "INT(0..10)", "", "a : @ := 7; r : INT;", "r := a;", 7),
