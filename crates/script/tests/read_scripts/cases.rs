@@ -723,13 +723,6 @@ pub fn cases() -> Vec<Case> {
             "\"n\", \"type\": \"Lamp\"",
         ),
         case(
-            "unsupported",
-            Schema,
-            "a block of the standard that is not built",
-            "\"n\", \"type\": \"MC_MoveAbsolute\"",
-            "\"n\", \"type\": \"MC_CamIn\"",
-        ),
-        case(
             "unknown_pin",
             Schema,
             "an unknown pin",
