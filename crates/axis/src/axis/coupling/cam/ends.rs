@@ -99,7 +99,11 @@ impl Ends {
             None
         };
         if head.periodic {
-            return self.tell(passed);
+            let passed = self.tell(passed);
+            // In a long step it went far enough away from it.
+            let is_away = |told: &mut i64| ((at.periods - *told) as f64 + way / length).abs() >= AWAY;
+            self.told.take_if(is_away);
+            return passed;
         }
         let had_begun = self.has_begun;
         self.has_begun |= at.periods == 0;
