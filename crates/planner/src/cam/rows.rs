@@ -101,7 +101,7 @@ impl Rows<'_> {
         // Three neighbours at most are looked at, so few periods are passed.
         for _ in 0..STENCIL {
             if !self.periodic {
-                within = within.clamp(0, last);
+                within = within.min(last).max(0);
             } else if within < 0 {
                 within += last;
                 periods -= 1.0;
