@@ -175,10 +175,9 @@ mod tests {
             let expected = match info.name {
                 "MC_ReadDigitalInput" => ("Input", "MC_INPUT_REF"),
                 "MC_ReadDigitalOutput" | "MC_WriteDigitalOutput" => ("Output", "MC_OUTPUT_REF"),
-                "MC_GearIn" | "MC_GearInPos" | "MC_PhasingAbsolute" | "MC_PhasingRelative" => {
-                    ("Master", "AXIS_REF")
-                }
-                "MC_GearOut" => ("Slave", "AXIS_REF"),
+                "MC_GearIn" | "MC_GearInPos" | "MC_PhasingAbsolute" | "MC_PhasingRelative"
+                | "MC_CamTableSelect" | "MC_CamIn" => ("Master", "AXIS_REF"),
+                "MC_GearOut" | "MC_CamOut" => ("Slave", "AXIS_REF"),
                 "MC_CombineAxes" => ("Master1", "AXIS_REF"),
                 _ => ("Axis", "AXIS_REF"),
             };
@@ -206,7 +205,7 @@ mod tests {
             match name {
                 "MC_BUFFER_MODE" => (0..=5).collect(),
                 "MC_DIRECTION" => (0..=4).collect(),
-                "MC_SOURCE" | "MC_SYNC_MODE" => (0..=2).collect(),
+                "MC_SOURCE" | "MC_SYNC_MODE" | "MC_START_MODE" => (0..=2).collect(),
                 "MC_EXECUTION_MODE" | "MC_COMBINE_MODE" => (0..=1).collect(),
                 "MC_TRIGGER_REF" => (0..=3).collect(),
                 _ => panic!("state the numbers of {name} here"),

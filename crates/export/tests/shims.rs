@@ -82,7 +82,8 @@ const MATIEC: &str = r"
 typedef uint8_t BOOL; typedef int16_t INT; typedef uint16_t WORD; typedef uint16_t UINT; typedef uint32_t DWORD; typedef double LREAL;
 typedef int32_t DINT; typedef uint64_t ULINT; typedef struct { long int tv_sec; long int tv_nsec; } TIME;
 typedef struct { DINT NUMBER; } AXIS_REF; typedef AXIS_REF MC_INPUT_REF; typedef AXIS_REF MC_OUTPUT_REF;
-typedef int MC_BUFFER_MODE, MC_DIRECTION, MC_SOURCE, MC_EXECUTION_MODE, MC_SYNC_MODE, MC_COMBINE_MODE, MC_TRIGGER_REF;
+typedef int MC_BUFFER_MODE, MC_DIRECTION, MC_SOURCE, MC_EXECUTION_MODE, MC_SYNC_MODE, MC_COMBINE_MODE, MC_TRIGGER_REF,
+    MC_START_MODE;
 #define ARRAY(name, count, fields) typedef struct { fields } name##_RECORD; \
     typedef struct { DINT COUNT; struct { name##_RECORD table[count]; } RECORDS; } name;
 ARRAY(MC_TP_REF, 40, TIME DELTATIME; LREAL POSITION; BOOL LEVEL;)
@@ -91,6 +92,7 @@ ARRAY(MC_TA_REF, 40, TIME DELTATIME; LREAL ACCELERATION; BOOL LEVEL;)
 ARRAY(MC_TRACK_REF, 32, TIME ONCOMPENSATION; TIME OFFCOMPENSATION; LREAL HYSTERESIS;)
 ARRAY(MC_CAMSWITCH_REF, 32, INT TRACKNUMBER; LREAL FIRSTONPOSITION; LREAL LASTONPOSITION; INT AXISDIRECTION;
     INT CAMSWITCHMODE; TIME DURATION;)
+ARRAY(MC_CAM_REF, 512, LREAL MASTER; LREAL SLAVE; LREAL SLOPE; LREAL CURVATURE; LREAL THIRD; INT LAW;)
 #define GetFbVar(var, ...) (data__->var.value __VA_ARGS__)
 #define SetFbVar(var, val) (data__->var.value = (val))
 ";
@@ -152,6 +154,7 @@ struct AXIS_REF { DINT NUMBER; }; using MC_INPUT_REF = AXIS_REF; using MC_OUTPUT
 enum class Names { first, second };
 using MC_BUFFER_MODE = Enumerated<Names>; using MC_DIRECTION = Enumerated<Names>; using MC_SOURCE = Enumerated<Names>;
 using MC_EXECUTION_MODE = Enumerated<Names>; using MC_TRIGGER_REF = Enumerated<Names>; using MC_SYNC_MODE = Enumerated<Names>; using MC_COMBINE_MODE = Enumerated<Names>;
+using MC_START_MODE = Enumerated<Names>;
 #define ARRAY(name, count, fields) struct name##_RECORD { fields }; \
     struct name { DINT COUNT; Array<name##_RECORD, 0, count - 1> RECORDS; };
 ARRAY(MC_TP_REF, 40, TIME DELTATIME; LREAL POSITION; BOOL LEVEL;)
@@ -160,6 +163,7 @@ ARRAY(MC_TA_REF, 40, TIME DELTATIME; LREAL ACCELERATION; BOOL LEVEL;)
 ARRAY(MC_TRACK_REF, 32, TIME ONCOMPENSATION; TIME OFFCOMPENSATION; LREAL HYSTERESIS;)
 ARRAY(MC_CAMSWITCH_REF, 32, INT TRACKNUMBER; LREAL FIRSTONPOSITION; LREAL LASTONPOSITION; INT AXISDIRECTION;
     INT CAMSWITCHMODE; TIME DURATION;)
+ARRAY(MC_CAM_REF, 512, LREAL MASTER; LREAL SLAVE; LREAL SLOPE; LREAL CURVATURE; LREAL THIRD; INT LAW;)
 ";
 
 #[test]

@@ -480,7 +480,7 @@ fn a_rise_is_counted_in_whole_periods() {
     }
 }
 
-/// Covers: G34, G67: the same place, the same bits, whatever the way there.
+/// Covers: G34, G67
 #[test]
 fn backwards_it_is_the_same_curve_to_the_bit() {
     let made = up_and_back();

@@ -76,7 +76,7 @@ const ROWS: &[Row] = &[
     row(TYPES, "aliases", "TYPE Speed : INT; END_TYPE", "@", "s : Speed := 3; r : INT;", "r := s;", 3),
     row(TYPES, "first values of arrays", "[3(2), 7]", "", "a : ARRAY [0..3] OF INT := @; r : INT;", "r := a[2] + a[3];", 9),
     row(TYPES, "first values of structures and instances", "(PT := T#1s)", "", "t : TON := @; r : LINT;", "r := LTIME_TO_LINT(t.PT);", 1_000_000_000),
-    row(TYPES, "instances in structures and arrays", "Units[2](CLK := TRUE)", "", "Units : ARRAY [1..2] OF R_TRIG; r : BOOL;", "@; r := Units[2].Q;", 1),
+    row(TYPES, "instances in structures and arrays", "Units[2] (CLK := TRUE)", "", "Units : ARRAY [1..2] OF R_TRIG; r : BOOL;", "@; r := Units[2].Q;", 1),
     row(TYPES, "AXIS_REF and arrays of it", "Axes[2].Number", "", "Axes : ARRAY [1..2] OF AXIS_REF; r : DINT;", "r := @;", 0),
     row(TYPES, "copies of arrays and structures", "b := a", "", "a, b : ARRAY [0..1] OF INT := [1, 2]; r : INT;", "a[1] := 8; @; r := b[1];", 8),
     row(UNITS, "FUNCTION", "Twice(4)", "FUNCTION Twice : INT VAR_INPUT x : INT; END_VAR Twice := 2 * x; END_FUNCTION", "r : INT;", "r := @;", 8),

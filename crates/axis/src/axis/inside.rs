@@ -12,6 +12,10 @@ use standstill_planner::{Excess, Limits, Plan, Planner, Setpoint};
 /// A higher limit must take at least this much off what is exceeded.
 const WORTH: f64 = 0.99;
 
+/// By this part of its velocity limit a master may be led beyond it by what its slaves leave of its other limits, until it has
+/// come down to that.
+const FAR: f64 = 1.0;
+
 impl<P: Planner> Axis<P> {
     /// What `plan` exceeds of the axis limits. A faster motion that a slower command takes over from is no excess.
     pub(super) fn beyond_axis(&self, plan: &P::Plan) -> Option<Excess> {
@@ -92,7 +96,7 @@ impl<P: Planner> Axis<P> {
         Ok(kept)
     }
 
-    /// Where what slaves leave of the limits would take the axis out of its own, it has its own: the slaves lag.
+    /// Where what slaves leave of the limits would take the axis far out of its own, it has its own: the slaves lag.
     fn planned_free(
         &self,
         entry: &mut Entry,
@@ -101,22 +105,20 @@ impl<P: Planner> Axis<P> {
         before: &Limits,
     ) -> Motion<P::Plan> {
         let axis = &self.config.limits;
-        let leaves = |motion: &Motion<P::Plan>| match motion {
-            Motion::Run { plan, .. } => plan.excess_over(axis).is_some(),
-            _ => false,
+        let by = |motion: &Motion<P::Plan>| match motion {
+            Motion::Run { plan, .. } => plan.excess_over(axis).map_or(0.0, |excess| excess.velocity),
+            _ => 0.0,
         };
-        let free = Entry {
-            limits: Limits {
-                velocity: entry.limits.velocity,
-                ..*axis
-            },
-            ..*entry
-        };
-        if !leaves(&motion) {
+        if by(&motion) <= FAR * axis.velocity {
             return motion;
         }
+        let limits = Limits {
+            velocity: entry.limits.velocity,
+            ..*axis
+        };
+        let free = Entry { limits, ..*entry };
         match self.plan_from(&free, start, before) {
-            Ok(planned) if !leaves(&planned) => {
+            Ok(planned) if by(&planned) == 0.0 => {
                 *entry = free;
                 planned
             }

@@ -97,7 +97,7 @@ fn onto_a_moving_master_it_joins_ahead() {
     }
 }
 
-/// Covers: G77: where the cam is to be met first.
+/// Covers: G77
 #[test]
 fn a_sync_position_is_where_it_joins() {
     let mut rig = Rig::new(config(L1, 10.0, None), config(WIDE, -20.0, None));
@@ -305,7 +305,7 @@ fn moved_coordinates_and_stops_of_the_master_do_not_end_it() {
     assert!((rig.at() + 30.0 - table(master - 1000.0)).abs() < 1e-9);
 }
 
-/// Covers: G80, G76: what MC_CamIn refuses.
+/// Covers: G80, G76
 #[test]
 fn what_is_no_good_is_refused_by_number() {
     let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
@@ -382,7 +382,7 @@ fn a_cam_selected_anew_does_not_change_the_one_in_use() {
     assert!((rig.at() - table(rig.axes[MASTER].setpoint().position)).abs() < 1e-9);
 }
 
-/// Covers: G49, S5: what is not supported beside a cam is told.
+/// Covers: G49, S5
 #[test]
 fn nothing_is_superimposed_on_a_cam() {
     let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
