@@ -77,7 +77,7 @@ function project(path) {
   const named = {};
   for (const entry of readdirSync(folder, { recursive: true }).map(String)) {
     const file = join(folder, entry);
-    if (/\.(machine\.json|st|wat)$/.test(entry) && statSync(file).isFile()) named[entry.replaceAll('\\', '/')] = readFileSync(file, 'utf8');
+    if (/\.(machine\.json|st|wat|csv)$/.test(entry) && statSync(file).isFile()) named[entry.replaceAll('\\', '/')] = readFileSync(file, 'utf8');
   }
   return { name: basename(path), text: readFileSync(path, 'utf8'), files: named };
 }

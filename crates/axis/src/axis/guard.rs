@@ -3,11 +3,9 @@
 //! Plans are verified when they are made, and judged by tests from outside. What still goes wrong is not published:
 //! the axis stops from the last good state (ErrorID 904).
 
+use super::commands::ROUNDING;
 use super::{Axis, Motion};
 use standstill_planner::{Excess, Limits, Planner, Setpoint};
-
-/// How far a limit may be exceeded, relative to it.
-const RELATIVE: f64 = 1e-9;
 
 /// The same at the end of a plan, whose last scan may be longer by this part.
 pub(super) const LAST_SCAN: f64 = 1.0 / 2048.0;
@@ -27,7 +25,7 @@ impl<P: Planner> Axis<P> {
     /// The same within the limits in force, which all but a few set-points are.
     #[inline(always)]
     pub(super) fn is_usual_step(&self, next: &Setpoint) -> bool {
-        self.steps_within(next, &self.in_force, 1.0 + RELATIVE, 0.0)
+        self.steps_within(next, &self.in_force, 1.0 + ROUNDING, 0.0)
     }
 
     fn is_wider_step(&self, next: &Setpoint) -> bool {
@@ -53,7 +51,7 @@ impl<P: Planner> Axis<P> {
             ..self.in_force
         };
         let is_last = matches!(&self.motion, Motion::Run { elapsed, scans, .. } if elapsed >= scans);
-        let slack = if is_last { LAST_SCAN } else { RELATIVE };
+        let slack = if is_last { LAST_SCAN } else { ROUNDING };
         self.steps_within(next, &widest, 1.0 + slack, self.coarsest)
     }
 

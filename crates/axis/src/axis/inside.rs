@@ -4,17 +4,13 @@
 //! own limits can bring back, its velocity would leave those of the axis. What can be avoided with the limits that
 //! held until now, or with those of the axis, is not unavoidable: the command then gets them, as far as necessary.
 
-use super::commands::Entry;
+use super::commands::{Entry, ROUNDING};
 use super::{Axis, Motion};
 use crate::{ErrorId, Event, Scope};
 use standstill_planner::{Excess, Limits, Plan, Planner, Setpoint};
 
 /// A higher limit must take at least this much off what is exceeded.
 const WORTH: f64 = 0.99;
-
-/// By this part of its velocity limit a master may be led beyond it by what its slaves leave of its other limits, until it has
-/// come down to that.
-const FAR: f64 = 1.0;
 
 impl<P: Planner> Axis<P> {
     /// What `plan` exceeds of the axis limits. A faster motion that a slower command takes over from is no excess.
@@ -96,7 +92,7 @@ impl<P: Planner> Axis<P> {
         Ok(kept)
     }
 
-    /// Where what slaves leave of the limits would take the axis far out of its own, it has its own: the slaves lag.
+    /// Where what slaves leave of the limits would take the axis out of its own, it has its own: the slaves lag.
     fn planned_free(
         &self,
         entry: &mut Entry,
@@ -105,11 +101,17 @@ impl<P: Planner> Axis<P> {
         before: &Limits,
     ) -> Motion<P::Plan> {
         let axis = &self.config.limits;
-        let by = |motion: &Motion<P::Plan>| match motion {
-            Motion::Run { plan, .. } => plan.excess_over(axis).map_or(0.0, |excess| excess.velocity),
-            _ => 0.0,
+        // A stop that turns back exceeds, too, but leaves no limit of the axis.
+        let leaves = |motion: &Motion<P::Plan>| match motion {
+            Motion::Run { plan, .. }
+                if plan.excess_over(axis).is_some_and(|excess| excess.velocity > 0.0) =>
+            {
+                let most = self.planner.peaks((plan, 0));
+                most.is_none_or(|most| most.velocity > axis.velocity * (1.0 + ROUNDING))
+            }
+            _ => false,
         };
-        if by(&motion) <= FAR * axis.velocity {
+        if !leaves(&motion) {
             return motion;
         }
         let limits = Limits {
@@ -118,7 +120,7 @@ impl<P: Planner> Axis<P> {
         };
         let free = Entry { limits, ..*entry };
         match self.plan_from(&free, start, before) {
-            Ok(planned) if by(&planned) == 0.0 => {
+            Ok(planned) if !leaves(&planned) => {
                 *entry = free;
                 planned
             }

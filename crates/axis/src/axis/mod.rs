@@ -111,6 +111,23 @@ impl<P: Plan> Motion<P> {
         }
     }
 
+    /// Along `plan` beside something that moves, from its start.
+    fn closing(plan: P) -> Self {
+        Self::Closing {
+            plan,
+            elapsed: 0,
+            scans: u64::from(plan.scans()),
+        }
+    }
+
+    /// Scans from the start of its plan to the goal; 0 without one.
+    fn scans(&self) -> u64 {
+        match self {
+            Self::Run { scans, .. } | Self::Closing { scans, .. } => *scans,
+            Self::Follow | Self::Hold | Self::Torque { .. } | Self::Geared => 0,
+        }
+    }
+
     /// `None` if the set-point follows the feedback, 0 if it holds, else one more than the scans to the goal.
     fn scans_left(&self) -> Option<u32> {
         match self {

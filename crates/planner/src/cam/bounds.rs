@@ -2,7 +2,7 @@
 
 use super::{Cam, CamPiece};
 use crate::math::{cbrt, floor, sqrt};
-use crate::profile::check::{halved, hull};
+use crate::profile::check::{cut, halved, hull};
 use crate::{Limits, Setpoint};
 
 /// Halvings of a piece on the way to its bounds.
@@ -123,20 +123,7 @@ impl CamPiece {
 
 /// The control points of the part of a curve between two shares of it.
 fn part<const N: usize>(points: [f64; N], (from, to): (f64, f64)) -> [f64; N] {
-    let cut = |points: [f64; N], share: f64| {
-        let (mut row, mut before, mut after) = (points, [0.0; N], [0.0; N]);
-        let slots = before.iter_mut().zip(after.iter_mut().rev());
-        for (level, (first, last)) in slots.enumerate() {
-            *first = row.first().copied().unwrap_or_default();
-            *last = row.get(N - 1 - level).copied().unwrap_or_default();
-            let mut next = row;
-            for (slot, (left, right)) in next.iter_mut().zip(row.iter().zip(row.iter().skip(1))) {
-                *slot = left + share * (right - left);
-            }
-            row = next;
-        }
-        (before, after)
-    };
+    let cut = |points, share: f64| cut(points, |left, right| left + share * (right - left));
     let points = if to < 1.0 { cut(points, to).0 } else { points };
     if from > 0.0 {
         cut(points, from / to).1

@@ -72,6 +72,14 @@ impl Piece {
 
 /// The control points of both halves.
 pub(crate) fn halved<const N: usize>(points: [f64; N]) -> ([f64; N], [f64; N]) {
+    cut(points, |left, right| 0.5 * (left + right))
+}
+
+/// The control points of the two parts of a curve: `between` says where between two values the cut lies (de Casteljau).
+pub(crate) fn cut<const N: usize>(
+    points: [f64; N],
+    between: impl Fn(f64, f64) -> f64,
+) -> ([f64; N], [f64; N]) {
     let (mut row, mut before, mut after) = (points, [0.0; N], [0.0; N]);
     let slots = before.iter_mut().zip(after.iter_mut().rev());
     for (level, (first, last)) in slots.enumerate() {
@@ -79,7 +87,7 @@ pub(crate) fn halved<const N: usize>(points: [f64; N]) -> ([f64; N], [f64; N]) {
         *last = row.get(N - 1 - level).copied().unwrap_or_default();
         let mut next = row;
         for (slot, (left, right)) in next.iter_mut().zip(row.iter().zip(row.iter().skip(1))) {
-            *slot = 0.5 * (left + right);
+            *slot = between(*left, *right);
         }
         row = next;
     }

@@ -10,10 +10,11 @@
 //! Of the first three the one that is in gear soonest is taken. The last two always exist, so a slave is never without a plan.
 //! Before it was in gear only the velocity counts, and the way lost is not made up; after that it catches up onto the same law.
 
+use super::super::commands::ROUNDING;
 use super::super::commands::{Entry, Work};
 use super::super::supervision::Arrival;
 use super::super::{Axis, Motion};
-use super::follow::{Beyond, ROUNDING, off};
+use super::follow::{Beyond, off};
 use super::needs::RESOLVED;
 use super::view::{Kind, UNKNOWN, View, anchor_at};
 use super::{Coupling, Rung};
@@ -164,7 +165,7 @@ impl<P: Planner> Axis<P> {
         if let (Some(way), Some(scans)) = (&mut onto, view.future.measured()) {
             // The line is as good a guess as any, and only leads near the law: the last bit of the way goes beside it. One that
             // waits for its sync point does so at rest beside the line, not beside a law that trembles.
-            (way.lock, way.left) = (scans_of(&way.motion), scans);
+            (way.lock, way.left) = (way.motion.scans(), scans);
             let near = 2 * scans;
             let waits = coupling.is_syncing() && difference.position * velocity > 0.0 && way.lock > near;
             soonest = if waits { 0 } else { way.lock.saturating_add(near) };
@@ -322,7 +323,7 @@ impl<P: Planner> Axis<P> {
             .ok()?;
         let lock = u64::from(plan.scans());
         Some(Way {
-            motion: closing(plan),
+            motion: Motion::closing(plan),
             rung: Rung::BesideLine {
                 start: Place {
                     position: 0.0,
@@ -392,9 +393,9 @@ impl<P: Planner> Axis<P> {
                 velocity: stretch.velocity,
                 begin: stretch.begin,
             };
-            (closing(plan), rung, limits)
+            (Motion::closing(plan), rung, limits)
         };
-        let arrives = scans_of(&motion).max(stretch.begin);
+        let arrives = motion.scans().max(stretch.begin);
         let is_in_time = arrives <= stretch.end;
         Some(Way {
             motion,
@@ -526,7 +527,7 @@ impl<P: Planner> Axis<P> {
         };
         let lock = u64::from(planned.scans());
         Some(Way {
-            motion: closing(planned),
+            motion: Motion::closing(planned),
             rung: Rung::BesideLaw(anchor),
             lock,
             left: u64::MAX,
@@ -568,7 +569,7 @@ impl<P: Planner> Axis<P> {
             return None;
         }
         Some(Way {
-            motion: closing(planned),
+            motion: Motion::closing(planned),
             rung: Rung::BesideMeasured { anchor, room },
             lock: u64::from(planned.scans()),
             left: u64::MAX,
@@ -675,7 +676,7 @@ impl<P: Planner> Axis<P> {
 
     /// From now on along `way`; the motion before was within `before`.
     fn take_way(&mut self, way: Way<P::Plan>, before: Limits, scope: &mut Scope<'_>) {
-        let scans = scans_of(&way.motion);
+        let scans = way.motion.scans();
         self.before = before;
         let limits = way.limits;
         self.in_force = limits;
@@ -779,21 +780,6 @@ impl<P: Planner> Axis<P> {
         ];
         let told = told.map(|(what, peak, beside, limit)| (what, peak + beside, limit));
         told.into_iter()
-            .find(|(_, value, limit)| *value > limit * (1.0 + 1e-9))
-    }
-}
-
-fn closing<Q: Plan>(plan: Q) -> Motion<Q> {
-    Motion::Closing {
-        plan,
-        elapsed: 0,
-        scans: u64::from(plan.scans()),
-    }
-}
-
-fn scans_of<Q>(motion: &Motion<Q>) -> u64 {
-    match motion {
-        Motion::Run { scans, .. } | Motion::Closing { scans, .. } => *scans,
-        _ => 0,
+            .find(|(_, value, limit)| *value > limit * (1.0 + ROUNDING))
     }
 }

@@ -1,5 +1,6 @@
 //! The motion step of a slave: after that of its master.
 
+use super::super::commands::ROUNDING;
 use super::super::guard::LAST_SCAN;
 use super::super::power::Reaction;
 use super::super::{Axis, Motion};
@@ -8,9 +9,6 @@ use super::view::{Future, Kind, Seen, SeenBoth, View, anchor_at};
 use super::{Coupling, Rung};
 use crate::{ErrorId, Event, Fate, OnLimit, OnMasterLost, Scope};
 use standstill_planner::{Anchor, Leads, Limits, Place, Plan, Planner, Setpoint};
-
-/// How far a limit may be exceeded, relative to it: rounding (contract: limits hold to 1e-9).
-pub(super) const ROUNDING: f64 = 1e-9;
 
 /// What of a motion is beyond a limit: its name, its value and the limit.
 pub(in crate::axis) type Beyond = (&'static str, f64, f64);

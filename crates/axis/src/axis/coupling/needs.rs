@@ -1,6 +1,7 @@
 //! What a step from one set-point to the next needs of the limits, whatever the motion between them is.
 
-use super::follow::{Beyond, ROUNDING};
+use super::super::commands::ROUNDING;
+use super::follow::Beyond;
 use standstill_planner::{Limits, Setpoint};
 
 /// What [`Step::needs`] tells, in its order.

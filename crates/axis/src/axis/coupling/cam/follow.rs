@@ -1,8 +1,9 @@
 //! The motion step of a slave on a cam: after that of its master.
 
+use super::super::super::commands::ROUNDING;
 use super::super::super::power::Reaction;
 use super::super::super::{Axis, Motion};
-use super::super::follow::{Beyond, ROUNDING, off};
+use super::super::follow::{Beyond, off};
 use super::super::needs::RESOLVED;
 use super::super::view::{Kind, View};
 use super::{Curve, OnCam, Rung, Shadow};

@@ -7,9 +7,9 @@
 //! | off the curve, master at rest | a move to the cam at the master's place |
 //! | off the curve, master moving | a move to a place of the curve further on, where it rests until its shadow sets off to be in step with the arriving master |
 
-use super::super::super::commands::Entry;
+use super::super::super::commands::{Entry, ROUNDING};
 use super::super::super::{Axis, Motion};
-use super::super::follow::{ROUNDING, off};
+use super::super::follow::off;
 use super::super::needs::RESOLVED;
 use super::super::view::{Kind, UNKNOWN, View};
 use super::{Curve, OnCam, Rung, Shadow};
@@ -360,7 +360,7 @@ impl<P: Planner> Axis<P> {
                 Ok(way) => way,
                 Err(error) => return Choice::Fail(error),
             };
-            let needed = line + speed * (scans_of(&way.motion) as f64 * cycle);
+            let needed = line + speed * (way.motion.scans() as f64 * cycle);
             // How much earlier the master is there than the slave is ready.
             let missing = if forwards { needed - place } else { place - needed } + gained;
             if missing <= 0.0 {
@@ -466,7 +466,7 @@ impl<P: Planner> Axis<P> {
         let lock = u64::from(plan.scans());
         Ok(Way {
             exceeds: false,
-            motion: closing(plan),
+            motion: Motion::closing(plan),
             rung: Rung::Moving {
                 turns: here.turns,
                 to,
@@ -494,7 +494,7 @@ impl<P: Planner> Axis<P> {
         let limits = self.slowed(&self.parameters.limits);
         self.before = self.limits_before(&limits);
         self.in_force = limits;
-        let scans = scans_of(&way.motion);
+        let scans = way.motion.scans();
         self.motion = way.motion;
         self.arrival = Default::default();
         self.replan_due = false;
@@ -607,19 +607,4 @@ pub(super) fn goes_on(last: &Setpoint, next: &Setpoint, limits: &Limits) -> bool
     near(last.velocity, next.velocity, limits.velocity, rate)
         && near(last.acceleration, next.acceleration, rate, limits.jerk)
         && near(last.jerk, next.jerk, limits.jerk, limits.snap)
-}
-
-pub(super) fn closing<Q: Plan>(plan: Q) -> Motion<Q> {
-    Motion::Closing {
-        plan,
-        elapsed: 0,
-        scans: u64::from(plan.scans()),
-    }
-}
-
-fn scans_of<Q>(motion: &Motion<Q>) -> u64 {
-    match motion {
-        Motion::Closing { scans, .. } => *scans,
-        _ => 0,
-    }
 }

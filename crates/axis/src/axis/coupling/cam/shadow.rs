@@ -1,12 +1,12 @@
 //! A master of the slave's own: how it comes into step with the real one, within limits that leave the slave its own wherever it is on the
 //! cam.
 
-use super::super::super::Axis;
-use super::super::follow::ROUNDING;
+use super::super::super::commands::ROUNDING;
+use super::super::super::{Axis, Motion};
 use super::super::follow::off;
 use super::super::needs::RESOLVED;
 use super::super::view::{UNKNOWN, View};
-use super::onto::{Choice, LEAST, Stretch, Way, closing};
+use super::onto::{Choice, LEAST, Stretch, Way};
 use super::{Curve, Rung, Shadow};
 use crate::Approach;
 use standstill_planner::{DirectedLimits, Excess, Limits, MoveProfile, Plan, Planner, Setpoint};
@@ -141,7 +141,7 @@ impl<P: Planner> Axis<P> {
             }
             found = Some(Way {
                 exceeds,
-                motion: closing(plan),
+                motion: Motion::closing(plan),
                 rung: Rung::BesideLine {
                     start: shadow.place,
                     velocity: 0.0,
@@ -216,7 +216,7 @@ impl<P: Planner> Axis<P> {
         let lock = u64::from(plan.scans());
         Some(Way {
             exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
-            motion: closing(plan),
+            motion: Motion::closing(plan),
             rung: Rung::BesideMaster,
             lock,
             left: u64::MAX,
@@ -276,7 +276,7 @@ impl<P: Planner> Axis<P> {
         let is_in_time = arrives <= stretch.end;
         Some(Way {
             exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
-            motion: closing(plan),
+            motion: Motion::closing(plan),
             rung: Rung::BesideLine {
                 start: stretch.now,
                 velocity: stretch.velocity,
@@ -315,7 +315,7 @@ impl<P: Planner> Axis<P> {
         };
         Some(Way {
             exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
-            motion: closing(plan),
+            motion: Motion::closing(plan),
             rung: Rung::BesideLine {
                 start: shadow.place,
                 velocity: 0.0,
