@@ -7,8 +7,7 @@
 //! no plan of the master is made within the bound of its slaves for, as docs/coupling.md tells: faults of the master, a profile
 //! or torque in progress, homing by the drive, and limits of a slave that are written.
 //!
-//! Of 40 000 seeds 3 still lose the gear, so the promise is not whole: 10425, 13353 and 19180. There a shift begins in a scan in
-//! which its master still comes down to the room that is left to it.
+//! `SLOW_MASTER_CASES` runs more of them.
 
 mod draw;
 
@@ -277,14 +276,8 @@ fn stays_in_gear(seed: u64) {
         let records: Vec<_> = case.log.since(told).copied().collect();
         told = case.log.total();
         for record in &records {
-            if std::env::var("SM_SHOW").is_ok() {
-                println!("{record:?}");
-            }
             let lost = matches!(record.event, Event::GearLost { .. } | Event::Fault { .. });
             assert!(!lost, "seed {seed}, scan {scan}: {record:?}");
-        }
-        if std::env::var("SM_SHOW").is_ok() {
-            println!("{scan} {:?} lim {:?}", case.axes[0].setpoint(), case.limits[0]);
         }
         for (index, (axis, seen)) in case.axes.iter().zip(&mut seen).enumerate() {
             let what = format!("seed {seed}, scan {scan}, axis {index}");
@@ -303,11 +296,16 @@ fn stays_in_gear(seed: u64) {
 
 #[test]
 fn slaves_stay_in_gear_whatever_their_master_is_told() {
-    let first = std::env::var("SM_FIRST").ok().map_or(0, |v| v.parse().unwrap());
-    let count = std::env::var("SM_COUNT")
-        .ok()
-        .map_or(CASES, |v| v.parse().unwrap());
-    for seed in first..first + count {
+    let cases = std::env::var("SLOW_MASTER_CASES").map_or(CASES, |cases| cases.parse().unwrap());
+    for seed in 0..cases {
+        stays_in_gear(seed);
+    }
+}
+
+/// A bound that comes while the master comes down to another one, or turns back (found among 40,000 seeds).
+#[test]
+fn a_bound_that_comes_late_is_kept() {
+    for seed in [10_425, 13_353, 15_360, 17_574, 19_180, 25_347, 30_520] {
         stays_in_gear(seed);
     }
 }

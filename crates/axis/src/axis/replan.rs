@@ -7,7 +7,7 @@
 //!
 //! Source: PLCopen Motion Control Part 1, sections on ContinuousUpdate and MC_SetOverride; R9, R12, B15 to B17.
 
-use super::commands::{Ending, Entry, Place, Work};
+use super::commands::{Ending, Entry, Place, ROUNDING, Work};
 use super::superimposed::Layer;
 use super::supervision::Arrival;
 use super::{Axis, Motion};
@@ -158,14 +158,16 @@ impl<P: Planner> Axis<P> {
     /// is enough. Cost: at most one ramp, with slaves two.
     pub(super) fn limits_in_state(&self, state: &Setpoint, own: &Limits, before: &Limits) -> Limits {
         let wider = own.or_larger(before);
-        if wider == *own || self.is_inside(state, own) {
-            return *own;
-        }
-        let slowed = self.slowed(&wider);
-        if slowed != wider && self.is_inside(state, &slowed) {
-            slowed
+        let held = if wider == *own || self.is_inside(state, own) {
+            *own
         } else {
             wider
+        };
+        let slowed = self.slowed(&held);
+        if slowed != held && self.stops_within(state, &slowed) {
+            slowed
+        } else {
+            held
         }
     }
 
@@ -175,6 +177,19 @@ impl<P: Planner> Axis<P> {
         self.planner
             .ramp_to(state, 0.0, limits, limits)
             .is_ok_and(|ramp| ramp.excess().is_none())
+    }
+
+    /// Whether an axis in this state can come to rest within `limits`, even if it turns back for that: then it can do anything
+    /// within them. Cost: one ramp.
+    pub(super) fn stops_within(&self, state: &Setpoint, limits: &Limits) -> bool {
+        let Ok(stop) = self.planner.ramp_to(state, 0.0, limits, limits) else {
+            return false;
+        };
+        let keeps_rates = stop
+            .excess()
+            .is_none_or(|excess| excess.acceleration == 0.0 && excess.jerk == 0.0);
+        let most = self.planner.peaks((&stop, 0)).map(|most| most.velocity);
+        keeps_rates && most.is_some_and(|most| most <= limits.velocity * (1.0 + ROUNDING))
     }
 
     /// Sets `entry`, which is the owner or becomes it, in motion.
