@@ -17,6 +17,10 @@ const SPEEDS: usize = 4;
 /// So many scans ahead a shadow looks that has to slow down.
 const AHEAD: [f64; 7] = [10.0, 25.0, 50.0, 100.0, 200.0, 400.0, 800.0];
 
+/// How much more than it gains until its acceleration has faded out is left to a shadow that has to slow down: with the rates that
+/// the higher velocity leaves it gains more.
+const GAINED: f64 = 1.25;
+
 /// The most a shadow may have of the highest velocity of its cam: above it nothing is left to its acceleration.
 const FASTEST: f64 = 0.98;
 
@@ -122,17 +126,27 @@ impl<P: Planner> Axis<P> {
             let bounds = curve
                 .law
                 .bounds_between(&curve.cam, x.min(further), x.max(further));
-            let Some(own) = bounds.shadow(&limits, speed.max(goal), speed) else {
-                continue;
-            };
-            let own = Limits {
-                velocity: speed.max(goal),
-                ..bounded(&own)
-            };
             let goal = goal.copysign(shadow.at.velocity);
-            let Ok(plan) = self.planner.ramp_to(&start, goal, &own, &own) else {
+            let within = |speed: f64| {
+                let most = speed.max(goal.abs());
+                let own = Limits {
+                    velocity: most,
+                    ..bounded(&bounds.shadow(&limits, most, speed)?)
+                };
+                let plan = self.planner.ramp_to(&start, goal, &own, &own).ok()?;
+                Some((plan, own))
+            };
+            let Some((mut plan, mut own)) = within(speed) else {
                 continue;
             };
+            // Until its acceleration has faded out it gets faster.
+            let gained = plan.excess().map_or(0.0, |excess| excess.velocity);
+            if gained > 0.0 {
+                let Some(faster) = within(speed + GAINED * gained) else {
+                    continue;
+                };
+                (plan, own) = faster;
+            }
             let scans = u64::from(plan.scans());
             let is_inside = plan.at(scans).position.abs() <= reach.abs();
             let exceeds = !is_inside || plan.excess().is_some_and(|excess| leaves(&excess, &own));
