@@ -55,37 +55,15 @@ impl<P: Planner> Axis<P> {
     /// limits; where the master got another plan, at most seven plans and six looks along two of them.
     #[inline(never)]
     pub(crate) fn advance_behind(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        self.apply_power(scope);
-        self.follow_torque_order();
-        if !self.is_coupled() {
-            return self.advance(scope);
-        }
-        self.end_idle_halt();
-        if !view.is_operating() && !self.has_lost_master() {
-            match self.config.following.on_master_lost {
-                OnMasterLost::Error => {
-                    self.fail(ErrorId::MasterLost, scope);
-                    return self.finish_reset();
-                }
-                OnMasterLost::Hold => self.hold_without_master(scope),
-            }
-        }
-        // One that no block follows has become a halt.
-        if self.has_lost_master() || !self.is_coupled() {
-            return self.advance(scope);
+        if !self.still_follows(view, scope) {
+            return;
         }
         let shifts = self.is_phasing();
         let view = &self.shifted_view(view, scope);
         self.rebase(view, scope.scan);
         let is_new = self.look_ahead(view);
-        if self.is_paused() {
-            if is_new {
-                self.resume(scope);
-            }
-            if self.is_paused() {
-                self.advance(scope);
-                return self.measure(view, scope);
-            }
+        if self.stays_paused(is_new, scope) {
+            return self.measure(view, scope);
         }
         // A slave that must not lag is in gear until it can't be.
         let stays = self.config.following.on_limit == OnLimit::Error;
@@ -110,6 +88,49 @@ impl<P: Planner> Axis<P> {
             self.hand_over(self.setpoint.position, scope);
         }
         self.finish_reset();
+    }
+
+    /// What comes first in the motion step of a slave, behind a gear or on a cam: power, a master that is lost. Returns whether it
+    /// still follows; if not, its step is done.
+    pub(super) fn still_follows(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
+        self.apply_power(scope);
+        self.follow_torque_order();
+        if self.follows() {
+            self.end_idle_halt();
+            if !view.is_operating() && !self.has_lost_master() {
+                match self.config.following.on_master_lost {
+                    OnMasterLost::Error => {
+                        self.fail(ErrorId::MasterLost, scope);
+                        self.finish_reset();
+                        return false;
+                    }
+                    OnMasterLost::Hold => self.hold_without_master(scope),
+                }
+            }
+        }
+        // One that no block follows has become a halt.
+        let follows = self.follows() && !self.has_lost_master();
+        if !follows {
+            self.advance(scope);
+        }
+        follows
+    }
+
+    /// The owner follows a master, behind a gear or on a cam.
+    fn follows(&self) -> bool {
+        self.is_coupled() || self.is_on_cam()
+    }
+
+    /// A slave that is paused goes on if what its master does `is_new`. Returns whether it stays paused; its step is done then.
+    pub(super) fn stays_paused(&mut self, is_new: bool, scope: &mut Scope<'_>) -> bool {
+        if self.is_paused() && is_new {
+            self.resume(scope);
+        }
+        let stays = self.is_paused();
+        if stays {
+            self.advance(scope);
+        }
+        stays
     }
 
     pub(super) fn rung(&self) -> Option<Rung> {
@@ -166,16 +187,9 @@ impl<P: Planner> Axis<P> {
         let Some(coupling) = &mut self.coupling else {
             return false;
         };
-        let (known, goes_on) = view.future.compare(&coupling.known);
-        coupling.known = known;
-        let is_over = coupling.left == 0;
-        coupling.left = match coupling.left {
-            u64::MAX => u64::MAX,
-            left => left.saturating_sub(1),
-        };
-        let lowered = coupling.limits != limits;
-        coupling.limits = limits;
-        !goes_on || lowered || (is_over && coupling.rung != Rung::Locked)
+        let is_locked = coupling.rung == Rung::Locked;
+        let seen = (&mut coupling.known, &mut coupling.left, &mut coupling.limits);
+        view.future.is_new_to(seen, &limits, is_locked)
     }
 
     fn step_behind(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
@@ -648,6 +662,7 @@ impl<P: Planner> Axis<P> {
             coupling.anchor = None;
             coupling.deviation = 0.0;
         }
+        self.hold_off_cam();
     }
 
     /// By how much it is off the law now, and whether that is too much.

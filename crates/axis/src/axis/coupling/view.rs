@@ -2,7 +2,7 @@
 
 use super::super::{Axis, Motion};
 use super::Rung;
-use standstill_planner::{Anchor, Lead, Leads, Place, Plan, Planner, Setpoint};
+use standstill_planner::{Anchor, Lead, Leads, Limits, Place, Plan, Planner, Setpoint};
 
 /// A master at the end of a motion step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -162,11 +162,30 @@ impl<'a, P: Plan> Part<'a, P> {
 
 impl<'a, P: Plan> Future<'a, P> {
     /// What is known of it now, and whether it goes on from what was `known` in the scan before.
-    pub(super) fn compare(&self, known: &Known) -> (Known, bool) {
+    fn compare(&self, known: &Known) -> (Known, bool) {
         let [first, second] = &self.parts;
         let (first, goes_on) = first.compare(&known[0]);
         let (second, second_goes_on) = second.compare(&known[1]);
         ([first, second], goes_on && second_goes_on)
+    }
+
+    /// Notes what is known of it now, and the limits of the slave. Returns whether that, or a limit, is another one than in the scan
+    /// before, or the scans are over after which the way is to be looked for again, unless the slave is locked.
+    pub(super) fn is_new_to(
+        &self,
+        (known, left, held): (&mut Known, &mut u64, &mut Limits),
+        limits: &Limits,
+        is_locked: bool,
+    ) -> bool {
+        let (now, goes_on) = self.compare(known);
+        *known = now;
+        let is_over = *left == 0;
+        if *left != u64::MAX {
+            *left = left.saturating_sub(1);
+        }
+        let is_lowered = *held != *limits;
+        *held = *limits;
+        !goes_on || is_lowered || (is_over && !is_locked)
     }
 
     /// What kind of course the masters take together.

@@ -7,7 +7,7 @@ use super::super::follow::{Beyond, off};
 use super::super::needs::RESOLVED;
 use super::super::view::{Kind, View};
 use super::{Curve, OnCam, Rung, Shadow};
-use crate::{ErrorId, Event, OnLimit, OnMasterLost, Scope};
+use crate::{ErrorId, Event, OnLimit, Scope};
 use standstill_planner::{CamAt, Lead, Place, Plan, Planner, Setpoint};
 
 impl<P: Planner> Axis<P> {
@@ -17,35 +17,13 @@ impl<P: Planner> Axis<P> {
     /// limits; where the master got another plan, a look along it ([`Axis::beyond_on_cam`]) and at most ten plans.
     #[inline(never)]
     pub(crate) fn advance_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        self.apply_power(scope);
-        self.follow_torque_order();
-        if !self.is_on_cam() {
-            return self.advance(scope);
-        }
-        self.end_idle_halt();
-        if !view.is_operating() && !self.has_lost_master() {
-            match self.config.following.on_master_lost {
-                OnMasterLost::Error => {
-                    self.fail(ErrorId::MasterLost, scope);
-                    return self.finish_reset();
-                }
-                OnMasterLost::Hold => self.hold_on_cam(scope),
-            }
-        }
-        // One that no block follows has become a halt.
-        if self.has_lost_master() || !self.is_on_cam() {
-            return self.advance(scope);
+        if !self.still_follows(view, scope) {
+            return;
         }
         self.rebase_cam(view, scope.scan);
         let is_new = self.look_ahead_on_cam(view);
-        if self.is_paused() {
-            if is_new {
-                self.resume(scope);
-            }
-            if self.is_paused() {
-                self.advance(scope);
-                return self.measure_on_cam(view, scope);
-            }
+        if self.stays_paused(is_new, scope) {
+            return self.measure_on_cam(view, scope);
         }
         // A slave that must not lag is in sync until it can't be.
         let is_locked = self.cam_rung() == Some(Rung::Locked);
@@ -106,16 +84,9 @@ impl<P: Planner> Axis<P> {
         let Some(on_cam) = &mut self.on_cam else {
             return false;
         };
-        let (known, goes_on) = view.future.compare(&on_cam.known);
-        on_cam.known = known;
-        let is_over = on_cam.left == 0;
-        on_cam.left = match on_cam.left {
-            u64::MAX => u64::MAX,
-            left => left.saturating_sub(1),
-        };
-        let lowered = on_cam.limits != limits;
-        on_cam.limits = limits;
-        !goes_on || lowered || (is_over && on_cam.rung != Rung::Locked)
+        let is_locked = on_cam.rung == Rung::Locked;
+        let seen = (&mut on_cam.known, &mut on_cam.left, &mut on_cam.limits);
+        view.future.is_new_to(seen, &limits, is_locked)
     }
 
     /// The plan of the master, if it is known.
@@ -358,10 +329,8 @@ impl<P: Planner> Axis<P> {
         self.record(event, &mut self.owner_scope(scope));
     }
 
-    /// The master went out of operation: to rest, and no way onto the cam is looked for.
-    #[cold]
-    fn hold_on_cam(&mut self, scope: &mut Scope<'_>) {
-        self.pause(ErrorId::MasterLost, scope);
+    /// The master went out of operation: no way onto the cam is looked for.
+    pub(in crate::axis::coupling) fn hold_off_cam(&mut self) {
         if let Some(on_cam) = &mut self.on_cam {
             on_cam.rung = Rung::Lost;
             on_cam.anchor = None;
