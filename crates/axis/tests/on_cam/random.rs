@@ -288,3 +288,14 @@ fn random_episodes_keep_limits_and_curve() {
     println!("{tally:?}");
     assert!(tally.in_sync > 0 && tally.lagging > 0 && tally.off_curve > 0 && tally.ends > 0);
 }
+
+/// Found among 60,000: sync lost in states that need care, and cams that begin on an end.
+#[test]
+fn episodes_that_went_wrong_once() {
+    let mut tally = Tally::default();
+    for seed in [
+        2070, 4966, 9145, 13_434, 19_179, 19_182, 21_168, 24_170, 28_268, 33_511, 38_094, 39_547,
+    ] {
+        play(seed, &mut tally);
+    }
+}

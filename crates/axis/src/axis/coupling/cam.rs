@@ -72,8 +72,9 @@ pub(in crate::axis) struct OnCam {
     was_in_sync: bool,
     /// Where the slave is on the curve, if it is, as a place of its master.
     shadow: Option<Shadow>,
-    /// The limits of the shadow in motion.
+    /// The limits of the shadow in motion; where it `slows` down, they are those of its way.
     shadow_limits: Limits,
+    slows: bool,
     /// The place on the cam at the end of the scan before.
     at: CamAt,
     ends: Ends,
@@ -147,6 +148,7 @@ impl OnCam {
             was_in_sync: false,
             shadow: None,
             shadow_limits: Limits::NONE,
+            slows: false,
             at: CamAt::default(),
             ends: Ends::default(),
             was: Seen::default(),

@@ -141,14 +141,25 @@ impl<P: Planner> Axis<P> {
 fn part_of<Q: Plan>(path: &Path<'_, Q>, from: u64, to: u64, cycle: f64) -> ((f64, f64), Setpoint) {
     let (first, inside, last) = (path.at(from), path.at(from.saturating_add(1)), path.at(to));
     let time = to.saturating_sub(from) as f64 * cycle;
-    // Where a derivative jumps from piece to piece, it is that of the inside that counts.
-    let snap = larger(inside.snap, last.snap);
-    let jerk = larger(first.jerk, last.jerk).max(inside.jerk.abs());
-    let rate = larger(first.acceleration, last.acceleration).max(inside.acceleration.abs());
     // A curve is off its chord by no more than an eighth of its second derivative times the time squared.
     let bent = 0.125 * time * time;
-    let acceleration = rate + bent * snap;
-    let velocity = larger(first.velocity, last.velocity) + bent * jerk;
+    let (velocity, acceleration, jerk, snap);
+    if to.saturating_sub(from) == 1 {
+        // The plan may go on to its next piece in between: what leads from one value to another at such a rate stays below that.
+        let between = |one: f64, other: f64, rate: f64| 0.5 * (one.abs() + other.abs() + rate * time);
+        snap = larger(first.snap, last.snap);
+        let steepest = larger(first.jerk, last.jerk);
+        jerk = steepest.max(between(first.jerk, last.jerk, snap));
+        acceleration = between(first.acceleration, last.acceleration, jerk);
+        velocity = between(first.velocity, last.velocity, acceleration);
+    } else {
+        // Where a derivative jumps from piece to piece, it is that of the inside that counts.
+        snap = larger(inside.snap, last.snap);
+        jerk = larger(first.jerk, last.jerk).max(inside.jerk.abs());
+        let rate = larger(first.acceleration, last.acceleration).max(inside.acceleration.abs());
+        acceleration = rate + bent * snap;
+        velocity = larger(first.velocity, last.velocity) + bent * jerk;
+    }
     let way = bent * acceleration;
     let range = (
         first.position.min(last.position) - way,

@@ -5,6 +5,9 @@ use standstill_planner::{Cam, CamAt};
 /// An end that was told is told again only after the slave was this part of the period away from it.
 const AWAY: f64 = 0.25;
 
+/// Where a slave begins so near to the end, as a part of the period, it begins on it.
+const ROUNDING: f64 = 1e-12;
+
 /// What became of the ends of a cam so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Ends {
@@ -137,7 +140,7 @@ fn near_end(periods: i64, share: f64) -> Option<i64> {
     if share < AWAY {
         Some(periods)
     } else if share > 1.0 - AWAY {
-        Some(periods.saturating_add(1)).filter(|_| share >= 1.0)
+        Some(periods.saturating_add(1)).filter(|_| share >= 1.0 - ROUNDING)
     } else {
         None
     }
@@ -200,6 +203,14 @@ mod tests {
             pulses(&[50.0, 150.0, 100.0, 100.0, 90.0, 60.0, 100.0], true),
             [(1, 1), (2, 1), (6, 1)]
         );
+    }
+
+    /// Covers: G70
+    #[test]
+    fn where_it_begins_on_an_end_but_for_rounding_that_is_no_end_reached() {
+        let near = 100.0 - 1e-13;
+        assert_eq!(pulses(&[near, 100.0, near, 50.0, -1.0], false), [(4, 1)]);
+        assert_eq!(pulses(&[near, 100.0, near, 50.0, 101.0], true), [(4, 1)]);
     }
 
     /// Covers: G68

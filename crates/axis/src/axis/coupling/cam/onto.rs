@@ -44,6 +44,8 @@ pub(super) struct Way<Q> {
     pub velocity: f64,
     /// Limits of the shadow along it.
     pub shadow: Limits,
+    /// These limits leave the slave its own along this way only, not wherever it is on the cam.
+    pub slows: bool,
     /// Its place is called so much more (u of the master): whole periods, as the master comes by once more.
     pub laps: f64,
     /// It begins outside them.
@@ -54,6 +56,8 @@ pub(super) struct Way<Q> {
 pub(super) enum Choice<Q> {
     Lock,
     Take(Way<Q>),
+    /// It goes on along its way.
+    Stay,
     /// There is no way now, it is looked for again after so many scans.
     Wait(u64),
     Fail(ErrorId),
@@ -95,11 +99,14 @@ impl<P: Planner> Axis<P> {
             (choice, beyond)
         };
         let (choice, beyond) = chosen;
-        if let (true, Choice::Take(_) | Choice::Wait(_), Err(reason)) = (was_locked, &choice, beyond) {
+        if let (true, Choice::Take(_) | Choice::Stay | Choice::Wait(_), Err(reason)) =
+            (was_locked, &choice, beyond)
+        {
             self.lose_sync(reason, scope);
         }
         match choice {
             Choice::Lock if was_locked => {}
+            Choice::Stay => {}
             Choice::Lock => self.lock_on_cam(scope),
             Choice::Take(way) => {
                 if way.laps != 0.0 {
@@ -476,6 +483,7 @@ impl<P: Planner> Axis<P> {
             name: Approach::Move,
             velocity: target,
             shadow: Limits::NONE,
+            slows: false,
             laps: 0.0,
         })
     }
@@ -503,6 +511,7 @@ impl<P: Planner> Axis<P> {
             on_cam.rung = way.rung;
             on_cam.left = way.left;
             on_cam.shadow_limits = way.shadow;
+            on_cam.slows = way.slows;
             if matches!(way.rung, Rung::Moving { .. }) {
                 on_cam.shadow = None;
             }

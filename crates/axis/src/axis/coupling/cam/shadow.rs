@@ -21,6 +21,9 @@ const AHEAD: [f64; 7] = [10.0, 25.0, 50.0, 100.0, 200.0, 400.0, 800.0];
 /// the higher velocity leaves it gains more.
 const GAINED: f64 = 1.25;
 
+/// A part of a cam that is flatter than this part of its steepest bounds a shadow as if it were that steep.
+const FLAT: f64 = 1e-3;
+
 /// The most a shadow may have of the highest velocity of its cam: above it nothing is left to its acceleration.
 const FASTEST: f64 = 0.98;
 
@@ -97,6 +100,9 @@ impl<P: Planner> Axis<P> {
             }
         }
         if best.as_ref().is_none_or(|way| way.exceeds) {
+            if self.is_slowing_down() {
+                return Choice::Stay;
+            }
             take(&mut best, self.slowing_down(curve, shadow));
         }
         let Some(mut way) = best else {
@@ -125,7 +131,8 @@ impl<P: Planner> Axis<P> {
             let further = x + reach / curve.law.master_scaling;
             let bounds = curve
                 .law
-                .bounds_between(&curve.cam, x.min(further), x.max(further));
+                .bounds_between(&curve.cam, x.min(further), x.max(further))
+                .or_larger(&curve.bounds().scaled(1.0, FLAT));
             let goal = goal.copysign(shadow.at.velocity);
             let within = |speed: f64| {
                 let most = speed.max(goal.abs());
@@ -166,6 +173,7 @@ impl<P: Planner> Axis<P> {
                 name: Approach::Pace,
                 velocity: goal,
                 shadow: own,
+                slows: true,
                 laps: 0.0,
             });
             if !exceeds {
@@ -179,9 +187,15 @@ impl<P: Planner> Axis<P> {
     fn shadow_limits_now(&self) -> Option<Limits> {
         let on_cam = self.on_cam.as_ref()?;
         match on_cam.rung {
-            Rung::BesideLine { .. } | Rung::BesideMaster => Some(on_cam.shadow_limits),
+            Rung::BesideLine { .. } | Rung::BesideMaster if !on_cam.slows => Some(on_cam.shadow_limits),
             _ => None,
         }
+    }
+
+    /// It comes down to a velocity that it may have anywhere on the cam.
+    fn is_slowing_down(&self) -> bool {
+        let is_under_way = matches!(&self.motion, Motion::Closing { elapsed, scans, .. } if elapsed < scans);
+        is_under_way && self.on_cam.as_ref().is_some_and(|on_cam| on_cam.slows)
     }
 
     /// Beside the master: the difference comes to 0. None where that is not known to keep the limits, or leads ahead of it.
@@ -237,6 +251,7 @@ impl<P: Planner> Axis<P> {
             name: Approach::Difference,
             velocity: difference.velocity,
             shadow: *limits,
+            slows: false,
             laps: 0.0,
         })
     }
@@ -301,6 +316,7 @@ impl<P: Planner> Axis<P> {
             name: Approach::Stretch,
             velocity: stretch.velocity,
             shadow: *limits,
+            slows: false,
             laps,
         })
     }
@@ -340,6 +356,7 @@ impl<P: Planner> Axis<P> {
             name: Approach::Pace,
             velocity: goal,
             shadow: *limits,
+            slows: false,
             laps: 0.0,
         })
     }
