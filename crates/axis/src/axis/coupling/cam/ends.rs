@@ -5,7 +5,7 @@ use standstill_planner::{Cam, CamAt};
 /// An end that was told is told again only after the slave was this part of the period away from it.
 const AWAY: f64 = 0.25;
 
-/// Where a slave begins so near to the end, as a part of the period, it begins on it.
+/// A place so near to an end is on it, relative to the period or to the places of both ends.
 const ROUNDING: f64 = 1e-12;
 
 /// What became of the ends of a cam so far.
@@ -109,7 +109,9 @@ impl Ends {
             return passed;
         }
         let had_begun = self.has_begun;
-        self.has_begun |= at.periods == 0;
+        // On its first or last row but for rounding it has not begun yet.
+        let rounding = ROUNDING * (head.begin.abs() + head.end.abs());
+        self.has_begun |= at.periods == 0 && way > rounding && length - way > rounding;
         let passed = passed.filter(|passed| had_begun && (passed.end == 1) == passed.forwards);
         self.is_over = passed.is_some();
         self.tell(passed)
@@ -211,6 +213,7 @@ mod tests {
         let near = 100.0 - 1e-13;
         assert_eq!(pulses(&[near, 100.0, near, 50.0, -1.0], false), [(4, 1)]);
         assert_eq!(pulses(&[near, 100.0, near, 50.0, 101.0], true), [(4, 1)]);
+        assert_eq!(pulses(&[-1.0, 1e-14, -1e-14, 50.0, 101.0], false), [(4, 1)]);
     }
 
     /// Covers: G68

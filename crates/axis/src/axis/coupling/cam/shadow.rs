@@ -9,7 +9,7 @@ use super::super::view::{UNKNOWN, View};
 use super::onto::{Choice, LEAST, Stretch, Way};
 use super::{Curve, Rung, Shadow};
 use crate::Approach;
-use standstill_planner::{DirectedLimits, Excess, Limits, MoveProfile, Plan, Planner, Setpoint};
+use standstill_planner::{DirectedLimits, Excess, Lead, Limits, MoveProfile, Plan, Planner, Setpoint};
 
 /// Velocities of a shadow that are tried.
 const SPEEDS: usize = 4;
@@ -115,7 +115,8 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The shadow is faster than it may be anywhere on the cam, where the cam is flat: it comes down to less as fast as that part
-    /// allows, before it is at a steeper one.
+    /// allows, before it is at a steeper one or so that it keeps the limits there, too. Cost: at most 14 ramps and seven looks
+    /// along them.
     fn slowing_down(&self, curve: &Curve<'_>, shadow: &Shadow) -> Option<Way<P::Plan>> {
         let limits = self.slowed(&self.parameters.limits);
         let speed = shadow.at.velocity.abs();
@@ -156,7 +157,16 @@ impl<P: Planner> Axis<P> {
             }
             let scans = u64::from(plan.scans());
             let is_inside = plan.at(scans).position.abs() <= reach.abs();
-            let exceeds = !is_inside || plan.excess().is_some_and(|excess| leaves(&excess, &own));
+            let keeps = is_inside || {
+                let lead = Lead {
+                    plan: &plan,
+                    elapsed: 0,
+                    factor: 1.0,
+                };
+                let beyond = self.beyond_on_cam(curve, &lead, shadow.place, &limits);
+                beyond.is_none()
+            };
+            let exceeds = !keeps || plan.excess().is_some_and(|excess| leaves(&excess, &own));
             if found.is_some() && exceeds {
                 continue;
             }
