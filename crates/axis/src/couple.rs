@@ -130,16 +130,10 @@ fn is_above<P: Planner>(axes: &mut [Axis<P>], upper: AxisId, lower: AxisId) -> b
 pub(crate) fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     let highest = set_ranks(axes);
     for index in 0..axes.len() {
-        let see = |values: Option<Values>| seen(axes, values?, true, scope.scan);
-        let [first, second] = axes.get(index).map_or([None; 2], Axis::followed_values).map(see);
-        let awaited = see(axes.get(index).and_then(Axis::awaited_values));
         let Some(axis) = axes.get_mut(index) else { continue };
         axis.note_source();
-        if let Some(seen) = first {
-            axis.note_masters([seen, second.unwrap_or_default()]);
-        }
-        if let Some(seen) = awaited {
-            axis.note_awaited_master(seen);
+        if axis.is_bound() {
+            note_masters(axes, index, scope.scan);
         }
     }
     // No chain is longer than there are axes.
@@ -152,6 +146,21 @@ pub(crate) fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
         }
     }
     slow_masters(axes, highest, scope);
+}
+
+/// Before any axis has moved in this scan: a slave's masters are there.
+fn note_masters<P: Planner>(axes: &mut [Axis<P>], index: usize, scan: u64) {
+    let Some(axis) = axes.get(index) else { return };
+    let see = |values: Option<Values>| seen(axes, values?, true, scan);
+    let [first, second] = axis.followed_values();
+    let (first, second, awaited) = (see(first), see(second), see(axis.awaited_values()));
+    let Some(axis) = axes.get_mut(index) else { return };
+    if let Some(seen) = first {
+        axis.note_masters([seen, second.unwrap_or_default()]);
+    }
+    if let Some(seen) = awaited {
+        axis.note_awaited_master(seen);
+    }
 }
 
 /// What slaves leave of the limits of their masters, from the next motion step on: from the lowest slaves up, because what a
@@ -213,6 +222,9 @@ fn set_ranks<P: Planner>(axes: &mut [Axis<P>]) -> u16 {
 
 /// The rank of an axis, as those of its masters are now.
 fn rank_below<P: Planner>(axes: &[Axis<P>], axis: &Axis<P>) -> u16 {
+    if !axis.is_bound() {
+        return 0;
+    }
     let above = axis.masters().filter_map(|master| axes.get(master.index()));
     let rank = above.map(|master| master.rank().saturating_add(1)).max();
     rank.unwrap_or(0)

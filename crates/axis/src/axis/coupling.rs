@@ -68,6 +68,12 @@ enum Rung {
     BesideLine { start: Place, velocity: f64, begin: u64 },
 }
 
+impl Rung {
+    const fn is_locked(&self) -> bool {
+        matches!(self, Self::Locked)
+    }
+}
+
 /// How an axis follows its master: what a trace shows of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coupled {
@@ -241,7 +247,7 @@ impl<P: Planner> Axis<P> {
     /// The set-point published last is that of the law, and it stays so.
     #[inline]
     pub fn is_in_gear(&self) -> bool {
-        let is_locked = |coupling: &Coupling| coupling.rung == Rung::Locked;
+        let is_locked = |coupling: &Coupling| coupling.rung.is_locked();
         let is_locked = self.coupling.as_ref().is_some_and(is_locked);
         (is_locked || self.is_in_sync_on_cam()) && !self.is_paused()
     }
@@ -285,8 +291,9 @@ impl<P: Planner> Axis<P> {
 
     /// The owner follows actual values of a master, not where that is to be.
     pub fn follows_actual(&self) -> bool {
-        let is_actual = |(_, source): (AxisId, ValueSource)| source == ValueSource::Actual;
-        self.followed_values().into_iter().flatten().any(is_actual)
+        let is_actual = |(_, source): Values| source == ValueSource::Actual;
+        let [first, second] = self.followed_values();
+        first.is_some_and(is_actual) || second.is_some_and(is_actual)
     }
 
     /// The masters the owner follows, each with its ratio: numerator, below 0 also where its way is taken away, and denominator.
@@ -443,7 +450,7 @@ impl<P: Planner> Axis<P> {
     /// The present coupling, if `entry` is to go on in it: the same gear to the same master, in gear.
     pub(super) fn coupling_kept(&self, entry: &Entry) -> Option<Coupling> {
         let kept = self.coupling.filter(|coupling| {
-            let is_in_gear = coupling.rung == Rung::Locked || coupling.is_kept;
+            let is_in_gear = coupling.rung.is_locked() || coupling.is_kept;
             is_in_gear && Work::Gear(coupling.gearing) == entry.work && !self.is_paused()
         });
         kept.map(|coupling| Coupling {
@@ -485,7 +492,7 @@ impl<P: Planner> Axis<P> {
             coupling.deviation = 0.0;
         }
         // Where the master was lost another ratio is no wish to move again.
-        if coupling.rung != Rung::Lost && (is_new || coupling.rung != Rung::Locked) {
+        if coupling.rung != Rung::Lost && (is_new || !coupling.rung.is_locked()) {
             coupling.rung = Rung::Due;
         }
         self.stir();

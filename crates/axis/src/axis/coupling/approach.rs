@@ -72,7 +72,7 @@ impl<P: Planner> Axis<P> {
         let (Some(coupling), Some(owner)) = (&self.coupling, self.owner) else {
             return;
         };
-        let was_locked = coupling.rung == Rung::Locked;
+        let was_locked = coupling.rung.is_locked();
         let here = anchor_at(&coupling.was, self.place());
         let anchor = coupling.anchor.unwrap_or(here);
         let (_, law) = coupling.law(&anchor, &coupling.was);

@@ -54,6 +54,12 @@ enum Rung {
     Lost,
 }
 
+impl Rung {
+    const fn is_locked(&self) -> bool {
+        matches!(self, Self::Locked)
+    }
+}
+
 /// The place of a master on its own way, and how it moves there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shadow {
@@ -285,7 +291,7 @@ impl<P: Planner> Axis<P> {
 
     /// In sync, and where the cam has not begun yet that is not told.
     pub(super) fn is_in_sync_on_cam(&self) -> bool {
-        let is_in_sync = |on_cam: &OnCam| on_cam.rung == Rung::Locked && on_cam.ends.has_begun();
+        let is_in_sync = |on_cam: &OnCam| on_cam.rung.is_locked() && on_cam.ends.has_begun();
         self.on_cam.as_ref().is_some_and(is_in_sync)
     }
 

@@ -68,7 +68,7 @@ impl<P: Planner> Axis<P> {
         // A slave that must not lag is in gear until it can't be.
         let stays = self.config.following.on_limit == OnLimit::Error;
         self.superimpose_behind(view, is_new, !stays, scope);
-        let stays = self.rung() == Some(Rung::Locked) && (stays || self.adds_motion());
+        let stays = self.is_locked() && (stays || self.adds_motion());
         if (is_new && !stays) || self.rung() == Some(Rung::Due) {
             self.lay_law(view);
             self.approach(view, true, scope);
@@ -133,6 +133,13 @@ impl<P: Planner> Axis<P> {
         stays
     }
 
+    /// Its coupling is in gear, whether or not it moves by that now.
+    fn is_locked(&self) -> bool {
+        self.coupling
+            .as_ref()
+            .is_some_and(|coupling| coupling.rung.is_locked())
+    }
+
     pub(super) fn rung(&self) -> Option<Rung> {
         self.coupling.as_ref().map(|coupling| coupling.rung)
     }
@@ -172,7 +179,7 @@ impl<P: Planner> Axis<P> {
         let Some(anchor) = &mut coupling.anchor else {
             return;
         };
-        if coupling.rung == Rung::Locked {
+        if coupling.rung.is_locked() {
             *anchor = anchor_at(&coupling.was, here);
             coupling.lay_layer(added);
         } else {
@@ -187,7 +194,7 @@ impl<P: Planner> Axis<P> {
         let Some(coupling) = &mut self.coupling else {
             return false;
         };
-        let is_locked = coupling.rung == Rung::Locked;
+        let is_locked = coupling.rung.is_locked();
         let seen = (&mut coupling.known, &mut coupling.left, &mut coupling.limits);
         view.future.is_new_to(seen, &limits, is_locked)
     }
@@ -244,7 +251,7 @@ impl<P: Planner> Axis<P> {
 
     /// In gear, so that the next set-point is the law.
     pub(in crate::axis) fn is_on_law(&self) -> bool {
-        self.rung() == Some(Rung::Locked) && matches!(self.motion, Motion::Geared)
+        self.is_locked() && matches!(self.motion, Motion::Geared)
     }
 
     /// The masters have not moved in this scan, and will not as far as is known.

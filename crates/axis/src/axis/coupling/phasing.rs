@@ -9,7 +9,6 @@
 
 use super::super::Axis;
 use super::super::commands::{Entry, Work, refusal};
-use super::Rung;
 use super::view::{Course, Kind, Seen, View};
 use crate::{AxisId, BufferMode, CommandId, ErrorId, Event, Fate, InstanceId, PhaseShift, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
@@ -403,7 +402,7 @@ impl<P: Planner> Axis<P> {
     /// in gear or what the master does next is not known.
     fn room_for_shift(&self, leg: usize, view: &View<'_, P::Plan>) -> Option<Limits> {
         let coupling = self.coupling.as_ref()?;
-        if coupling.rung != Rung::Locked || self.adds_motion() {
+        if !coupling.rung.is_locked() || self.adds_motion() {
             return None;
         }
         let limits = &self.slowed(&self.parameters.limits);

@@ -1,7 +1,6 @@
 //! What a slave may know of its master in its motion step: where it is, where it was, and its plan. Nothing else.
 
 use super::super::{Axis, Motion};
-use super::Rung;
 use standstill_planner::{Anchor, Lead, Leads, Limits, Place, Plan, Planner, Setpoint};
 
 /// A master at the end of a motion step.
@@ -370,7 +369,7 @@ impl<P: Planner> Axis<P> {
     pub(crate) fn factor_in_gear(&self) -> Option<f64> {
         let coupling = self.coupling.as_ref().filter(|_| !self.follows_actual())?;
         let follows_one = coupling.gearing.second.is_none() && !self.is_phasing() && !self.adds_motion();
-        (coupling.rung == Rung::Locked && matches!(self.motion, Motion::Geared) && follows_one)
+        (coupling.rung.is_locked() && matches!(self.motion, Motion::Geared) && follows_one)
             .then(|| coupling.gearing.first.gear.derivative(1.0))
     }
 

@@ -49,7 +49,7 @@ impl<P: Planner> Axis<P> {
         }
         let before = self.values_on_cam();
         let was = self.on_cam.map(|on_cam| (on_cam.was, on_cam.known));
-        let is_locked = self.cam_rung() == Some(Rung::Locked);
+        let is_locked = self.is_locked_on_cam();
         self.hand_over(self.setpoint.position, scope);
         let goes_on = before == self.values_on_cam() && self.is_now_due();
         if let (true, Some(ended), Some((was, known))) = (goes_on, ended, was) {

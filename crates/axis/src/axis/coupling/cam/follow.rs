@@ -26,7 +26,7 @@ impl<P: Planner> Axis<P> {
             return self.measure_on_cam(view, scope);
         }
         // A slave that must not lag is in sync until it can't be.
-        let is_locked = self.cam_rung() == Some(Rung::Locked);
+        let is_locked = self.is_locked_on_cam();
         let stays = is_locked && self.config.following.on_limit == OnLimit::Error;
         if (is_new && !stays) || self.cam_rung() == Some(Rung::Due) {
             self.decide_on_cam(view, true, scope);
@@ -38,6 +38,10 @@ impl<P: Planner> Axis<P> {
         self.measure_on_cam(view, scope);
         self.end_of_cam(view, scope);
         self.finish_reset();
+    }
+
+    pub(super) fn is_locked_on_cam(&self) -> bool {
+        self.on_cam.as_ref().is_some_and(|on_cam| on_cam.rung.is_locked())
     }
 
     pub(super) fn cam_rung(&self) -> Option<Rung> {
@@ -84,7 +88,7 @@ impl<P: Planner> Axis<P> {
         let Some(on_cam) = &mut self.on_cam else {
             return false;
         };
-        let is_locked = on_cam.rung == Rung::Locked;
+        let is_locked = on_cam.rung.is_locked();
         let seen = (&mut on_cam.known, &mut on_cam.left, &mut on_cam.limits);
         view.future.is_new_to(seen, &limits, is_locked)
     }
@@ -342,7 +346,7 @@ impl<P: Planner> Axis<P> {
     fn measure_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
-        let is_off = self.cam_rung() != Some(Rung::Locked);
+        let is_off = !self.is_locked_on_cam();
         let at = is_off
             .then(|| self.on_curve(view.now.place, &view.now.at, scope))
             .flatten();

@@ -72,7 +72,7 @@ impl<P: Planner> Axis<P> {
             return self.lock_at_end(scope);
         }
         let Some(owner) = self.owner else { return };
-        let was_locked = on_cam.rung == Rung::Locked;
+        let was_locked = on_cam.rung.is_locked();
         let chosen = {
             let Some(cam) = scope.cams.cam(on_cam.camming.cam) else {
                 return self.fail(ErrorId::CamUnknown, scope);
@@ -541,7 +541,7 @@ impl<P: Planner> Axis<P> {
     /// It holds the last place of a cam that is over.
     fn lock_at_end(&mut self, scope: &mut Scope<'_>) {
         if self.setpoint.is_at_rest() {
-            if self.cam_rung() != Some(Rung::Locked) {
+            if !self.is_locked_on_cam() {
                 self.lock_on_cam(scope);
             }
         } else {
