@@ -157,16 +157,15 @@ impl<P: Planner> Axis<P> {
             }
             let scans = u64::from(plan.scans());
             let is_inside = plan.at(scans).position.abs() <= reach.abs();
-            let keeps = is_inside || {
+            let stays = is_inside && !plan.excess().is_some_and(|excess| leaves(&excess, &own));
+            let exceeds = !stays && {
                 let lead = Lead {
                     plan: &plan,
                     elapsed: 0,
                     factor: 1.0,
                 };
-                let beyond = self.beyond_on_cam(curve, &lead, shadow.place, &limits);
-                beyond.is_none()
+                self.beyond_on_cam(curve, &lead, shadow.place, &limits).is_some()
             };
-            let exceeds = !keeps || plan.excess().is_some_and(|excess| leaves(&excess, &own));
             if found.is_some() && exceeds {
                 continue;
             }
