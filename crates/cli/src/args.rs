@@ -7,7 +7,7 @@ use standstill_script::suite::Allowed;
 #[cfg(feature = "sweep")]
 use standstill_sweep::Shard;
 use std::path::PathBuf;
-use values::{cycle, delimiter, parameter, period, size, tolerance};
+use values::{axis, cycle, delimiter, parameter, period, size, tolerance};
 
 /// A PLCopen motion runtime: run scan scripts, check their claims, plan moves.
 #[derive(Debug, Parser)]
@@ -166,6 +166,12 @@ pub enum Command {
         /// The folder; it is made if it is not there
         #[arg(value_name = "FOLDER", default_value = ".")]
         folder: PathBuf,
+    },
+    /// Hold a cam against its axes, draw it, or write the rows of a usual law
+    Cam {
+        /// What to do
+        #[command(subcommand)]
+        what: Cam,
     },
     /// List the function blocks and their pins
     Blocks {
@@ -366,6 +372,94 @@ pub enum St {
         #[arg(long, value_name = "NAME")]
         axis: Vec<String>,
     },
+}
+
+/// What `cam` does.
+#[derive(Debug, Subcommand)]
+pub enum Cam {
+    /// Say whether a slave can go along a cam, and how fast its master may be
+    Check(CamCheckArguments),
+    /// Draw a cam and its derivatives by the master
+    Plot {
+        /// The table: a CSV file, or SCRIPT.scan.json#TABLE; `-` is standard input
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        /// Write the picture to this file
+        #[arg(long, value_name = "OUT.svg")]
+        svg: PathBuf,
+        /// Behind its last row the cam goes on as at its first
+        #[arg(long)]
+        periodic: bool,
+        /// Files beside those of the script's folder
+        #[command(flatten)]
+        outside: Outside,
+    },
+    /// Write the rows of a law from rest to rest, as CSV
+    Law(CamLawArguments),
+}
+
+/// What `cam check` takes.
+#[derive(Args, Debug)]
+pub struct CamCheckArguments {
+    /// The table: a CSV file, or SCRIPT.scan.json#TABLE; `-` is standard input
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// The slave: an axis of a machine file or a script
+    #[arg(long, value_name = "MACHINE.json#NAME", value_parser = axis)]
+    pub axis: (PathBuf, String),
+    /// The master; the slave must follow it up to its velocity limit
+    #[arg(long, value_name = "MACHINE.json#NAME", value_parser = axis)]
+    pub master: Option<(PathBuf, String)>,
+    /// Behind its last row the cam goes on as at its first
+    #[arg(long)]
+    pub periodic: bool,
+    /// The cam begins where the slave is (selected without SlaveAbsolute): software limits don't tell
+    #[arg(long)]
+    pub relative: bool,
+    /// As one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// Files beside those of the machine file's folder
+    #[command(flatten)]
+    pub outside: Outside,
+}
+
+/// What `cam law` takes.
+#[derive(Args, Debug)]
+pub struct CamLawArguments {
+    /// The law
+    #[arg(value_enum, value_name = "LAW")]
+    pub law: CamLaw,
+    /// Way of the slave, below 0 for the way back
+    #[arg(long, value_name = "Y", allow_negative_numbers = true)]
+    pub lift: f64,
+    /// Way of the master
+    #[arg(long, value_name = "U", allow_negative_numbers = true)]
+    pub width: f64,
+    /// First place of the master
+    #[arg(long, value_name = "U", allow_negative_numbers = true, default_value_t = 0.0)]
+    pub begin: f64,
+    /// First place of the slave
+    #[arg(long, value_name = "Y", allow_negative_numbers = true, default_value_t = 0.0)]
+    pub from: f64,
+    /// Write the rows to this file instead of standard output
+    #[arg(long, short, value_name = "FILE.csv")]
+    pub output: Option<PathBuf>,
+}
+
+/// The laws that `cam law` writes.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum CamLaw {
+    /// Modified sine: low torque, the jerk steps at the ends
+    ModifiedSine,
+    /// Sinoid (cycloidal): the acceleration is one sine, the jerk steps at the ends
+    Sinoid,
+    /// 3-4-5 polynomial: the jerk steps at the ends
+    Poly345,
+    /// 4-5-6-7 polynomial: the jerk doesn't step, for slaves with a snap limit
+    Poly4567,
+    /// Modified acceleration trapezoid: the least acceleration, the jerk steps at the ends
+    Trapezoid,
 }
 
 /// The files of a project in Structured Text.

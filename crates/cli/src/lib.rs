@@ -6,6 +6,7 @@
 
 mod args;
 mod blocks;
+mod cam;
 mod compare;
 mod cores;
 mod coverage;
@@ -47,7 +48,7 @@ mod watch;
 
 pub use run::verdict;
 
-use args::{Arguments, Command, Schema, Soak, St};
+use args::{Arguments, Cam, Command, Schema, Soak, St};
 use clap::Parser;
 use exit::{Exit, Failure};
 use out::Out;
@@ -96,6 +97,11 @@ fn is_data(command: &Command) -> bool {
         | Command::Schema { .. } => true,
         Command::St { what } => matches!(what, St::Check { json: true, .. } | St::Lint { json: true, .. }),
         Command::Fmt { paths, .. } => paths.iter().any(|path| is_standard(path)),
+        Command::Cam { what } => match what {
+            Cam::Check(arguments) => arguments.json,
+            Cam::Law(_) => true,
+            Cam::Plot { .. } => false,
+        },
         Command::Run(arguments) => arguments.json,
         Command::Test { json, .. } | Command::Explain { json, .. } => *json,
         Command::Live(_)
@@ -245,6 +251,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
                 },
         } => soak::blocks(*seed, *count, resume.as_deref(), failures, out),
         Command::Init { folder } => init::init(folder, out),
+        Command::Cam { what } => cam::cam(what, out),
         Command::Blocks {
             error: Some(error), ..
         }

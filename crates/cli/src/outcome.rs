@@ -15,7 +15,7 @@ pub fn schema() -> String {
 }
 
 /// What every outcome begins with.
-fn begun(command: &str, exit: Exit) -> Object {
+pub fn begun(command: &str, exit: Exit) -> Object {
     Object::new()
         .with("standstill_json", "1")
         .with("command", string(command))

@@ -84,6 +84,14 @@ impl Cell<'_> {
 /// # Errors
 /// The first [`CsvFault`].
 pub fn read(bytes: &[u8], info: &TableInfo) -> Result<Vec<Vec<f64>>, CsvFault> {
+    read_with_lines(bytes, info).map(|(rows, _)| rows)
+}
+
+/// As [`read`]; the line of each row, from 1, too.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_with_lines(bytes: &[u8], info: &TableInfo) -> Result<(Vec<Vec<f64>>, Vec<usize>), CsvFault> {
     let text = decoded(bytes)?;
     let mut lines = text.lines().enumerate().filter(|(_, line)| {
         let line = line.trim();
@@ -145,7 +153,7 @@ pub fn read(bytes: &[u8], info: &TableInfo) -> Result<Vec<Vec<f64>>, CsvFault> {
     if info.name == CAM_TABLE {
         check_cam(&rows, &lines_of, &places)?;
     }
-    Ok(rows)
+    Ok((rows, lines_of))
 }
 
 fn decoded(bytes: &[u8]) -> Result<&str, CsvFault> {

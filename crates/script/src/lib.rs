@@ -7,6 +7,7 @@
 
 mod advice;
 pub mod bare;
+pub mod cam;
 mod changes;
 pub mod claims;
 pub mod csv;

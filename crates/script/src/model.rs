@@ -2,7 +2,7 @@
 
 use crate::error::File;
 use standstill_axis::{AxisConfig, AxisState};
-use standstill_fb::{BlockInfo, Group, PinType, Value};
+use standstill_fb::{BlockInfo, Group, PinType, TableInfo, TableRef, Value};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -28,6 +28,8 @@ pub struct Script {
     pub inputs: Vec<Input>,
     /// The numbers of all tables, one after the other.
     pub tables: Vec<f64>,
+    /// The tables under `tables`.
+    pub named_tables: Vec<NamedTable>,
     /// The store of cams: slots, and pieces in all.
     pub cams: (usize, usize),
     /// Block instances in call order.
@@ -63,6 +65,17 @@ pub struct Place {
     pub span: Span,
     /// `"vacuous": "allowed"`
     pub may_be_vacuous: bool,
+}
+
+/// A table under `tables`.
+#[derive(Clone, Debug)]
+pub struct NamedTable {
+    /// Name as written.
+    pub name: String,
+    /// Its type.
+    pub info: TableInfo,
+    /// Where its numbers stand in [`Script::tables`].
+    pub place: TableRef,
 }
 
 /// An axis of the script.

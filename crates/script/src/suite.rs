@@ -7,6 +7,7 @@ use crate::model::Script;
 use crate::read::{Terms, read_within};
 use crate::run::{Counted, Outcome, RunError, Session, run_with};
 use crate::{GUEST_MEMORY, Reason, ScriptError, Verdict, Warnings, warnings};
+use serde_json::json;
 use standstill_trace::compare::Yardstick;
 use standstill_trace::file::read_regular;
 pub use standstill_trace::file::shown;
@@ -228,6 +229,52 @@ pub fn read_file(
     allowed: &Allowed,
 ) -> Result<(Script, String), SuiteError> {
     read_as(path, parameters, allowed, false)
+}
+
+/// Reads a machine file (or a script) for the sake of its axes and tables: what is not the other ends in `.scan.json`.
+///
+/// # Errors
+/// As [`read_file`].
+pub fn read_axes(path: &Path, allowed: &Allowed) -> Result<Script, SuiteError> {
+    if path.to_string_lossy().ends_with(EXTENSION) {
+        return Ok(read_file(path, &[], allowed)?.0);
+    }
+    let machine = read_text(path)?;
+    let name = path
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    let script = json!({
+        "standstill": 1,
+        "cycle": "T#1ms",
+        "scans": 1,
+        "axes": {},
+        "blocks": [],
+        "include": name,
+    });
+    let mut load = |inner: &str| {
+        if inner == name {
+            Ok(machine.clone())
+        } else {
+            included(path, inner, allowed)
+        }
+    };
+    let mut guest = |inner: &str| module(path, inner, allowed);
+    let folder = shown(path.parent().unwrap_or(Path::new("")));
+    let file = if folder.is_empty() {
+        "(the script for it)".to_owned()
+    } else {
+        format!("{folder}/(the script for it)")
+    };
+    let text = format!("{script:#}\n");
+    Ok(read_within(
+        &text,
+        &file,
+        &[],
+        &mut load,
+        &mut guest,
+        Terms::default(),
+    )?)
 }
 
 /// As [`read_file`]; the statements of its programs in Structured Text are counted, and may take more fuel.

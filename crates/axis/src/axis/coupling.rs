@@ -22,7 +22,7 @@
 
 mod approach;
 mod bound;
-mod cam;
+pub(super) mod cam;
 mod follow;
 mod needs;
 mod phasing;

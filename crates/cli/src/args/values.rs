@@ -1,6 +1,7 @@
 //! Values of arguments, from the texts that people write.
 
 use standstill_trace::csv;
+use std::path::PathBuf;
 
 /// Reads a time (ns).
 pub fn period(text: &str) -> Result<u64, String> {
@@ -13,6 +14,15 @@ pub fn period(text: &str) -> Result<u64, String> {
         .and_then(|ns| u64::try_from(ns).ok())
         .filter(|ns| *ns > 0)
         .ok_or_else(|| "write a time above 0 with its unit, such as 1ms or 250us".to_owned())
+}
+
+/// Reads an axis of a file.
+pub fn axis(text: &str) -> Result<(PathBuf, String), String> {
+    let named = text.rsplit_once('#');
+    named
+        .filter(|(file, name)| !file.is_empty() && !name.is_empty())
+        .map(|(file, name)| (file.into(), name.to_owned()))
+        .ok_or_else(|| "write a file and the name of an axis in it, such as cell.machine.json#S".to_owned())
 }
 
 /// Reads a number of bytes.

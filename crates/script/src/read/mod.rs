@@ -294,6 +294,7 @@ impl Reader {
             stop_when: stop_when?,
             formulas: std::mem::take(&mut self.formulas),
             tables: std::mem::take(&mut self.tables),
+            named_tables: self.tables_by_name(),
             cams: cams?,
             parameters: std::mem::take(&mut self.parameters),
             golden: golden?,

@@ -7,6 +7,7 @@ use super::value::Fields;
 use super::{Reader, shape};
 use crate::csv;
 use crate::error::{Code, Diagnostic, quoted};
+use crate::model::NamedTable;
 use standstill_fb::{TableInfo, TableRef, Value};
 
 impl Reader {
@@ -60,6 +61,19 @@ impl Reader {
             self.named_tables.insert(key.text.clone(), (place, info));
         }
         good.then_some(())
+    }
+
+    /// The tables that the script names, for whoever looks at one by itself.
+    pub(super) fn tables_by_name(&self) -> Vec<NamedTable> {
+        let tables = self.named_tables.iter();
+        let named = tables.filter_map(|(name, (place, info))| {
+            Some(NamedTable {
+                name: name.clone(),
+                info: *info,
+                place: (*place)?,
+            })
+        });
+        named.collect()
     }
 
     fn declared_table(&mut self, node: &Node, load: LoadGuest<'_>) -> Option<(TableInfo, Option<TableRef>)> {

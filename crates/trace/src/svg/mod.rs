@@ -3,6 +3,8 @@
 //! The picture is drawn in numbers with one decimal, so the same trace gives the same bytes everywhere. Its colours
 //! follow the reader's light or dark theme; it loads nothing.
 
+mod across;
+mod cam;
 mod failing;
 mod picture;
 mod plans;
@@ -11,6 +13,7 @@ mod report;
 
 use crate::panels::{curves, waves};
 use crate::trace::Trace;
+pub use cam::cam;
 pub use failing::failing;
 use picture::{GAP, Picture};
 pub use picture::{Theme, themed};

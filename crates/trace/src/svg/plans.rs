@@ -1,8 +1,7 @@
 //! The picture of plans: their courses over each other, from one start on.
 
-use super::picture::{CURVE, GAP, GUTTER, MARGIN, Picture, ROW, WIDTH, wrapped};
-use super::range::{Range, path, ticks};
-use crate::panels::compact;
+use super::across::{Line, Panel, Panels};
+use super::picture::{GUTTER, Picture, ROW, wrapped};
 
 /// The colours: no more plans are drawn than these can tell apart.
 pub const PLANS_MAX: usize = 6;
@@ -56,58 +55,26 @@ pub fn plans(title: &str, plans: &[Plan]) -> String {
     }
     let moments = || plans.iter().flat_map(|plan| &plan.course);
     let end = moments().map(|moment| moment[0]).fold(0.0, f64::max);
-    let x = |time: f64| GUTTER + (WIDTH - MARGIN - GUTTER) * if end > 0.0 { time / end } else { 0.0 };
-    let times = round_times(end);
-    for (panel, (name, unit)) in TITLES.iter().enumerate() {
-        let values = || {
-            moments()
-                .map(|moment| moment[panel + 1])
-                .filter(|value| value.is_finite())
-        };
-        let (least, greatest) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
-        if least == greatest {
-            continue;
-        }
-        let (top, bottom) = (picture.y, picture.y + CURVE);
-        let range = Range::of(least, greatest);
-        let height = |value: f64| bottom - CURVE * range.part(value);
-        let right = WIDTH - MARGIN;
-        let lines: String = times
-            .iter()
-            .map(|time| format!("M{:.1} {top:.1}V{bottom:.1}", x(*time)))
-            .collect();
-        picture.line("grid", &lines);
-        picture.line("frame", &format!("M{GUTTER} {top:.1}V{bottom:.1}H{right:.1}"));
-        if least < 0.0 && greatest > 0.0 {
-            picture.line("frame", &format!("M{GUTTER} {:.1}H{right:.1}", height(0.0)));
-        }
-        for limit in limits(plans, panel).into_iter().filter(|limit| range.has(*limit)) {
-            let y = height(limit);
-            picture.line("limit", &format!("M{GUTTER} {y:.1}H{right:.1}"));
-        }
-        for (plan, at) in plans.iter().zip(0..) {
-            let points: Vec<[f64; 2]> = plan
+    let mut panels = Panels::new(picture, (0.0, end));
+    for (at, (name, unit)) in TITLES.iter().enumerate() {
+        let lines = plans.iter().zip(0..).map(|(plan, line)| Line {
+            class: format!("p{line}"),
+            points: plan
                 .course
                 .iter()
-                .filter(|moment| moment[panel + 1].is_finite())
-                .map(|moment| [x(moment[0]), height(moment[panel + 1])])
-                .collect();
-            picture.line(&format!("p{at}"), &path(&points));
-        }
-        picture.label("", top + 0.5 * CURVE, &format!("{name} ({unit})"));
-        for value in [greatest, least] {
-            let y = height(value).clamp(top + 6.0, bottom - 2.0) + 3.0;
-            picture.label("small unit", y, &compact(value));
-        }
-        picture.y = bottom + GAP;
+                .map(|moment| [moment[0], moment[at + 1]])
+                .collect(),
+        });
+        let lines: Vec<Line> = lines.collect();
+        panels.draw(&Panel {
+            title: &format!("{name} ({unit})"),
+            lines: &lines,
+            limits: &limits(plans, at),
+            marks: &[],
+            with_zero: true,
+        });
     }
-    let y = picture.y + 4.0;
-    for time in &times {
-        picture.text("small", "middle", [x(*time), y], &compact(*time));
-    }
-    picture.label("small unit", y, "time (s)");
-    picture.y = y;
-    picture.finish(title)
+    panels.finish(title, "time (s)")
 }
 
 /// The limits of a panel, each once, on both sides.
@@ -121,20 +88,6 @@ fn limits(plans: &[Plan], panel: usize) -> Vec<f64> {
     all.sort_by(f64::total_cmp);
     all.dedup();
     all
-}
-
-/// Round times up to the end (s).
-fn round_times(end: f64) -> Vec<f64> {
-    // A power of ten of which the end has a hundred thousand at least.
-    let mut scale = 1.0;
-    while end / scale > 1e6 && scale < 1e300 {
-        scale *= 10.0;
-    }
-    while end / scale < 1e5 && scale > 1e-300 {
-        scale /= 10.0;
-    }
-    let steps = (end / scale).min(1e7) as usize;
-    ticks(steps).into_iter().map(|step| step as f64 * scale).collect()
 }
 
 #[cfg(test)]

@@ -34,6 +34,25 @@ use standstill_planner::{Anchor, Cam, CamAt, CamBounds, CamHead, CamLaw, Limits,
 /// Places further from 0 than this (u) have no cam: numbers tell them too coarsely.
 const FURTHEST: f64 = 1e15;
 
+/// How an axis can go along a cam, without scalings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CamFit {
+    /// How many derivatives must go on: 3 with a snap limit, 2 with a jerk limit, 1 without.
+    pub needed: usize,
+    /// The highest or the lowest place of the cam, if it is outside the software limits, the limit, and the error of a cam whose
+    /// places are those of the axis.
+    pub outside: Option<(f64, f64, ErrorId)>,
+    /// The highest constant velocity of the master (u/s).
+    pub highest: f64,
+    /// The limits that it follows from.
+    pub limits: Limits,
+}
+
+impl CamFit {
+    /// The derivatives of the slave by its master, as a table calls them.
+    pub const DERIVATIVES: [&'static str; 3] = ["Slope", "Curvature", "Third"];
+}
+
 /// Where the slave is, and what moves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rung {
@@ -203,6 +222,26 @@ impl<P: Planner> Axis<P> {
         self.on_cam.as_ref().map_or(0, |on_cam| on_cam.ends.count())
     }
 
+    /// How this axis can go along a complete cam, without scalings.
+    pub fn fit_of_cam(&self, head: &CamHead) -> CamFit {
+        let limits = self.slowed(&self.parameters.limits);
+        let (low, high) = head.range;
+        let outside = |place: f64| {
+            let error = self.allowed(place).err()?;
+            Some((place, self.broken_software_limit(place), error))
+        };
+        CamFit {
+            needed: limits.order().degree().saturating_sub(1),
+            outside: if self.modulo.is_some() {
+                None
+            } else {
+                outside(high).or_else(|| outside(low))
+            },
+            highest: head.bounds.highest_velocity(&limits),
+            limits,
+        }
+    }
+
     /// What MC_CamTableSelect tells of a complete cam: the highest constant velocity of `master` (u/s) with which this axis can
     /// follow it, without scalings.
     ///
@@ -216,26 +255,21 @@ impl<P: Planner> Axis<P> {
         master_velocity: f64,
         scope: &mut Scope<'_>,
     ) -> Result<f64, ErrorId> {
-        let limits = self.slowed(&self.parameters.limits);
-        let needed = limits.order().degree().saturating_sub(1);
-        if usize::from(head.continuity) < needed {
-            let what = ["Slope", "Curvature", "Third"]
+        let fit = self.fit_of_cam(head);
+        if usize::from(head.continuity) < fit.needed {
+            let what = CamFit::DERIVATIVES
                 .get(usize::from(head.continuity))
                 .copied()
                 .unwrap_or_default();
             let (row, jump) = head.jump;
             return Err(self.refuse_row(row, what, jump, 0.0, ErrorId::CamNotSmooth, scope));
         }
-        if selection.slave_absolute && self.modulo.is_none() {
-            let (low, high) = head.range;
-            for place in [high, low] {
-                if let Err(error) = self.allowed(place) {
-                    let limit = self.broken_software_limit(place);
-                    return Err(self.refuse("CamTable", place, limit, error, scope));
-                }
-            }
+        if selection.slave_absolute
+            && let Some((place, limit, error)) = fit.outside
+        {
+            return Err(self.refuse("CamTable", place, limit, error, scope));
         }
-        let highest = head.bounds.highest_velocity(&limits);
+        let highest = fit.highest;
         let is_slower = highest < master_velocity;
         if is_slower && self.config.following.on_limit == OnLimit::Error {
             let error = ErrorId::CamBeyondLimits;

@@ -1,0 +1,118 @@
+//! The cam that the runtime makes of a table: made by its own store, 32 rows a call, as MC_CamTableSelect does.
+
+use super::table::{CamError, CamTable};
+use standstill_axis::{
+    Anchor, CAM_ROWS_PER_CALL, Cam, CamHead, CamLaw, CamPiece, CamSelection, CamSlot, Cams, Place, Setpoint,
+};
+
+/// Moments of a stretch that are drawn.
+const STEPS: u32 = 32;
+
+/// How a cam lies that is nowhere but in its own numbers.
+const AS_IT_IS: CamLaw = CamLaw {
+    master_scaling: 1.0,
+    slave_scaling: 1.0,
+    origin: 0.0,
+    master_turn: None,
+    slave_turn: None,
+};
+
+/// A cam.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// What is known of it as a whole.
+    pub head: CamHead,
+    pieces: Vec<CamPiece>,
+}
+
+impl Curve {
+    /// The cam of a table.
+    ///
+    /// # Errors
+    /// [`CamError::Table`] where its rows make none.
+    pub fn new(table: &CamTable, periodic: bool) -> Result<Self, CamError> {
+        let count = table.rows.len();
+        let mut slots = [CamSlot::default()];
+        let mut pieces = vec![CamPiece::default(); count.saturating_sub(1)];
+        let mut cams = Cams::new(&mut slots, &mut pieces);
+        let selection = CamSelection {
+            periodic,
+            ..CamSelection::default()
+        };
+        let fault = |fault| table.fault(&fault);
+        let full = || CamError::Table {
+            place: table.name.clone(),
+            message: format!("the store has no room for {count} rows"),
+            help: "leave rows out where the curve hardly bends".to_owned(),
+        };
+        let id = cams
+            .begin(count, selection, |_| false)
+            .map_err(fault)?
+            .map_err(|_| full())?;
+        let row = |index: usize| table.rows.get(index).copied();
+        for _ in 0..=count.div_ceil(CAM_ROWS_PER_CALL) {
+            if let Some(head) = cams.go_on(id, &row).map_err(fault)? {
+                return Ok(Self { head, pieces });
+            }
+        }
+        Err(full())
+    }
+
+    /// Its pieces, in order.
+    #[must_use]
+    pub fn pieces(&self) -> &[CamPiece] {
+        &self.pieces
+    }
+
+    fn cam(&self) -> Cam<'_> {
+        Cam {
+            head: &self.head,
+            pieces: &self.pieces,
+        }
+    }
+
+    /// Where piece `index`, from 0, begins and ends (u of the master).
+    #[must_use]
+    pub fn ends_of(&self, index: usize) -> (f64, f64) {
+        self.cam().ends_of(u16::try_from(index).unwrap_or(u16::MAX))
+    }
+
+    /// Where the slave is for its master at `place` (u), and its derivatives by it, as position to snap.
+    #[must_use]
+    pub fn at(&self, place: f64) -> [f64; 5] {
+        // The origin is the first row, so that nothing is rounded away on the way to it.
+        let master = Place {
+            position: place,
+            ..Place::default()
+        };
+        let moving = Setpoint {
+            velocity: 1.0,
+            ..Setpoint::default()
+        };
+        let at = AS_IT_IS
+            .at(&self.cam(), &Anchor::default(), master, &moving, 0)
+            .state;
+        [at.position, at.velocity, at.acceleration, at.jerk, at.snap]
+    }
+
+    /// All of it, piece by piece: place of the master, of the slave, four derivatives. Where a derivative jumps two moments have
+    /// the same place.
+    #[must_use]
+    pub fn course(&self) -> Vec<[f64; 6]> {
+        let pieces = 0..self.pieces.len();
+        let moments = pieces.flat_map(|index| {
+            let (from, to) = self.ends_of(index);
+            (0..=STEPS).map(move |step| {
+                let within = match step {
+                    0 => from,
+                    STEPS => to.next_down(),
+                    _ => from + (to - from) * (f64::from(step) / f64::from(STEPS)),
+                };
+                let place = if step == STEPS { to } else { within };
+                let [y, first, second, third, fourth] = self.at(within);
+                [place, y, first, second, third, fourth]
+            })
+        });
+        moments.collect()
+    }
+}
