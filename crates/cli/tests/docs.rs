@@ -186,8 +186,9 @@ fn pages(folder: &str) -> Vec<String> {
 fn every_console_block_and_every_table_of_plans_is_true() {
     // What must be found, so that a change of form does not leave a page unread.
     let least = [
+        ("cams.md", 2, 0),
         ("choosing-limits.md", 1, 30),
-        ("command-line.md", 9, 0),
+        ("command-line.md", 11, 0),
         ("compare.md", 4, 0),
         ("exit-statuses.md", 1, 0),
         ("export.md", 1, 0),

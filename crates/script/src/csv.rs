@@ -2,7 +2,7 @@
 //!
 //! The first line names the fields in any order; fields that are absent are 0. Without such a line two columns are the first two
 //! fields. Lines that begin with `#` and empty ones are left out. Columns are parted by commas or semicolons; numbers have a decimal
-//! point, never a decimal comma.
+//! point, never a decimal comma. Cells may stand in quotation marks.
 
 use crate::error::quoted;
 use standstill_fb::{Pin, PinType, TableInfo};
@@ -176,8 +176,10 @@ fn split(line: &str, number: usize, separator: char) -> Vec<Cell<'_>> {
     let mut column = 1;
     let cells = line.split(separator).map(|text| {
         let blanks = text.chars().take_while(|c| c.is_whitespace()).count();
+        let plain = text.trim();
+        let quoted = plain.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
         let cell = Cell {
-            text: text.trim(),
+            text: quoted.map_or(plain, str::trim),
             line: number,
             column: column + blanks,
         };
@@ -187,14 +189,23 @@ fn split(line: &str, number: usize, separator: char) -> Vec<Cell<'_>> {
     cells.collect()
 }
 
-/// The remedy for a line with too many columns, which decimal commas make.
+/// The remedy for a line with too many columns, which decimal commas make, or too few, which another separator makes.
 fn comma_help(cells: &[Cell<'_>], separator: char, otherwise: &str) -> String {
-    let whole = cells.iter().all(|cell| cell.text.parse::<i64>().is_ok());
-    if separator == ',' && whole && cells.len().is_multiple_of(2) && cells.len() > 2 {
+    let is_part = |text: &str| text.parse::<f64>().is_ok() && !text.contains('.');
+    let are_parts = cells.iter().all(|cell| is_part(cell.text.trim_matches('"')));
+    if separator == ',' && are_parts && cells.len() > 2 {
         "if these are decimal commas: write a decimal point, 1.5 for 1,5".to_owned()
+    } else if separator == ';' && cells.iter().any(|cell| cell.text.contains(',')) {
+        "columns are parted by `;` as in the first line, and numbers have a decimal point, 1.5 for 1,5"
+            .to_owned()
     } else {
         otherwise.to_owned()
     }
+}
+
+/// Whether a text is a number with a decimal comma.
+fn has_decimal_comma(text: &str) -> bool {
+    text.contains(',') && text.replacen(',', ".", 1).parse::<f64>().is_ok()
 }
 
 /// Which field each column is, and the law of rows that are named as another system does.
@@ -214,6 +225,10 @@ fn named(cells: &[Cell<'_>], info: &TableInfo) -> Result<(Vec<usize>, Option<i32
         });
         let own = field(cell.text);
         let Some(place) = own.or(other.filter(|_| info.name == CAM_TABLE).map(|(place, _)| place)) else {
+            if has_decimal_comma(cell.text) {
+                let message = format!("{} is no number", quoted(cell.text));
+                return Err(cell.fault(message, "write a decimal point, 1.5 for 1,5"));
+            }
             let names: Vec<&str> = info.fields.iter().map(|field| field.name).collect();
             let message = format!("there is no field {}", quoted(cell.text));
             return Err(cell.fault(message, &format!("the fields are {}", names.join(", "))));
@@ -331,7 +346,10 @@ fn check_cam(rows: &[Vec<f64>], lines: &[usize], places: &[usize]) -> Result<(),
         return Err(CsvFault {
             line,
             column: 1,
-            message: format!("{} rows are no cam", rows.len()),
+            message: match rows.len() {
+                1 => "1 row is no cam".to_owned(),
+                count => format!("{count} rows are no cam"),
+            },
             help: "give 2 rows at least".to_owned(),
         });
     }
@@ -380,6 +398,10 @@ mod tests {
             rows,
             [[0.0, 0.0, 0.0, 0.0, 0.0, 4.0], [180.0, 1.5, 0.0, 0.0, 0.0, 3.0]]
         );
+        assert_eq!(
+            cam("\"Master\",\"Slave\"\n\"0\",1\n90,\" 2.5 \"").unwrap()[1][1],
+            2.5
+        );
         assert_eq!(cam("0;1\n90;2.5").unwrap()[1][..2], [90.0, 2.5]);
         assert_eq!(cam("\u{feff}master;slave\n0;1\n90;-2e1").unwrap()[1][1], -20.0);
     }
@@ -412,6 +434,22 @@ mod tests {
                 "2:1: 4 columns where there are 2; if these are decimal commas: write a decimal point, 1.5 for 1,5",
             ),
             (
+                "Master,Slave\n0,1,5\n",
+                "2:1: 3 columns where there are 2; if these are decimal commas: write a decimal point, 1.5 for 1,5",
+            ),
+            (
+                "Master,Slave\n0,\"1,5\"\n",
+                "2:1: 3 columns where there are 2; if these are decimal commas: write a decimal point, 1.5 for 1,5",
+            ),
+            (
+                "0;1,5\n",
+                "1:3: `1,5` is no number; write a decimal point, 1.5 for 1,5",
+            ),
+            (
+                "Master;Slave\n0,5\n",
+                "2:1: 1 columns where there are 2; columns are parted by `;` as in the first line, and numbers have a decimal point, 1.5 for 1,5",
+            ),
+            (
                 "0,0,1,5\n",
                 "1:1: 4 columns without a line that names them; if these are decimal commas: write a decimal point, 1.5 for 1,5",
             ),
@@ -433,7 +471,7 @@ mod tests {
             ),
             (
                 "Master,Slave\n0,0\n",
-                "2:1: 1 rows are no cam; give 2 rows at least",
+                "2:1: 1 row is no cam; give 2 rows at least",
             ),
             (
                 "Master,Slave\n0,nan\n",

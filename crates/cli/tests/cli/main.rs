@@ -2,6 +2,7 @@
 
 mod blocks;
 mod borders;
+mod cam;
 mod compare;
 mod ends;
 mod export;

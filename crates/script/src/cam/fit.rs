@@ -13,6 +13,9 @@ const CYCLE: f64 = 1e-3;
 /// Looks at a stretch for its worst place.
 const LOOKS: u32 = 256;
 
+/// A value this much larger, relative to it, is none: of equal ones the first is told.
+const SAME: f64 = 1e-9;
+
 /// Steps towards the worst place from the best look at it.
 const STEPS: u32 = 48;
 
@@ -302,7 +305,7 @@ fn largest(curve: &Curve, (from, to): (f64, f64), order: usize) -> (f64, f64) {
     let look = |step: u32| from + (to - from) * (f64::from(step) / f64::from(LOOKS));
     let mut best = 0;
     for step in 1..=LOOKS {
-        if value(look(step)).abs() > value(look(best)).abs() {
+        if value(look(step)).abs() > value(look(best)).abs() * (1.0 + SAME) {
             best = step;
         }
     }
@@ -318,7 +321,7 @@ fn largest(curve: &Curve, (from, to): (f64, f64), order: usize) -> (f64, f64) {
     let place = 0.5 * (low + high);
     let looked = look(best);
     // A peak at an end, or a value that is the same all along, is where it was seen first.
-    if value(place).abs() > value(looked).abs() * (1.0 + 1e-12) {
+    if value(place).abs() > value(looked).abs() * (1.0 + SAME) {
         (place, value(place))
     } else {
         (looked, value(looked))
