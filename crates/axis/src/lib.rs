@@ -28,8 +28,8 @@ mod state;
 pub mod steps;
 
 pub use axis::{
-    Axis, Beside, CamFit, CamTrack, Coupled, Factors, MotionState, Outlook, Pace, Permission, Profile,
-    ProfileRow, TouchProbe, Way, WorkKind,
+    Axis, Beside, CamFit, CamLaid, CamTrack, Coupled, Factors, MotionState, Outlook, Pace, Permission,
+    Profile, ProfileRow, TouchProbe, Way, WorkKind,
 };
 pub use cam_store::{
     CAM_PIECES, CAM_ROWS_PER_CALL, CAM_SLOTS, CamCurve, CamId, CamSelection, CamSlot, Cams, NoRoom, StartMode,

@@ -17,7 +17,7 @@ const board = {
   name: 'board',
   setup({ onLoad }) {
     onLoad({ filter: /[\\/]src[\\/]board\.js$/ }, ({ path }) => {
-      const parts = ['decode.js', 'rows.js', 'curves.js', 'board.js', 'page.js'].map((name) => text(join(report, 'page', name)));
+      const parts = ['decode.js', 'rows.js', 'curves.js', 'cams.js', 'board.js', 'page.js'].map((name) => text(join(report, 'page', name)));
       return { contents: [text(join(report, 'vendor/uPlot.iife.min.js')), ...parts, text(path)].join('\n'), loader: 'js' };
     });
   },

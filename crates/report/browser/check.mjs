@@ -216,6 +216,36 @@ async function coupled() {
   await page.close();
 }
 
+// A slave of a cam shows where it is on the curve of its table; axes on none have no such panel.
+async function onCam() {
+  standstill('run', '-q', 'scan-tests/cams/too_fast_for_the_cam.scan.json', '--report', file('cam.html'), '--trace', file('cam.csv'));
+  const { page, complaints } = await open('cam.html');
+  check('the slave of a cam has its panel, and nobody else', (await page.locator('.cam').count()) === 1
+    && (await page.locator('.curve[aria-label="S.Cam"] .cam').count()) === 1);
+  // The rows of the panel against those of the trace: in sync the slave is on the curve, else it is off by its deviation.
+  const found = await page.evaluate(() => {
+    const [trace] = shared.traces, [cam] = trace.header.cams;
+    const { first, parts, slaves } = camRows(cam, trace);
+    return [...parts].map((part, row) => ({ scan: first + row, off: slaves[row] - cam.from - camAt(cam, part) }));
+  });
+  const rows = csv('cam.csv');
+  const worst = Math.max(...found.map(({ scan, off }) => Math.abs(off - Number(rows[scan]['S.Deviation']))));
+  check('it is as far off the curve as it deviates', found.length > 1000 && worst < 0.05, `${worst} in ${found.length} rows`);
+  const SCAN = found[700].scan;
+  await page.evaluate((scan) => shared.goTo(scan), SCAN);
+  await settle(page);
+  const dot = await page.locator('.dot').boundingBox();
+  check('a dot marks the scan of the cursor', dot !== null && (await page.textContent('.place')).includes('→'));
+  await page.keyboard.press('Home');
+  await page.mouse.move(dot.x + dot.width / 2, dot.y + dot.height / 2);
+  await settle(page);
+  const near = Number((await page.textContent('#scan')).replace('scan ', ''));
+  const again = await page.locator('.dot').boundingBox();
+  check('the pointer over the curve leads to a scan there', near > 0 && Math.hypot(again.x - dot.x, again.y - dot.y) < 3, `scan ${near}`);
+  check('no error, no request over a cam', complaints.length === 0, complaints.join('; '));
+  await page.close();
+}
+
 // The page of a failing test: golden and run over each other, the first difference marked.
 async function marked() {
   const script = JSON.parse(nastyScript());
@@ -357,7 +387,7 @@ async function longRun() {
   await page.close();
 }
 
-for (const part of [cursorAndZoom, overlaid, coupled, marked, explained, texts, hardNumbers, longRun]) await part();
+for (const part of [cursorAndZoom, overlaid, coupled, onCam, marked, explained, texts, hardNumbers, longRun]) await part();
 await browser.close();
 console.log(`${passed} passed, ${failed} failed`);
 process.exit(failed === 0 ? 0 : 1);

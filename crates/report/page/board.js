@@ -232,6 +232,7 @@ function axisGroup(axis, shared) {
     if (text !== null) still.push([panel.title, text]);
     else blocks.push(curveBlock(axis, panel, lines, shared));
   }
+  blocks.push(...camBlocks(axis, shared));
   const order = axis.order ? `axis of order ${axis.order}` : 'axis';
   const modulo = axis.modulo ? `, modulo ${realText(axis.modulo)}` : '';
   return makeGroup(axis.name, `${order}${axis.unit ? `, ${axis.unit}` : ''}${modulo}`, blocks, still, shared);

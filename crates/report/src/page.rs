@@ -27,6 +27,7 @@ const SCRIPT: &str = concat!(
     include_str!("../page/decode.js"),
     include_str!("../page/rows.js"),
     include_str!("../page/curves.js"),
+    include_str!("../page/cams.js"),
     include_str!("../page/board.js"),
     include_str!("../page/page.js"),
     "\n",
@@ -102,6 +103,7 @@ fn told(header: &Header) -> Value {
         "axes": header.axes,
         "instances": instances,
         "claims": header.claims,
+        "cams": header.cams,
     })
 }
 

@@ -6,7 +6,7 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use standstill_report::{Mark, ReportError, Source, TRACES_MAX, check, html, html_marked};
 use standstill_trace::{
-    Axis, Cell, Claim, ClaimFailure, ClaimVerdict, Header, Input, Note, Trace, digest, exact,
+    Axis, CAMS_MAX, Cam, Cell, Claim, ClaimFailure, ClaimVerdict, Header, Input, Note, Trace, digest, exact,
 };
 
 /// What would be markup, a script's end or a reference if it were taken for one.
@@ -211,4 +211,34 @@ fn marks_are_texts_and_places_to_go_to() {
     let about = scripts(&page, "<script type=\"application/json\" id=\"about\">");
     let about: Value = serde_json::from_str(about[0]).unwrap();
     assert_eq!(about["marks"], serde_json::json!([4, 1]));
+}
+
+#[test]
+fn the_page_has_the_curve_of_a_cam_where_there_is_one() {
+    let mut trace = trace("plain", 1_000_000, 5);
+    let cams = |trace: &Trace| {
+        let page = html(&[source("a", trace)]).unwrap();
+        let about: Value = serde_json::from_str(scripts(&page, "id=\"about\">")[0]).unwrap();
+        about["traces"][0]["header"]["cams"].clone()
+    };
+    assert_eq!(cams(&trace), serde_json::json!([]));
+    let cam = Cam {
+        scans: [1, 1],
+        begin: 0.1,
+        length: 360.0,
+        periodic: true,
+        points: vec![0.0, 0.1, 0.0],
+        ..Cam::default()
+    };
+    let place = trace.push_cam(cam.clone()).expect("room");
+    trace.cam_lay_until(place, 4);
+    assert_eq!(
+        cams(&trace),
+        serde_json::json!([{"slave": 0, "master": 0, "scans": [1, 4], "begin": 0.1, "length": 360.0, "periodic": true,
+            "from": 0.0, "points": [0.0, 0.1, 0.0]}])
+    );
+    for _ in 1..CAMS_MAX {
+        assert!(trace.push_cam(cam.clone()).is_some());
+    }
+    assert_eq!(trace.push_cam(cam), None, "a header has an end");
 }

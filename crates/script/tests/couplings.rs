@@ -156,3 +156,47 @@ fn others_are_told_what_they_lack() {
         assert!(error.contains(message), "{claim}\n{error}");
     }
 }
+
+/// The header tells how a cam lay, so that a picture can draw the curve of its table: here behind a master with turns, of which a
+/// period is no part, and as an axis joins it at 30.
+#[test]
+fn the_header_tells_how_cams_lay() {
+    let text = r#"{"standstill": 1, "cycle": "T#1ms", "scans": 4000, "inputs": {"OFF": false},
+        "axes": {"M": {"modulo": 100, "limits": {"velocity": 200, "acceleration": 10000}, "state": "Standstill"},
+                 "S": {"limits": {"velocity": 500, "acceleration": 10000}, "state": "Standstill"}},
+        "blocks": [{"name": "go", "type": "MC_MoveVelocity", "pins": {"Axis": "M", "Execute": {"from": "cam.InSync"}, "Velocity": 150}},
+                   {"name": "table", "type": "MC_CamTableSelect", "pins": {"Master": "M", "Slave": "S", "Execute": true, "Periodic": true,
+                     "CamTable": [{"Master": 0, "Slave": 0, "Law": "mcCamRest7"}, {"Master": 130, "Slave": 40}]}},
+                   {"name": "cam", "type": "MC_CamIn", "pins": {"Master": "M", "Slave": "S", "Execute": {"from": "table.Done"},
+                     "MasterOffset": -30, "SlaveScaling": 0.5, "CamTableID": {"from": "table.CamTableID"}}},
+                   {"name": "halt", "type": "MC_Halt", "pins": {"Axis": "S", "Execute": {"from": "OFF"}}}],
+        "steps": [{"at": 3000, "set": {"OFF": true}}], "expect": []}"#;
+    let script = read(text, "test.scan.json", &[]).unwrap_or_else(|error| panic!("{error}"));
+    let trace = run(&script).unwrap_or_else(|error| panic!("{error}")).trace;
+    let [cam] = &trace.header().cams[..] else {
+        panic!("one cam: {:?}", trace.header().cams);
+    };
+    assert_eq!((cam.slave, cam.master, cam.periodic), (1, 0, true));
+    assert_eq!((cam.begin, cam.length), (-30.0, 130.0));
+    assert_eq!(cam.scans[1], 2999, "MC_Halt takes the slave off it");
+    assert_eq!((cam.points.len(), cam.points[128]), (129, 20.0));
+    // In sync the slave is on the curve, in every period.
+    let column = |name: &str| trace.reals(trace.column(name).expect(name));
+    let places = column("M.Position").zip(column("S.Position"));
+    let (mut turns, mut before) = (0.0, 0.0);
+    for (scan, (master, slave)) in places.enumerate().take(3000).skip(cam.scans[0]) {
+        if master < before - 50.0 {
+            turns += 1.0;
+        }
+        before = master;
+        let way: f64 = (master + 100.0 * turns - cam.begin) / cam.length;
+        let place = (way - way.floor()) * 128.0;
+        let (low, high) = (place.floor() as usize, (place.floor() as usize + 1).min(128));
+        let (one, other) = (cam.points[low], cam.points[high]);
+        let on_curve = cam.from + 20.0 * way.floor() + one + (other - one) * place.fract();
+        assert!(
+            (on_curve - slave).abs() < 0.01,
+            "scan {scan}: {slave}, curve {on_curve}"
+        );
+    }
+}

@@ -62,6 +62,34 @@ pub struct Header {
     /// The claims with their verdicts; empty until they are judged.
     #[serde(default)]
     pub claims: Vec<Claim>,
+    /// How the cams lay that axes were on, in the order of their first rows; at most [`CAMS_MAX`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cams: Vec<Cam>,
+}
+
+/// Most entries of [`Header::cams`]; how later ones lay is not kept.
+pub const CAMS_MAX: usize = 64;
+
+/// A cam as it lay between two axes, for who draws it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cam {
+    /// The slave, by its place in [`Header::axes`].
+    pub slave: usize,
+    /// The master, likewise.
+    pub master: usize,
+    /// The first and the last row it lay so.
+    pub scans: [usize; 2],
+    /// Place of the master at the first row of the table (u of the master), counted on from its position in the first of the scans.
+    pub begin: f64,
+    /// Way of the master from the first row to the last (u of the master); below 0 if it goes back for that.
+    pub length: f64,
+    /// The table begins again behind its end.
+    pub periodic: bool,
+    /// Place of the slave at the first row (u).
+    pub from: f64,
+    /// How far from there the slave is (u) at equal steps of the master, from the first row to the last, rounded to the
+    /// digits that 32 bits have.
+    pub points: Vec<f64>,
 }
 
 /// One axis as the run had it. Units are `u`, the label in `unit`.
@@ -281,6 +309,7 @@ impl Header {
             instances,
             claims,
             cycle_ns: _,
+            cams: _,
         } = self;
         let axes = axes.iter_mut().flat_map(|axis| [&mut axis.name, &mut axis.unit]);
         let inputs = inputs

@@ -55,8 +55,8 @@ pub use column::{Cell, Column, Kind, Role};
 pub use events::{Event, EventLog, events, events_text};
 pub use extremes::{Extreme, extremes, extremes_text};
 pub use header::{
-    AXIS_SIGNALS, Axis, CAM_SIGNALS, COMBINED_SIGNALS, Claim, ClaimFailure, ClaimVerdict, Direction, Header,
-    Input, Instance, Limits, Pin, SLAVE_SIGNALS, SUPERIMPOSED_SIGNALS, Scaling, Written,
+    AXIS_SIGNALS, Axis, CAM_SIGNALS, CAMS_MAX, COMBINED_SIGNALS, Cam, Claim, ClaimFailure, ClaimVerdict,
+    Direction, Header, Input, Instance, Limits, Pin, SLAVE_SIGNALS, SUPERIMPOSED_SIGNALS, Scaling, Written,
 };
 pub use number::{cell_text, shortest, time_literal};
 pub use printable::{printable, printable_lines};

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::column::{Cell, Column, Kind, canonical_bits};
-use crate::header::{Claim, Header};
+use crate::header::{CAMS_MAX, Cam, Claim, Header};
 use crate::printable::{make_printable, printable};
 
 /// Something worth telling that is no column: an accepted plan, a refused or clamped command.
@@ -105,6 +105,23 @@ impl Trace {
             .flat_map(Claim::texts_mut)
             .for_each(make_printable);
         self.header.claims = claims;
+    }
+
+    /// Enters how a cam lies from its first row on, and returns its place in the header; none if there is no room ([`CAMS_MAX`]).
+    pub fn push_cam(&mut self, cam: Cam) -> Option<usize> {
+        let place = self.header.cams.len();
+        (place < CAMS_MAX).then(|| {
+            self.header.cams.push(cam);
+            place
+        })
+    }
+
+    /// The cam at this place of the header lay so up to the row of `scan`.
+    pub fn cam_lay_until(&mut self, place: usize, scan: usize) {
+        if let Some(cam) = self.header.cams.get_mut(place) {
+            let [_, last] = &mut cam.scans;
+            *last = scan;
+        }
     }
 
     /// Takes title, units and limits from the header of another run of the same script, for a trace that was read

@@ -36,6 +36,7 @@ use crate::{
     ValueSource,
 };
 pub(super) use bound::Bound;
+pub use cam::CamLaid;
 pub(super) use cam::OnCam;
 pub(super) use phasing::Phasing;
 use standstill_planner::{Anchor, Gear, Limits, Place, Planner, Setpoint};

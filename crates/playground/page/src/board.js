@@ -36,8 +36,9 @@ function shapeOf(trace) {
     const still = column.edges && column.edges.scans.length === 1;
     return [column.name, column.kind, still, still ? entryText(column, column.edges.values[0]) : Boolean(column.edges)];
   });
-  const { claims, ...header } = trace.header;
-  return JSON.stringify([trace.rows, header, claims.length > 0, columns]);
+  const { claims, cams, ...header } = trace.header;
+  const onCams = [...new Set((cams || []).map(({ slave }) => slave))];
+  return JSON.stringify([trace.rows, header, claims.length > 0, onCams, columns]);
 }
 
 // Puts a group on the board, as the one of its name before was.

@@ -1,6 +1,7 @@
 //! The script's side of a scan: steps at the latch, blocks behind their wires, a row at the end.
 
 use super::RunError;
+use super::cams::Cams;
 use super::cells;
 use super::formulas::{self, Formulas, Reading, Truths};
 use super::guests::Guests;
@@ -139,6 +140,8 @@ pub(crate) struct Bench<'a> {
     trace: Trace,
     /// Where coordinates moved, for differences of positions.
     shifts: Vec<Shift>,
+    /// How the cams lie that axes are on.
+    cams: Cams,
     /// What the next latch writes after its steps.
     changes: Vec<(Point, Value)>,
     /// Last scan of the run, once `stop_when` has held.
@@ -176,6 +179,7 @@ impl<'a> Bench<'a> {
             notes: Notes::new(script),
             trace,
             shifts: Vec::new(),
+            cams: Cams::new(script),
             changes: Vec::new(),
             last_scan: None,
             wire_fault: false,
@@ -432,6 +436,7 @@ impl<'a> Bench<'a> {
 impl Programs<Standard, SimulatedDrive> for Bench<'_> {
     fn latch(&mut self, time: ScanTime, machine: &mut ScriptMachine) {
         let script = self.script;
+        self.cams.look(machine, &mut self.trace);
         while let Some(index) = self.schedule.take(time.scan) {
             let actions = script.steps.get(index).map_or(&[][..], |step| &step.actions);
             for action in actions {

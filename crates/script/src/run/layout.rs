@@ -181,6 +181,7 @@ pub(crate) fn header(script: &Script) -> trace::Header {
             .chain(script.programs.iter().map(program))
             .collect(),
         claims: Vec::new(),
+        cams: Vec::new(),
     }
 }
 

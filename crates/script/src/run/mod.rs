@@ -1,6 +1,7 @@
 //! The run of a script: bound once, then scan by scan through the executor into a trace.
 
 mod bench;
+mod cams;
 pub(crate) mod cells;
 mod formulas;
 mod guests;

@@ -12,6 +12,7 @@
 //! | [`shadow`] | its shadow in step with the master |
 //! | [`ahead`] | whether it keeps its limits along what the master does next |
 //! | [`ends`], [`after`] | ends of periods, and what follows then |
+//! | [`laid`] | how the cam lies, for who draws it |
 //!
 //! Source: PLCopen Motion Control Part 1, MC_CamTableSelect, MC_CamIn, MC_CamOut; V20 to V20b, S8. What the standard leaves open is
 //! told in docs/cams.md.
@@ -20,6 +21,7 @@ mod after;
 mod ahead;
 mod ends;
 mod follow;
+mod laid;
 mod onto;
 mod shadow;
 
@@ -29,6 +31,7 @@ use super::view::{Known, Seen};
 use super::{Coupled, Values};
 use crate::{AxisId, CamId, CamIn, CamSelection, ErrorId, Event, OnLimit, Scope, StartMode, ValueSource};
 use ends::Ends;
+pub use laid::CamLaid;
 use standstill_planner::{Anchor, Cam, CamAt, CamBounds, CamHead, CamLaw, Limits, Place, Planner, Setpoint};
 
 /// Places further from 0 than this (u) have no cam: numbers tell them too coarsely.
