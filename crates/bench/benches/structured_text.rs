@@ -231,7 +231,7 @@ fn of_c(text: &str, folder: &Path) -> Result<Option<Vec<u8>>, Box<dyn Error>> {
         ])
         .arg(format!("-I{}", folder.display()))
         .arg(format!("-I{}", headers.display()))
-        .args(["-Wl,--no-entry", "-Wl,--export-memory", "-o"])
+        .args(["-Wl,--no-entry", "-o"])
         .args([&module, &source])
         .output();
     let Ok(built) = built else { return Ok(None) };

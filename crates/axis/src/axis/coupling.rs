@@ -22,7 +22,7 @@
 
 mod approach;
 mod bound;
-pub(super) mod cam;
+mod cam;
 mod follow;
 mod needs;
 mod phasing;
@@ -36,8 +36,8 @@ use crate::{
     ValueSource,
 };
 pub(super) use bound::Bound;
-pub use cam::CamLaid;
 pub(super) use cam::OnCam;
+pub use cam::{CamFit, CamLaid};
 pub(super) use phasing::Phasing;
 use standstill_planner::{Anchor, Gear, Limits, Place, Planner, Setpoint};
 pub(super) use sync::Awaited;

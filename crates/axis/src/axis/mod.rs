@@ -68,8 +68,7 @@ use crate::{
 };
 pub use commands::WorkKind;
 use commands::{Ending, Entry, Work};
-pub use coupling::cam::CamFit;
-pub use coupling::{CamLaid, Coupled};
+pub use coupling::{CamFit, CamLaid, Coupled};
 pub(crate) use coupling::{Future, Part, Seen, Values, View};
 pub use factors::Factors;
 use feedback::Feedback;
