@@ -65,11 +65,12 @@ fn axis_of<'a>(script: &'a Script, (path, name): &(PathBuf, String)) -> Result<&
     axes.find(|axis| axis.name.eq_ignore_ascii_case(name))
         .ok_or_else(|| {
             let names: Vec<&str> = script.axes.iter().map(|axis| axis.name.as_str()).collect();
-            let text = format!(
-                "error: {}: there is no axis `{name}`\nhelp: the axes are {}",
-                shown(path),
-                names.join(", ")
-            );
+            let help = if names.is_empty() {
+                "name a file that has axes".to_owned()
+            } else {
+                format!("the axes are {}", names.join(", "))
+            };
+            let text = format!("error: {}: there is no axis `{name}`\nhelp: {help}", shown(path));
             Failure::Told(Exit::BadInput, text)
         })
 }
@@ -338,7 +339,9 @@ fn plot(file: &Path, svg: &Path, periodic: bool, outside: &Outside) -> Result<Ex
     let table = table(file, outside)?;
     let curve = Curve::new(&table, periodic).map_err(failure)?;
     let rows: Vec<[f64; 2]> = table.rows.iter().map(|row| [row.master, row.slave]).collect();
-    let picture = svg::cam(&table.name, &curve.course(), &rows);
+    // Without its folder: the picture is the same wherever the file lies.
+    let title = table.name.rsplit('/').next().unwrap_or_default();
+    let picture = svg::cam(title, &curve.course(), &rows);
     replace(svg, |out| out.write_all(picture.as_bytes()))?;
     Ok(Exit::Passed)
 }

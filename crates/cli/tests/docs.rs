@@ -2,8 +2,9 @@
 //!
 //! A `console` block is run, with the last `jsonl` block before it on standard input. A table whose first column is
 //! `id` shows answers of `standstill plan` to the lines of that `jsonl` block, its other columns named after fields,
-//! rounded to the digits shown. A picture `pictures/plan-NAME.svg` is that of these lines, as `plan --svg` draws it; with
-//! `STANDSTILL_WRITE_DOCS=1` the test writes it. Files named `out.` something are written to, and read from, a folder of the test.
+//! rounded to the digits shown. A picture `pictures/plan-NAME.svg` is that of these lines, as `plan --svg` draws it, and that of a cam
+//! what `cam plot` draws; with `STANDSTILL_WRITE_DOCS=1` the test writes it. Files named `out.` something are written to, and read
+//! from, a folder of the test.
 
 use serde_json::Value;
 use std::io::{ErrorKind, Write};
@@ -186,7 +187,7 @@ fn pages(folder: &str) -> Vec<String> {
 fn every_console_block_and_every_table_of_plans_is_true() {
     // What must be found, so that a change of form does not leave a page unread.
     let least = [
-        ("cams.md", 2, 0),
+        ("cams.md", 3, 0),
         ("choosing-limits.md", 1, 30),
         ("command-line.md", 11, 0),
         ("compare.md", 4, 0),
@@ -223,6 +224,26 @@ fn every_console_block_and_every_table_of_plans_is_true() {
         least
             .iter()
             .all(|(name, ..)| pages.iter().any(|page| page == name))
+    );
+}
+
+#[test]
+fn the_picture_of_a_cam_is_drawn_by_the_commands_beside_it() {
+    for arguments in [
+        "cam law modified-sine --lift 100 --width 180 -o out.modified-sine.csv",
+        "cam plot out.modified-sine.csv --svg out.cam.svg",
+    ] {
+        standstill(arguments, "", &root());
+    }
+    let drawn = std::fs::read_to_string(placed("out.cam.svg")).unwrap();
+    let path = root().join("docs/pictures/cam-modified-sine.svg");
+    if std::env::var_os("STANDSTILL_WRITE_DOCS").is_some_and(|value| value == "1") {
+        std::fs::write(&path, &drawn).unwrap();
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        kept == drawn,
+        "cam-modified-sine.svg is not what is drawn: STANDSTILL_WRITE_DOCS=1 cargo test -p standstill-cli --test docs draws it"
     );
 }
 

@@ -214,6 +214,11 @@ fn named(cells: &[Cell<'_>], info: &TableInfo) -> Result<(Vec<usize>, Option<i32
         let mut fields = info.fields.iter();
         fields.position(|field: &Pin| field.name.eq_ignore_ascii_case(name))
     };
+    // A line of numbers, then, and not of names.
+    if let Some(cell) = cells.iter().find(|cell| has_decimal_comma(cell.text)) {
+        let message = format!("{} is no number", quoted(cell.text));
+        return Err(cell.fault(message, "write a decimal point, 1.5 for 1,5"));
+    }
     let mut law = None;
     let mut places = Vec::with_capacity(cells.len());
     for cell in cells {
@@ -225,10 +230,6 @@ fn named(cells: &[Cell<'_>], info: &TableInfo) -> Result<(Vec<usize>, Option<i32
         });
         let own = field(cell.text);
         let Some(place) = own.or(other.filter(|_| info.name == CAM_TABLE).map(|(place, _)| place)) else {
-            if has_decimal_comma(cell.text) {
-                let message = format!("{} is no number", quoted(cell.text));
-                return Err(cell.fault(message, "write a decimal point, 1.5 for 1,5"));
-            }
             let names: Vec<&str> = info.fields.iter().map(|field| field.name).collect();
             let message = format!("there is no field {}", quoted(cell.text));
             return Err(cell.fault(message, &format!("the fields are {}", names.join(", "))));

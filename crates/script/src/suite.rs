@@ -231,7 +231,7 @@ pub fn read_file(
     read_as(path, parameters, allowed, false)
 }
 
-/// Reads a machine file (or a script) for the sake of its axes and tables: what is not the other ends in `.scan.json`.
+/// Reads a machine file for its axes, as a script that does nothing else would; a file that ends in `.scan.json` is a script itself.
 ///
 /// # Errors
 /// As [`read_file`].

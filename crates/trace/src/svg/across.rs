@@ -52,7 +52,7 @@ impl Panels {
         GUTTER + (WIDTH - MARGIN - GUTTER) * if whole > 0.0 { way / whole } else { 0.0 }
     }
 
-    /// Draws a panel; nothing where no line leaves a height.
+    /// Draws a panel; nothing where no line leaves 0 that is to be in its range.
     pub fn draw(&mut self, panel: &Panel<'_>) {
         let Panel {
             title,
@@ -73,7 +73,7 @@ impl Panels {
         let (Some(least), Some(greatest)) = (least, greatest) else {
             return;
         };
-        if least == greatest {
+        if least == greatest && *with_zero {
             return;
         }
         let (top, bottom) = (self.picture.y, self.picture.y + CURVE);
@@ -166,11 +166,14 @@ mod tests {
 
     #[test]
     fn numbers_on_the_axis_are_round_wherever_it_begins() {
-        assert_eq!(round_between(0.0, 2.0), [0.0, 0.5, 1.0, 1.5, 2.0]);
-        assert_eq!(
-            round_between(-90.0, 270.0),
-            [-50.0, 0.0, 50.0, 100.0, 150.0, 200.0, 250.0]
-        );
-        assert_eq!(round_between(0.0, 0.0), [0.0]);
+        let told = |begin, end| {
+            round_between(begin, end)
+                .into_iter()
+                .map(compact)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(told(0.0, 1.9), ["0", "0.5", "1", "1.5"]);
+        assert_eq!(told(-90.0, 280.0), ["-50", "0", "50", "100", "150", "200", "250"]);
+        assert_eq!(told(0.0, 0.0), ["0"]);
     }
 }
