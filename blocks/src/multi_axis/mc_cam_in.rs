@@ -122,7 +122,7 @@ impl Block for McCamIn {
         let ends = slave.map(|slave| slave.cam_ends());
         let shown = self.ends;
         self.ends = ends;
-        // Done is what ended with the cam, and passed the slave on.
+        // Done is what passed the slave on in the motion step in which an end was reached.
         let passed_on = phase.is_done() && shown.is_some();
         let passed = ends.zip(shown).is_some_and(|(ends, shown)| ends != shown);
         let first = ends.is_some_and(|ends| ends > 0 && shown.is_none());
@@ -130,7 +130,8 @@ impl Block for McCamIn {
             in_sync: phase.is_reached(),
             busy: phase.is_busy(),
             active: phase.is_active(),
-            command_aborted: phase.is_aborted(),
+            // It never ends by itself: where what waits takes over at the end of the cam, it is aborted, too.
+            command_aborted: phase.is_aborted() || phase.is_done(),
             error: phase.is_error(),
             error_id: phase.error_id(),
             end_of_profile: passed || passed_on || first,

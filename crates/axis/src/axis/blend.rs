@@ -168,10 +168,10 @@ impl<P: Planner> Axis<P> {
         self.goal_reached() && !self.is_held_up() && self.passes_on() && self.setpoint.velocity != 0.0
     }
 
-    /// What becomes of the owner when another takes over in motion: what has an end has passed it.
+    /// What becomes of the owner when another takes over in motion: what has an end has passed it, a cam if it came to an end in
+    /// this motion step.
     pub(super) fn fate_at_hand_over(&self) -> Fate {
-        // A cam at its end is done, whatever follows.
-        if self.passes_on() || self.is_on_cam() {
+        if self.passes_on() || self.has_just_ended_cam() {
             Fate::Done
         } else {
             Fate::Aborted

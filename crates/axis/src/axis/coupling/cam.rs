@@ -332,6 +332,11 @@ impl<P: Planner> Axis<P> {
         self.on_cam.as_ref().is_some_and(is_in_sync)
     }
 
+    /// An end of the cam was reached in this motion step.
+    pub(in crate::axis) fn has_just_ended_cam(&self) -> bool {
+        self.on_cam.as_ref().is_some_and(|on_cam| on_cam.ends.is_new())
+    }
+
     pub(super) fn coupled_on_cam(&self) -> Option<Coupled> {
         let on_cam = self.on_cam.as_ref()?;
         let place = on_cam.shadow.map(|shadow| shadow.place);
@@ -354,6 +359,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn note_master_on_cam(&mut self, seen: Seen) {
         if let Some(on_cam) = &mut self.on_cam {
             on_cam.was = seen;
+            on_cam.ends.begin_step();
         }
     }
 

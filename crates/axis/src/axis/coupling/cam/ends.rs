@@ -19,6 +19,8 @@ pub(super) struct Ends {
     /// Without periods: it has been between its first and its last row, and it has come to an end.
     has_begun: bool,
     is_over: bool,
+    /// An end was reached in this motion step.
+    is_new: bool,
 }
 
 /// What a scan brought.
@@ -47,6 +49,16 @@ impl Ends {
         self.is_over
     }
 
+    /// An end was reached in this motion step.
+    pub fn is_new(&self) -> bool {
+        self.is_new
+    }
+
+    /// A motion step begins.
+    pub fn begin_step(&mut self) {
+        self.is_new = false;
+    }
+
     /// The slave is called so many periods further on, and has not moved.
     pub fn renumber(&mut self, periods: i64) {
         if let Some((before, _)) = &mut self.before {
@@ -65,6 +77,12 @@ impl Ends {
 
     /// The slave is `at` this place of the curve now.
     pub fn note(&mut self, cam: &Cam<'_>, at: &CamAt) -> Option<Passed> {
+        let passed = self.look(cam, at);
+        self.is_new = passed.is_some();
+        passed
+    }
+
+    fn look(&mut self, cam: &Cam<'_>, at: &CamAt) -> Option<Passed> {
         let head = cam.head;
         let length = head.end - head.begin;
         let way = at.x - head.begin;

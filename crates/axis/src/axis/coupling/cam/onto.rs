@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | on the cam at its master's place, moving as that asks | in sync at once, if that keeps its limits as far as is known |
 //! | on the curve elsewhere | its shadow, a master of its own, comes in step with the real one: beside it, or onto its next stretch of constant velocity, or as fast as it may |
+//! | on the curve, where none of these keeps its limits | off the curve, and back as below |
 //! | off the curve, master at rest | a move to the cam at the master's place |
 //! | off the curve, master moving | a move to a place of the curve further on, where it rests until its shadow sets off to be in step with the arriving master |
 
@@ -272,7 +273,15 @@ impl<P: Planner> Axis<P> {
         if is_there && may_lock {
             return Choice::Lock;
         }
-        self.in_step(curve, view, &shadow, &difference, &stretch)
+        let along = self.in_step(curve, view, &shadow, &difference, &stretch);
+        match along {
+            // Its limits come first: from here none of the ways along the curve keeps them, so it comes back onto it.
+            Choice::Take(way) if way.exceeds => match self.onto_curve(curve, owner, &stretch) {
+                Choice::Take(off) => Choice::Take(off),
+                _ => Choice::Take(way),
+            },
+            along => along,
+        }
     }
 
     /// The stretch of its master's plan that the shadow is to be led onto.
