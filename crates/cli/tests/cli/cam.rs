@@ -2,6 +2,11 @@
 //!
 //! What is written is judged by code that shares nothing with the writer: its own reader of CSV, its own curves of degree 7 (by
 //! divided differences), and the laws as integrals of their acceleration.
+#![expect(
+    clippy::disallowed_methods,
+    clippy::approx_constant,
+    reason = "a judge that takes sines and constants from elsewhere than what it judges; its tolerances are far above rounding"
+)]
 
 use crate::support::{Ended, fed, is_an_outcome, read, scratch, standstill, write};
 use serde_json::Value;

@@ -103,9 +103,10 @@ impl Panels {
             self.picture.line(&line.class, &path(&points));
         }
         self.picture.label("", top + 0.5 * CURVE, title);
+        let largest = greatest.abs().max(least.abs());
         for value in [greatest, least] {
             let y = height(value).clamp(top + 6.0, bottom - 2.0) + 3.0;
-            self.picture.label("small unit", y, &told(value));
+            self.picture.label("small unit", y, &told(value, largest));
         }
         for [place, value] in *marks {
             let (x, y) = (self.x(*place), height(*value));
@@ -130,9 +131,9 @@ impl Panels {
     }
 }
 
-/// A value for a label; one that six decimals hardly tell has a power of ten.
-fn told(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-3 {
+/// A value for a label; one that six decimals hardly tell has a power of ten, unless it is rounding beside the `largest`.
+fn told(value: f64, largest: f64) -> String {
+    if (1e-9 * largest..1e-3).contains(&value.abs()) && value != 0.0 {
         format!("{value:.3e}")
     } else {
         compact(value)
