@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use standstill_trace::{
-    Axis, Cell, Claim, ClaimVerdict, Direction, Header, Input, Instance, Limits, Note, Pin, Trace,
+    Axis, Cam, Cell, Claim, ClaimVerdict, Direction, Header, Input, Instance, Limits, Note, Pin, Trace,
 };
 
 /// Position, velocity, acceleration, jerk, snap.
@@ -135,6 +135,13 @@ pub fn header() -> Header {
             scans: Some([0, 990]),
             held: Some(741),
             failures: Vec::new(),
+        }],
+        cams: vec![Cam {
+            scans: [3, 990],
+            begin: 0.1,
+            length: 360.0,
+            points: vec![0.0, 0.3, 1.0],
+            ..Cam::default()
         }],
     }
 }
