@@ -28,8 +28,8 @@ mod state;
 pub mod steps;
 
 pub use axis::{
-    Axis, Beside, CamTrack, Coupled, Factors, MotionState, Outlook, Pace, Permission, Profile, ProfileRow,
-    TouchProbe, Way, WorkKind,
+    Axis, Beside, CamFit, CamLaid, CamTrack, Coupled, Factors, MotionState, Outlook, Pace, Permission,
+    Profile, ProfileRow, TouchProbe, Way, WorkKind,
 };
 pub use cam_store::{
     CAM_PIECES, CAM_ROWS_PER_CALL, CAM_SLOTS, CamCurve, CamId, CamSelection, CamSlot, Cams, NoRoom, StartMode,
@@ -59,8 +59,8 @@ pub use scope::Scope;
 pub use standstill_planner::cam::CAM_ROWS;
 pub use standstill_planner::turns::split;
 pub use standstill_planner::{
-    Anchor, Cam, CamCause, CamFault, CamHead, CamPiece, CamRow, Excess, Gear, Limits, MoveProfile, Order,
-    PROFILE_POINTS, Passage, Place, Plan, PlanError, Planner, ProfileFault, ProfileKind, ProfilePoint,
-    Setpoint, Standard, StandardPlan,
+    Anchor, Cam, CamBounds, CamCause, CamFault, CamHead, CamLaw, CamPiece, CamRow, Excess, Gear, Limits,
+    MoveProfile, Order, PROFILE_POINTS, Passage, Place, Plan, PlanError, Planner, ProfileFault, ProfileKind,
+    ProfilePoint, Setpoint, Standard, StandardPlan,
 };
 pub use state::{ARROWS, Arrow, AxisEvent, AxisState, Refused, next};

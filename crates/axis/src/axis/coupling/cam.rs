@@ -68,8 +68,9 @@ enum Rung {
     BesideLine { start: Place, velocity: f64, begin: u64 },
     /// The same beside the master itself.
     BesideMaster,
-    /// A move in the slave's own coordinates, in its turn of this number, to where the curve is when the master is at this place.
-    Moving { turns: i64, to: Place },
+    /// A move in the slave's own coordinates, in its turn of this number, to where the curve is when the master is at this place; to
+    /// rest without one.
+    Moving { turns: i64, to: Option<Place> },
     /// It waits where it is: there is no way onto the curve yet.
     Waiting,
     /// The master went out of operation: the slave rests until a block couples it anew.

@@ -153,11 +153,13 @@ fn part_of<Q: Plan>(path: &Path<'_, Q>, from: u64, to: u64, cycle: f64) -> ((f64
         acceleration = between(first.acceleration, last.acceleration, jerk);
         velocity = between(first.velocity, last.velocity, acceleration);
     } else {
-        // Where a derivative jumps from piece to piece, it is that of the inside that counts.
-        snap = larger(inside.snap, last.snap);
-        jerk = larger(first.jerk, last.jerk).max(inside.jerk.abs());
-        let rate = larger(first.acceleration, last.acceleration).max(inside.acceleration.abs());
-        acceleration = rate + bent * snap;
+        // A piece of constant snap, told from its inside: on its ends what jumps there may be that of the next one.
+        let (back, on) = (-cycle, time - cycle);
+        let jerk_at = |t: f64| inside.jerk + inside.snap * t;
+        let acceleration_at = |t: f64| inside.acceleration + inside.jerk * t + 0.5 * inside.snap * t * t;
+        snap = inside.snap.abs();
+        jerk = larger(jerk_at(back), jerk_at(on));
+        acceleration = larger(acceleration_at(back), acceleration_at(on)) + bent * snap;
         velocity = larger(first.velocity, last.velocity) + bent * jerk;
     }
     let way = bent * acceleration;

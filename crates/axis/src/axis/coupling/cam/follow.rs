@@ -73,8 +73,13 @@ impl<P: Planner> Axis<P> {
         on_cam.at.place.position += own;
         match &mut on_cam.rung {
             Rung::BesideLine { start, .. } => start.position += by,
-            Rung::Moving { to, .. } => to.position += by,
-            Rung::Due | Rung::Locked | Rung::BesideMaster | Rung::Waiting | Rung::Lost => {}
+            Rung::Moving { to: Some(to), .. } => to.position += by,
+            Rung::Due
+            | Rung::Locked
+            | Rung::BesideMaster
+            | Rung::Moving { to: None, .. }
+            | Rung::Waiting
+            | Rung::Lost => {}
         }
         if let (Motion::Closing { plan, .. }, Rung::Moving { .. }) = (&mut self.motion, on_cam.rung) {
             plan.shift(own);
@@ -275,8 +280,14 @@ impl<P: Planner> Axis<P> {
         true
     }
 
-    /// By a move of its own to a place of the curve.
-    fn step_to_cam(&mut self, turns: i64, to: Place, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+    /// By a move of its own to a place of the curve, or to rest.
+    fn step_to_cam(
+        &mut self,
+        turns: i64,
+        to: Option<Place>,
+        view: &View<'_, P::Plan>,
+        scope: &mut Scope<'_>,
+    ) {
         let Motion::Closing { plan, elapsed, scans } = &mut self.motion else {
             return;
         };
@@ -292,6 +303,10 @@ impl<P: Planner> Axis<P> {
         if !is_over || !self.is_on_cam() || self.is_paused() {
             return;
         }
+        let Some(to) = to else {
+            self.motion = Motion::Hold;
+            return self.leave_cam();
+        };
         let shadow = Shadow {
             place: to,
             at: Setpoint::at_rest(to.position),

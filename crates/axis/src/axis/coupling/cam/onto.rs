@@ -277,8 +277,8 @@ impl<P: Planner> Axis<P> {
         match along {
             // Its limits come first: from here none of the ways along the curve keeps them, so it comes back onto it.
             Choice::Take(way) if way.exceeds => match self.onto_curve(curve, owner, &stretch) {
-                Choice::Take(off) => Choice::Take(off),
-                _ => Choice::Take(way),
+                Choice::Wait(left) => self.braking(left).map_or(Choice::Take(way), Choice::Take),
+                off => off,
             },
             along => along,
         }
@@ -485,7 +485,7 @@ impl<P: Planner> Axis<P> {
             motion: Motion::closing(plan),
             rung: Rung::Moving {
                 turns: here.turns,
-                to,
+                to: Some(to),
             },
             lock,
             left: u64::MAX,
@@ -534,11 +534,40 @@ impl<P: Planner> Axis<P> {
         self.record(event, &mut self.owner_scope(scope));
     }
 
-    /// There is no way now: it stays where it is.
+    /// To rest, within the limits of the slave; the way onto the curve is looked for again after so many scans, or there.
+    fn braking(&self, left: u64) -> Option<Way<P::Plan>> {
+        let here = self.place();
+        let start = Setpoint {
+            position: here.position,
+            ..self.setpoint
+        };
+        let limits = self.slowed(&self.parameters.limits);
+        let before = self.limits_before(&limits);
+        let plan = self.planner.ramp_to(&start, 0.0, &limits, &before).ok()?;
+        Some(Way {
+            exceeds: false,
+            motion: Motion::closing(plan),
+            rung: Rung::Moving {
+                turns: here.turns,
+                to: None,
+            },
+            lock: u64::MAX,
+            left,
+            name: Approach::Pace,
+            velocity: 0.0,
+            shadow: Limits::NONE,
+            slows: false,
+            laps: 0.0,
+        })
+    }
+
+    /// There is no way now: it stays where it is, or comes to rest.
     fn wait_on_cam(&mut self, left: u64, scope: &mut Scope<'_>) {
         if !self.setpoint.is_at_rest() {
-            // Only a cam without room for any shadow leads here in motion.
-            return self.fail(ErrorId::DeviationTooLarge, scope);
+            return match self.braking(left) {
+                Some(way) => self.take_way_on_cam(way, scope),
+                None => self.fail(ErrorId::DeviationTooLarge, scope),
+            };
         }
         if let Some(on_cam) = &mut self.on_cam {
             on_cam.rung = Rung::Waiting;
