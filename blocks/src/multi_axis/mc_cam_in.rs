@@ -71,7 +71,7 @@ pins! {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct McCamIn {
     core: UpdateCore<Command>,
-    /// Ends of the cam that were shown, while it is active.
+    /// Ends of cams the slave has reached, while it is active.
     ends: Option<u32>,
 }
 
@@ -118,23 +118,19 @@ impl Block for McCamIn {
                 couple(context.axes, inputs.slave, &request, &mut context.scope)
             });
         let slave = context.axes.get(inputs.slave.index());
-        let slave = slave.filter(|_| phase.is_active());
         let ends = slave.map(|slave| slave.cam_ends());
-        let shown = self.ends;
-        self.ends = ends;
-        // Done is what passed the slave on in the motion step in which an end was reached.
-        let passed_on = phase.is_done() && shown.is_some();
-        let passed = ends.zip(shown).is_some_and(|(ends, shown)| ends != shown);
-        let first = ends.is_some_and(|ends| ends > 0 && shown.is_none());
+        // Also in the call in which what waited has taken over at the end.
+        let end_of_profile = self.ends.is_some() && self.ends != ends;
+        self.ends = ends.filter(|_| phase.is_active());
+        let slave = slave.filter(|_| phase.is_active());
         Outputs {
             in_sync: phase.is_reached(),
             busy: phase.is_busy(),
             active: phase.is_active(),
-            // It never ends by itself: where what waits takes over at the end of the cam, it is aborted, too.
-            command_aborted: phase.is_aborted() || phase.is_done(),
+            command_aborted: phase.is_aborted(),
             error: phase.is_error(),
             error_id: phase.error_id(),
-            end_of_profile: passed || passed_on || first,
+            end_of_profile,
             deviation: slave.map(|slave| slave.deviation()).unwrap_or_default(),
             master_lost: slave.is_some_and(|slave| slave.has_lost_master()),
         }

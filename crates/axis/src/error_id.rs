@@ -153,7 +153,7 @@ error_ids! {
         "The record in the log names the row, the derivative and the jump. Use mcCamRest7 or mcCamThrough for slaves with a snap limit, mcCamRest5 for those with a jerk limit; without periods begin and end at rest.";
     CamUnknown = 155, "CamTableID is no cam: it was never selected, is not complete yet, or was selected anew since.",
         "Wire CamTableID of MC_CamTableSelect and wait for its Done.";
-    SyncPositionInvalid = 156, "MasterSyncPosition, SlaveSyncPosition or MasterStartDistance is NaN or infinite, or on a modulo axis not in its first turn.",
+    SyncPositionInvalid = 156, "MasterSyncPosition, SlaveSyncPosition or MasterStartDistance is NaN or further from 0 than 1e15, or on a modulo axis not in its first turn.",
         "Give finite positions; on a modulo axis at least 0 and less than the length of a turn, and a distance shorter than a turn.";
     CamScalingInvalid = 157, "MasterScaling or SlaveScaling is 0, NaN or infinite, or an offset is NaN or beyond 1e15.",
         "Give finite numbers, and scalings other than 0; a negative SlaveScaling mirrors the cam.";

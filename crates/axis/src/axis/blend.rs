@@ -168,10 +168,9 @@ impl<P: Planner> Axis<P> {
         self.goal_reached() && !self.is_held_up() && self.passes_on() && self.setpoint.velocity != 0.0
     }
 
-    /// What becomes of the owner when another takes over in motion: what has an end has passed it, a cam if it came to an end in
-    /// this motion step.
+    /// What becomes of the owner when another takes over in motion: what has an end has passed it.
     pub(super) fn fate_at_hand_over(&self) -> Fate {
-        if self.passes_on() || self.has_just_ended_cam() {
+        if self.passes_on() {
             Fate::Done
         } else {
             Fate::Aborted

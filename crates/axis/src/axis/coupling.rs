@@ -49,6 +49,9 @@ pub(crate) use view::{Future, Part, Seen, View};
 /// A master, and which of its values are followed.
 pub(crate) type Values = (AxisId, ValueSource);
 
+/// Places further from 0 than this (u) are no sync points and have no cam: numbers tell them too coarsely.
+const FURTHEST: f64 = 1e15;
+
 /// How a slave that is not in gear comes there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rung {

@@ -298,6 +298,8 @@ pub struct Axis<P: Planner = Standard> {
     coupling: Option<coupling::Coupling>,
     /// The same on a cam.
     on_cam: Option<coupling::OnCam>,
+    /// Ends of cams that were reached.
+    cam_ends: u32,
     /// The shift between its master and what it sees of that.
     phasing: coupling::Phasing<P::Plan>,
     /// What follows a master from a place of it on, and waits for that.
@@ -378,6 +380,7 @@ impl<P: Planner> Axis<P> {
             owner: None,
             coupling: None,
             on_cam: None,
+            cam_ends: 0,
             phasing: coupling::Phasing::default(),
             awaited: None,
             is_bound: false,

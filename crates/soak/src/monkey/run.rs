@@ -380,6 +380,7 @@ impl<H: Hands> Run<'_, H> {
                     self.tracks[index].follows(&master, ratio);
                 }
             }
+            self.tracks[index].is_beside(axis.deviation());
             self.tracks[index].check(&setpoint)?;
         }
         self.fences[index].check(axis)?;

@@ -102,6 +102,11 @@ impl Track {
         self.resting = false;
     }
 
+    /// It moves by a plan beside a law or a cam that is so far away: what it publishes is rounded there, too.
+    pub fn is_beside(&mut self, deviation: f64) {
+        self.largest = self.largest.max(deviation.abs());
+    }
+
     /// Jerk and snap of the motion planned last are off by this for the rounding of its positions.
     pub fn resolves(&mut self, off: [f64; 2]) {
         self.off = off;

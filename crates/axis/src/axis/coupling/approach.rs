@@ -151,6 +151,12 @@ impl<P: Planner> Axis<P> {
         let stretch = self.next_stretch(view, here.position - difference.position, step);
         let mut limits = self.limits_of_approach(owner);
         let before = self.limits_before(&limits);
+        if self.gets_too_fast(&limits, &before) {
+            limits = Limits {
+                velocity: limits.velocity,
+                ..self.slowed(&self.parameters.limits)
+            };
+        }
         let velocity = stretch.map_or(law.velocity, |stretch| stretch.velocity);
         if coupling.is_syncing() {
             if coupling.goes_slowly() && velocity != 0.0 {
@@ -177,6 +183,14 @@ impl<P: Planner> Axis<P> {
             Some(way) => Ok(way),
             None => self.at_pace(owner, view, velocity),
         }
+    }
+
+    /// Braking within `limits` the slave would exceed its own velocity limit before its acceleration has faded out. Cost: one ramp.
+    fn gets_too_fast(&self, limits: &Limits, before: &Limits) -> bool {
+        let most = self.parameters.limits.velocity * (1.0 + ROUNDING);
+        let stop = self.planner.ramp_to(&self.setpoint, 0.0, limits, before);
+        let peaks = stop.ok().and_then(|stop| self.planner.peaks((&stop, 0)));
+        peaks.is_some_and(|peaks| peaks.velocity > most)
     }
 
     /// The limits of the owner on its way onto the law.

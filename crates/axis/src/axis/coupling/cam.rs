@@ -28,14 +28,11 @@ mod shadow;
 use super::super::Axis;
 use super::super::commands::{Camming, Entry};
 use super::view::{Known, Seen};
-use super::{Coupled, Values};
+use super::{Coupled, FURTHEST, Values};
 use crate::{AxisId, CamId, CamIn, CamSelection, ErrorId, Event, OnLimit, Scope, StartMode, ValueSource};
 use ends::Ends;
 pub use laid::CamLaid;
 use standstill_planner::{Anchor, Cam, CamAt, CamBounds, CamHead, CamLaw, Limits, Place, Planner, Setpoint};
-
-/// Places further from 0 than this (u) have no cam: numbers tell them too coarsely.
-const FURTHEST: f64 = 1e15;
 
 /// How an axis can go along a cam, without scalings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -221,9 +218,9 @@ impl<P: Planner> Axis<P> {
         runs || self.owner.as_ref().is_some_and(is_of) || self.queue.iter().any(is_of)
     }
 
-    /// How often an end of the cam was reached since the owner is on it: a number that only grows, until it wraps.
+    /// How often an end of a cam was reached by this axis: a number that only grows, until it wraps.
     pub fn cam_ends(&self) -> u32 {
-        self.on_cam.as_ref().map_or(0, |on_cam| on_cam.ends.count())
+        self.cam_ends
     }
 
     /// How this axis can go along a complete cam, without scalings.
@@ -333,11 +330,6 @@ impl<P: Planner> Axis<P> {
         self.on_cam.as_ref().is_some_and(is_in_sync)
     }
 
-    /// An end of the cam was reached in this motion step.
-    pub(in crate::axis) fn has_just_ended_cam(&self) -> bool {
-        self.on_cam.as_ref().is_some_and(|on_cam| on_cam.ends.is_new())
-    }
-
     pub(super) fn coupled_on_cam(&self) -> Option<Coupled> {
         let on_cam = self.on_cam.as_ref()?;
         let place = on_cam.shadow.map(|shadow| shadow.place);
@@ -360,7 +352,6 @@ impl<P: Planner> Axis<P> {
     pub(super) fn note_master_on_cam(&mut self, seen: Seen) {
         if let Some(on_cam) = &mut self.on_cam {
             on_cam.was = seen;
-            on_cam.ends.begin_step();
         }
     }
 
@@ -491,11 +482,9 @@ impl<P: Planner> Axis<P> {
         let is_lost = on_cam.rung == Rung::Lost;
         if on_cam.camming != camming {
             // Where the master was lost other values are no wish to move again.
-            let ends = on_cam.ends;
             *on_cam = OnCam {
                 was: on_cam.was,
                 known: on_cam.known,
-                ends: ends.anew(),
                 ..OnCam::new(camming, limits, moves)
             };
         }

@@ -8,7 +8,7 @@
 use super::super::commands::{Entry, Gearing, Sync, Work};
 use super::super::{Axis, Motion};
 use super::view::{Seen, View};
-use super::{Coupling, Rung, Values};
+use super::{Coupling, FURTHEST, Rung, Values};
 use crate::{AxisId, BufferMode, CommandId, ErrorId, Event, Fate, Scope, SyncMode, SyncPoint};
 use standstill_planner::turns::split;
 use standstill_planner::{Anchor, Limits, Place, Plan, Planner};
@@ -87,14 +87,14 @@ impl<P: Planner> Axis<P> {
         ];
         for (pin, value, turn) in places {
             let is_in_turn = turn.is_none_or(|length| value >= 0.0 && value < length);
-            if !(value.is_finite() && is_in_turn) {
-                let limit = turn.unwrap_or(f64::NAN);
+            if !(value.abs() <= FURTHEST && is_in_turn) {
+                let limit = turn.unwrap_or(FURTHEST);
                 return Err(self.refuse(pin, value, limit, ErrorId::SyncPositionInvalid, scope));
             }
         }
         let distance = point.start_distance;
-        if !(distance.is_finite() && turn.is_none_or(|length| distance.abs() < length)) {
-            let limit = turn.unwrap_or(f64::NAN);
+        if !(distance.abs() <= FURTHEST && turn.is_none_or(|length| distance.abs() < length)) {
+            let limit = turn.unwrap_or(FURTHEST);
             let error = ErrorId::SyncPositionInvalid;
             return Err(self.refuse("MasterStartDistance", distance, limit, error, scope));
         }

@@ -39,6 +39,7 @@ impl<P: Planner> Axis<P> {
             }
             return;
         };
+        self.cam_ends = self.cam_ends.wrapping_add(1);
         let ended = on_cam.curve(cam).map(|curve| ended(&curve, &passed, &shadow));
         if passed.ends > 1 {
             let periods = passed.ends;

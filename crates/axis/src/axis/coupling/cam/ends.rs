@@ -11,7 +11,6 @@ const ROUNDING: f64 = 1e-12;
 /// What became of the ends of a cam so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Ends {
-    count: u32,
     /// The place at the end of the scan before.
     before: Option<(i64, f64)>,
     /// The end told last, or the one it began at, while the slave is near it.
@@ -19,8 +18,6 @@ pub(super) struct Ends {
     /// Without periods: it has been between its first and its last row, and it has come to an end.
     has_begun: bool,
     is_over: bool,
-    /// An end was reached in this motion step.
-    is_new: bool,
 }
 
 /// What a scan brought.
@@ -35,10 +32,6 @@ pub(super) struct Passed {
 }
 
 impl Ends {
-    pub fn count(&self) -> u32 {
-        self.count
-    }
-
     /// The slave is to be on the curve, or was.
     pub fn has_begun(&self) -> bool {
         self.has_begun
@@ -49,16 +42,6 @@ impl Ends {
         self.is_over
     }
 
-    /// An end was reached in this motion step.
-    pub fn is_new(&self) -> bool {
-        self.is_new
-    }
-
-    /// A motion step begins.
-    pub fn begin_step(&mut self) {
-        self.is_new = false;
-    }
-
     /// The slave is called so many periods further on, and has not moved.
     pub fn renumber(&mut self, periods: i64) {
         if let Some((before, _)) = &mut self.before {
@@ -67,22 +50,8 @@ impl Ends {
         self.told = self.told.map(|told| told.saturating_add(periods));
     }
 
-    /// For another cam of the same command.
-    pub fn anew(&self) -> Self {
-        Self {
-            count: self.count,
-            ..Self::default()
-        }
-    }
-
     /// The slave is `at` this place of the curve now.
     pub fn note(&mut self, cam: &Cam<'_>, at: &CamAt) -> Option<Passed> {
-        let passed = self.look(cam, at);
-        self.is_new = passed.is_some();
-        passed
-    }
-
-    fn look(&mut self, cam: &Cam<'_>, at: &CamAt) -> Option<Passed> {
         let head = cam.head;
         let length = head.end - head.begin;
         let way = at.x - head.begin;
@@ -149,7 +118,6 @@ impl Ends {
 
     fn tell(&mut self, passed: Option<Passed>) -> Option<Passed> {
         let passed = passed?;
-        self.count = self.count.wrapping_add(1);
         self.told = Some(passed.end);
         Some(passed)
     }
@@ -202,7 +170,6 @@ mod tests {
                 found.push((step, passed.ends));
             }
         }
-        assert_eq!(ends.count() as usize, found.len());
         found
     }
 

@@ -8,7 +8,7 @@
 //! | off the curve, master at rest | a move to the cam at the master's place |
 //! | off the curve, master moving | a move to a place of the curve further on, where it rests until its shadow sets off to be in step with the arriving master |
 
-use super::super::super::commands::{Entry, ROUNDING};
+use super::super::super::commands::{Entry, ROUNDING, refusal};
 use super::super::super::{Axis, Motion};
 use super::super::follow::off;
 use super::super::needs::RESOLVED;
@@ -471,7 +471,7 @@ impl<P: Planner> Axis<P> {
         let plan = self
             .planner
             .move_to(self.config.profile, &start, target, &limits, &before)
-            .map_err(|_| ErrorId::PlanRefused)?;
+            .map_err(refusal)?;
         if self.bars_any() {
             let (up, down) = self.planner.ways((&plan, 0));
             let barred = self.way_barred(if up > down { 1.0 } else { -1.0 });
