@@ -197,7 +197,7 @@ fn a_cam_behind_a_cam_that_meets_it_stays_in_sync() {
         if n > 700 {
             assert!(rig.slave().is_in_gear(), "{n}");
         }
-        if rig.slave().fate(first) == Fate::Done && switched.is_none() {
+        if rig.slave().fate(first) == Fate::Aborted && switched.is_none() {
             switched = Some(n);
             assert_eq!(rig.slave().fate(second), Fate::Active { reached: true });
             assert!(rig.state().velocity > 70.0, "{:?}", rig.state());
