@@ -28,7 +28,7 @@ fn project(path: &Path) -> Value {
             let file = entry.expect("an entry").path();
             if file.is_dir() {
                 folders.push(file);
-            } else if [".machine.json", ".st", ".wat"]
+            } else if [".machine.json", ".st", ".wat", ".csv"]
                 .iter()
                 .any(|ending| file.to_string_lossy().ends_with(ending))
             {
