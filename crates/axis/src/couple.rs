@@ -23,12 +23,50 @@ pub fn couple<P: Planner>(
     request: &Request,
     scope: &mut Scope<'_>,
 ) -> Result<CommandId, ErrorId> {
+    let state = axes.get(slave.index()).map(Axis::state);
+    // Where the slave can't take it now its own state says so, and what waits is asked again when its turn comes.
+    let takes = matches!(
+        state,
+        Some(
+            AxisState::Standstill
+                | AxisState::DiscreteMotion
+                | AxisState::ContinuousMotion
+                | AxisState::SynchronizedMotion
+        )
+    );
+    check(axes, slave, &request.command, takes, scope)?.command(request, scope)
+}
+
+/// Gives a command of `slave` that couples it new values, as [`Axis::update`] does; any other command is given them as it is.
+///
+/// Cost: that of [`couple`].
+///
+/// # Errors
+/// What [`couple`] refuses, but for a master that is not in operation now. It is recorded, and the command goes on as it was.
+pub fn update_coupled<P: Planner>(
+    axes: &mut [Axis<P>],
+    slave: AxisId,
+    id: CommandId,
+    command: &Command,
+    scope: &mut Scope<'_>,
+) -> Result<(), ErrorId> {
+    check(axes, slave, command, false, scope)?.update(id, command, scope)
+}
+
+/// The slave, if it may follow the masters of this command; masters out of operation do not mind where it `takes` no command.
+fn check<'a, P: Planner>(
+    axes: &'a mut [Axis<P>],
+    slave: AxisId,
+    command: &Command,
+    takes: bool,
+    scope: &mut Scope<'_>,
+) -> Result<&'a mut Axis<P>, ErrorId> {
     let mut of = |pins: [&'static str; 2], followed: &Followed| {
         let source = followed.source.get().unwrap_or(ValueSource::Set);
         let values = (followed.master.axis, source);
         obstacle(axes, slave, values).map(|error| (error, pins, values))
     };
-    let obstacle = match &request.command {
+    let obstacle = match command {
         Command::GearIn { followed, .. } => of(["Master", "MasterValueSource"], followed),
         Command::CombineAxes { masters, .. } => {
             let [first, second] = masters;
@@ -46,14 +84,6 @@ pub fn couple<P: Planner>(
         _ => None,
     };
     let axis = axes.get_mut(slave.index()).ok_or(ErrorId::AxisUnknown)?;
-    // Where the slave can't take it now its own state says so, and what waits is asked again when its turn comes.
-    let takes = matches!(
-        axis.state(),
-        AxisState::Standstill
-            | AxisState::DiscreteMotion
-            | AxisState::ContinuousMotion
-            | AxisState::SynchronizedMotion
-    );
     let obstacle = obstacle.filter(|(error, ..)| takes || *error != ErrorId::MasterLost);
     if let Some((error, [master_pin, source_pin], (master, source))) = obstacle {
         let (pin, value, limit) = match error {
@@ -63,7 +93,7 @@ pub fn couple<P: Planner>(
         axis.note_refusal(pin, value, limit, error, scope);
         return Err(error);
     }
-    axis.command(request, scope)
+    Ok(axis)
 }
 
 /// Why `slave` can't follow these values of a master now.

@@ -43,7 +43,7 @@ pub use config::{
     ACTUAL_FILTER_MAX, AboveLimit, AxisConfig, ConfigError, Defaults, Following, InPosition, MODULO_MAX,
     OnLimit, OnMasterLost, PowerOff, StartState,
 };
-pub use couple::couple;
+pub use couple::{couple, update_coupled};
 pub use drive::{
     Comms, DIGITAL, Drive, DriveCommand, DriveFeedback, DriveHoming, DriveOrder, DrivePosition, DriveReport,
     DriveRequest, DriveSignals, Edge, Equipment, Fault, PROBES, ProbeReport, TorqueOrder, TorqueReport,

@@ -3,7 +3,9 @@
 //! Source: PLCopen Motion Control Part 1, sections on Execute/Done and ContinuousUpdate; R8 to R14.
 
 use crate::{Context, ExecuteCore, Phase};
-use standstill_axis::{Axis, AxisId, Command, CommandId, ErrorId, Planner, Scope, Superimpose};
+use standstill_axis::{
+    Axis, AxisId, Command, CommandId, ErrorId, Planner, Scope, Superimpose, update_coupled,
+};
 
 /// What a block commands, as it stands at its pins.
 pub trait Values: Copy {
@@ -11,7 +13,7 @@ pub trait Values: Copy {
     fn is_same(&self, other: &Self) -> bool;
 
     /// Gives the running command `id` these values. Values that are no good change nothing; the axis records them.
-    fn apply<P: Planner>(&self, axis: &mut Axis<P>, id: CommandId, scope: &mut Scope<'_>);
+    fn apply<P: Planner>(&self, axis: AxisId, id: CommandId, context: &mut Context<'_, P>);
 }
 
 impl Values for Command {
@@ -19,9 +21,9 @@ impl Values for Command {
         self.is_same(other)
     }
 
-    fn apply<P: Planner>(&self, axis: &mut Axis<P>, id: CommandId, scope: &mut Scope<'_>) {
+    fn apply<P: Planner>(&self, axis: AxisId, id: CommandId, context: &mut Context<'_, P>) {
         // The block shows no Error: its command goes on as it was (R21).
-        let _recorded = axis.update(id, self, scope);
+        let _recorded = update_coupled(context.axes, axis, id, self, &mut context.scope);
     }
 }
 
@@ -30,8 +32,10 @@ impl Values for Superimpose {
         self.is_same(other)
     }
 
-    fn apply<P: Planner>(&self, axis: &mut Axis<P>, id: CommandId, scope: &mut Scope<'_>) {
-        let _recorded = axis.update_superimposed(id, self, scope);
+    fn apply<P: Planner>(&self, axis: AxisId, id: CommandId, context: &mut Context<'_, P>) {
+        if let Ok((axis, scope)) = context.axis(axis) {
+            let _recorded = axis.update_superimposed(id, self, scope);
+        }
     }
 }
 
@@ -113,8 +117,6 @@ impl<V: Values> UpdateCore<V> {
             return;
         }
         *seen = values;
-        if let Ok((axis, scope)) = context.axis(axis) {
-            values.apply(axis, id, scope);
-        }
+        values.apply(axis, id, context);
     }
 }
