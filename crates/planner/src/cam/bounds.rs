@@ -236,6 +236,11 @@ impl CamBounds {
         by_velocity.min(by_acceleration).min(by_jerk).min(by_snap)
     }
 
+    /// The slave rests, however its master moves.
+    pub fn is_level(&self) -> bool {
+        self.first == 0.0
+    }
+
     /// The most that the slave can have where the derivatives of its master are at most those of `master` (its position means
     /// nothing).
     pub fn most(&self, master: &Setpoint) -> Setpoint {

@@ -6,7 +6,7 @@ use super::super::power::Reaction;
 use super::super::{Axis, Motion};
 use super::needs::{DERIVATIVES, Piece, RESOLVED, Step};
 use super::view::{Future, Kind, Seen, SeenBoth, View, anchor_at};
-use super::{Coupling, Rung};
+use super::{Coupling, FURTHEST, Rung};
 use crate::{ErrorId, Event, Fate, OnLimit, OnMasterLost, Scope};
 use standstill_planner::{Anchor, Leads, Limits, Place, Plan, Planner, Setpoint};
 
@@ -157,6 +157,10 @@ impl<P: Planner> Axis<P> {
             let late = now.moved - was.moved;
             was.place.position += late;
             was.at.position += late;
+            if late.abs() > FURTHEST {
+                // Numbers of that size hold no step.
+                (was.place, was.at.position) = (now.place, now.at.position);
+            }
         }
         let masters_moved = now.iter().any(|seen| seen.moved != 0.0);
         let slave_moved = coupling.moves != moves;

@@ -40,16 +40,18 @@ fn larger(one: f64, other: f64) -> f64 {
 }
 
 impl<P: Planner> Axis<P> {
-    /// What a slave on `curve` would need beyond `limits` along the rest of a plan, which begins with the master at `place`.
+    /// What a slave on `curve` would need beyond `limits` along the rest of a plan, which begins with the master at `place`. A plan
+    /// of a lower `degree` than those limits changes at once what the slave may not.
     ///
     /// Cost: at most [`PARTS_MOST`] parts, for each three points of the plan and a look at up to four pieces of the cam.
     pub(super) fn beyond_on_cam(
         &self,
         curve: &Curve<'_>,
-        lead: &Lead<'_, P::Plan>,
+        (lead, degree): (&Lead<'_, P::Plan>, usize),
         place: Place,
         limits: &Limits,
     ) -> Option<Beyond> {
+        let is_rough = degree < limits.order().degree();
         let cycle = self.planner.cycle();
         let path = Path {
             lead,
@@ -85,7 +87,12 @@ impl<P: Planner> Axis<P> {
                 let per = 1.0 / curve.law.master_scaling;
                 let (low, high) = (x + low * per, x + high * per);
                 let bounds = curve.law.bounds_between(&curve.cam, low.min(high), low.max(high));
-                let found = CamBounds::beyond(&bounds.most(&most.1), limits);
+                let jumps = is_rough && most.1.acceleration != 0.0 && !bounds.is_level();
+                let found = if jumps {
+                    Some(rough(degree, limits))
+                } else {
+                    CamBounds::beyond(&bounds.most(&most.1), limits)
+                };
                 if found.is_some() {
                     return found;
                 }
@@ -133,6 +140,15 @@ impl<P: Planner> Axis<P> {
             ..Setpoint::default()
         };
         CamBounds::beyond(&bounds.most(&even), limits)
+    }
+}
+
+/// What jumps behind a master of a lower degree.
+fn rough(degree: usize, limits: &Limits) -> Beyond {
+    if degree < 3 {
+        ("jerk", f64::INFINITY, limits.jerk)
+    } else {
+        ("snap", f64::INFINITY, limits.snap)
     }
 }
 

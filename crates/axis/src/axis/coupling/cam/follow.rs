@@ -3,6 +3,7 @@
 use super::super::super::commands::ROUNDING;
 use super::super::super::power::Reaction;
 use super::super::super::{Axis, Motion};
+use super::super::FURTHEST;
 use super::super::follow::{Beyond, off};
 use super::super::needs::RESOLVED;
 use super::super::view::{Kind, View};
@@ -61,6 +62,18 @@ impl<P: Planner> Axis<P> {
         on_cam.moves = moves;
         let (by, own) = (view.now.moved, if slave_moved { own } else { 0.0 });
         if by == 0.0 && own == 0.0 {
+            return;
+        }
+        let is_lost = on_cam.rung == Rung::Lost;
+        if !is_lost && !(by.abs() <= FURTHEST && own.abs() <= FURTHEST) {
+            // Numbers of that size hold no place on the cam: it is laid anew.
+            on_cam.was.place = view.now.place;
+            on_cam.was.at.position = view.now.at.position;
+            *on_cam = OnCam {
+                was: on_cam.was,
+                known: on_cam.known,
+                ..OnCam::new(on_cam.camming, on_cam.limits, moves)
+            };
             return;
         }
         if let Some(shadow) = &mut on_cam.shadow {
@@ -129,7 +142,7 @@ impl<P: Planner> Axis<P> {
                 if is_over && !is_late {
                     lead.elapsed = lead.elapsed.saturating_add(1);
                 }
-                now.or_else(|| self.beyond_on_cam(curve, &lead, place, &on_cam.limits))
+                now.or_else(|| self.beyond_on_cam(curve, (&lead, view.degree()), place, &on_cam.limits))
             }
             _ => self.beyond_on_cam_now(curve, view),
         };
@@ -140,7 +153,14 @@ impl<P: Planner> Axis<P> {
     fn beyond_on_cam_now(&self, curve: &Curve<'_>, view: &View<'_, P::Plan>) -> Option<Beyond> {
         let on_cam = self.on_cam.as_ref()?;
         let at = curve.at(view.now.place, &view.now.at, on_cam.at.piece);
-        self.beyond(Some(at.place), &at.state, &on_cam.limits, Some(false))
+        let is_rough = self.is_rough_on_cam(view, &at);
+        self.beyond(Some(at.place), &at.state, &on_cam.limits, Some(is_rough))
+    }
+
+    /// The master moves less smoothly than the slave may, where the cam passes that on.
+    fn is_rough_on_cam(&self, view: &View<'_, P::Plan>, at: &CamAt) -> bool {
+        let degree = self.slowed(&self.parameters.limits).order().degree();
+        view.degree() < degree && view.now.at.acceleration != 0.0 && at.state.velocity != 0.0
     }
 
     fn step_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
@@ -171,9 +191,10 @@ impl<P: Planner> Axis<P> {
             return self.fail(ErrorId::SetpointBroken, scope);
         };
         let limits = on_cam.limits;
+        let is_rough = held.is_none() && self.is_rough_on_cam(view, &at);
         let rough = match view.future.kind() {
-            _ if self.config.following.on_limit == OnLimit::Error => Some(false),
-            Kind::Unknown | Kind::Measured | Kind::Still | Kind::NotSeen => Some(false),
+            _ if self.config.following.on_limit == OnLimit::Error => Some(is_rough),
+            Kind::Unknown | Kind::Measured | Kind::Still | Kind::NotSeen => Some(is_rough),
             Kind::Plan if view.future.is_late() => Some(false),
             Kind::Plan => None,
         };

@@ -157,14 +157,20 @@ impl<P: Planner> Axis<P> {
             }
             let scans = u64::from(plan.scans());
             let is_inside = plan.at(scans).position.abs() <= reach.abs();
-            let stays = is_inside && !plan.excess().is_some_and(|excess| leaves(&excess, &own));
+            let fastest = Setpoint {
+                velocity: own.velocity,
+                ..Setpoint::default()
+            };
+            let is_slow = bounds.most(&fastest).velocity <= limits.velocity;
+            let stays = is_inside && is_slow && !plan.excess().is_some_and(|excess| leaves(&excess, &own));
             let exceeds = !stays && {
                 let lead = Lead {
                     plan: &plan,
                     elapsed: 0,
                     factor: 1.0,
                 };
-                self.beyond_on_cam(curve, &lead, shadow.place, &limits).is_some()
+                let lead = (&lead, limits.order().degree());
+                self.beyond_on_cam(curve, lead, shadow.place, &limits).is_some()
             };
             if found.is_some() && exceeds {
                 continue;
