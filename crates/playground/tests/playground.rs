@@ -18,7 +18,7 @@ fn scan_tests(folder: &str) -> PathBuf {
         .join(folder)
 }
 
-/// A script with every text below its folder, as the page would send it.
+/// A script with the texts below its folder that it names, as the page would send it.
 fn project(path: &Path) -> Value {
     let folder = path.parent().expect("a folder");
     let mut files = BTreeMap::new();
@@ -41,8 +41,19 @@ fn project(path: &Path) -> Value {
             }
         }
     }
+    let text = fs::read_to_string(path).expect("a text");
+    // And those that they name: what belongs to another script would only make the link longer.
+    let (mut named, mut all) = (BTreeMap::new(), text.clone());
+    for _ in 0..files.len() {
+        for (name, file) in &files {
+            let last = name.rsplit('/').next().expect("a name");
+            if all.contains(last) && named.insert(name.clone(), file.clone()).is_none() {
+                all += file;
+            }
+        }
+    }
     let name = path.file_name().expect("a name").to_string_lossy();
-    json!({"name": name, "text": fs::read_to_string(path).expect("a text"), "files": files})
+    json!({"name": name, "text": text, "files": named})
 }
 
 fn ran(project: &Value) -> Value {
