@@ -7,7 +7,7 @@
 use super::commands::{Entry, ROUNDING};
 use super::{Axis, Motion};
 use crate::{ErrorId, Event, Scope};
-use standstill_planner::{Excess, Limits, Plan, Planner, Setpoint};
+use standstill_planner::{Excess, Limits, Plan, PlanError, Planner, Setpoint};
 
 /// A higher limit must take at least this much off what is exceeded.
 const WORTH: f64 = 0.99;
@@ -130,13 +130,45 @@ impl<P: Planner> Axis<P> {
 
     /// The same for a ramp to rest nobody commanded, on an axis that has limits of `axis`.
     pub(super) fn stopped_inside(&self, plan: P::Plan, limits: &mut Limits, axis: &Limits) -> P::Plan {
+        self.least_beyond(plan, limits, axis, |higher| {
+            self.planner.ramp_to(&self.setpoint, 0.0, higher, &self.in_force)
+        })
+    }
+
+    /// A move of the axis to `target`, and the limits it has: these, or higher ones where they do not keep the axis inside its own.
+    ///
+    /// # Errors
+    /// Those of [`Planner::move_to`].
+    pub(super) fn moved_inside(
+        &self,
+        start: &Setpoint,
+        target: f64,
+        mut limits: Limits,
+        before: &Limits,
+    ) -> Result<(P::Plan, Limits), PlanError> {
+        let profile = self.config.profile;
+        let moved = |limits: &Limits| self.planner.move_to(profile, start, target, limits, before);
+        let first = moved(&limits)?;
+        let axis = self.slowed(&self.parameters.limits);
+        let plan = self.least_beyond(first, &mut limits, &axis, moved);
+        Ok((plan, limits))
+    }
+
+    /// `plan`, or what is planned `again` with higher limits where that keeps those of `axis` better.
+    fn least_beyond(
+        &self,
+        plan: P::Plan,
+        limits: &mut Limits,
+        axis: &Limits,
+        again: impl Fn(&Limits) -> Result<P::Plan, PlanError>,
+    ) -> P::Plan {
         let beyond = |plan: &P::Plan| plan.excess().and_then(|_| plan.excess_over(axis));
         let Some(mut excess) = beyond(&plan) else {
             return plan;
         };
         let mut kept = plan;
         for higher in self.higher(limits, &self.in_force, axis) {
-            let Ok(plan) = self.planner.ramp_to(&self.setpoint, 0.0, &higher, &self.in_force) else {
+            let Ok(plan) = again(&higher) else {
                 continue;
             };
             let left = beyond(&plan);

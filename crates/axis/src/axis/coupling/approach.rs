@@ -331,10 +331,7 @@ impl<P: Planner> Axis<P> {
             position: here.position,
             ..self.setpoint
         };
-        let plan = self
-            .planner
-            .move_to(self.config.profile, &start, target, limits, before)
-            .ok()?;
+        let (plan, limits) = self.moved_inside(&start, target, *limits, before).ok()?;
         let lock = u64::from(plan.scans());
         Some(Way {
             motion: Motion::closing(plan),
@@ -350,7 +347,7 @@ impl<P: Planner> Axis<P> {
             left: u64::MAX,
             name: Approach::Stretch,
             velocity: 0.0,
-            limits: *limits,
+            limits,
         })
     }
 

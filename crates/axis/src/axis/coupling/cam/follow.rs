@@ -64,8 +64,8 @@ impl<P: Planner> Axis<P> {
         if by == 0.0 && own == 0.0 {
             return;
         }
-        let is_lost = on_cam.rung == Rung::Lost;
-        if !is_lost && !(by.abs() <= FURTHEST && own.abs() <= FURTHEST) {
+        let is_held = by.abs() <= FURTHEST && own.abs() <= FURTHEST;
+        if !is_held && on_cam.rung != Rung::Lost {
             // Numbers of that size hold no place on the cam: it is laid anew.
             on_cam.was.place = view.now.place;
             on_cam.was.at.position = view.now.at.position;

@@ -468,9 +468,8 @@ impl<P: Planner> Axis<P> {
         };
         let limits = self.limits_of_approach(owner);
         let before = self.limits_before(&limits);
-        let plan = self
-            .planner
-            .move_to(self.config.profile, &start, target, &limits, &before)
+        let (plan, _) = self
+            .moved_inside(&start, target, limits, &before)
             .map_err(refusal)?;
         if self.bars_any() {
             let (up, down) = self.planner.ways((&plan, 0));
