@@ -203,6 +203,11 @@ impl<const N: usize> Path<N> {
     pub(crate) fn pin_both(&mut self, velocity: f64, acceleration: f64) {
         let order = self.order;
         if let Some(last) = self.last_mut() {
+            let is_even = last.state.snap == 0.0 && last.state.jerk == 0.0 && last.state.acceleration == 0.0;
+            if is_even {
+                // What it was off by stepped the position where a long cruise begins: it goes into the end.
+                last.state.position += (velocity - last.state.velocity) * last.duration;
+            }
             last.state.velocity = velocity;
             if order >= Order::Three {
                 last.state.acceleration = acceleration;
