@@ -256,15 +256,8 @@ impl<P: Planner> Axis<P> {
         master_velocity: f64,
         scope: &mut Scope<'_>,
     ) -> Result<f64, ErrorId> {
+        self.check_smooth(head, scope)?;
         let fit = self.fit_of_cam(head);
-        if usize::from(head.continuity) < fit.needed {
-            let what = CamFit::DERIVATIVES
-                .get(usize::from(head.continuity))
-                .copied()
-                .unwrap_or_default();
-            let (row, jump) = head.jump;
-            return Err(self.refuse_row(row, what, jump, 0.0, ErrorId::CamNotSmooth, scope));
-        }
         if selection.slave_absolute
             && let Some((place, limit, error)) = fit.outside
         {
@@ -282,6 +275,20 @@ impl<P: Planner> Axis<P> {
         };
         self.record(event, scope);
         Ok(highest)
+    }
+
+    /// # Errors
+    /// [`ErrorId::CamNotSmooth`].
+    fn check_smooth(&self, head: &CamHead, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
+        if usize::from(head.continuity) >= self.fit_of_cam(head).needed {
+            return Ok(());
+        }
+        let what = CamFit::DERIVATIVES
+            .get(usize::from(head.continuity))
+            .copied()
+            .unwrap_or_default();
+        let (row, jump) = head.jump;
+        Err(self.refuse_row(row, what, jump, 0.0, ErrorId::CamNotSmooth, scope))
     }
 
     /// Records that a row of a table is refused, and passes its error on.
@@ -444,6 +451,10 @@ impl<P: Planner> Axis<P> {
             let number = f64::from(cam.table.number());
             return Err(self.refuse("CamTableID", number, f64::NAN, ErrorId::CamUnknown, scope));
         };
+        if let Some(head) = scope.cams.cam(cam.table).map(|cam| *cam.head) {
+            // It may have been selected for another slave.
+            self.check_smooth(&head, scope)?;
+        }
         let slave_turn = self.modulo.as_ref().map(|modulo| modulo.length);
         Ok(Camming {
             master: cam.master.axis,
