@@ -155,7 +155,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// `own` limits of a motion in `state`, and those `before` until it is inside, but no more of them than slaves leave if that
-    /// is enough. Cost: at most one ramp, with slaves two.
+    /// is enough, or no more of their rates. Cost: at most one ramp, with slaves three.
     pub(super) fn limits_in_state(&self, state: &Setpoint, own: &Limits, before: &Limits) -> Limits {
         let wider = own.or_larger(before);
         let held = if wider == *own || self.is_inside(state, own) {
@@ -164,11 +164,15 @@ impl<P: Planner> Axis<P> {
             wider
         };
         let slowed = self.slowed(&held);
-        if slowed != held && self.stops_within(state, &slowed) {
-            slowed
-        } else {
-            held
+        if slowed == held {
+            return held;
         }
+        let at_speed = Limits {
+            velocity: held.velocity,
+            ..slowed
+        };
+        let fits = |limits: &Limits| self.stops_within(state, limits);
+        [slowed, at_speed].into_iter().find(fits).unwrap_or(held)
     }
 
     /// Whether a motion can go on from `state` without leaving `limits`.
