@@ -107,7 +107,7 @@ __attribute__((export_name(\"plc_scan\"))) void plc_scan(int32_t tick, int64_t n
     ticks = (int32_t)((uint32_t)ticks + 1u);
     int32_t found = 0;
     for (int i = 0; i < 20; i++) {
-        timers[i].in.in = (ticks + i) % 40 > 5;
+        timers[i].in.input = (ticks + i) % 40 > 5;
         (void)standstill_ton(&timers[i].key, &timers[i].in, &timers[i].out);
         if (timers[i].out.q) found++;
     }

@@ -161,6 +161,11 @@ pub trait Planner {
         None
     }
 
+    /// Whether a plan is on a curve through points, of which nothing is known ahead.
+    fn is_curve(&self, _rest: (&Self::Plan, u64)) -> bool {
+        false
+    }
+
     /// The largest magnitudes of the derivatives of the rest of a plan; `None` where they are not known.
     fn peaks(&self, _rest: (&Self::Plan, u64)) -> Option<Setpoint> {
         None
@@ -535,6 +540,10 @@ impl Planner for Standard {
 
     fn stretch(&self, leads: &Leads<'_, StandardPlan>) -> Option<(u64, u64)> {
         sum::stretch(leads, self.cycle)
+    }
+
+    fn is_curve(&self, rest: (&StandardPlan, u64)) -> bool {
+        sum::is_curve(rest)
     }
 
     fn peaks(&self, rest: (&StandardPlan, u64)) -> Option<Setpoint> {

@@ -129,7 +129,7 @@ impl<I: Iterator<Item = Segment>> Walk<I> {
 }
 
 /// Whether a plan is on a curve that has no pieces of constant snap.
-fn is_curve((plan, elapsed): Part<'_>) -> bool {
+pub(crate) fn is_curve((plan, elapsed): Part<'_>) -> bool {
     matches!(plan, StandardPlan::Profile(profile) if elapsed < u64::from(profile.scans()))
 }
 
