@@ -166,7 +166,9 @@ fn part_of<Q: Plan>(path: &Path<'_, Q>, from: u64, to: u64, cycle: f64) -> ((f64
         snap = larger(first.snap, last.snap);
         let steepest = larger(first.jerk, last.jerk);
         jerk = steepest.max(between(first.jerk, last.jerk, snap));
-        acceleration = between(first.acceleration, last.acceleration, jerk);
+        // One that begins and ends in it shows at neither end.
+        let mean = (last.velocity - first.velocity).abs() / time;
+        acceleration = between(first.acceleration, last.acceleration, jerk).max(mean);
         velocity = between(first.velocity, last.velocity, acceleration);
     } else {
         // A piece of constant snap, told from its inside: on its ends what jumps there may be that of the next one.

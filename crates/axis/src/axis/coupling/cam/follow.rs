@@ -167,7 +167,9 @@ impl<P: Planner> Axis<P> {
     /// The master moves less smoothly than the slave may, where the cam passes that on.
     fn is_rough_on_cam(&self, view: &View<'_, P::Plan>, at: &CamAt) -> bool {
         let degree = self.slowed(&self.parameters.limits).order().degree();
-        view.degree() < degree && view.now.at.acceleration != 0.0 && at.state.velocity != 0.0
+        let was = self.on_cam.as_ref().map_or(0.0, |on_cam| on_cam.was.at.velocity);
+        let accelerates = view.now.at.acceleration != 0.0 || view.now.at.velocity != was;
+        view.degree() < degree && accelerates && at.state.velocity != 0.0
     }
 
     fn step_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
