@@ -14,7 +14,7 @@ mod place;
 mod statement;
 mod text;
 
-use crate::check::{Body, Program, Task, UnitKind};
+use crate::check::{Body, Program, UnitKind};
 use crate::coverage::Counters;
 use crate::error::{Code, Diagnostic};
 use crate::layout;
@@ -23,7 +23,7 @@ use crate::types::UnitId;
 use function::Function;
 use std::collections::BTreeMap;
 use wasm_encoder::{
-    BlockType, CodeSection, ConstExpr, DataSection, EntityType, ExportKind, ExportSection, FunctionSection,
+    CodeSection, ConstExpr, DataSection, EntityType, ExportKind, ExportSection, FunctionSection,
     GlobalSection, GlobalType, ImportSection, MemorySection, MemoryType, Module, TypeSection, ValType,
 };
 
@@ -39,7 +39,6 @@ enum Target {
     /// `(site, value)`: notes a fault, and traps.
     Fault,
     Unit(UnitId),
-    Task(usize),
     Text(text::Helper),
     Import(&'static str),
 }
@@ -153,8 +152,10 @@ pub(crate) fn emit(program: &Program<'_>, image: &[u8], counters: &Counters) -> 
         templates_at: program.layout.end.next_multiple_of(8),
     };
     context.want(Target::Fault);
-    for task in 0..program.tasks.len() {
-        context.want(Target::Task(task));
+    let mut exported = vec![("plc_scan".to_owned(), statement::scan(&mut context, None))];
+    for (place, task) in program.tasks.iter().enumerate() {
+        let name = crate::symbols::entry(&task.name);
+        exported.push((name, statement::scan(&mut context, Some(place))));
     }
     let mut functions: Vec<(Target, Function)> = Vec::new();
     let mut next = 0;
@@ -164,7 +165,6 @@ pub(crate) fn emit(program: &Program<'_>, image: &[u8], counters: &Counters) -> 
             Target::Import(_) => continue,
             Target::Fault => fault_function(),
             Target::Text(helper) => text::helper(helper),
-            Target::Task(task) => statement::task(&mut context, task),
             Target::Unit(unit) => statement::unit(&mut context, unit),
         };
         if function.code.len() > FUNCTION_MOST {
@@ -181,7 +181,7 @@ pub(crate) fn emit(program: &Program<'_>, image: &[u8], counters: &Counters) -> 
         }
         functions.push((target, function));
     }
-    let wasm = module(&context, functions, image);
+    let wasm = module(&context, functions, exported, image);
     Ok(Emitted {
         wasm,
         sites: context.sites,
@@ -205,48 +205,13 @@ fn fault_function() -> Function {
     function
 }
 
-/// What the host calls: notes the time, and runs the tasks that are due.
-fn scan_function(tasks: &[Task], only: Option<usize>) -> Function {
-    let mut function = Function::new(vec![ValType::I32, ValType::I64], None);
-    function
-        .sink()
-        .i32_const(0)
-        .local_get(1)
-        .i64_store(function::at(layout::NOW, 3));
-    if let Some(task) = only {
-        function.call(Target::Task(task));
-        return function;
-    }
-    let mut order: Vec<usize> = (0..tasks.len()).collect();
-    order.sort_by_key(|place| tasks[*place].priority);
-    for place in order {
-        let task = &tasks[place];
-        let Some(interval) = task.interval_ns else {
-            function.call(Target::Task(place));
-            continue;
-        };
-        let due = function::at(task.due, 3);
-        let mut sink = function.sink();
-        sink.local_get(1)
-            .i32_const(0)
-            .i64_load(due)
-            .i64_ge_s()
-            .if_(BlockType::Empty);
-        // Due again at the next multiple of the interval, however long the host waited.
-        sink.i32_const(0).local_get(1).i64_const(interval).i64_div_s();
-        sink.i64_const(1)
-            .i64_add()
-            .i64_const(interval)
-            .i64_mul()
-            .i64_store(due);
-        function.call(Target::Task(place));
-        function.sink().end();
-    }
-    function
-}
-
 /// Puts the functions, the memory and the exports together.
-fn module(context: &Context<'_, '_>, mut functions: Vec<(Target, Function)>, image: &[u8]) -> Vec<u8> {
+fn module(
+    context: &Context<'_, '_>,
+    mut functions: Vec<(Target, Function)>,
+    exported: Vec<(String, Function)>,
+    image: &[u8],
+) -> Vec<u8> {
     let program = context.program;
     let imported = context
         .wanted
@@ -258,12 +223,6 @@ fn module(context: &Context<'_, '_>, mut functions: Vec<(Target, Function)>, ima
     indices.extend(imports.copied().zip(0..));
     indices.extend(functions.iter().map(|(target, _)| *target).zip(imported..));
 
-    // Functions that no other calls.
-    let mut exported = vec![("plc_scan".to_owned(), scan_function(&program.tasks, None))];
-    for (place, task) in program.tasks.iter().enumerate() {
-        let name = crate::symbols::entry(&task.name);
-        exported.push((name, scan_function(&program.tasks, Some(place))));
-    }
     let mut exports = ExportSection::new();
     exports.export("memory", ExportKind::Memory, 0);
     for (index, (name, function)) in (imported + functions.len() as u32..).zip(exported) {

@@ -4,22 +4,52 @@ use super::expression::Emitter;
 use super::function::{Function, at, value_type};
 use super::place::Root;
 use super::{Context, kind_of};
-use crate::check::UnitKind;
+use crate::check::{Task, UnitKind};
+use crate::layout;
 use crate::source::Span;
 use crate::start;
 use crate::typed::{Base, Branch, Expr, Place, Stmt, StmtKind};
 use crate::types::{Elementary, Member, MemberKind, Type, TypeId, UnitId};
 use wasm_encoder::{BlockType, ValType};
 
-/// Most entries of a table of branches, for each label.
-const SPARSE: i128 = 8;
+/// Most entries of a table of branches, for each label: states are often numbered in tens.
+const SPARSE: i128 = 16;
 
-/// The calls of the programs of a task.
-pub(super) fn task(context: &mut Context<'_, '_>, task: usize) -> Function {
-    let program = context.program;
-    let mut emitter = Emitter::new(context, Function::new(Vec::new(), None));
-    if let Some(task) = program.tasks.get(task) {
+/// What the host calls: notes the time, and runs the tasks that are due, or `only` one of them.
+pub(super) fn scan(context: &mut Context<'_, '_>, only: Option<usize>) -> Function {
+    let tasks = &context.program.tasks;
+    let mut emitter = Emitter::new(context, Function::new(vec![ValType::I32, ValType::I64], None));
+    emitter
+        .function
+        .sink()
+        .i32_const(0)
+        .local_get(1)
+        .i64_store(at(layout::NOW, 3));
+    if let Some(task) = only.and_then(|task| tasks.get(task)) {
         emitter.statements(&task.statements);
+        return emitter.function;
+    }
+    let mut order: Vec<&Task> = tasks.iter().collect();
+    order.sort_by_key(|task| task.priority);
+    for task in order {
+        let Some(interval) = task.interval_ns else {
+            emitter.statements(&task.statements);
+            continue;
+        };
+        let due = at(task.due, 3);
+        let mut sink = emitter.function.sink();
+        sink.local_get(1).i32_const(0).i64_load(due).i64_ge_s();
+        emitter.function.if_(BlockType::Empty);
+        // Due again at the next multiple of the interval, however long the host waited.
+        let mut sink = emitter.function.sink();
+        sink.i32_const(0).local_get(1).i64_const(interval).i64_div_s();
+        sink.i64_const(1)
+            .i64_add()
+            .i64_const(interval)
+            .i64_mul()
+            .i64_store(due);
+        emitter.statements(&task.statements);
+        emitter.function.end();
     }
     emitter.function
 }
@@ -310,11 +340,14 @@ impl Emitter<'_, '_, '_> {
         let wide = of.size() == 8;
         let end = self.function.block();
         for (number, branch) in (1..).zip(branches) {
-            self.function.sink().i32_const(0);
-            for (from, to) in &branch.labels {
+            for (place, (from, to)) in branch.labels.iter().enumerate() {
                 self.function.sink().local_get(local);
                 self.constant(of, *from);
-                if wide {
+                if from == to && wide {
+                    self.function.sink().i64_eq();
+                } else if from == to {
+                    self.function.sink().i32_eq();
+                } else if wide {
                     self.function.sink().i64_sub();
                     self.constant(of, to - from);
                     self.function.sink().i64_le_u();
@@ -323,7 +356,9 @@ impl Emitter<'_, '_, '_> {
                     self.constant(Elementary::Udint, to - from);
                     self.function.sink().i32_le_u();
                 }
-                self.function.sink().i32_or();
+                if place > 0 {
+                    self.function.sink().i32_or();
+                }
             }
             self.function.if_(BlockType::Empty);
             self.branch(&branch.body, span, number);
