@@ -327,6 +327,8 @@ impl<P: Planner> Axis<P> {
         match &self.motion {
             _ if self.layer.is_some() => Course::Unknown,
             Motion::Hold => Course::Still,
+            // Nothing is known of a curve through points ahead.
+            Motion::Run { plan, elapsed, .. } if self.planner.is_curve((plan, *elapsed)) => Course::Unknown,
             Motion::Run { plan, elapsed, .. } => Course::Plan(plan, *elapsed),
             // In gear behind measured values it is no more even than those.
             Motion::Geared if self.follows_actual() => Course::Measured(UNKNOWN),

@@ -120,13 +120,6 @@ impl<P: Planner> Axis<P> {
         lead
     }
 
-    /// The same, where it can be looked along.
-    fn lead_to_look_along<'a>(&self, view: &View<'a, P::Plan>) -> Option<Lead<'a, P::Plan>> {
-        let lead = self.lead_of_master(view)?;
-        let is_known = view.future.kind() == Kind::Plan && !self.planner.is_curve((lead.plan, lead.elapsed));
-        is_known.then_some(lead)
-    }
-
     /// Whether the cam keeps the limits of the slave as far as is known, with the slave at the place of its master: from the end of
     /// this scan on if it `is_over`, else from the end of the one before. What is beyond them is told.
     pub(super) fn keeps_on_cam(
@@ -137,7 +130,7 @@ impl<P: Planner> Axis<P> {
     ) -> Result<(), Beyond> {
         let Some(on_cam) = &self.on_cam else { return Ok(()) };
         let is_late = view.future.is_late();
-        let found = match self.lead_to_look_along(view) {
+        let found = match self.lead_of_master(view) {
             Some(mut lead) => {
                 // A step that was not of this plan was never looked at.
                 let now = is_late.then(|| self.beyond_on_cam_now(curve, view)).flatten();
@@ -205,7 +198,6 @@ impl<P: Planner> Axis<P> {
             _ if self.config.following.on_limit == OnLimit::Error => Some(is_rough),
             Kind::Unknown | Kind::Measured | Kind::Still | Kind::NotSeen => Some(is_rough),
             Kind::Plan if view.future.is_late() => Some(false),
-            Kind::Plan if self.lead_to_look_along(view).is_none() => Some(is_rough),
             Kind::Plan => None,
         };
         let rough = rough.filter(|_| held.is_none());
