@@ -6,10 +6,10 @@
 //!
 //! | file | subject |
 //! | --- | --- |
-//! | [`build`] | rows into pieces, some in each call |
-//! | [`rows`] | the derivatives that a row leaves open |
-//! | [`bounds`] | what a piece is bounded by, and what that leaves to the master |
-//! | [`law`] | the place of the slave for a place of the master: periods, scalings, the chain rule |
+//! | `build` | rows into pieces, some in each call |
+//! | `rows` | the derivatives that a row leaves open |
+//! | `bounds` | what a piece is bounded by, and what that leaves to the master |
+//! | `law` | the place of the slave for a place of the master: periods, scalings, the chain rule |
 //!
 //! All lengths on the master's side are in units of the master (u), those of the slave in units of the slave (y).
 

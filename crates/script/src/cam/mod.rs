@@ -2,10 +2,10 @@
 //!
 //! | file | subject |
 //! | --- | --- |
-//! | [`table`] | the rows of a cam, from a CSV file or a script |
-//! | [`curve`] | the cam that the runtime makes of them, and its derivatives anywhere |
-//! | [`fit`] | whether a slave can go along it, and how fast its master may be |
-//! | [`law`] | rows for laws with sines, which the runtime does not compute |
+//! | `table` | the rows of a cam, from a CSV file or a script |
+//! | `curve` | the cam that the runtime makes of them, and its derivatives anywhere |
+//! | `fit` | whether a slave can go along it, and how fast its master may be |
+//! | `law` | rows for laws with sines, which the runtime does not compute |
 
 mod curve;
 mod fit;
