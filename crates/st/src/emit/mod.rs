@@ -157,6 +157,9 @@ pub(crate) fn emit(program: &Program<'_>, image: &[u8], counters: &Counters) -> 
         let name = crate::symbols::entry(&task.name);
         exported.push((name, statement::scan(&mut context, Some(place))));
     }
+    if exported.iter().any(|(_, scan)| scan.code.len() > FUNCTION_MOST) {
+        return Err(too_large(Span::default()));
+    }
     let mut functions: Vec<(Target, Function)> = Vec::new();
     let mut next = 0;
     while let Some(target) = context.wanted.get(next).copied() {
@@ -168,16 +171,10 @@ pub(crate) fn emit(program: &Program<'_>, image: &[u8], counters: &Counters) -> 
             Target::Unit(unit) => statement::unit(&mut context, unit),
         };
         if function.code.len() > FUNCTION_MOST {
-            let span = match target {
+            return Err(too_large(match target {
                 Target::Unit(unit) => program.units[unit.0 as usize].span,
                 _ => Span::default(),
-            };
-            let wrong = Diagnostic::error(
-                Code::TooLarge,
-                span,
-                "this is larger than a function of a module may be",
-            );
-            return Err(wrong.help("take parts of it out into function blocks"));
+            }));
         }
         functions.push((target, function));
     }
@@ -186,6 +183,11 @@ pub(crate) fn emit(program: &Program<'_>, image: &[u8], counters: &Counters) -> 
         wasm,
         sites: context.sites,
     })
+}
+
+fn too_large(span: Span) -> Diagnostic {
+    let what = "this is larger than a function of a module may be";
+    Diagnostic::error(Code::TooLarge, span, what).help("take parts of it out into function blocks")
 }
 
 /// Notes the place and the value of a fault, and traps.
