@@ -193,10 +193,10 @@ impl<P: Planner> Axis<P> {
             return self.fail(ErrorId::SetpointBroken, scope);
         };
         let limits = on_cam.limits;
-        let is_rough = held.is_none() && self.is_rough_on_cam(view, &at);
+        let is_rough = || held.is_none() && self.is_rough_on_cam(view, &at);
         let rough = match view.future.kind() {
-            _ if self.config.following.on_limit == OnLimit::Error => Some(is_rough),
-            Kind::Unknown | Kind::Measured | Kind::Still | Kind::NotSeen => Some(is_rough),
+            _ if self.config.following.on_limit == OnLimit::Error => Some(is_rough()),
+            Kind::Unknown | Kind::Measured | Kind::Still | Kind::NotSeen => Some(is_rough()),
             Kind::Plan if view.future.is_late() => Some(false),
             Kind::Plan => None,
         };
