@@ -65,13 +65,10 @@ impl Sides {
             self.minus
         }
     }
+}
 
-    /// These bounds with the upper one raised to `value` if `value` is outside by no more than [`ON_LIMIT`].
-    fn raised_to(self, value: f64) -> Self {
-        let on = value > self.plus && value <= self.plus * (1.0 + ON_LIMIT);
-        Self {
-            plus: if on { value } else { self.plus },
-            ..self
-        }
-    }
+/// An upper bound, raised to `value` if `value` is outside by no more than [`ON_LIMIT`].
+fn raised_to(value: f64, bound: f64) -> f64 {
+    let on = value > bound && value <= bound * (1.0 + ON_LIMIT);
+    if on { value } else { bound }
 }

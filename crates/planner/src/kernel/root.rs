@@ -1,7 +1,7 @@
 //! The one root of the third-order problem: where a rising push has to turn into the stop.
 
 use super::third::depth_term;
-use crate::math::sqrt;
+use crate::math::{max, min, sqrt};
 
 /// Largest number of steps a root may take. What a false position needs at most is 94, what a [`zero`](super::zero)
 /// needs 114; the tests show how far from it the others stay.
@@ -51,9 +51,9 @@ impl Rising {
     pub(super) fn solve(&self, highest: f64) -> Intercept {
         let Self { offset, brake, .. } = *self;
         // Below these the stop follows the push, and nothing changes (R6).
-        let lowest = self.start.max(-brake);
+        let lowest = max(self.start, -brake);
         let lowest = if offset < 0.0 {
-            lowest.max(sqrt(-offset)).min(highest)
+            min(max(sqrt(-offset), lowest), highest)
         } else {
             lowest
         };
@@ -65,15 +65,15 @@ impl Rising {
         if lowest < -touch && self.surplus(-touch) >= 0.0 {
             self.clipped(lowest, -touch)
         } else if highest <= touch || self.surplus(touch) >= 0.0 {
-            self.pointed(lowest.max(-touch), highest.min(touch))
+            self.pointed(max(-touch, lowest), min(touch, highest))
         } else {
-            self.clipped(lowest.max(touch), highest)
+            self.clipped(max(touch, lowest), highest)
         }
     }
 
     /// Left minus right side of (R7).
     fn surplus(&self, a: f64) -> f64 {
-        let drop = (a * a + self.offset).max(0.0);
+        let drop = max(a * a + self.offset, 0.0);
         a * (a * a + 2.0 * self.offset) + depth_term(drop, self.brake) - self.budget
     }
 
@@ -81,11 +81,11 @@ impl Rising {
     fn pointed(&self, lowest: f64, highest: f64) -> Intercept {
         let Self { offset, budget, .. } = *self;
         let sum = |a: f64| {
-            let depth = sqrt((a * a + offset).max(0.0));
+            let depth = sqrt(max(a * a + offset, 0.0));
             if a >= 0.0 { a + depth } else { offset / (depth - a) }
         };
         let (low, high) = (sum(lowest), sum(highest));
-        let guess = guess_sum(offset, budget).max(low).min(high);
+        let guess = min(max(guess_sum(offset, budget), low), high);
         let (sum, steps) = bracketed(low, high, guess, |s| {
             let ratio = offset / s;
             let terms = [s * s * s, 4.0 * offset * s, -offset * ratio, -4.0 * budget];
@@ -94,7 +94,7 @@ impl Rising {
         let ratio = if sum > 0.0 { offset / sum } else { 0.0 };
         let depth = 0.5 * (sum + ratio);
         Intercept {
-            a: (0.5 * (sum - ratio)).max(self.start),
+            a: max(0.5 * (sum - ratio), self.start),
             drop: depth * depth,
             steps,
         }
@@ -114,14 +114,15 @@ impl Rising {
         // With `offset` 0 the equation is a square, and the guess the root.
         let near = if offset > 0.0 { low } else { high };
         let square = 2.0 * brake * (budget - offset * near);
-        let guess = sqrt((sqrt(square.max(0.0)) - shift).max(0.0)).max(low).min(high);
+        let guess = sqrt(max(sqrt(max(square, 0.0)) - shift, 0.0));
+        let guess = min(max(guess, low), high);
         let (x, steps) = bracketed(low, high, guess, |x| {
             let y = x * x + shift;
             let linear = 2.0 * brake * offset;
             let terms = [x * x * y, shift * y, linear * x, -2.0 * brake * budget];
             Sample::new(terms, 4.0 * x * y + linear)
         });
-        let a = (x - half).max(self.start);
+        let a = max(x - half, self.start);
         Intercept {
             a,
             drop: a * a + offset,
@@ -137,16 +138,16 @@ fn guess_sum(offset: f64, budget: f64) -> f64 {
         let root = sqrt(budget * budget + cube);
         if budget > 0.0 {
             let linear = (budget + root) / (2.0 * offset);
-            linear.min(rough_cube_root(4.0 * budget))
+            min(linear, rough_cube_root(4.0 * budget))
         } else {
             offset * offset / (2.0 * (root - budget))
         }
     } else if offset < 0.0 {
         let least = sqrt(-offset);
-        let excess = (budget - offset * least).max(0.0);
+        let excess = max(budget - offset * least, 0.0);
         let near = least + sqrt(2.0 * excess / least);
-        let far = rough_cube_root(8.0 * excess).max(3.0 * least);
-        near.min(far)
+        let far = max(rough_cube_root(8.0 * excess), 3.0 * least);
+        min(near, far)
     } else {
         rough_cube_root(4.0 * budget)
     }
@@ -194,7 +195,11 @@ fn bracketed(mut low: f64, mut high: f64, guess: f64, function: impl Fn(f64) -> 
         let small = (newton - x).abs() <= CONVERGED * x.abs();
         if value.abs() <= noise || small || low >= high {
             // The root may be an end of the bracket, and the last step a rounding error beyond it.
-            let better = if small { newton.max(low).min(high) } else { newton };
+            let better = if small {
+                min(max(newton, low), high)
+            } else {
+                newton
+            };
             let inside = better >= low && better <= high;
             return (if inside { better } else { x }, step);
         }

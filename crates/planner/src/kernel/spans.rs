@@ -122,8 +122,21 @@ impl<const N: usize> Spans<N> {
 
     /// The spans of the mirrored problem.
     #[must_use]
-    pub fn mirrored(self) -> Self {
-        self.amplified(-1.0)
+    pub fn mirrored(mut self) -> Self {
+        self.mirror();
+        self
+    }
+
+    /// As [`Spans::mirrored`], in place.
+    pub fn mirror(&mut self) {
+        for span in self.list.iter_mut().take(self.len) {
+            span.input = -span.input;
+        }
+    }
+
+    /// Takes all spans out.
+    pub const fn clear(&mut self) {
+        self.len = 0;
     }
 }
 

@@ -1,8 +1,8 @@
 //! Third order: `(x, v, a)` to `(target, 0, 0)` in least time.
 
 use super::root::{Intercept, Rising};
-use super::{NOISE, Sides, Spans, second};
-use crate::math::sqrt;
+use super::{NOISE, Sides, Span, Spans, raised_to, second};
+use crate::math::{max, min, sqrt};
 
 /// Most spans of a [`third`] profile: three of the push, a cruise, three of the stop.
 pub const THIRD_SPANS: usize = 7;
@@ -65,26 +65,38 @@ impl State {
 /// The start `(v, a)` may be anything, also outside `bounds`; it is then brought inside first. Bounded work:
 /// closed forms, or one root of at most [`MAX_STEPS`](super::MAX_STEPS) steps (R4 to R10).
 pub fn third(x: f64, v: f64, a: f64, target: f64, bounds: &Bounds) -> Profile {
-    let distance = target - x;
-    let start = State { x: 0.0, v, a };
+    let mut profile = Profile::nothing();
     let stop = second(v, a, 0.0, bounds.a);
-    let gap = distance - start.after_all(&stop).x;
-    let t = stop.duration();
-    // What the input makes of `a` is no more than twice its bound, however long the stop takes.
-    let changed = t.min(a.abs() + 2.0 * bounds.a.plus.max(bounds.a.minus));
-    let added_up = x.abs() + target.abs() + t * (v.abs() + t * (a.abs() + changed));
-    if gap.abs() <= NOISE * added_up {
-        let mut spans = Spans::new();
-        spans.extend(&stop);
-        Profile { spans, steps: 0 }
-    } else if gap > 0.0 {
-        push_up(distance, start, bounds)
-    } else {
-        let mirrored = State { x: 0.0, v: -v, a: -a };
-        let profile = push_up(-distance, mirrored, &bounds.mirrored());
-        Profile {
-            spans: profile.spans.mirrored(),
-            ..profile
+    profile.lay(&stop, (x, v, a), target, bounds);
+    profile
+}
+
+impl Profile {
+    /// No profile yet.
+    pub(crate) const fn nothing() -> Self {
+        Self {
+            spans: Spans::new(),
+            steps: 0,
+        }
+    }
+
+    /// As [`third`], where the fastest `stop` is known, the way from `(v, a)` to `(0, 0)`.
+    pub(crate) fn lay(&mut self, stop: &Spans<3>, (x, v, a): (f64, f64, f64), target: f64, bounds: &Bounds) {
+        let distance = target - x;
+        let start = State { x: 0.0, v, a };
+        let gap = distance - start.after_all(stop).x;
+        let t = stop.duration();
+        // What the input makes of `a` is no more than twice its bound, however long the stop takes.
+        let changed = min(t, a.abs() + 2.0 * max(bounds.a.plus, bounds.a.minus));
+        let added_up = x.abs() + target.abs() + t * (v.abs() + t * (a.abs() + changed));
+        if gap.abs() <= NOISE * added_up {
+            self.spans.extend(stop);
+        } else if gap > 0.0 {
+            push_up(self, distance, start, bounds);
+        } else {
+            let mirrored = State { x: 0.0, v: -v, a: -a };
+            push_up(self, -distance, mirrored, &bounds.mirrored());
+            self.spans.mirror();
         }
     }
 }
@@ -93,12 +105,11 @@ pub fn third(x: f64, v: f64, a: f64, target: f64, bounds: &Bounds) -> Profile {
 ///
 /// The place where the stop ends grows only while the push raises `a` or holds it above zero (R6); so the
 /// root is looked for in those spans alone, and the first one whose end stops beyond the target has it.
-fn push_up(distance: f64, start: State, bounds: &Bounds) -> Profile {
+fn push_up(profile: &mut Profile, distance: f64, start: State, bounds: &Bounds) {
     let brake = bounds.a.minus;
     let arrest = start.v + 0.5 * start.a * start.a.abs();
-    let top = bounds.v.raised_to(arrest).plus;
+    let top = raised_to(arrest, bounds.v.plus);
     let push = second(start.v, start.a, top, bounds.a);
-    let mut spans = Spans::new();
     let mut state = start;
     for span in push.iter() {
         let end = state.after(span.duration, span.input);
@@ -106,41 +117,32 @@ fn push_up(distance: f64, start: State, bounds: &Bounds) -> Profile {
         // A stop that starts upwards follows the push for a while: nothing grows yet (R6).
         let stops_downwards = end.v + 0.5 * end.a * end.a.abs() > 0.0;
         if grows && stops_downwards && end.x + stopping_distance(end, brake) >= distance {
-            return intercept(distance, state, span.input, span.duration, brake, spans);
+            return intercept(profile, distance - state.x, state, *span, brake);
         }
-        spans.push(span.duration, span.input);
+        profile.spans.push(span.duration, span.input);
         state = end;
     }
     let cruise = distance - state.x - stopping_distance(state, brake);
-    spans.push(cruise / top, 0.0);
-    push_stop(&mut spans, 0.0, top, brake);
-    Profile { spans, steps: 0 }
+    profile.spans.push(cruise / top, 0.0);
+    push_stop(&mut profile.spans, 0.0, top, brake);
 }
 
-/// Ends the push inside a span that starts at `state`, where the stop ends on `distance`.
-fn intercept(
-    distance: f64,
-    state: State,
-    input: f64,
-    longest: f64,
-    brake: f64,
-    mut spans: Spans<THIRD_SPANS>,
-) -> Profile {
-    let left = distance - state.x;
-    if input > 0.0 {
+/// Ends the push inside a `span` that starts at `state`, where the stop ends `left` further.
+fn intercept(profile: &mut Profile, left: f64, state: State, span: Span, brake: f64) {
+    let spans = &mut profile.spans;
+    if span.input > 0.0 {
         let Intercept { a, drop, steps } =
-            Rising::new(left, state.v, state.a, brake).solve(state.a + longest);
+            Rising::new(left, state.v, state.a, brake).solve(state.a + span.duration);
         spans.push(a - state.a, 1.0);
-        push_stop(&mut spans, a, drop, brake);
-        Profile { spans, steps }
+        push_stop(spans, a, drop, brake);
+        profile.steps = steps;
     } else {
         let a = state.a;
-        let highest = state.v + a * longest + 0.5 * a * a;
+        let highest = state.v + a * span.duration + 0.5 * a * a;
         let lowest = state.v + 0.5 * a * a;
-        let drop = holding(left, state.v, a, brake).min(highest).max(lowest);
+        let drop = max(min(holding(left, state.v, a, brake), highest), lowest);
         spans.push((drop - lowest) / a, 0.0);
-        push_stop(&mut spans, a, drop, brake);
-        Profile { spans, steps: 0 }
+        push_stop(spans, a, drop, brake);
     }
 }
 
@@ -151,7 +153,7 @@ fn push_stop(spans: &mut Spans<THIRD_SPANS>, a: f64, drop: f64, brake: f64) {
         spans.push((drop - brake * brake) / brake, 0.0);
         spans.push(brake, 1.0);
     } else {
-        let depth = sqrt(drop.max(0.0));
+        let depth = sqrt(max(drop, 0.0));
         spans.push(a + depth, -1.0);
         spans.push(depth, 1.0);
     }
@@ -161,7 +163,7 @@ fn push_stop(spans: &mut Spans<THIRD_SPANS>, a: f64, drop: f64, brake: f64) {
 fn stopping_distance(state: State, brake: f64) -> f64 {
     let State { v, a, .. } = state;
     let drop = v + 0.5 * a * a;
-    a * (drop - a * a / 6.0) + depth_term(drop.max(0.0), brake)
+    a * (drop - a * a / 6.0) + depth_term(max(drop, 0.0), brake)
 }
 
 /// The part of the stopping distance that depends on `drop` alone (R5).
@@ -175,7 +177,7 @@ pub(super) fn depth_term(drop: f64, brake: f64) -> f64 {
 
 /// `drop` at the end of a hold of `a > 0` that started at `v`, if the stop then ends `left` further (R8).
 fn holding(left: f64, v: f64, a: f64, brake: f64) -> f64 {
-    let budget = (left + v * v / (2.0 * a) + a * a * a / 24.0).max(0.0);
+    let budget = max(left + v * v / (2.0 * a) + a * a * a / 24.0, 0.0);
     let product = sqrt(2.0 * a * budget);
     let depth = 2.0 * product / (a + sqrt(a * a + 4.0 * product));
     if depth <= brake {

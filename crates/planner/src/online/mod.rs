@@ -173,8 +173,13 @@ impl OnlinePlan {
         check(start, target, end_velocity, limits, before, cycle)?;
         let acting =
             |limits: &DirectedLimits| limits.acting_for(start, end_velocity, target - start.position, cycle);
-        let (given, wider) = (limits, acting(&limits.or_larger(before)));
-        let limits = &acting(limits);
+        let given = limits;
+        let limits = &acting(given);
+        let wider = if before == given {
+            *limits
+        } else {
+            acting(&given.or_larger(before))
+        };
         let mut plan = Self {
             start: *start,
             target,

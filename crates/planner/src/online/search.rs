@@ -46,7 +46,8 @@ pub(super) struct Search<'a> {
 
 /// The last ramp of a move, from some state.
 struct Stop {
-    spans: Spans<RAMP_SPANS>,
+    start: Setpoint,
+    ramp: Ramp,
     /// By how much it ends beyond the target.
     beyond: f64,
     /// What of that may be rounding.
@@ -122,14 +123,14 @@ impl<'a> Search<'a> {
             spans.extend(&profile);
             return spans;
         }
-        let stop = self.stop(start);
+        let mut stop = self.stop(start);
         if stop.beyond.abs() <= stop.noise.max(self.resolution) {
-            spans.extend(&stop.spans);
+            spans.extend(&stop.ramp.spans);
             return spans;
         }
         let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
         let top = self.top(side);
-        let push = self.ramp(start, top);
+        let push = self.whole_ramp(start, top).spans;
         let mut way = Way::new(self.ramps.order(), start, self.ramps.lower());
         let mut from = stop.ahead(0.0, side);
         let parts = if self.end_velocity == 0.0 { 1 } else { PARTS };
@@ -140,22 +141,25 @@ impl<'a> Search<'a> {
                 way.go(time);
                 way.state
             };
-            let ahead = |time: f64| self.stop(&after(time)).ahead(time, side);
+            let mut ahead = |time: f64| {
+                self.stop_from(&mut stop, &after(time));
+                stop.ahead(time, side)
+            };
             let to = ahead(span.duration);
             if to.value >= 0.0 {
-                let switch = self.zero(Point { at: 0.0, ..from }, to, ahead);
+                let switch = self.zero(Point { at: 0.0, ..from }, to, &mut ahead);
+                ahead(switch.at);
                 spans.push(switch.at, span.input);
-                spans.extend(&self.stop(&after(switch.at)).spans);
+                spans.extend(&stop.ramp.spans);
                 return spans;
             }
             spans.push(span.duration, span.input);
             way.go(span.duration);
             from = to;
         }
-        let state = steady(&way.state, top);
-        let stop = self.stop(&state);
+        self.stop_from(&mut stop, &steady(&way.state, top));
         cruise(&mut spans, -stop.ahead(0.0, side).value, top);
-        spans.extend(&stop.spans);
+        spans.extend(&stop.ramp.spans);
         spans
     }
 
@@ -186,7 +190,7 @@ impl<'a> Search<'a> {
         if peak.at == top {
             cruise(&mut spans, -peak.value, top);
         }
-        spans.extend(&stop.spans);
+        spans.extend(&stop.ramp.spans);
         spans
     }
 
@@ -239,13 +243,13 @@ impl<'a> Search<'a> {
             if left >= 0.0 {
                 spans.extend(&first);
                 spans.push(left / held, 0.0);
-                spans.extend(&last.spans);
+                spans.extend(&last.ramp.spans);
                 return spans;
             }
             held = (0.5 * held).max(least);
         }
         // What is left is rounding.
-        spans.extend(&direct.spans);
+        spans.extend(&direct.ramp.spans);
         spans
     }
 
@@ -256,9 +260,15 @@ impl<'a> Search<'a> {
 
     /// As [`Search::ramp`], with what is known of it.
     pub(super) fn whole_ramp(&self, start: &Setpoint, velocity: f64) -> Ramp {
+        let mut ramp = Ramp::nothing();
+        self.lay(&mut ramp, start, velocity);
+        ramp
+    }
+
+    fn lay(&self, ramp: &mut Ramp, start: &Setpoint, velocity: f64) {
         self.solves.set(self.solves.get() + 1);
         let heading = heading(start, velocity, self.ramps.lower_velocity(), self.ramps.order());
-        self.ramps.ramp(start, velocity, heading, Course::Free)
+        self.ramps.lay(ramp, start, velocity, heading, Course::Free);
     }
 
     /// The speed between `near`, from which the ramp alone ends short of the target, and `far`, from which
@@ -281,18 +291,35 @@ impl<'a> Search<'a> {
         self.ramp_to(start, self.end_velocity)
     }
 
-    fn ramp_to(&self, start: &Setpoint, velocity: f64) -> Stop {
-        let spans = self.ramp(start, velocity);
-        let end = follow(self.ramps, start, &spans);
-        let added_up = start.position.abs() + self.target.abs() + spans.duration() * start.velocity.abs();
-        Stop {
-            beyond: end.position - self.target,
-            noise: 0.25 * NOISE * added_up,
-            spans,
+    /// The same in place of what `stop` was, unless it begins there already.
+    fn stop_from(&self, stop: &mut Stop, start: &Setpoint) {
+        if stop.start != *start {
+            self.lay_to(stop, start, self.end_velocity);
         }
     }
 
-    fn zero(&self, low: Point, high: Point, function: impl Fn(f64) -> Point) -> Point {
+    fn ramp_to(&self, start: &Setpoint, velocity: f64) -> Stop {
+        let mut stop = Stop {
+            start: *start,
+            ramp: Ramp::nothing(),
+            beyond: 0.0,
+            noise: 0.0,
+        };
+        self.lay_to(&mut stop, start, velocity);
+        stop
+    }
+
+    fn lay_to(&self, stop: &mut Stop, start: &Setpoint, velocity: f64) {
+        self.lay(&mut stop.ramp, start, velocity);
+        let spans = &stop.ramp.spans;
+        let end = follow(self.ramps, start, spans);
+        let added_up = start.position.abs() + self.target.abs() + spans.duration() * start.velocity.abs();
+        stop.start = *start;
+        stop.beyond = end.position - self.target;
+        stop.noise = 0.25 * NOISE * added_up;
+    }
+
+    fn zero(&self, low: Point, high: Point, function: impl FnMut(f64) -> Point) -> Point {
         let (point, steps) = zero(low, high, function);
         self.steps.set(self.steps.get().max(steps));
         point

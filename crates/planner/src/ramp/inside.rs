@@ -5,7 +5,7 @@
 
 use super::path::zeros;
 use crate::kernel::{Bounds, ON_LIMIT, Sides, Spans, falling_root, second};
-use crate::math::sqrt;
+use crate::math::{max, min, sqrt};
 
 /// A state in the kernel's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,13 +83,13 @@ impl Box4 {
     }
 }
 
-/// What goes before the ramp proper.
+/// What goes before the ramp proper, but for its spans.
 pub(super) struct Lead {
-    /// The spans; none from a viable state inside the limits.
-    pub(super) spans: Spans<LEAD_SPANS>,
-    /// The state after them.
+    /// The state after it.
     pub(super) state: State,
-    /// The velocity at which the arrest from there ends.
+    /// The arrest from there.
+    pub(super) arrest: Spans<3>,
+    /// The velocity at which that ends.
     pub(super) rest: f64,
     /// Most root steps taken.
     pub(super) steps: u32,
@@ -97,55 +97,68 @@ pub(super) struct Lead {
     pub(super) viable: bool,
 }
 
-/// Brings `state` inside the limits, or as near to them as can be; the velocity has to be in `range`, and on the way of
-/// the ramp proper not below `low`.
-///
-/// `own` are the bounds of the ramp proper, `bounds` those of the state.
-pub(super) fn lead_in(
-    state: State,
-    goal: f64,
-    (low, range): (f64, Sides),
-    bounds: &Box4,
-    own: &Bounds,
-) -> Lead {
-    let high = range.plus;
-    let mut lead = Lead {
-        spans: Spans::new(),
-        state,
-        rest: arrested(state, bounds.jerk),
-        steps: 0,
-        viable: false,
-    };
-    if is_inside(state, bounds) && is_viable(state, lead.rest, low, high, bounds) {
-        lead.viable = true;
-        return lead;
-    }
-    // Where it comes to may be another place once acceleration and jerk are inside.
-    let entered = arrested(state.after_all(&enter(state, bounds)), bounds.jerk);
-    // Bound to come out on the other side of zero: before anything else, since this grows for as long as it is put off.
-    if bounds.is_lowered() && lead.rest.min(entered) < -range.minus * (1.0 + ON_LIMIT) {
-        let (spans, steps) = hasten(state.mirrored(), range.minus, -goal, -high, &bounds.turned());
-        lead.add(&spans.mirrored(), steps, bounds.jerk);
-        return lead;
-    }
-    if bounds.is_lowered() && state.v.max(lead.rest).max(entered) > high * (1.0 + ON_LIMIT) {
-        let (spans, steps) = hasten(state, high, goal, low, bounds);
-        lead.add(&spans, steps, bounds.jerk);
-        return lead;
-    }
-    lead.add(&enter(state, bounds), 0, bounds.jerk);
-    let (spans, steps) = relieve(lead.state, lead.rest, low, high, own);
-    lead.add(&spans, steps, bounds.jerk);
-    lead
-}
-
 impl Lead {
-    fn add<const N: usize>(&mut self, spans: &Spans<N>, steps: u32, jerk: f64) {
-        if !spans.is_empty() {
-            self.spans.extend(spans);
-            self.state = self.state.after_all(spans);
-            self.rest = arrested(self.state, jerk);
-            self.steps = self.steps.max(steps);
+    /// No spans before the ramp proper from `state`.
+    pub(super) fn none(state: State, jerk: f64) -> Self {
+        let arrest = arrest(state, jerk);
+        Self {
+            state,
+            rest: state.after_all(&arrest).v,
+            arrest,
+            steps: 0,
+            viable: false,
+        }
+    }
+
+    /// Appends to `spans` what brings the state inside the limits, or as near to them as can be; nothing if it is viable
+    /// and inside. The velocity has to be in `range`, and on the way of the ramp proper not below `low`.
+    ///
+    /// `own` are the bounds of the ramp proper, `bounds` those of the state.
+    pub(super) fn come_inside<const N: usize>(
+        &mut self,
+        spans: &mut Spans<N>,
+        goal: f64,
+        (low, range): (f64, Sides),
+        bounds: &Box4,
+        own: &Bounds,
+    ) {
+        let high = range.plus;
+        let state = self.state;
+        if is_inside(state, bounds) && is_viable(state, self.rest, low, high, bounds) {
+            self.viable = true;
+            return;
+        }
+        // Where it comes to may be another place once acceleration and jerk are inside.
+        let entered = arrested(state.after_all(&enter(state, bounds)), bounds.jerk);
+        // Bound to come out on the other side of zero: before anything else, since this grows for as long as it is put off.
+        if bounds.is_lowered() && self.rest.min(entered) < -range.minus * (1.0 + ON_LIMIT) {
+            let (first, steps) = hasten(state.mirrored(), range.minus, -goal, -high, &bounds.turned());
+            self.add(spans, &first.mirrored(), steps, bounds.jerk);
+            return;
+        }
+        if bounds.is_lowered() && state.v.max(self.rest).max(entered) > high * (1.0 + ON_LIMIT) {
+            let (first, steps) = hasten(state, high, goal, low, bounds);
+            self.add(spans, &first, steps, bounds.jerk);
+            return;
+        }
+        self.add(spans, &enter(state, bounds), 0, bounds.jerk);
+        let (next, steps) = relieve(self.state, self.rest, low, high, own);
+        self.add(spans, &next, steps, bounds.jerk);
+    }
+
+    fn add<const N: usize, const M: usize>(
+        &mut self,
+        spans: &mut Spans<N>,
+        more: &Spans<M>,
+        steps: u32,
+        jerk: f64,
+    ) {
+        if !more.is_empty() {
+            spans.extend(more);
+            *self = Self {
+                steps: self.steps.max(steps),
+                ..Self::none(self.state.after_all(more), jerk)
+            };
         }
     }
 }
@@ -159,8 +172,8 @@ fn is_inside(state: State, bounds: &Box4) -> bool {
 /// Whether the arrest from a state with jerk and acceleration inside keeps acceleration and velocity inside.
 fn is_viable(state: State, rest: f64, low: f64, high: f64, bounds: &Box4) -> bool {
     let coming = state.a + 0.5 * state.j * state.j.abs();
-    state.v.max(top(state, rest)) <= high + slack(state, rest, high)
-        && state.v.min(bottom(state, rest)) >= low - slack(state, rest, depth(low, high))
+    max(top(state, rest), state.v) <= high + slack(state, rest, high)
+        && min(bottom(state, rest), state.v) >= low - slack(state, rest, depth(low, high))
         && coming <= bounds.a.plus * (1.0 + ON_LIMIT)
         && coming >= -bounds.a.minus * (1.0 + ON_LIMIT)
 }
@@ -175,7 +188,7 @@ const ENTER_SPANS: usize = 2 * RULE_SPANS;
 /// Most spans of [`hasten`]: a push of three and a hold, then [`enter`].
 const HASTEN_SPANS: usize = 4 + ENTER_SPANS;
 
-/// Most spans of [`lead_in`]: [`hasten`], or [`enter`] and [`relieve`].
+/// Most spans of a [`Lead`]: [`hasten`], or [`enter`] and [`relieve`].
 pub(super) const LEAD_SPANS: usize = HASTEN_SPANS;
 
 /// Each round settles acceleration, jerk or the acceleration to come; no later one undoes an earlier.
@@ -302,11 +315,14 @@ fn hasten(state: State, limit: f64, goal: f64, low: f64, bounds: &Box4) -> (Span
     (lead(time), steps)
 }
 
-/// The velocity once acceleration and jerk are zero as soon as can be.
+/// The spans that bring acceleration and jerk to zero as soon as can be.
+fn arrest(state: State, jerk: f64) -> Spans<3> {
+    second(state.a, state.j, 0.0, Sides::both(jerk))
+}
+
+/// The velocity at which they end.
 pub(super) fn arrested(state: State, jerk: f64) -> f64 {
-    state
-        .after_all(&second(state.a, state.j, 0.0, Sides::both(jerk)))
-        .v
+    state.after_all(&arrest(state, jerk)).v
 }
 
 /// The spans by which a velocity that a gentle arrest, ending at `rest`, would take out of `low ..= high` is
@@ -324,7 +340,7 @@ fn relieve(state: State, rest: f64, low: f64, high: f64, bounds: &Bounds) -> (Sp
 
 /// How far outside a velocity `bound` counts as on it.
 fn slack(state: State, rest: f64, bound: f64) -> f64 {
-    ON_LIMIT * bound.min(state.v.abs().max(rest.abs()))
+    ON_LIMIT * min(max(rest.abs(), state.v.abs()), bound)
 }
 
 /// The magnitude of a lower velocity bound; of one at 0 that of the other.

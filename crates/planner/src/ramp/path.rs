@@ -1,7 +1,7 @@
 //! A motion as a list of polynomial pieces, its values and its extremes.
 
 use crate::kernel::{Spans, falling_root};
-use crate::math::sqrt;
+use crate::math::{max, sqrt};
 use crate::{Order, Setpoint};
 
 /// What a jerk of zero may be off by, relative to the largest one before.
@@ -382,8 +382,8 @@ impl<const N: usize> Path<N> {
         })
     }
 
-    /// Whether no extreme of velocity, acceleration and jerk can be beyond these bounds. What takes more than
-    /// a look at the ends of the pieces is not decided: then it is `false`, and [`Path::extremes`] tells.
+    /// Whether no extreme of velocity, acceleration and jerk is beyond these bounds, but for rounding. What is beyond
+    /// them, [`Path::extremes`] tells.
     pub(crate) fn is_surely_within(&self, velocity: f64, acceleration: f64, jerk: f64) -> bool {
         let within = |v: f64, a: f64| v.abs() <= velocity && a.abs() <= acceleration;
         let Some(end) = self.last().map(|last| last.state) else {
@@ -401,17 +401,16 @@ impl<const N: usize> Path<N> {
                 snap: s,
                 ..
             } = first;
-            // The extreme acceleration inside, and the velocity where the acceleration passes zero, or one beyond it.
+            // The extreme acceleration inside, and the velocity where the acceleration passes zero.
             let turns = s != 0.0 && j * last.jerk < 0.0;
             let peak = if turns { a - j * j / (2.0 * s) } else { a };
             let passes = a * peak < 0.0 || peak * last.acceleration < 0.0;
-            let top = match (passes, s == 0.0) {
-                (false, _) => v,
-                (true, true) => v - a * a / (2.0 * j),
-                (true, false) => v + a * stretch.duration,
+            let top_is_within = |time: f64| {
+                let is_inside = time > 0.0 && time < stretch.duration;
+                !is_inside || within(stretch.at(time).velocity, peak)
             };
-            let is_decided = !(passes && turns) && within(v, a) && within(top, peak) && j.abs() <= jerk;
-            if !is_decided {
+            let is_within = within(v, a) && within(v, peak) && j.abs() <= jerk;
+            if !is_within || passes && !zeros(a, j, s).into_iter().all(top_is_within) {
                 return false;
             }
         }
@@ -453,8 +452,8 @@ impl Way {
         let Setpoint {
             acceleration, jerk, ..
         } = &mut self.state;
-        self.largest_acceleration = self.largest_acceleration.max(acceleration.abs());
-        self.largest_jerk = self.largest_jerk.max(jerk.abs());
+        self.largest_acceleration = max(acceleration.abs(), self.largest_acceleration);
+        self.largest_jerk = max(jerk.abs(), self.largest_jerk);
         if input == 0.0 && jerk.abs() <= ROUNDING * self.largest_jerk {
             *jerk = 0.0;
             if acceleration.abs() <= (CRUISING * self.largest_acceleration).min(0.5 * self.bound) {

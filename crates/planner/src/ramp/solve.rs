@@ -1,6 +1,6 @@
 //! The spans of a ramp at each order, in the kernel's units.
 
-use super::inside::{self, Box4, LEAD_SPANS, State};
+use super::inside::{self, Box4, LEAD_SPANS, Lead, State};
 use super::slope::{Box3, Slope};
 use super::turn::TURN_SPANS;
 use crate::kernel::{Bounds, ON_LIMIT, Profile, Scale, Sides, Spans, second, third};
@@ -39,7 +39,7 @@ struct Before {
     input: f64,
 }
 
-/// One ramp.
+/// One ramp. It is large, so it is made where it is to stay.
 pub(crate) struct Ramp {
     /// Durations and inputs in the kernel's units.
     pub(crate) spans: Spans<RAMP_SPANS>,
@@ -49,6 +49,18 @@ pub(crate) struct Ramp {
     pub(crate) steps: u32,
     /// Whether the start was inside and viable and the ramp keeps its direction, so that it exceeds nothing.
     pub(crate) viable: bool,
+}
+
+impl Ramp {
+    /// No ramp yet.
+    pub(crate) const fn nothing() -> Self {
+        Self {
+            spans: Spans::new(),
+            lead: 0,
+            steps: 0,
+            viable: false,
+        }
+    }
 }
 
 impl Ramps {
@@ -208,6 +220,13 @@ impl Ramps {
     ///
     /// `heading` is the direction of the motion ([`heading`]), 1 or -1.
     pub(crate) fn ramp(&self, start: &Setpoint, goal: f64, heading: f64, course: Course) -> Ramp {
+        let mut ramp = Ramp::nothing();
+        self.lay(&mut ramp, start, goal, heading, course);
+        ramp
+    }
+
+    /// As [`Ramps::ramp`], in place of what `ramp` was.
+    pub(crate) fn lay(&self, ramp: &mut Ramp, start: &Setpoint, goal: f64, heading: f64, course: Course) {
         let state = State {
             v: heading * start.velocity,
             a: heading * start.acceleration,
@@ -219,15 +238,15 @@ impl Ramps {
         } else {
             self.velocity
         };
-        let mut ramp = match self.order {
-            Order::Two => self.second_order(state.v, goal, range.plus, course),
-            Order::Three => self.third_order(state, goal, range, course),
-            Order::Four => self.fourth_order(state, goal, range, course),
-        };
-        if heading < 0.0 {
-            ramp.spans = ramp.spans.mirrored();
+        ramp.spans.clear();
+        match self.order {
+            Order::Two => self.second_order(ramp, state.v, goal, range.plus, course),
+            Order::Three => self.third_order(ramp, state, goal, range, course),
+            Order::Four => self.fourth_order(ramp, state, goal, range, course),
         }
-        ramp
+        if heading < 0.0 {
+            ramp.spans.mirror();
+        }
     }
 
     /// The whole move from `start` to rest at `target` where the kernel has it: at order 3 with the same
@@ -300,17 +319,18 @@ impl Ramps {
     }
 
     /// Order 2: one straight line, or two if the velocity has to come inside its limit first (R12).
-    fn second_order(&self, velocity: f64, goal: f64, limit: f64, course: Course) -> Ramp {
-        let mut spans = Spans::new();
+    fn second_order(&self, ramp: &mut Ramp, velocity: f64, goal: f64, limit: f64, course: Course) {
+        let spans = &mut ramp.spans;
         let sides = self.sides(goal, false);
-        let viable = velocity <= limit && velocity >= 0.0;
+        ramp.viable = velocity <= limit && velocity >= 0.0;
+        ramp.steps = 0;
         let mut velocity = velocity;
         if velocity > limit * (1.0 + ON_LIMIT) {
             let fast = self.before.deceleration;
             spans.push((velocity - limit) / fast, -fast);
             velocity = limit;
         }
-        let lead = spans.len();
+        ramp.lead = spans.len();
         let change = goal - velocity;
         if goal < 0.0 && self.splits(course) {
             spans.extend(&self.turning(&setpoint(velocity, 0.0, 0.0), goal).0);
@@ -319,16 +339,10 @@ impl Ramps {
         } else {
             spans.push(-change / sides.minus, -sides.minus);
         }
-        Ramp {
-            spans,
-            lead,
-            steps: 0,
-            viable,
-        }
     }
 
     /// Order 3: `(velocity, acceleration)` to `(goal, 0)` (R3).
-    fn third_order(&self, start: State, goal: f64, range: Sides, course: Course) -> Ramp {
+    fn third_order(&self, ramp: &mut Ramp, start: State, goal: f64, range: Sides, course: Course) {
         let start = Slope {
             v: start.v,
             a: start.a,
@@ -339,29 +353,25 @@ impl Ramps {
             brake_before: self.before.deceleration,
             jerk_before: self.before.input,
         };
-        let (lead, mut steps) = start.lead_in(goal, range, &bounds);
-        let viable = lead.is_empty() && goal >= 0.0 && start.is_viable(range.plus);
+        let (lead, steps) = start.lead_in(goal, range, &bounds);
+        ramp.viable = lead.is_empty() && goal >= 0.0 && start.is_viable(range.plus);
+        ramp.lead = lead.len();
+        ramp.steps = steps;
         let state = start.after_all(&lead);
         let dips = goal >= 0.0 && state.rest() < 0.0;
-        let mut spans = Spans::new();
-        spans.extend(&lead);
+        ramp.spans.extend(&lead);
         if self.splits(course) && (dips || goal < 0.0) {
-            let (turning, more) = self.turning(&setpoint(state.v, state.a, 0.0), goal);
-            spans.extend(&turning);
-            steps = steps.max(more);
+            let (turning, steps) = self.turning(&setpoint(state.v, state.a, 0.0), goal);
+            ramp.spans.extend(&turning);
+            ramp.steps = ramp.steps.max(steps);
         } else {
-            spans.extend(&second(state.v, state.a, goal, self.sides(goal, dips)));
-        }
-        Ramp {
-            spans,
-            lead: lead.len(),
-            steps,
-            viable,
+            ramp.spans
+                .extend(&second(state.v, state.a, goal, self.sides(goal, dips)));
         }
     }
 
     /// Order 4: `(velocity, acceleration, jerk)` to `(goal, 0, 0)` (R4 to R10).
-    fn fourth_order(&self, start: State, goal: f64, range: Sides, course: Course) -> Ramp {
+    fn fourth_order(&self, ramp: &mut Ramp, start: State, goal: f64, range: Sides, course: Course) {
         let may_turn = goal < 0.0 || course == Course::Free;
         let bounds = Box4 {
             a: Sides {
@@ -378,30 +388,28 @@ impl Ramps {
             a: Sides::both(self.jerk),
         };
         let low = if may_turn { -range.minus } else { 0.0 };
-        let lead = inside::lead_in(start, goal, (low, range), &bounds, &own(true));
+        let spans = &mut ramp.spans;
+        let mut lead = Lead::none(start, self.jerk);
+        lead.come_inside(spans, goal, (low, range), &bounds, &own(true));
+        ramp.lead = spans.len();
         let dips = goal >= 0.0 && (lead.state.v < 0.0 || lead.rest < 0.0);
         let State { v, a, j } = lead.state;
-        let mut spans = Spans::new();
-        spans.extend(&lead.spans);
         let steps = if self.splits(course) && (dips || goal < 0.0) {
             let (turning, steps) = self.turning(&setpoint(v, a, j), goal);
             spans.extend(&turning);
             steps
         } else {
-            let profile = third(v, a, j, goal, &own(dips));
+            let mut profile = Profile::nothing();
+            profile.lay(&lead.arrest, (v, a, j), goal, &own(dips));
             spans.extend(&profile.spans);
             profile.steps
         };
+        ramp.steps = lead.steps.max(steps);
         // Where the acceleration comes to while the jerk goes to zero as fast as it can.
         let settled = start.a + 0.5 * start.j * start.j.abs();
         let widened = 1.0 + ON_LIMIT;
         let held = settled <= self.acceleration * widened && settled >= -self.deceleration * widened;
-        Ramp {
-            spans,
-            lead: lead.spans.len(),
-            steps: lead.steps.max(steps),
-            viable: lead.viable && held && goal >= 0.0,
-        }
+        ramp.viable = lead.viable && held && goal >= 0.0;
     }
 }
 
