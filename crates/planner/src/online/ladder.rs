@@ -8,7 +8,7 @@ use crate::kernel::{NOISE, ON_LIMIT, Sides, Spans};
 use crate::math::sqrt;
 use crate::ramp::excess::{self, Excess};
 use crate::ramp::path::Path;
-use crate::ramp::solve::{RAMP_SPANS, Ramps};
+use crate::ramp::solve::{RAMP_SPANS, Ramps, heading};
 use crate::ramp::{is_there, scans};
 use crate::{DirectedLimits, Field, Limits, Order, PlanError, Setpoint};
 
@@ -339,11 +339,9 @@ impl<'a> Climb<'a> {
 
     fn least_excess(&self) -> Excess {
         let stop = self.search.whole_ramp(&self.inward, 0.0);
-        let back = if self.start.velocity < 0.0 {
-            self.ramps.velocity(1.0)
-        } else {
-            -self.ramps.velocity(-1.0)
-        };
+        let ramps = self.ramps;
+        let side = -heading(&self.inward, 0.0, ramps.lower_velocity(), ramps.order());
+        let back = side * ramps.velocity(side);
         let turn = self.search.whole_ramp(&self.inward, back);
         let one = self.excess_of(&stop.spans, stop.spans.len());
         let other = self.excess_of(&turn.spans, turn.lead);

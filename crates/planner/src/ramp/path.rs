@@ -528,6 +528,8 @@ pub(crate) fn zeros(a: f64, j: f64, s: f64) -> [f64; 2] {
         return [-a / j, f64::INFINITY];
     }
     let root = sqrt(j * j - 2.0 * a * s);
-    let sum = if j >= 0.0 { j + root } else { j - root };
+    // Where j is zero, s decides: the mirrored piece has the same zeros to the last bit.
+    let rises = j > 0.0 || (j == 0.0 && s > 0.0);
+    let sum = if rises { j + root } else { j - root };
     [-2.0 * a / sum, -sum / s]
 }

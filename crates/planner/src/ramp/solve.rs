@@ -141,14 +141,15 @@ impl Ramps {
     }
 
     /// The bounds of an acceleration between the velocities `from` and `to`: where they differ in sign the lower one
-    /// holds both ways, but for the acceleration `end` itself.
+    /// holds both ways, but for the acceleration `end` itself, which a motion from rest to rest comes to from behind.
     pub(crate) fn accelerations(&self, from: f64, to: f64, end: f64) -> Sides {
-        let (up, down) = if from.min(to) >= 0.0 {
-            (self.acceleration, self.deceleration)
-        } else if from.max(to) <= 0.0 {
+        let (low, high) = (from.min(to), from.max(to));
+        let (up, down) = if low < 0.0 && high > 0.0 {
+            (self.lower(), self.lower())
+        } else if low < 0.0 || high == 0.0 && end > 0.0 {
             (self.deceleration, self.acceleration)
         } else {
-            (self.lower(), self.lower())
+            (self.acceleration, self.deceleration)
         };
         Sides {
             minus: down.max(-end),
@@ -437,7 +438,7 @@ pub(crate) fn unmoved(velocity: f64) -> f64 {
 }
 
 /// The direction a motion has, 1 or -1: the sign of the velocity, or if that is nothing but rounding beside
-/// its bound `velocity`, of the first derivative that moves it.
+/// its bound `velocity`, of the first derivative that moves it, if any does.
 pub(crate) fn heading(start: &Setpoint, goal: f64, velocity: f64, order: Order) -> f64 {
     let unless_it_jumps = |least| if order >= least { 0.0 } else { f64::INFINITY };
     let decisive = [
@@ -445,6 +446,7 @@ pub(crate) fn heading(start: &Setpoint, goal: f64, velocity: f64, order: Order) 
         (start.acceleration, unless_it_jumps(Order::Three)),
         (start.jerk, unless_it_jumps(Order::Four)),
         (goal, 0.0),
+        (start.velocity, 0.0),
     ];
     decisive
         .iter()

@@ -98,6 +98,52 @@ fn the_mirrored_move_is_the_mirror_image() {
     }
 }
 
+/// At a velocity of zero, or next to it, which is no direction, the derivatives above decide; also where they can't be
+/// stopped inside the limits.
+#[test]
+fn the_mirrored_move_from_no_velocity_is_the_mirror_image() {
+    let mut random = Random(64);
+    let mut outside = 0;
+    for case in 0..6000 {
+        let limits = support::limits(&mut random, ORDERS[case % 3]);
+        let within = |random: &mut Random, bound: f64| match random.below(4) {
+            0 => 0.0,
+            _ => bound.min(1e6) * random.between(-1.0, 1.0),
+        };
+        let start = Setpoint {
+            velocity: 1e-10 * within(&mut random, limits.velocity) * random.below(2) as f64,
+            acceleration: within(&mut random, limits.acceleration.min(limits.deceleration)),
+            jerk: within(&mut random, limits.jerk),
+            ..Setpoint::default()
+        };
+        let time = limits.velocity / limits.acceleration;
+        let cycle = time * random.log(0.001, 0.3);
+        let target = within(&mut random, 30.0 * limits.velocity * time) * random.log(1e-9, 1.0);
+        let planned = |start: &Setpoint, target| OnlinePlan::new(start, target, &limits, &limits, cycle);
+        // What comes out too far to come back in any time that is counted.
+        let Ok(one) = planned(&start, target) else {
+            assert!(planned(&scaled_state(&start, -1.0, 1.0), -target).is_err());
+            continue;
+        };
+        let other = plan(&scaled_state(&start, -1.0, 1.0), -target, &limits, cycle);
+        let context = || format!("case {case} {start:?} -> {target:?} {limits:?} {cycle}");
+        assert_eq!(one.scans(), other.scans(), "{}", context());
+        assert_eq!(one.rung(), other.rung(), "{}", context());
+        assert_eq!(one.peaks(), other.peaks(), "{}", context());
+        assert_eq!(one.excess(), other.excess(), "{}", context());
+        for scan in (0..=u64::from(one.scans())).step_by(1 + one.scans() as usize / 50) {
+            assert_eq!(
+                one.at(scan),
+                scaled_state(&other.at(scan), -1.0, 1.0),
+                "{}",
+                context()
+            );
+        }
+        outside += u32::from(one.excess().is_some());
+    }
+    assert!(outside > 600, "{outside} of 6000 begin outside what can be kept");
+}
+
 /// States on a limit, and an outward ulp or 1e-12 of the limit further: the plan changes by no more than
 /// the change is worth.
 #[test]
