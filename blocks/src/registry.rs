@@ -83,7 +83,8 @@ macro_rules! registry {
         }
 
         /// Every block as data, in the order of the catalogue.
-        pub const REGISTRY: &[BlockInfo] = &[$(<$block as Described>::INFO),*];
+        // Not a constant: each crate that names one would carry all tables and their texts once more.
+        pub static REGISTRY: &[BlockInfo] = &[$(<$block as Described>::INFO),*];
 
         impl BlockInstance {
             /// A new instance of the block called `name`, without regard to case.
