@@ -6,7 +6,7 @@
 //! zero byte, so that neither the order in which names turned up nor the machine's byte order matters.
 //! Names of columns, the header and the notes do not count.
 
-use crate::column::Cell;
+use crate::column::Kind;
 use crate::trace::Trace;
 
 /// FNV-1a, 64 bits: order-sensitive, seedless, four lines. It finds accidents, not attacks.
@@ -52,15 +52,16 @@ pub fn fnv1a(bytes: &[u8]) -> u64 {
 #[must_use]
 pub fn whole(trace: &Trace) -> u64 {
     let mut digest = Fnv1a::new();
-    for cell in (0..trace.scans()).flat_map(|scan| trace.row(scan)) {
-        match cell {
-            Cell::Real(value) => digest.write(&value.to_bits().to_le_bytes()),
-            Cell::Integer(value) => digest.write(&value.to_le_bytes()),
-            Cell::Bool(true) => digest.write(b"TRUE\0"),
-            Cell::Bool(false) => digest.write(b"FALSE\0"),
-            Cell::Name(text) => {
-                digest.write(text.as_bytes());
-                digest.write(&[0]);
+    for row in trace.words() {
+        for (column, &word) in trace.columns().iter().zip(row) {
+            match column.kind {
+                Kind::Real | Kind::Integer => digest.write(&word.to_le_bytes()),
+                Kind::Bool if word != 0 => digest.write(b"TRUE\0"),
+                Kind::Bool => digest.write(b"FALSE\0"),
+                Kind::Name => {
+                    digest.write(trace.text(word).as_bytes());
+                    digest.write(&[0]);
+                }
             }
         }
     }
@@ -70,6 +71,7 @@ pub fn whole(trace: &Trace) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::column::Cell;
     use crate::header::{Header, Input};
 
     #[test]

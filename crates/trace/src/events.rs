@@ -178,6 +178,10 @@ pub(crate) fn groups(columns: &[Column]) -> Vec<Group> {
 /// What changed in a group in a scan: Booleans first, then values in column order. `told` holds per column the scan
 /// whose value was told last.
 fn changes(trace: &Trace, group: &Group, scan: usize, told: &mut [Option<usize>]) -> String {
+    // Most subjects do nothing in most scans.
+    if !trace.moves(scan, &group.columns) {
+        return String::new();
+    }
     let mut words = Vec::new();
     let mut takes_inputs = false;
     let columns = || {

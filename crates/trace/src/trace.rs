@@ -209,12 +209,15 @@ impl Trace {
                 Cell::Bool(value) => u64::from(value),
                 Cell::Real(value) => canonical_bits(value),
                 Cell::Integer(value) => value.cast_unsigned(),
-                Cell::Name(text) if text.chars().any(char::is_control) => {
-                    return Err(RowError::ControlCharacter {
-                        column: column.name.clone(),
-                    });
-                }
-                Cell::Name(text) => self.names.index(text),
+                Cell::Name(text) => match self.above().filter(|&above| self.names.is(above, text)) {
+                    Some(above) => above,
+                    None if text.chars().any(char::is_control) => {
+                        return Err(RowError::ControlCharacter {
+                            column: column.name.clone(),
+                        });
+                    }
+                    None => self.names.index(text),
+                },
             };
             self.bits.push(word);
         }
@@ -224,6 +227,24 @@ impl Trace {
         Err(RowError::Length {
             expected: self.columns.len(),
             found,
+        })
+    }
+
+    /// The word above the next one, in the row before.
+    fn above(&self) -> Option<u64> {
+        let at = self.bits.len().checked_sub(self.columns.len())?;
+        self.bits.get(at).copied()
+    }
+
+    /// Whether any of these columns has another value in a scan than in the one before; in the first one all have.
+    pub(crate) fn moves(&self, scan: usize, columns: &[usize]) -> bool {
+        let width = self.columns.len();
+        let row = |scan: usize| self.bits.chunks_exact(width.max(1)).nth(scan);
+        let before = scan.checked_sub(1).and_then(row);
+        before.is_none_or(|before| {
+            columns
+                .iter()
+                .any(|&at| row(scan).is_some_and(|now| now.get(at) != before.get(at)))
         })
     }
 
@@ -322,6 +343,11 @@ impl Trace {
         self.bits.chunks_exact(self.columns.len().max(1))
     }
 
+    /// The name that a word stands for.
+    pub(crate) fn text(&self, word: u64) -> &str {
+        self.names.text(word)
+    }
+
     /// The names that occur.
     pub(crate) fn texts(&self) -> &[String] {
         &self.names.texts
@@ -341,6 +367,8 @@ impl Trace {
 #[derive(Clone, Debug, Default)]
 struct Names {
     texts: Vec<String>,
+    /// As they were given.
+    given: Vec<String>,
     by_text: BTreeMap<String, u64>,
 }
 
@@ -351,8 +379,15 @@ impl Names {
         }
         let index = self.texts.len() as u64;
         self.texts.push(printable(text).into_owned());
+        self.given.push(text.to_owned());
         self.by_text.insert(text.to_owned(), index);
         index
+    }
+
+    /// Whether [`Names::index`] gives a text this index: most names stay from row to row, and then nothing is looked up.
+    fn is(&self, index: u64, text: &str) -> bool {
+        let given = usize::try_from(index).ok().and_then(|at| self.given.get(at));
+        given.is_some_and(|given| given == text)
     }
 
     fn text(&self, index: u64) -> &str {

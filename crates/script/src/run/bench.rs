@@ -89,6 +89,17 @@ fn by_task(script: &Script) -> Vec<OfTask> {
     tasks
 }
 
+/// The pins of enumerations and tables.
+fn texts(script: &Script) -> Vec<(usize, usize, PinType)> {
+    let instances = script.blocks.iter().enumerate();
+    let pins = instances.flat_map(|(at, instance)| {
+        let pins = instance.block.pins().enumerate();
+        pins.map(move |(pin, info)| (at, pin, info.ty))
+    });
+    pins.filter(|(_, _, ty)| matches!(ty, PinType::Enum(_) | PinType::Table(_)))
+        .collect()
+}
+
 /// Why the resource stops where an expression fails.
 const WIRE_FAULT: &str = "an expression in a wire has no value";
 
@@ -125,6 +136,8 @@ pub(crate) struct Bench<'a> {
     tasks: Vec<OfTask>,
     /// Pin types of all instances, in trace order.
     types: Vec<PinType>,
+    /// The pins whose values may need a text of their own: instance, pin and type.
+    texts: Vec<(usize, usize, PinType)>,
     cells: Cells,
     schedule: Schedule,
     /// Axis states after all blocks were called, before the motion step.
@@ -173,6 +186,7 @@ impl<'a> Bench<'a> {
                 .iter()
                 .flat_map(|instance| instance.block.pins().map(|pin| pin.ty))
                 .collect(),
+            texts: texts(script),
             cells: cells::cells(script),
             schedule: Schedule::new(script),
             states: Vec::with_capacity(script.axes.len()),
@@ -353,8 +367,10 @@ impl<'a> Bench<'a> {
                 .flat_map(|instance| (0..).map_while(|pin| instance.get(pin)));
             self.types.iter().copied().zip(pins)
         };
-        for (ty, value) in pins() {
-            self.cells.prepare(ty, value);
+        for &(instance, pin, ty) in &self.texts {
+            if let Some(value) = instances.get(instance).and_then(|instance| instance.get(pin)) {
+                self.cells.prepare(ty, value);
+            }
         }
         // Numbers without a name in their enumeration; a program in order has none.
         let values = || {
