@@ -3,11 +3,12 @@
 use super::Reader;
 use super::condition::Kind;
 use super::json::Node;
+use super::program::ARE_RUN;
 use crate::error::{Code, Diagnostic, quoted};
 use crate::model::{Formula, FormulaInput, Signal, Span, Variable};
 use standstill_axis::AxisState;
 use standstill_fb::{EnumInfo, PinType};
-use standstill_guest::Settings;
+use standstill_guest::{LoadError, Settings};
 use standstill_st::{self as st, Options, Reference, Source};
 
 /// Most expressions of a script; each has a page of memory of its own.
@@ -59,6 +60,11 @@ impl Reader {
     /// The expression in `node`, whose value is of type `ty`; its number.
     pub(super) fn formula(&mut self, node: &Node, text: &str, ty: PinType, reads: Reads) -> Option<usize> {
         let inner = expression(text)?;
+        if !ARE_RUN {
+            let message = format!("the expression cannot run: {}", LoadError::NotBuilt);
+            self.report(Diagnostic::new(Code::BadProgram, node.span, message));
+            return None;
+        }
         if self.formulas.len() >= FORMULAS_MAX {
             let message = format!("a script has at most {FORMULAS_MAX} expressions");
             self.report(Diagnostic::new(Code::TooLarge, node.span, message));

@@ -9,7 +9,11 @@ use crate::error::{Code, Diagnostic, quoted};
 use crate::model::Point;
 use crate::model::{Claim, ClaimKind, Condition, Place, Program, Range, Signal, Span, Symbol, Test, Window};
 use standstill_fb::{PinType, Value};
-use standstill_guest::{INSTANCES_MOST, Settings, SymbolType};
+use standstill_guest::{INSTANCES_MOST, LoadError, Settings, SymbolType};
+
+/// Whether programs and expressions are run. Where not, none is compiled either, so that a build without them is without the
+/// compiler.
+pub(super) const ARE_RUN: bool = cfg!(feature = "guest");
 
 /// Most guest programs of a script; their instances have numbers of 16 bits with those of the script.
 pub(crate) const PROGRAMS_MAX: usize = 16;
@@ -116,6 +120,11 @@ impl Reader {
         load: LoadGuest<'_>,
     ) -> Option<Program> {
         let fields = self.fields(node, &shape::PROGRAM)?;
+        if !ARE_RUN {
+            let message = format!("the program {} cannot run: {}", quoted(name), LoadError::NotBuilt);
+            self.report(Diagnostic::new(Code::BadProgram, node.span, message));
+            return None;
+        }
         let defaults = Settings::default();
         let fuel = match fields.get("fuel") {
             None => Some(defaults.fuel),
