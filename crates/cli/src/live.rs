@@ -103,7 +103,11 @@ mod linux {
             Ended::Script => {
                 let outcome = session.finish();
                 write!(out, "{}", failing_claims(&outcome))?;
-                writeln!(out, "{name}: {}", verdict(&outcome))?;
+                writeln!(
+                    out,
+                    "{name}: {}",
+                    verdict(&outcome, digest::whole(&outcome.trace))
+                )?;
                 let exit = Exit::of(outcome.passed());
                 (outcome.trace, exit)
             }

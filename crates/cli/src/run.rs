@@ -209,7 +209,7 @@ fn tell(
     } else {
         show(name, outcome, out)?;
     }
-    writeln!(out, "{name}: {}", verdict(outcome))?;
+    writeln!(out, "{name}: {}", verdict(outcome, digest::whole(&outcome.trace)))?;
     if !warnings.all.is_empty() {
         out.flush()?;
         complain(warnings.to_string().trim_end());
@@ -275,12 +275,11 @@ pub fn failing_claims(outcome: &Outcome) -> String {
     text.lines().map(|line| format!("  {line}\n")).collect()
 }
 
-/// The last line: how many claims held, how long it was, and one number for every bit.
-pub fn verdict(outcome: &Outcome) -> String {
+/// The last line: how many claims held, how long it was, and one number for every bit, which takes a look at each.
+pub fn verdict(outcome: &Outcome, digest: u64) -> String {
     let (trace, verdicts) = (&outcome.trace, &outcome.verdicts);
     let held = verdicts.iter().filter(|verdict| verdict.passed()).count();
     let word = if outcome.passed() { "passed" } else { "FAILED" };
-    let digest = digest::whole(trace);
     format!(
         "{word}, {held} of {} claims, {} scans, digest {digest:016x}",
         verdicts.len(),

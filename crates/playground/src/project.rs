@@ -110,8 +110,7 @@ impl Project {
     }
 }
 
-/// What is wrong with a script: `{"diagnostics": [..], "text": ".."}`, what the command line would print among it; or
-/// `{"refused": ".."}`; or `{}`.
+/// What is wrong with a script: `{"diagnostics": [..]}`, or `{"refused": ".."}`, or `{}`.
 ///
 /// A diagnostic has `code`, `message`, `label`, `help`, `file`, and `from` and `to`, line and column from 1, where it is about a
 /// place; columns count characters. A build without guests answers `{"needs": "guests"}` to a script that has some. Work: proportional to the text.
@@ -127,7 +126,7 @@ pub fn check(request: &str) -> String {
 /// Whether the module with guests may read what this one cannot.
 fn needs_guests(error: &ScriptError) -> bool {
     let mut codes = error.diagnostics().iter().map(|found| found.code);
-    !cfg!(feature = "guest") && codes.any(|code| matches!(code, Code::BadProgram | Code::BadExpression))
+    !cfg!(feature = "guest") && codes.any(|code| code == Code::BadProgram)
 }
 
 /// The answer to what is not done.
@@ -174,5 +173,5 @@ fn wrong(error: &ScriptError) -> Value {
         })
     });
     let diagnostics: Vec<Value> = own.chain(programs).collect();
-    json!({"diagnostics": diagnostics, "text": error.render()})
+    json!({"diagnostics": diagnostics})
 }

@@ -45,6 +45,7 @@ pub fn run_project(
     let script = project.script()?;
     let mut session = Session::new(&script).map_err(|error| refused(&error.to_string()))?;
     bounds::cells(script.scans, session.trace().columns().len()).map_err(|why| refused(&why))?;
+    session.reserve();
     while session.advance().map_err(|error| refused(&error.to_string()))? {
         if session.scans() % PROGRESS_EVERY == 0 && !progress(session.scans(), script.scans) {
             return Err(refused(&format!("ended by hand after {} scans", session.scans())));
@@ -85,10 +86,11 @@ fn told(name: &str, outcome: &Outcome, warnings: Value) -> Ran {
         .iter()
         .map(|reason| json!({"scan": reason.scan, "text": reason.text, "claims": reason.claims}))
         .collect();
+    let digest = digest::whole(trace);
     let about = json!({
-        "verdict": verdict(outcome),
+        "verdict": verdict(outcome, digest),
         "passed": outcome.passed(),
-        "digest": format!("{:016x}", digest::whole(trace)),
+        "digest": format!("{digest:016x}"),
         "rows": trace.scans(),
         "why": why,
         "warnings": warnings,
