@@ -2,7 +2,7 @@
 //
 //     node check.mjs STANDSTILL PLAYWRIGHT AXE SITE
 
-import { execFileSync, spawn } from 'node:child_process';
+import { execFileSync, spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { basename, dirname, join, relative, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -140,6 +140,10 @@ async function links() {
     await page.selectOption('#pick', name);
     await rerun(page, before);
     const wanted = await digest(page);
+    // The view goes along: half of the run, and a cursor.
+    await page.focus('#board');
+    for (const key of ['Home', 'n', '+']) await page.keyboard.press(key);
+    const shown = await page.evaluate(() => JSON.stringify([window.playground.shared.view, window.playground.shared.cursor]));
     await page.click('#share');
     await page.waitForFunction(() => location.hash.startsWith('#s=1.'));
     const hash = await page.evaluate(() => location.hash);
@@ -147,6 +151,8 @@ async function links() {
     if (name === 'packer' || name === 'press') {
       const other = await open(hash);
       check(`the link of ${name} opens it`, wanted.length === 16 && (await digest(other.page)) === wanted, await verdict(other.page));
+      const there = await other.page.evaluate(() => JSON.stringify([window.playground.shared.view, window.playground.shared.cursor]));
+      check(`and shows what was in view of ${name}`, there === shown, `${there} for ${shown}`);
       check('no error from a link', other.complaints.length === 0, other.complaints.join('; '));
       await other.close();
     }
@@ -266,8 +272,34 @@ async function editing() {
   const explained = await page.locator('#editor .explain').allTextContents();
   check('hover tells what a pin is', explained.join().includes('rising edge'), explained.join());
   await numbers(page);
+  await kept(page);
   check('no error while editing', complaints.length === 0, complaints.join('; '));
   await close();
+}
+
+// What is there stays there while a number is turned, and tells of the new run: curves, constants, limits, events. The scan a
+// claim speaks of goes with them.
+async function kept(page) {
+  const text = readFileSync('scan-tests/tutorial/abort.scan.json', 'utf8');
+  await openText(page, text, 'abort.scan.json');
+  await page.evaluate(() => { window.kept = [...document.querySelectorAll('#groups .group')].filter((group) => group.querySelector('.title').textContent !== 'Claims'); });
+  const turned = async (behind, key) => {
+    const before = await runs(page);
+    await page.evaluate((text) => window.playground.cursor(text), behind);
+    await page.keyboard.press(key);
+    await rerun(page, before);
+  };
+  await turned('"Position": 4', 'Alt+ArrowUp');
+  const constants = (await page.locator('#groups .still').allTextContents()).join(' ');
+  check('a constant that is turned is told', constants.includes('Position 41.0'), constants);
+  check('so are the events', (await page.textContent('#list')).includes('Position=41.0'), await page.textContent('#list'));
+  await turned('"velocity": 20', 'Shift+Alt+ArrowUp');
+  const bounds = (await page.locator('#groups .bound').allTextContents()).join(' ');
+  check('a limit that is turned is told', bounds.includes('limit ±210.0'), bounds);
+  await turned('"by": 79', 'Shift+Alt+ArrowDown');
+  const claims = (await page.locator('#groups .claim').allTextContents()).join(' ');
+  check('so is a claim', claims.includes('to 780'), claims);
+  check('and nothing is made anew for it', await page.evaluate(() => window.kept.length > 2 && window.kept.every((group) => group.isConnected)));
 }
 
 // A number is dragged, or turned with the keys.
@@ -306,6 +338,68 @@ async function numbers(page) {
   }
   times.sort((one, other) => one - other);
   console.log(`a key to the redrawn run of 2,000 scans: ${Math.round(times[10])} ms at the median, ${Math.round(times[19])} ms at most`);
+}
+
+// A script that fails says in which scan, what was there and why, in the words of the command line.
+async function failing() {
+  const { page, complaints, close } = await open('');
+  const text = readFileSync('scan-tests/tutorial/abort.scan.json', 'utf8')
+    .replace('"Position": 0, "Velocity": 100}', '"Position": 0, "Velocity": 100, "BufferMode": "mcBuffered"}');
+  const folder = join(site, '..', 'playground');
+  mkdirSync(folder, { recursive: true });
+  const file = join(folder, 'failing.scan.json');
+  writeFileSync(file, text);
+  // It leaves with status 1.
+  const { stdout } = spawnSync(binary, ['run', '-q', file], { encoding: 'utf8' });
+  const said = await openText(page, text, 'failing.scan.json');
+  check('a failing script has the command line\'s verdict', said.startsWith('FAILED') && stdout.includes(said), `${said} for ${stdout}`);
+  const failures = await page.locator('#why .failure').allTextContents();
+  check('its failures are the command line\'s', failures.length >= 3 && failures.every((line) => stdout.includes(line)), failures.join('; '));
+  const reasons = await page.locator('#why p:not(.failure) span').allTextContents();
+  check('so are the reasons', reasons.length > 0 && reasons.every((line) => stdout.includes(line)), reasons.join('; '));
+  check('claims that fail are marked', (await page.locator('.claim.failed').count()) >= 2 && (await page.locator('.claim.passed').count()) >= 1);
+  await page.locator('.claim.failed').first().click();
+  check('a claim leads to the scan where it fails', (await page.textContent('#scan')) === 'scan 330', await page.textContent('#scan'));
+  // One cursor in all: the readings beside the plots and the list of events have it, too.
+  await page.locator('#list .event', { hasText: '+Done' }).first().click();
+  const scan = await page.textContent('#scan');
+  const now = await page.locator('#list .event.now .scan').allTextContents();
+  check('one cursor moves in all', now.length > 0 && now.every((one) => `scan ${one}` === scan), `${scan}; ${now}`);
+  const reading = page.locator('.block[aria-label="out.Done"] .reading');
+  await reading.waitFor();
+  await page.waitForFunction(() => document.querySelector('.block[aria-label="out.Done"] .reading').textContent === 'TRUE', null, { timeout: 5000 }).catch(() => {});
+  check('and tells what stands there', (await reading.textContent()) === 'TRUE', await reading.textContent());
+  check('no error from a failing script', complaints.length === 0, complaints.join('; '));
+  await close();
+}
+
+// By keyboard alone: Tab reaches everything, and leaves the editor behind Escape.
+async function keyboard() {
+  const { page, complaints, close } = await open('?gallery=slide');
+  const reached = new Set();
+  for (let step = 0; step < 60; step++) {
+    await page.keyboard.press('Tab');
+    const at = await page.evaluate(() => {
+      const { activeElement: active } = document;
+      return { id: active.id, text: active.textContent.slice(0, 20), inside: Boolean(active.shadowRoot && active.shadowRoot.activeElement) };
+    });
+    reached.add(at.id || at.text);
+    if (at.inside) await page.keyboard.press('Escape');
+    if (at.text === '' && at.id === '') break;
+  }
+  const missing = ['pick', 'tab-run', 'share', 'save', 'theme', 'editor', 'board', 'filter', 'next', 'in', 'fit'].filter((id) => !reached.has(id));
+  check('Tab reaches everything', missing.length === 0, `${missing} of ${[...reached].join(' | ')}`);
+  await page.focus('#board');
+  await page.keyboard.press('Home');
+  await page.keyboard.press('n');
+  check('keys go to the next event', (await page.textContent('#scan')) === 'scan 10', await page.textContent('#scan'));
+  await page.focus('#pick');
+  const before = await runs(page);
+  await page.keyboard.press('ArrowDown');
+  await rerun(page, before);
+  check('the picker opens a script by a key', /gallery=/.test(page.url()), page.url());
+  check('no error by keyboard', complaints.length === 0, complaints.join('; '));
+  await close();
 }
 
 async function tabs() {
@@ -369,10 +463,13 @@ async function downloads() {
 }
 
 async function looks() {
-  for (const [colorScheme, width] of [['light', 1280], ['dark', 1280], ['light', 400]]) {
+  for (const [colorScheme, width] of [['light', 1280], ['dark', 1280], ['light', 400], ['dark', 400]]) {
     const { page, complaints, close } = await open('?gallery=slide', { colorScheme, viewport: { width, height: 900 } });
-    for (const tab of ['run', 'plan', 'hand']) {
-      await page.click(`#tab-${tab}`);
+    for (const tab of ['run', 'plan', 'hand', 'failing run', 'mistaken run']) {
+      await page.click(`#tab-${tab.split(' ').at(-1)}`);
+      const fails = script({ expect: [{ at: 3, that: { 'X.State': 'DiscreteMotion' } }] });
+      if (tab === 'failing run') await openText(page, fails);
+      if (tab === 'mistaken run') await openText(page, fails.replace('"that"', '"tht"'));
       await page.waitForTimeout(200);
       const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
       check(`${tab} fits ${width} px`, wide <= 0, wide);
@@ -392,10 +489,12 @@ async function book() {
   if (!existsSync(join(site, 'docs'))) return;
   const context = await browser.newContext();
   const page = await context.newPage();
-  await page.goto(`${server.address}docs/gallery/press.html`);
-  await page.getByText('open it in the playground').first().click();
-  await page.waitForSelector('html[data-ready][data-runs]', { timeout: 120_000 });
-  check('a page of the book opens its script', (await page.title()).includes('press.scan.json') && (await digest(page)).length === 16, await page.title());
+  for (const [from, name] of [['gallery/press', 'press'], ['tutorial', 'slide']]) {
+    await page.goto(`${server.address}docs/${from}.html`);
+    await page.getByText('open it in the playground').first().click();
+    await page.waitForSelector('html[data-ready][data-runs]', { timeout: 120_000 });
+    check(`the page ${from} of the book opens its script`, (await page.title()).includes(`${name}.scan.json`) && (await digest(page)).length === 16, await page.title());
+  }
   await context.close();
 }
 
@@ -469,7 +568,7 @@ async function desk() {
   await close();
 }
 
-const parts = { first, digests, links, hostile, tooLarge, editing, tabs, downloads, looks, book, desk };
+const parts = { first, digests, links, hostile, tooLarge, editing, failing, keyboard, tabs, downloads, looks, book, desk };
 const wanted = (process.env.ONLY || Object.keys(parts).join(' ')).split(' ');
 for (const name of wanted) {
   try {

@@ -98,8 +98,11 @@ function curveBlock(axis, panel, lines, shared) {
     const label = line.actual ? 'actual' : several ? line.trace.letter : 'set';
     return element('div', { className: 'series' }, swatch, element('span', { className: 'label', textContent: label }), spans[at]);
   });
-  const bound = limits.length === 0 ? null : element('div', { className: 'bound', title: 'limits of the axis',
-    textContent: `limit ${limitText(limits)}` });
+  const bound = limits.length === 0 ? null : element('div', { className: 'bound', title: 'limits of the axis' });
+  const tellLimits = () => {
+    if (bound) bound.textContent = `limit ${limitText(limits)}`;
+  };
+  tellLimits();
   const gutter = element('div', { className: 'gutter tall' },
     element('div', { className: 'name', title: `${axis.name}.${panel.title}${unit}`, textContent: panel.title },
       element('span', { className: 'unit', textContent: unit })), ...rows, bound);
@@ -119,6 +122,11 @@ function curveBlock(axis, panel, lines, shared) {
       }
     },
     redraw: () => made && made.redraw(false, true),
+    // The axis has other limits now.
+    limit(axis) {
+      limits.splice(0, limits.length, ...limitsOf(panel, axis));
+      tellLimits();
+    },
     // The columns hold other numbers now; they are drawn when the block is.
     refill: () => made && made.setData([shared.numbers, ...lines.map((line) => plotted(line.column, line.rows, shared.scans))], false),
   };
@@ -158,19 +166,26 @@ function claimBlock(claim, trace, shared) {
   };
 }
 
-// A group of blocks below a heading that folds it. `still` are signals that never change: `[name, text]`.
+// A group of blocks below a heading that folds it. `still` are signals that never change: `[name, lines]`.
 function makeGroup(title, detail, blocks, still, shared) {
   const fold = element('button', { className: 'fold', type: 'button', ariaExpanded: 'true' },
     element('span', { className: 'arrow', textContent: '▾' }),
     element('span', { className: 'title', textContent: title }),
     element('span', { className: 'detail', textContent: detail }));
   const body = element('div', { className: 'body' }, ...blocks.map((block) => block.element));
+  const texts = still.map(() => document.createTextNode(''));
+  // Writes the constants, which are others in another run.
+  const tellStill = () => still.forEach(([, lines], at) => {
+    const text = ` ${stillText(lines)}`;
+    if (texts[at].data !== text) texts[at].data = text;
+  });
   if (still.length > 0) {
-    const list = still.flatMap(([name, text]) => [
-      element('span', { className: 'pair' }, element('span', { className: 'key', textContent: name }), ` ${text}`), ' ']);
+    tellStill();
+    const list = still.flatMap(([name], at) => [
+      element('span', { className: 'pair' }, element('span', { className: 'key', textContent: name }), texts[at]), ' ']);
     body.append(element('p', { className: 'still' }, element('span', { className: 'lead', textContent: 'constant: ' }), ...list));
   }
-  const group = { blocks, element: element('section', { className: 'group' }, element('h2', {}, fold), body), folded: false };
+  const group = { blocks, tellStill, element: element('section', { className: 'group' }, element('h2', {}, fold), body), folded: false };
   fold.addEventListener('click', () => {
     group.folded = !group.folded;
     fold.ariaExpanded = String(!group.folded);
@@ -206,8 +221,7 @@ function stillText(lines) {
 // Adds the signal to the blocks, or to what stands still.
 function addRow(name, blocks, still, shared) {
   const lines = linesOf(name, shared);
-  const text = stillText(lines);
-  if (text !== null) still.push([lines[0].column.signal, text]);
+  if (stillText(lines) !== null) still.push([lines[0].column.signal, lines]);
   else blocks.push(rowBlock(lines, shared));
 }
 
@@ -228,8 +242,7 @@ function axisGroup(axis, shared) {
   for (const panel of [...PANELS, ...rest]) {
     const lines = panel.signals.flatMap((signal, at) => linesOf(`${axis.name}.${signal}`, shared, at > 0));
     if (lines.length === 0) continue;
-    const text = stillText(lines);
-    if (text !== null) still.push([panel.title, text]);
+    if (stillText(lines) !== null) still.push([panel.title, lines]);
     else blocks.push(curveBlock(axis, panel, lines, shared));
   }
   blocks.push(...camBlocks(axis, shared));

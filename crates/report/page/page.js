@@ -13,6 +13,12 @@ const shared = {
 
 const find = (selector) => document.querySelector(selector);
 
+// The same text once more would have the page laid out anew.
+function write(selector, text) {
+  const place = find(selector);
+  if (place.textContent !== text) place.textContent = text;
+}
+
 // Time of a scan, exact: whole nanoseconds, told in seconds.
 function timeText(scan) {
   const ns = BigInt(scan) * BigInt(shared.cycleNs);
@@ -78,8 +84,8 @@ function zoom(factor, around) {
 
 function setCursor(scan) {
   shared.cursor = Math.min(Math.max(Math.round(scan), 0), shared.scans - 1);
-  find('#scan').textContent = `scan ${shared.cursor}`;
-  find('#time').textContent = timeText(shared.cursor);
+  write('#scan', `scan ${shared.cursor}`);
+  write('#time', timeText(shared.cursor));
   const { min, max } = shared.view;
   if (shared.cursor < min || shared.cursor > max) setView(shared.cursor - (max - min) / 2, shared.cursor + (max - min) / 2);
   markEvents();
@@ -222,6 +228,7 @@ function layOut() {
   const board = find('#board'), sample = find('#overview').parentElement;
   const style = getComputedStyle(board);
   const gutter = parseFloat(style.getPropertyValue('--gutter'));
+  board.laidOut = board.clientWidth;
   board.plotLeft = gutter + AXIS;
   board.style.setProperty('--axis', `${AXIS}px`);
   shared.width = Math.max(120, Math.floor(sample.parentElement.clientWidth - gutter - AXIS - MARGIN));
@@ -357,7 +364,8 @@ function wire() {
     shared.refresh();
   });
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => setTheme(find('#theme').value));
-  new ResizeObserver(layOut).observe(board);
+  // Only another width moves the plots: what is told below them may take more room or less many times a second.
+  new ResizeObserver(() => board.clientWidth !== board.laidOut && layOut()).observe(board);
   window.addEventListener('beforeprint', () => {
     document.documentElement.classList.add('printing');
     setTheme('light');

@@ -30,15 +30,23 @@ function isSame(one, other) {
     && (one.names === undefined || areSame(one.names, other.names));
 }
 
-// What of a trace decides which blocks there are.
+// What of a trace decides which blocks there are: of limits whether there are some, of constants that they are.
 function shapeOf(trace) {
-  const columns = trace.columns.map((column) => {
-    const still = column.edges && column.edges.scans.length === 1;
-    return [column.name, column.kind, still, still ? entryText(column, column.edges.values[0]) : Boolean(column.edges)];
-  });
+  const columns = trace.columns.map(({ name, kind, edges }) => [name, kind, Boolean(edges), Boolean(edges) && edges.scans.length === 1]);
   const { claims, cams, ...header } = trace.header;
+  const axes = header.axes.map((axis) => ({ ...axis, limits: Object.entries(axis.limits).filter(([, limit]) => limit !== null).map(([name]) => name) }));
   const onCams = [...new Set((cams || []).map(({ slave }) => slave))];
-  return JSON.stringify([trace.rows, header, claims.length > 0, onCams, columns]);
+  return JSON.stringify([trace.rows, { ...header, axes }, claims.length > 0, onCams, columns]);
+}
+
+// Tells the blocks of axes that have other limits than before, and which these axes are.
+function relimit(before, axes) {
+  const changed = axes.filter((axis, at) => JSON.stringify(axis.limits) !== JSON.stringify(before[at].limits));
+  for (const axis of changed) {
+    const group = shared.groups.find((group) => group.title === axis.name);
+    for (const block of group ? group.blocks : []) if (block.limit) block.limit(axis);
+  }
+  return new Set(changed.map((axis) => axis.name));
 }
 
 // Puts a group on the board, as the one of its name before was.
@@ -62,9 +70,11 @@ function remembered() {
 
 let wired = false;
 let lastShape = '';
+let claimsShown = '';
 
-// Shows a run in place of the one before; the view and the cursor stay where they are as far as they can.
-export function show(told, reals, view) {
+// Shows a run in place of the one before; the view and the cursor stay where they are as far as they can. Unless it `isRest`,
+// another run is on its way: then curves and rows follow, claims and events do not.
+export function show(told, reals, view, isRest) {
   const trace = traceOf(told, reals);
   const shape = shapeOf(trace);
   const same = shape === lastShape;
@@ -75,14 +85,17 @@ export function show(told, reals, view) {
     const [old] = shared.traces;
     const changed = new Set(trace.columns.filter((column) => !isSame(old.byName.get(column.name), column)).map(({ name }) => name));
     for (const column of trace.columns) Object.assign(old.byName.get(column.name), column);
-    const claims = JSON.stringify(old.header.claims) !== JSON.stringify(trace.header.claims);
+    const limited = relimit(old.header.axes, trace.header.axes);
     Object.assign(old, { events: trace.events, header: trace.header });
     for (const block of shared.groups.flatMap((group) => group.blocks)) {
-      if (!block.names.some((name) => changed.has(name))) continue;
+      if (!block.names.some((name) => changed.has(name) || limited.has(name.slice(0, name.indexOf('.'))))) continue;
       if (block.refill) block.refill();
       block.stale = true;
     }
-    if (claims) {
+    for (const group of shared.groups) group.tellStill();
+    const claims = JSON.stringify(trace.header.claims);
+    if (isRest && claims !== claimsShown) {
+      claimsShown = claims;
       const { folded, hidden } = remembered();
       const at = shared.groups.findIndex((group) => group.title === 'Claims' && group.blocks.every((block) => block.gutter.classList.contains('wide')));
       const [group] = claimGroups(shared);
@@ -95,6 +108,7 @@ export function show(told, reals, view) {
     shared.scans = trace.rows;
     shared.cycleNs = trace.header.cycle_ns;
     shared.numbers = Float64Array.from({ length: trace.rows }, (_, scan) => scan);
+    claimsShown = JSON.stringify(trace.header.claims);
   }
   shared.events = trace.events.map(([scan, subject, text]) => ({ trace: shared.traces[0], scan, subject, text }));
   shared.theme = shared.theme || readTheme();
@@ -120,7 +134,7 @@ export function show(told, reals, view) {
     layOut();
   }
   if (same && !view) {
-    listEvents();
+    if (isRest) listEvents();
     schedule();
   } else {
     setView(shared.view.min, shared.view.max);
@@ -134,4 +148,4 @@ export function viewed() {
   return { min: shared.view.min, max: shared.view.max, cursor: shared.cursor };
 }
 
-export { setTheme, setCursor, element, shared };
+export { setTheme, setCursor, element, shared, write };

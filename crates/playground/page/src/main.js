@@ -1,6 +1,6 @@
 // The page: which script is open, when it runs, what is shown of it.
 
-import { element, setCursor, shared, show, viewed } from './board.js';
+import { element, setCursor, shared, show, viewed, write } from './board.js';
 import { makeEditor } from './editor.js';
 import { ask, end } from './engine.js';
 import { useNames, useSchema } from './schema.js';
@@ -9,6 +9,7 @@ import { makePlans } from './plans.js';
 import { follow, forget } from './served.js';
 
 const PATIENCE = 250; // ms until a run shows that it is busy
+const RESTS = 300; // ms at most until events and claims follow what is dragged
 
 const find = (selector) => document.querySelector(selector);
 
@@ -18,6 +19,7 @@ let gallery = []; // scripts to pick, by groups; the first group is the folder's
 let wantedView = null; // that of a link, for the first run
 let running = null; // the request at the worker
 let waiting = false; // the text has changed since
+let rested = 0; // when all of a run was told
 
 const editor = makeEditor(find('#editor'), (text) => {
   open.texts.set(open.shown, text);
@@ -70,16 +72,24 @@ async function rerun() {
       find('#done').textContent = `${scans} of ${of} scans`;
     });
     done();
-    tellRun(about, reals, took);
+    // While the next run goes on, as when a number is dragged, what is there to read waits; not for long.
+    const isRest = !running || performance.now() - rested > RESTS;
+    if (isRest) rested = performance.now();
+    tellRun(about, reals, took, isRest);
   } catch (error) {
     if (running === mine) done();
     outcome(error.message, 'bad');
-    find('#digest').textContent = '';
+    tellDigest('');
   }
 }
 
+function tellDigest(digest) {
+  find('#digest').textContent = digest;
+  find('#digest').parentElement.hidden = digest === '';
+}
+
 function outcome(text, className) {
-  find('#verdict').textContent = text;
+  write('#verdict', text);
   find('#verdict').className = className;
   document.documentElement.dataset.runs = String(Number(document.documentElement.dataset.runs || 0) + 1);
 }
@@ -93,7 +103,7 @@ function markMistakes() {
     const file = one.file || open.name;
     const place = one.from ? `${open.texts.size > 1 ? `${file}:` : ''}${one.from.join(':')} ` : '';
     const button = element('button', { type: 'button', className: 'mistake' }, element('b', { textContent: `${place}${one.code}: ` }), one.message,
-      one.help ? element('span', { className: 'remedy', textContent: ` ${one.help}` }) : null);
+      one.help ? element('span', { className: 'remedy', textContent: ` help: ${one.help}` }) : null);
     button.addEventListener('click', () => {
       if (!one.from) return;
       if (file !== open.shown && open.texts.has(file)) showFile(file);
@@ -105,22 +115,10 @@ function markMistakes() {
   find('#mistakes').hidden = rows.length === 0;
 }
 
-function tellRun(about, reals, took) {
-  if (about.refused !== undefined || about.diagnostics) {
-    mistakes = (about.diagnostics || []).map((one) => ({ ...one, severity: 'error' }));
-    markMistakes();
-    find('#digest').textContent = '';
-    find('#took').textContent = '';
-    find('#diagram').classList.add('stale');
-    const count = mistakes.length;
-    outcome(about.refused !== undefined ? `Refused: ${about.refused}` : `${count} mistake${count === 1 ? '' : 's'} in the script`, 'bad');
-    return;
-  }
+// What there is to read of a run: warnings, failures, and why.
+function tellReasons(about) {
   mistakes = about.warnings.map((one) => ({ ...one, severity: one.kind === 'note' ? 'info' : 'warning' }));
   markMistakes();
-  find('#diagram').classList.remove('stale');
-  find('#digest').textContent = about.digest;
-  find('#took').textContent = `${about.rows} scans in ${took < 10 ? took.toFixed(1) : Math.round(took)} ms`;
   const reasons = about.why.map(({ scan, text }) => {
     const line = element('p', {}, element('span', { textContent: text }));
     if (scan !== null) {
@@ -137,8 +135,25 @@ function tellRun(about, reals, took) {
   find('#warnings').replaceChildren(...about.warnings.slice(0, 8).map((one) =>
     element('li', {}, element('b', { textContent: `${one.path} (${one.kind}): ` }), one.message)));
   find('#warnings').hidden = about.warnings.length === 0;
+}
+
+function tellRun(about, reals, took, isRest) {
+  if (about.refused !== undefined || about.diagnostics) {
+    mistakes = (about.diagnostics || []).map((one) => ({ ...one, severity: 'error' }));
+    markMistakes();
+    tellDigest('');
+    find('#took').textContent = find('#diagram').hidden ? '' : 'below is the run before';
+    find('#diagram').classList.add('stale');
+    const count = mistakes.length;
+    outcome(about.refused !== undefined ? `Refused: ${about.refused}` : `${count} mistake${count === 1 ? '' : 's'} in the script`, 'bad');
+    return;
+  }
+  if (isRest) tellReasons(about);
+  find('#diagram').classList.remove('stale');
+  tellDigest(about.digest);
+  find('#took').textContent = `${about.rows} scans in ${took < 10 ? took.toFixed(1) : Math.round(took)} ms`;
   useNames(about.columns.map((column) => column.name), about.trace.header.axes.map((axis) => axis.name));
-  show(about, reals, wantedView);
+  show(about, reals, wantedView, isRest);
   wantedView = null;
   outcome(about.verdict, about.passed ? 'good' : 'bad');
 }
