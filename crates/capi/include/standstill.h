@@ -1236,6 +1236,28 @@ int32_t standstill_log_read(struct standstill_runtime *runtime,
                             uint32_t *copied);
 
 /**
+ * The bytes of storage that a store of cams needs: for `slots` cams, 1 to 65535, and `pieces` of them in all, 1 to 2^24; a
+ * cam takes one less than it has rows.
+ *
+ * Codes: NULL_POINTER, BAD_VALUE.
+ */
+int32_t standstill_cams_size(uint32_t slots,
+                             uint32_t pieces,
+                             size_t *bytes);
+
+/**
+ * Sets a store of cams up in `storage`, which is aligned to 16 bytes, has what cams_size tells, and belongs to the runtime
+ * until runtime_close. Without one MC_CamTableSelect shows ErrorID 153.
+ *
+ * Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, STORAGE, NO_ROOM (there is one already), BAD_VALUE.
+ */
+int32_t standstill_cams_init(struct standstill_runtime *runtime,
+                             void *storage,
+                             size_t bytes,
+                             uint32_t slots,
+                             uint32_t pieces);
+
+/**
  * The bytes of storage that a flight recorder needs: of all axes of the runtime, and of the block instances in the
  * list `recorded` of `count` entries, each of `recorded_size` bytes, sizeof(standstill_recorded).
  *

@@ -14,11 +14,6 @@ use core::sync::atomic::Ordering::Release;
 use standstill_axis::{DIGITAL, DrivePosition, PROBES};
 use standstill_drives::simulated::DriveChange;
 
-/// The code of a result.
-fn code(result: Result<(), Code>) -> i32 {
-    result.map_or_else(|code| code as i32, |()| Code::Ok as i32)
-}
-
 /// The ABI version of the library. A host compares it with STANDSTILL_ABI_VERSION, its header's.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_abi_version"))]
 pub extern "C" fn standstill_abi_version() -> u32 {
@@ -66,7 +61,7 @@ pub extern "C" fn standstill_result_text(result: i32) -> *const c_char {
 pub unsafe extern "C" fn standstill_runtime_size(config: *const RuntimeConfig, bytes: *mut usize) -> i32 {
     // SAFETY: the caller's contract.
     let size = unsafe { raw::read(config) }.and_then(|config| storage::size(&config));
-    code(size.and_then(|size| {
+    raw::code(size.and_then(|size| {
         if bytes.is_null() {
             return Err(Code::NullPointer);
         }
@@ -100,7 +95,7 @@ pub unsafe extern "C" fn standstill_runtime_init(
     // SAFETY: the caller's contract; the storage is not null.
     let made = unsafe { raw::read(config) }
         .and_then(|config| unsafe { storage::init(storage.cast(), bytes, &config) });
-    code(made.map(|made| {
+    raw::code(made.map(|made| {
         // SAFETY: not null, so by contract it can be written.
         unsafe { runtime.write_unaligned(made) }
     }))
@@ -132,7 +127,7 @@ pub unsafe extern "C" fn standstill_runtime_close(runtime: *mut Runtime) -> i32 
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_axis_defaults"))]
 pub unsafe extern "C" fn standstill_axis_defaults(setup: *mut AxisSetup) -> i32 {
     // SAFETY: the caller's contract.
-    code(unsafe { raw::write_under(setup, AxisSetup::defaults) })
+    raw::code(unsafe { raw::write_under(setup, AxisSetup::defaults) })
 }
 
 /// Describes an ideal drive: it follows every set-point in the next tick. `size` must be set before.
@@ -144,7 +139,7 @@ pub unsafe extern "C" fn standstill_axis_defaults(setup: *mut AxisSetup) -> i32 
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_drive_defaults"))]
 pub unsafe extern "C" fn standstill_drive_defaults(setup: *mut DriveSetup) -> i32 {
     // SAFETY: the caller's contract.
-    code(unsafe { raw::write_under(setup, DriveSetup::defaults) })
+    raw::code(unsafe { raw::write_under(setup, DriveSetup::defaults) })
 }
 
 /// Adds an axis with its drive; `axis` gets its number, from 1 in the order of the calls.

@@ -16,6 +16,7 @@
 compile_error!("the C library is for little-endian processors: pins would cross the border turned round");
 
 mod api;
+mod api_cam;
 mod api_record;
 mod blocks;
 mod config;
@@ -29,6 +30,7 @@ mod storage;
 mod types;
 
 pub use api::*;
+pub use api_cam::*;
 pub use api_record::*;
 pub use blocks::*;
 pub use runtime::Runtime;

@@ -127,6 +127,11 @@ pub(crate) unsafe fn bytes_mut<'a>(at: *mut u8, len: usize) -> &'a mut [u8] {
     unsafe { slice::from_raw_parts_mut(at, len) }
 }
 
+/// The code of a result.
+pub(crate) fn code(result: Result<(), Code>) -> i32 {
+    result.map_or_else(|code| code as i32, |()| Code::Ok as i32)
+}
+
 /// A name as C has it: cut to what fits, ended by 0.
 pub(crate) fn name<const N: usize>(text: &str) -> [c_char; N] {
     let mut name = [0; N];

@@ -3,7 +3,7 @@
 use crate::config::refused;
 use crate::drive::AnyDrive;
 use crate::recorder::{Order, Recorder};
-use crate::storage::List;
+use crate::storage::{CamStore, List};
 use crate::{AxisSetup, AxisStatus, Code, ConfigFault, DriveSetup, Mishap, RecorderConfig, raw};
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicU32, AtomicUsize};
@@ -22,6 +22,12 @@ pub(crate) const AXES: u32 = 1024;
 
 /// Most instances of a runtime: their numbers in records have 16 bits, and one of them means nobody.
 pub(crate) const INSTANCES: u32 = 65_534;
+
+/// Most slots of a store of cams: their numbers have 16 bits.
+pub(crate) const CAM_SLOTS: u32 = 0xFFFF;
+
+/// Most pieces of a store of cams.
+pub(crate) const CAM_PIECES: u32 = 1 << 24;
 
 /// Numbers that the arrays of one block take.
 const CELLS: usize = {
@@ -111,6 +117,8 @@ pub(crate) struct Inner {
     pub fault: ConfigFault,
     /// The flight recorder, if there is one.
     pub recorder: List<Recorder>,
+    /// The store of cams, if there is one.
+    pub cams: CamStore,
 }
 
 impl Inner {
@@ -142,6 +150,7 @@ impl Inner {
                 key: [0; crate::NAME],
             },
             recorder: List::none(),
+            cams: CamStore::none(),
         }
     }
 
@@ -309,7 +318,9 @@ impl Inner {
         if let Some(recorder) = self.recorder.slice_mut().first_mut() {
             recorder.observe(self.axes.slice());
         }
-        steps::advance(self.axes.slice_mut(), &mut nobody(self.scan, &mut self.log));
+        let mut scope = nobody(self.scan, &mut self.log);
+        scope.cams = self.cams.lend();
+        steps::advance(self.axes.slice_mut(), &mut scope);
         steps::publish(self.axes.slice_mut(), self.drives.slice_mut(), self.now_ns);
         if let Some(recorder) = self.recorder.slice_mut().first_mut() {
             recorder.record(self.scan, self.axes.slice(), self.slots.slice(), &self.log);
@@ -422,7 +433,7 @@ impl Inner {
                 // At most 65534, so no cut is made.
                 instance: InstanceId(key as u16),
                 log: &mut self.log,
-                cams: Cams::default(),
+                cams: self.cams.lend(),
             },
             axes: self.axes.slice_mut(),
             tables: &self.cells,

@@ -1,13 +1,13 @@
 //! The memory of a runtime: one piece from the host, cut into a head and four lists.
 
 use crate::drive::AnyDrive;
-use crate::runtime::{AXES, INSTANCES, Inner, MAGIC, Runtime, Slot};
+use crate::runtime::{AXES, CAM_PIECES, CAM_SLOTS, INSTANCES, Inner, MAGIC, Runtime, Slot};
 use crate::{Code, RuntimeConfig};
 use core::alloc::Layout;
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicU32, AtomicUsize};
 use core::{ptr, slice};
-use standstill_axis::{Axis, DriveFeedback};
+use standstill_axis::{Axis, CamPiece, CamSlot, Cams, DriveFeedback};
 
 /// What storage must be aligned to.
 pub(crate) const ALIGN: usize = 16;
@@ -69,6 +69,77 @@ impl<T> List<T> {
     }
 }
 
+/// Memory behind what is there before it, and where it begins.
+fn behind<T>(before: Layout, count: u32) -> Result<(Layout, usize), Code> {
+    let list = Layout::array::<T>(count as usize).map_err(|_| Code::NoRoom)?;
+    before.extend(list).map_err(|_| Code::NoRoom)
+}
+
+/// The store of cams, in storage of its own.
+pub(crate) struct CamStore {
+    slots: List<CamSlot>,
+    pieces: List<CamPiece>,
+}
+
+impl CamStore {
+    /// No cam has room in it.
+    pub const fn none() -> Self {
+        Self {
+            slots: List::none(),
+            pieces: List::none(),
+        }
+    }
+
+    pub fn is_there(&self) -> bool {
+        self.slots.len() > 0
+    }
+
+    /// The cams, for a call or a motion step.
+    pub fn lend(&mut self) -> Cams<'_> {
+        Cams::new(self.slots.slice_mut(), self.pieces.slice_mut())
+    }
+
+    fn layout(slots: u32, pieces: u32) -> Result<(Layout, usize), Code> {
+        if !((1..=CAM_SLOTS).contains(&slots) && (1..=CAM_PIECES).contains(&pieces)) {
+            return Err(Code::BadValue);
+        }
+        let slots = Layout::array::<CamSlot>(slots as usize).map_err(|_| Code::NoRoom)?;
+        let (whole, pieces) = behind::<CamPiece>(slots, pieces)?;
+        Ok((whole.pad_to_align(), pieces))
+    }
+
+    /// Bytes that a store of so many slots and pieces needs.
+    pub fn size(slots: u32, pieces: u32) -> Result<usize, Code> {
+        Ok(Self::layout(slots, pieces)?.0.size())
+    }
+
+    /// Makes the store in its storage.
+    ///
+    /// # Safety
+    /// `storage` is not null, `bytes` bytes can be read and written there, and nothing but the store uses them as long as it is
+    /// there.
+    pub unsafe fn make(slots: u32, pieces: u32, storage: *mut u8, bytes: usize) -> Result<Self, Code> {
+        let (whole, place) = Self::layout(slots, pieces)?;
+        if whole.size() > bytes || !storage.addr().is_multiple_of(ALIGN) {
+            return Err(Code::Storage);
+        }
+        // SAFETY: both places lie inside the storage, disjoint, each aligned for its type; nothing else uses the storage.
+        let mut store = unsafe {
+            Self {
+                slots: List::new(storage.cast(), slots as usize),
+                pieces: List::new(storage.add(place).cast(), pieces as usize),
+            }
+        };
+        for _ in 0..slots {
+            store.slots.push(CamSlot::default());
+        }
+        for _ in 0..pieces {
+            store.pieces.push(CamPiece::default());
+        }
+        Ok(store)
+    }
+}
+
 /// Where everything stands in the storage.
 struct Plan {
     whole: Layout,
@@ -87,10 +158,6 @@ impl Plan {
         if !fits {
             return Err(Code::BadValue);
         }
-        fn behind<T>(before: Layout, count: u32) -> Result<(Layout, usize), Code> {
-            let list = Layout::array::<T>(count as usize).map_err(|_| Code::NoRoom)?;
-            before.extend(list).map_err(|_| Code::NoRoom)
-        }
         let (whole, axes) = behind::<Axis>(Layout::new::<Runtime>(), config.axes)?;
         let (whole, drives) = behind::<AnyDrive>(whole, config.axes)?;
         let (whole, feedback) = behind::<DriveFeedback>(whole, config.axes)?;
@@ -108,6 +175,7 @@ impl Plan {
 // The host is told one alignment for all configurations.
 const _: () = assert!(align_of::<Runtime>() <= ALIGN && align_of::<Axis>() <= ALIGN);
 const _: () = assert!(align_of::<AnyDrive>() <= ALIGN && align_of::<Slot>() <= ALIGN);
+const _: () = assert!(align_of::<CamSlot>() <= ALIGN && align_of::<CamPiece>() <= ALIGN);
 
 /// Bytes a runtime of this configuration needs.
 pub(crate) fn size(config: &RuntimeConfig) -> Result<usize, Code> {

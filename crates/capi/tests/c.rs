@@ -11,12 +11,13 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 use std::{env, fs};
 
-const EXAMPLES: [&str; 5] = [
+const EXAMPLES: [&str; 6] = [
     "single_axis",
     "own_drive",
     "diagnostics",
     "home_and_latch",
     "recorder",
+    "cam",
 ];
 
 fn root() -> PathBuf {
@@ -254,6 +255,22 @@ fn c_homes_and_latches_by_the_bits_of_a_scan_script() {
             "probe_y.Done",
             "gate.Value",
         ],
+    );
+}
+
+/// Covers: G85
+#[test]
+fn a_cam_of_a_c_host_moves_by_the_bits_of_a_scan_script() {
+    same_bits(
+        "cam",
+        "a_cam.scan.json",
+        &[
+            "M.Position",
+            "S.Position",
+            "S.Velocity",
+            "select.MaxMasterVelocity",
+        ],
+        &["select.Done", "cam.InSync", "cam.EndOfProfile"],
     );
 }
 

@@ -58,7 +58,7 @@ fn crate_folder() -> PathBuf {
 /// The sources, with the names of functions as cbindgen reads them: it does not evaluate macros in attributes.
 fn sources() -> String {
     let mut text = String::new();
-    for file in ["types.rs", "api.rs", "api_record.rs"] {
+    for file in ["types.rs", "api.rs", "api_cam.rs", "api_record.rs"] {
         text += &fs::read_to_string(crate_folder().join("src").join(file)).unwrap();
     }
     text += "pub const ABI_VERSION: u32 = 1;\npub struct Runtime { of: Opaque }\n";

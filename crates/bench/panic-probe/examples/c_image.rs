@@ -55,6 +55,8 @@ mod bare_metal {
         keep::<unsafe extern "C" fn(_, _) -> _>(c::standstill_recorder_state);
         keep::<unsafe extern "C" fn(_, _, _, _, _) -> _>(c::standstill_recorder_read);
         keep::<unsafe extern "C" fn(_, _, _) -> _>(c::standstill_instance_make);
+        keep::<unsafe extern "C" fn(_, _, _) -> _>(c::standstill_cams_size);
+        keep::<unsafe extern "C" fn(_, _, _, _, _) -> _>(c::standstill_cams_init);
         standstill_blocks::for_every_block!(keep_blocks);
         #[cfg(feature = "reachable-panic")]
         assert!(black_box(true), "on purpose");

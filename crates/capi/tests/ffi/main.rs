@@ -165,6 +165,52 @@ fn storage_must_be_long_enough_and_aligned() {
     );
 }
 
+/// Covers: G80
+#[test]
+fn a_store_of_cams_is_set_up_once_in_memory_that_is_long_enough_and_aligned() {
+    let host = Host::powered();
+    let size = |slots, pieces| {
+        let mut bytes = 0;
+        // SAFETY: it leads to what it says.
+        let code = unsafe { standstill_cams_size(slots, pieces, &mut bytes) };
+        (code, bytes)
+    };
+    for (slots, pieces) in [
+        (0, 1),
+        (1, 0),
+        (65_536, 1),
+        (1, (1 << 24) + 1),
+        (u32::MAX, u32::MAX),
+    ] {
+        assert_eq!(size(slots, pieces), (Code::BadValue as i32, 0));
+    }
+    // SAFETY: nothing is written to null.
+    assert_eq!(
+        unsafe { standstill_cams_size(1, 1, null_mut()) },
+        Code::NullPointer as i32
+    );
+    let (code, bytes) = size(4, 64);
+    assert!(code == 0 && bytes > 64 * 100);
+    let mut storage = vec![0_u128; bytes.div_ceil(16) + 1];
+    let at: *mut u8 = storage.as_mut_ptr().cast();
+    let init = |at: *mut u8, bytes, slots| {
+        // SAFETY: inside the storage, which lives as long as the host, and never more bytes than it has.
+        unsafe { standstill_cams_init(host.runtime, at.cast(), bytes, slots, 64) }
+    };
+    assert_eq!(init(null_mut(), bytes, 4), Code::NullPointer as i32);
+    assert_eq!(init(at, bytes - 1, 4), Code::Storage as i32);
+    // SAFETY: inside the storage.
+    assert_eq!(init(unsafe { at.add(8) }, bytes, 4), Code::Storage as i32);
+    assert_eq!(init(at, bytes, 0), Code::BadValue as i32);
+    assert_eq!(host.begin(0), 0);
+    assert_eq!(init(at, bytes, 4), Code::InTick as i32);
+    assert_eq!(host.end(), 0);
+    assert_eq!(init(at, bytes, 4), 0);
+    assert_eq!(init(at, bytes, 4), Code::NoRoom as i32, "there is one");
+    assert!(host.stop() == 0);
+    host.run_down(1);
+}
+
 #[test]
 fn null_pointers_and_foreign_memory_are_no_runtimes() {
     let mut zeros = [0_u128; 64];

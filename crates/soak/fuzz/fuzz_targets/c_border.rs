@@ -71,6 +71,10 @@ fn play(bytes: &mut Bytes<'_>) {
         let mut storage = vec![0_u128; needed.div_ceil(16)];
         let at = storage.as_mut_ptr().cast();
         assert_eq!(standstill_runtime_init(1, at, needed, &config, &mut runtime), 0);
+        assert_eq!(standstill_cams_size(3, 40, &mut needed), 0);
+        let mut cams = vec![0_u128; needed.div_ceil(16)];
+        let at = cams.as_mut_ptr().cast();
+        assert_eq!(standstill_cams_init(runtime, at, needed, 3, 40), 0);
         let mut keys = [0_u64; 6];
         let mut now = 0_i64;
         let mut next = 0;
