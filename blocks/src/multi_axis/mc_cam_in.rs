@@ -28,9 +28,11 @@ pins! {
         MasterScaling => master_scaling: f64 = 1.0, "";
         /// The slave's side of the cam is so many times as long; negative mirrors it.
         SlaveScaling => slave_scaling: f64 = 1.0, "";
-        /// Master distance before MasterSyncPosition in which the slave starts to synchronise; only 0 is supported.
+        /// How far before MasterSyncPosition the master is, on its side of the cam, where the slave sets off; above 0 for a cam that
+        /// runs forwards, below 0 for one that runs backwards. 0 sets off at once.
         MasterStartDistance => master_start_distance: f64 = 0.0, "u of the master";
-        /// Place of the cam's master side at which the slave is in sync first; 0 for the first row that it can reach in time.
+        /// Place of the cam's master side at which the slave is in sync first with a MasterStartDistance; without, it joins there,
+        /// and 0 is the first row that it can reach in time.
         MasterSyncPosition => master_sync_position: f64 = 0.0, "u of the master";
         /// mcAbsolute as selected, mcRelative so that the cam passes through where the slave is, mcRampIn as mcAbsolute.
         StartMode => start_mode: Raw<StartMode> = Raw::new(0), "";

@@ -306,7 +306,7 @@ fn start_at_point<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Sc
         return;
     };
     let Some(slave) = axes.get_mut(index) else { return };
-    if !slave.reaches_start(&now, turn) {
+    if !slave.reaches_start(&now, turn, &scope.cams) {
         return;
     }
     let slave = slave.id();

@@ -22,10 +22,8 @@ impl<P: Planner> Axis<P> {
     pub fn command(&mut self, request: &Request, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
         let (mode, start) = self.admit_recorded(request, scope)?;
         let (work, limits) = self.check(&request.command, start, scope)?;
-        if let Work::Gear(gearing) = work
-            && gearing.waits_for_start()
-        {
-            return self.await_start(gearing, limits, mode, scope);
+        if work.waits_for_start() {
+            return self.await_start(work, limits, mode, scope);
         }
         let mut entry = Entry::new(self.new_id(), scope.instance, work, limits, mode);
         entry.direction = direction_of(&request.command);

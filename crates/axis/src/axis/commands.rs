@@ -115,13 +115,6 @@ pub(super) struct Sync {
     pub start_distance: f64,
 }
 
-impl Gearing {
-    /// The slave sets off where its master is at a place, not at once.
-    pub fn waits_for_start(&self) -> bool {
-        self.sync.is_some_and(|sync| sync.start_distance != 0.0)
-    }
-}
-
 /// On which cam a slave follows which master, checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Camming {
@@ -138,6 +131,20 @@ pub(super) struct Camming {
     pub slave_offset: f64,
     /// Where in the cam the slave is to be in sync first, if that is given (u of the cam's master side).
     pub sync: Option<f64>,
+    /// How far before that its master is where the slave sets off (u of the cam's master side), with the sign of its direction; 0
+    /// for at once.
+    pub start_distance: f64,
+}
+
+impl Work {
+    /// The slave sets off where its master is at a place, not at once.
+    pub fn waits_for_start(&self) -> bool {
+        match self {
+            Self::Gear(gearing) => gearing.sync.is_some_and(|sync| sync.start_distance != 0.0),
+            Self::Cam(camming) => camming.start_distance != 0.0,
+            _ => false,
+        }
+    }
 }
 
 /// What a kind of work is: said here once for all who ask. What only one of them asks stands there.

@@ -66,7 +66,7 @@ impl<P: Planner> Axis<P> {
         scope: &mut Scope<'_>,
     ) -> Result<(), ErrorId> {
         let Some(mut entry) = self.queue.iter().find(|entry| entry.id == id).copied() else {
-            return Ok(());
+            return self.update_awaited(id, command, scope);
         };
         let Some((work, limits)) = self.check_update(&entry, command, scope)? else {
             return Ok(());
@@ -81,7 +81,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The new values, checked; `None` if they are of another kind of command, or of one that does not move.
-    fn check_update(
+    pub(super) fn check_update(
         &self,
         entry: &Entry,
         command: &Command,
@@ -107,7 +107,7 @@ impl<P: Planner> Axis<P> {
         Ok((is_same_kind && work.manner().updated).then_some((work, limits)))
     }
 
-    fn take_values(&self, entry: &mut Entry, work: Work, limits: Limits) {
+    pub(super) fn take_values(&self, entry: &mut Entry, work: Work, limits: Limits) {
         entry.work = work;
         entry.limits = limits;
         entry.asked = Asked {

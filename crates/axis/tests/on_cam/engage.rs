@@ -335,10 +335,10 @@ fn what_is_no_good_is_refused_by_number() {
     };
     assert_eq!(refused(wrong), ErrorId::SyncPositionInvalid);
     let wrong = CamIn {
-        start_distance: 10.0,
+        start_distance: 360.0,
         ..good
     };
-    assert_eq!(refused(wrong), ErrorId::CamBesideUnsupported);
+    assert_eq!(refused(wrong), ErrorId::SyncPositionInvalid);
     let wrong = CamIn {
         start_mode: Raw::new(7),
         ..good

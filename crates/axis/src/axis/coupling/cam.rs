@@ -9,6 +9,7 @@
 //! | --- | --- |
 //! | [`follow`] | the motion step of a slave on a cam |
 //! | [`onto`] | how it comes onto the curve |
+//! | [`start`] | a start that waits for a place of the master |
 //! | [`shadow`] | its shadow in step with the master |
 //! | [`ahead`] | whether it keeps its limits along what the master does next |
 //! | [`ends`], [`after`] | ends of periods, and what follows then |
@@ -24,6 +25,7 @@ mod follow;
 mod laid;
 mod onto;
 mod shadow;
+mod start;
 
 use super::super::Axis;
 use super::super::commands::{Camming, Entry};
@@ -93,6 +95,10 @@ pub(in crate::axis) struct OnCam {
     camming: Camming,
     /// Where the cam lies, once it does.
     anchor: Option<Anchor>,
+    /// Where it lies at its master, and which place of the cam that is, if that was settled before it was engaged.
+    begins: Option<(Place, f64)>,
+    /// It is to be in sync at its sync position, and its way there is not chosen yet.
+    is_timed: bool,
     rung: Rung,
     /// It has been in sync.
     was_in_sync: bool,
@@ -170,6 +176,8 @@ impl OnCam {
         Self {
             camming,
             anchor: None,
+            begins: None,
+            is_timed: false,
             rung: Rung::Due,
             was_in_sync: false,
             shadow: None,
@@ -215,7 +223,8 @@ impl<P: Planner> Axis<P> {
             .on_cam
             .as_ref()
             .is_some_and(|on_cam| on_cam.camming.cam == id);
-        runs || self.owner.as_ref().is_some_and(is_of) || self.queue.iter().any(is_of)
+        let awaits = self.awaited.as_ref().is_some_and(|awaited| is_of(&awaited.entry));
+        runs || awaits || self.owner.as_ref().is_some_and(is_of) || self.queue.iter().any(is_of)
     }
 
     /// How often an end of a cam was reached by this axis: a number that only grows, until it wraps.
@@ -439,10 +448,6 @@ impl<P: Planner> Axis<P> {
                 return refuse(pin, value, most, ErrorId::SyncPositionInvalid);
             }
         }
-        if cam.start_distance != 0.0 {
-            let error = ErrorId::CamBesideUnsupported;
-            return refuse("MasterStartDistance", cam.start_distance, 0.0, error);
-        }
         if self.config.following.on_limit == OnLimit::SlowMaster {
             let number = f64::from(self.id.number());
             return refuse("Slave", number, f64::NAN, ErrorId::CamBesideUnsupported);
@@ -454,6 +459,21 @@ impl<P: Planner> Axis<P> {
         if let Some(head) = scope.cams.cam(cam.table).map(|cam| *cam.head) {
             // It may have been selected for another slave.
             self.check_smooth(&head, scope)?;
+            let period = head.end - head.begin;
+            if head.periodic && !(cam.start_distance.abs() < period) {
+                let error = ErrorId::SyncPositionInvalid;
+                return Err(self.refuse("MasterStartDistance", cam.start_distance, period, error, scope));
+            }
+            let is_in_cam = head.periodic || (head.begin..=head.end).contains(&cam.sync_position);
+            if cam.start_distance != 0.0 && !is_in_cam {
+                let limit = if cam.sync_position > head.end {
+                    head.end
+                } else {
+                    head.begin
+                };
+                let error = ErrorId::SyncPositionInvalid;
+                return Err(self.refuse("MasterSyncPosition", cam.sync_position, limit, error, scope));
+            }
         }
         let slave_turn = self.modulo.as_ref().map(|modulo| modulo.length);
         Ok(Camming {
@@ -471,7 +491,8 @@ impl<P: Planner> Axis<P> {
             slave_absolute: selection.slave_absolute && mode != StartMode::Relative,
             master_offset: cam.master_offset,
             slave_offset: cam.slave_offset,
-            sync: (cam.sync_position != 0.0).then_some(cam.sync_position),
+            sync: (cam.sync_position != 0.0 || cam.start_distance != 0.0).then_some(cam.sync_position),
+            start_distance: cam.start_distance,
         })
     }
 

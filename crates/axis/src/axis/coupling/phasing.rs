@@ -212,9 +212,19 @@ impl<P: Planner> Axis<P> {
 
     /// The shifts, if they go on with `entry`, which takes over: behind the same masters.
     pub(in crate::axis) fn lend_phasing(&mut self, entry: &Entry) -> Phasing<P::Plan> {
+        if self.goes_on_behind_masters(entry) {
+            core::mem::take(&mut self.phasing)
+        } else {
+            Phasing::default()
+        }
+    }
+
+    /// `entry` follows the masters that the owner follows.
+    pub(super) fn goes_on_behind_masters(&self, entry: &Entry) -> bool {
         match entry.work {
-            Work::Gear(gearing) if self.followed() == gearing.masters() => core::mem::take(&mut self.phasing),
-            _ => Phasing::default(),
+            Work::Gear(gearing) => self.followed() == gearing.masters(),
+            Work::Cam(camming) => self.followed() == [Some(camming.master), None],
+            _ => false,
         }
     }
 

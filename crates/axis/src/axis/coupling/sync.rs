@@ -1,4 +1,5 @@
-//! MC_GearInPos: a law that is given before the slave is on it, and a start that waits for a place of the master.
+//! MC_GearInPos: a law that is given before the slave is on it, and a start that waits for a place of the master, which MC_CamIn
+//! may have, too.
 //!
 //! Until the start the command waits beside whatever owns the slave, and changes nothing of that. Whether the slave can be in
 //! sync in time is looked at when the start point is crossed, before the owner is interrupted.
@@ -9,9 +10,12 @@ use super::super::commands::{Entry, Gearing, Sync, Work};
 use super::super::{Axis, Motion};
 use super::view::{Seen, View};
 use super::{Coupling, FURTHEST, Rung, Values};
-use crate::{AxisId, BufferMode, CommandId, ErrorId, Event, Fate, Scope, SyncMode, SyncPoint};
+use crate::{
+    AxisId, BufferMode, Cams, Command, CommandId, ErrorId, Event, Fate, Scope, SyncMode, SyncPoint,
+    ValueSource,
+};
 use standstill_planner::turns::split;
-use standstill_planner::{Anchor, Limits, Place, Plan, Planner};
+use standstill_planner::{Anchor, CamLaw, Limits, Place, Plan, Planner};
 
 /// What a place of the master may be off by for rounding, relative to the numbers it is made of.
 const ROUNDING: f64 = 1e-9;
@@ -19,18 +23,43 @@ const ROUNDING: f64 = 1e-9;
 /// Most halvings of a span of scans, of which a plan has at most 2^31.
 const HALVINGS: u32 = 32;
 
+/// Why something can't be in sync in time: the pin, its value and the limit.
+pub(super) type NotInTime = (&'static str, f64, f64, ErrorId);
+
 /// A command that waits for a place of its master.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::axis) struct Awaited {
     pub(in crate::axis) entry: Entry,
-    gearing: Gearing,
-    sync: Sync,
+    master: AxisId,
+    source: ValueSource,
     /// The master at the end of the scan before, in its coordinates of now.
     was: Seen,
-    /// The start point has not been looked for yet.
+    start: StartPoint,
+    /// Where its cam lies at the master, once that is settled, and which place of the cam that is.
+    laid: Option<(Place, f64)>,
+}
+
+/// A place of the master at which something starts.
+#[derive(Clone, Copy, Debug)]
+struct StartPoint {
+    /// The sync point, and how far before it the start point is, with the sign of the direction in which it is crossed.
+    goal: f64,
+    distance: f64,
+    /// It has not been looked for yet.
     is_new: bool,
     /// The master has been between start and sync point since the command was given, and has not gone back.
     is_between: bool,
+}
+
+/// A step of the master: from where to where, and the way between them.
+struct Course {
+    before: f64,
+    here: f64,
+    way: f64,
+    /// It goes on with this velocity.
+    velocity: f64,
+    /// So much further on it is at the same place again.
+    length: Option<f64>,
 }
 
 /// The remainder of `value` in [0, `length`).
@@ -38,37 +67,113 @@ fn wrapped(value: f64, length: f64) -> f64 {
     split(value, length).1
 }
 
-impl Awaited {
-    /// Whether the master, now at `now`, has come to the start point in this scan, or is on its way from there to the sync point.
-    fn starts(&mut self, now: &Seen, turn: Option<f64>) -> bool {
-        let Sync {
-            master: goal,
-            start_distance,
-            ..
-        } = self.sync;
-        let heading = 1.0_f64.copysign(start_distance);
-        let was = &self.was;
-        // What moved in the motion step itself was not seen before it.
-        let before = was.place.position + (now.moved - was.moved);
-        let here = now.place.position;
-        let point = goal - start_distance;
-        let turns = now.place.turns.wrapping_sub(was.place.turns) as f64;
-        let way = heading * (turns * turn.unwrap_or(0.0) + (here - before));
-        let has_crossed = match turn {
+impl StartPoint {
+    const fn new(goal: f64, distance: f64) -> Self {
+        Self {
+            goal,
+            distance,
+            is_new: true,
+            is_between: false,
+        }
+    }
+
+    /// Whether the master has come to the start point in this scan, or is on its way from there to the sync point.
+    fn starts(&mut self, course: &Course) -> bool {
+        let Self { goal, distance, .. } = *self;
+        if distance == 0.0 {
+            return true;
+        }
+        let heading = 1.0_f64.copysign(distance);
+        let (before, here) = (course.before, course.here);
+        let point = goal - distance;
+        let way = heading * course.way;
+        let has_crossed = match course.length {
             None => heading * (before - point) < 0.0 && heading * (here - point) >= 0.0,
             // How far it is behind the start point is less than it came in this scan.
             Some(length) => wrapped(heading * (here - point), length) < way,
         };
         if core::mem::take(&mut self.is_new) {
-            self.is_between = match turn {
+            self.is_between = match course.length {
                 None => heading * (here - point) >= 0.0 && heading * (goal - here) >= 0.0,
-                Some(length) => wrapped(heading * (goal - here), length) <= start_distance.abs(),
+                Some(length) => wrapped(heading * (goal - here), length) <= distance.abs(),
             };
         } else if way < 0.0 {
             self.is_between = false;
         }
-        let moves_on = heading * now.at.velocity > 0.0;
+        let moves_on = heading * course.velocity > 0.0;
         has_crossed || (self.is_between && moves_on)
+    }
+}
+
+impl Awaited {
+    /// `entry` waits; `None` for one that has nothing to wait for.
+    fn new(entry: Entry) -> Option<Self> {
+        let (master, source, goal, distance) = match entry.work {
+            Work::Gear(gearing) => {
+                let sync = gearing.sync?;
+                let first = gearing.first;
+                (first.master, first.source, sync.master, sync.start_distance)
+            }
+            Work::Cam(camming) => (
+                camming.master,
+                camming.source,
+                camming.sync.unwrap_or(0.0),
+                camming.start_distance,
+            ),
+            _ => return None,
+        };
+        Some(Self {
+            entry,
+            master,
+            source,
+            was: Seen::default(),
+            start: StartPoint::new(goal, distance),
+            laid: None,
+        })
+    }
+
+    /// How the master came from the end of the scan before to where it is `now`, on its side of the cam for one that goes onto
+    /// that; `turn` is the length of the master's turn (u).
+    fn course(&mut self, now: &Seen, turn: Option<f64>, cams: &Cams<'_>) -> Option<Course> {
+        // What moved in the motion step itself was not seen before it.
+        let late = now.moved - self.was.moved;
+        if let Work::Cam(camming) = self.entry.work {
+            let cam = cams.cam(camming.cam)?;
+            let mut was = self.was.place;
+            was.position += late;
+            if let (Some((place, _)), false) = (&mut self.laid, camming.master_absolute) {
+                place.position += now.moved;
+            }
+            let (place, origin) = *self.laid.get_or_insert_with(|| camming.laid(was, cam.head));
+            let law = CamLaw {
+                origin,
+                ..camming.law
+            };
+            let anchor = Anchor {
+                master: place,
+                ..Anchor::default()
+            };
+            let (before, here) = (
+                law.unwound(&cam, &anchor, was),
+                law.unwound(&cam, &anchor, now.place),
+            );
+            return Some(Course {
+                before,
+                here,
+                way: here - before,
+                velocity: now.at.velocity / law.master_scaling,
+                length: cam.head.periodic.then_some(cam.head.end - cam.head.begin),
+            });
+        }
+        let (before, here) = (self.was.place.position + late, now.place.position);
+        let turns = now.place.turns.wrapping_sub(self.was.place.turns) as f64;
+        Some(Course {
+            before,
+            here,
+            way: turns * turn.unwrap_or(0.0) + (here - before),
+            velocity: now.at.velocity,
+            length: turn,
+        })
     }
 }
 
@@ -113,30 +218,40 @@ impl<P: Planner> Axis<P> {
     /// A command waits for its start point, in place of one that did before.
     pub(in crate::axis) fn await_start(
         &mut self,
-        gearing: Gearing,
+        work: Work,
         limits: Limits,
         mode: BufferMode,
         scope: &mut Scope<'_>,
     ) -> Result<CommandId, ErrorId> {
-        let Some(sync) = gearing.sync else {
-            return Err(ErrorId::SyncPositionInvalid);
-        };
         if mode != BufferMode::Aborting {
             let number = f64::from(mode as i32);
             return Err(self.refuse("BufferMode", number, 0.0, ErrorId::BufferModeNotHere, scope));
         }
         self.end_awaited(Fate::Aborted);
-        let entry = Entry::new(self.new_id(), scope.instance, Work::Gear(gearing), limits, mode);
+        let entry = Entry::new(self.new_id(), scope.instance, work, limits, mode);
         self.is_bound = true;
-        self.awaited = Some(Awaited {
-            entry,
-            gearing,
-            sync,
-            was: Seen::default(),
-            is_new: true,
-            is_between: false,
-        });
+        self.awaited = Awaited::new(entry);
         Ok(entry.id)
+    }
+
+    /// If command `id` waits for its start point, it does so with these values from now on.
+    pub(in crate::axis) fn update_awaited(
+        &mut self,
+        id: CommandId,
+        command: &Command,
+        scope: &mut Scope<'_>,
+    ) -> Result<(), ErrorId> {
+        let Some(Awaited { mut entry, was, .. }) = self.awaited.filter(|awaited| awaited.entry.id == id)
+        else {
+            return Ok(());
+        };
+        let Some((work, limits)) = self.check_update(&entry, command, scope)? else {
+            return Ok(());
+        };
+        self.take_values(&mut entry, work, limits);
+        // What sets off at once takes over in the next motion step as what was at its start point does.
+        self.awaited = Awaited::new(entry).map(|awaited| Awaited { was, ..awaited });
+        Ok(())
     }
 
     /// Command `id` waits for its start point.
@@ -155,13 +270,14 @@ impl<P: Planner> Axis<P> {
 
     /// The master whose place a command waits for.
     pub(crate) fn awaited_master(&self) -> Option<AxisId> {
-        self.awaited.as_ref().map(|awaited| awaited.gearing.first.master)
+        self.awaited.as_ref().map(|awaited| awaited.master)
     }
 
     /// The same, and which values of it.
     pub(crate) fn awaited_values(&self) -> Option<Values> {
-        let gearing = self.awaited.as_ref()?.gearing;
-        Some((gearing.first.master, gearing.first.source))
+        self.awaited
+            .as_ref()
+            .map(|awaited| (awaited.master, awaited.source))
     }
 
     /// Before any axis has moved in this scan: the master whose place a command waits for is there.
@@ -173,10 +289,12 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the command that waits for a place of its master, now seen there, starts in this scan; `turn` is the length of the
     /// master's turn (u). To be asked once in a motion step.
-    pub(crate) fn reaches_start(&mut self, now: &Seen, turn: Option<f64>) -> bool {
-        self.awaited
-            .as_mut()
-            .is_some_and(|awaited| awaited.starts(now, turn))
+    pub(crate) fn reaches_start(&mut self, now: &Seen, turn: Option<f64>, cams: &Cams<'_>) -> bool {
+        let Some(awaited) = &mut self.awaited else {
+            return false;
+        };
+        let course = awaited.course(now, turn, cams);
+        course.is_some_and(|course| awaited.start.starts(&course))
     }
 
     /// The master is at the start point of the command that waits for it: that takes over, or it fails and what owns the axis goes
@@ -184,25 +302,20 @@ impl<P: Planner> Axis<P> {
     ///
     /// Cost: that of the plans looked at where the way onto a law is looked for.
     pub(crate) fn start_at_point(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        let Some(Awaited {
-            entry, gearing, was, ..
-        }) = self.awaited
-        else {
+        let Some(Awaited { entry, was, laid, .. }) = self.awaited else {
             return;
         };
-        let is_same_master = self.followed() == gearing.masters();
+        let is_same_master = self.goes_on_behind_masters(&entry);
         let seen = if is_same_master {
             was.shifted(self.phases_now()[0])
         } else {
             was
         };
-        let coupling = Coupling {
-            was: [seen, Seen::default()],
-            ..Coupling::new(gearing, self.slowed(&self.parameters.limits), self.frame.moves())
+        let found = match entry.work {
+            Work::Gear(gearing) => self.gear_starts(&entry, gearing, seen, view),
+            Work::Cam(camming) => self.cam_starts(&entry, camming, (seen, laid), view, scope),
+            _ => return,
         };
-        let own = self.coupling.replace(coupling);
-        let found = self.way_at_start(&entry, view);
-        self.coupling = own;
         if let Err((pin, value, limit, error)) = found {
             return self.fail_awaited((pin, value, limit), error, scope);
         }
@@ -212,7 +325,26 @@ impl<P: Planner> Axis<P> {
         self.end_all(Fate::Aborted, Fate::Aborted);
         self.phasing = phasing;
         self.begin(entry, Motion::Geared, before, scope);
+        self.note_start_on_cam(laid);
         self.note_masters([was, Seen::default()]);
+    }
+
+    /// Whether a gear that starts now is in sync in time.
+    fn gear_starts(
+        &mut self,
+        entry: &Entry,
+        gearing: Gearing,
+        seen: Seen,
+        view: &View<'_, P::Plan>,
+    ) -> Result<(), NotInTime> {
+        let coupling = Coupling {
+            was: [seen, Seen::default()],
+            ..Coupling::new(gearing, self.slowed(&self.parameters.limits), self.frame.moves())
+        };
+        let own = self.coupling.replace(coupling);
+        let found = self.way_at_start(entry, view);
+        self.coupling = own;
+        found
     }
 
     /// What waits for a place of its master can't follow it: it fails, and what owns the axis goes on.
@@ -234,11 +366,7 @@ impl<P: Planner> Axis<P> {
 
     /// Whether `entry`, whose coupling is lent for the time of the question, is in sync in time: else the pin, its value and limit,
     /// and why.
-    fn way_at_start(
-        &mut self,
-        entry: &Entry,
-        view: &View<'_, P::Plan>,
-    ) -> Result<(), (&'static str, f64, f64, ErrorId)> {
+    fn way_at_start(&mut self, entry: &Entry, view: &View<'_, P::Plan>) -> Result<(), NotInTime> {
         self.lay_law(view);
         let Some(coupling) = &self.coupling else {
             return Ok(());

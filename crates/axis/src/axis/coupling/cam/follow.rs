@@ -348,6 +348,7 @@ impl<P: Planner> Axis<P> {
 
     /// In sync from now on.
     pub(super) fn lock_on_cam(&mut self, scope: &mut Scope<'_>) {
+        let was_in_sync = self.on_cam.as_ref().is_some_and(|on_cam| on_cam.was_in_sync);
         if let Some(on_cam) = &mut self.on_cam {
             on_cam.rung = Rung::Locked;
             on_cam.left = u64::MAX;
@@ -359,6 +360,9 @@ impl<P: Planner> Axis<P> {
         self.motion = Motion::Geared;
         self.stir();
         self.record(Event::InSync, &mut self.owner_scope(scope));
+        if !was_in_sync {
+            self.note_sync_on_cam(scope);
+        }
     }
 
     /// No longer in sync: the cam asks for more than a limit.

@@ -15,7 +15,7 @@ use super::super::needs::RESOLVED;
 use super::super::view::{Kind, UNKNOWN, View};
 use super::{Curve, OnCam, Rung, Shadow};
 use crate::{Approach, ErrorId, Event, Fate, Scope};
-use standstill_planner::{Anchor, Limits, Place, Plan, Planner, Setpoint};
+use standstill_planner::{Anchor, Cam, CamLaw, Limits, Place, Plan, Planner, Setpoint};
 
 /// A velocity left beside that of a line must be at least this part of the limit.
 pub(super) const LEAST: f64 = 1e-6;
@@ -31,6 +31,13 @@ pub(super) struct Stretch {
     pub end: u64,
     pub velocity: f64,
     pub now: Place,
+}
+
+/// How a shadow sets off: by how much its master comes nearer meanwhile, without a sign, and its own way with one (u of the cam's
+/// master side).
+struct Ramp {
+    gained: f64,
+    way: f64,
 }
 
 /// A way onto the cam.
@@ -78,22 +85,7 @@ impl<P: Planner> Axis<P> {
             let Some(cam) = scope.cams.cam(on_cam.camming.cam) else {
                 return self.fail(ErrorId::CamUnknown, scope);
             };
-            let anchor = on_cam.anchor.unwrap_or_else(|| self.laid(&on_cam, &cam));
-            let mut camming = on_cam.camming;
-            if on_cam.anchor.is_none() && !camming.master_absolute {
-                // A cam that is counted from where its master is begins there.
-                camming.law.origin = cam.head.begin;
-            }
-            if let Some(on_cam) = &mut self.on_cam {
-                on_cam.anchor = Some(anchor);
-                on_cam.camming.law = camming.law;
-            }
-            let curve = Curve {
-                cam,
-                law: camming.law,
-                anchor,
-            };
-            self.find_shadow(&curve);
+            let Some(curve) = self.lay_cam(cam) else { return };
             self.drop_periods(&curve);
             let beyond = self.keeps_on_cam(&curve, view, false);
             let choice = self.choose(&curve, view, &owner, may_lock && beyond.is_ok());
@@ -120,27 +112,27 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// Where the cam lies, from the places of both at the end of the scan before.
-    fn laid(&self, on_cam: &OnCam, cam: &standstill_planner::Cam<'_>) -> Anchor {
+    /// Where the cam lies is settled, and whether the slave is on it.
+    pub(super) fn lay_cam<'a>(&mut self, cam: Cam<'a>) -> Option<Curve<'a>> {
+        let mut on_cam = self.on_cam?;
+        if on_cam.anchor.is_none() {
+            let camming = &mut on_cam.camming;
+            let settled = on_cam.begins;
+            let (master, origin) = settled.unwrap_or_else(|| camming.laid(on_cam.was.place, cam.head));
+            camming.law.origin = origin;
+            on_cam.anchor = Some(self.laid(&on_cam, &cam, master));
+            self.on_cam = Some(on_cam);
+        }
+        let curve = on_cam.curve(cam)?;
+        self.find_shadow(&curve);
+        Some(curve)
+    }
+
+    /// Where the cam lies that lies there at its `master`, from the places of both at the end of the scan before.
+    fn laid(&self, on_cam: &OnCam, cam: &Cam<'_>, master: Place) -> Anchor {
         let camming = &on_cam.camming;
         let was = on_cam.was.place;
-        let master = Place {
-            turns: was.turns,
-            position: camming.master_offset,
-            phase: if camming.master_absolute {
-                0.0
-            } else {
-                was.position
-            },
-        };
-        let law = standstill_planner::CamLaw {
-            origin: if camming.master_absolute {
-                0.0
-            } else {
-                cam.head.begin
-            },
-            ..camming.law
-        };
+        let law = camming.law;
         let offset = Place {
             turns: 0,
             position: camming.slave_offset,
@@ -151,7 +143,7 @@ impl<P: Planner> Axis<P> {
             slave: offset,
             ..Anchor::default()
         };
-        let straight = standstill_planner::CamLaw {
+        let straight = CamLaw {
             slave_turn: None,
             ..law
         };
@@ -182,7 +174,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// A slave that is not known to be on the curve may be, at its master's place.
-    fn find_shadow(&mut self, curve: &Curve<'_>) {
+    pub(super) fn find_shadow(&mut self, curve: &Curve<'_>) {
         let here = self.place();
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
         let limits = self.slowed(&self.parameters.limits);
@@ -240,7 +232,7 @@ impl<P: Planner> Axis<P> {
         on_cam.ends.renumber(whole as i64);
     }
 
-    fn choose(
+    pub(super) fn choose(
         &self,
         curve: &Curve<'_>,
         view: &View<'_, P::Plan>,
@@ -285,7 +277,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The stretch of its master's plan that the shadow is to be led onto.
-    fn stretch_of_master(&self, on_cam: &OnCam, view: &View<'_, P::Plan>) -> Stretch {
+    pub(super) fn stretch_of_master(&self, on_cam: &OnCam, view: &View<'_, P::Plan>) -> Stretch {
         let (was, now) = (&on_cam.was, &view.now);
         let cycle = self.planner.cycle();
         let turn = on_cam.camming.law.master_turn.unwrap_or(0.0);
@@ -348,17 +340,31 @@ impl<P: Planner> Axis<P> {
         let forwards = speed > 0.0;
         // The way the master gains on a shadow that sets off at rest, on the cam's side; none if it can't be reached at all.
         let gained = self.gained(curve, stretch);
-        let Some(gained) = gained else {
+        let Some(Ramp { gained, way }) = gained else {
             return self.never_in_step(curve, owner, stretch, head.periodic);
         };
         let (here, line) = (curve.unwound(on_cam.was.place), curve.unwound(stretch.now));
         let length = head.end - head.begin;
         let period = if head.periodic { length } else { 0.0 };
-        let mut place = match on_cam.camming.sync {
-            Some(sync) => {
-                let over = (here - sync) / length;
+        // To be in sync at a place its shadow sets off before that.
+        let starts = on_cam.camming.start_distance != 0.0;
+        let goal = on_cam
+            .camming
+            .sync
+            .map(|sync| if starts { sync - way } else { sync });
+        let mut place = match goal {
+            Some(_) if on_cam.is_timed => {
+                let place = here + curve.left_to_sync(on_cam) - way;
+                let is_past = if forwards { place < here } else { place > here };
+                if is_past {
+                    return Choice::Fail(ErrorId::SyncNotReachable);
+                }
+                place
+            }
+            Some(goal) => {
+                let over = (here - goal) / length;
                 let whole = if head.periodic { over as i64 as f64 } else { 0.0 };
-                let place = sync + whole * length;
+                let place = goal + whole * length;
                 let is_past = if forwards { place < here } else { place > here };
                 let next = if is_past { period.copysign(speed) } else { 0.0 };
                 place + next
@@ -381,6 +387,9 @@ impl<P: Planner> Axis<P> {
             let missing = if forwards { needed - place } else { place - needed } + gained;
             if missing <= 0.0 {
                 return Choice::Take(way);
+            }
+            if on_cam.is_timed {
+                return Choice::Fail(ErrorId::SyncNotReachable);
             }
             if head.periodic && look + 2 >= PLACES {
                 // Nothing near: as many periods on as it takes, and one more for the way there, which may be another one.
@@ -417,12 +426,12 @@ impl<P: Planner> Axis<P> {
         stretch: &Stretch,
         periodic: bool,
     ) -> Choice<P::Plan> {
-        if !periodic {
-            return Choice::Fail(ErrorId::SyncNotReachable);
-        }
         let Some(on_cam) = &self.on_cam else {
             return Choice::Wait(u64::MAX);
         };
+        if !periodic || on_cam.is_timed {
+            return Choice::Fail(ErrorId::SyncNotReachable);
+        }
         let here = curve.unwound(on_cam.was.place);
         let forwards = stretch.velocity * curve.law.master_scaling > 0.0;
         let to = curve.place_of(curve.next_row(here, forwards), on_cam.was.place);
@@ -432,9 +441,8 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// By how much (u of the cam's master side) the master comes nearer to a shadow that sets off at rest and comes to its velocity;
-    /// `None` if it can't.
-    fn gained(&self, curve: &Curve<'_>, stretch: &Stretch) -> Option<f64> {
+    /// How a shadow that sets off at rest comes to the velocity of its master; `None` if it can't.
+    fn gained(&self, curve: &Curve<'_>, stretch: &Stretch) -> Option<Ramp> {
         let rest = Setpoint::default();
         let [wanted, ..] = self.speeds_of_shadow(curve, stretch);
         let limits = self.limits_of_shadow(curve, &rest, wanted)?;
@@ -447,8 +455,11 @@ impl<P: Planner> Axis<P> {
             .ok()?;
         let scans = u64::from(ramp.scans());
         let of_master = stretch.velocity * (scans as f64 * self.planner.cycle());
-        let gained = (of_master - ramp.at(scans).position) / curve.law.master_scaling;
-        Some(gained.abs())
+        let way = ramp.at(scans).position;
+        Some(Ramp {
+            gained: ((of_master - way) / curve.law.master_scaling).abs(),
+            way: way / curve.law.master_scaling,
+        })
     }
 
     /// A move to where the curve is for a master at `to`.
@@ -517,6 +528,7 @@ impl<P: Planner> Axis<P> {
         self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
         if let Some(on_cam) = &mut self.on_cam {
             on_cam.rung = way.rung;
+            on_cam.is_timed = false;
             on_cam.left = way.left;
             on_cam.shadow_limits = way.shadow;
             on_cam.slows = way.slows;
