@@ -714,10 +714,10 @@ impl<P: Planner> Axis<P> {
 
     /// The axis follows no master any more.
     fn end_coupling(&mut self) {
-        if self.coupling.take().is_some() {
+        let was_behind_gear = self.coupling.take().is_some();
+        if self.on_cam.take().is_some() || was_behind_gear {
             self.end_phasing();
         }
-        self.on_cam = None;
     }
 
     fn record(&self, event: Event, scope: &mut Scope<'_>) {

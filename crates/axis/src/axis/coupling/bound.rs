@@ -100,7 +100,7 @@ impl<P: Planner> Axis<P> {
     /// Whether it may slow its master down, or is slowed down.
     pub(crate) fn may_bound(&self) -> bool {
         let slows = self.config.following.on_limit == OnLimit::SlowMaster;
-        (slows && self.coupling.is_some()) || self.is_slowed()
+        (slows && (self.is_coupled() || self.is_on_cam())) || self.is_slowed()
     }
 
     /// Every limit of a velocity is finite, so there is a bound where that is.
@@ -114,6 +114,7 @@ impl<P: Planner> Axis<P> {
         if self.config.following.on_limit != OnLimit::SlowMaster {
             return;
         }
+        self.begin_bound_on_cam();
         let Some(coupling) = &mut self.coupling else {
             return;
         };
@@ -135,7 +136,7 @@ impl<P: Planner> Axis<P> {
 
     /// Its master keeps its limits.
     pub(super) fn slows_master(&self) -> bool {
-        self.coupling.as_ref().is_some_and(|coupling| coupling.slows)
+        self.coupling.as_ref().is_some_and(|coupling| coupling.slows) || self.bound_on_cam().is_some()
     }
 
     /// Whether its motion was planned within what its slaves leave, not before there were any, nor after a fault.
@@ -156,13 +157,20 @@ impl<P: Planner> Axis<P> {
             let limits = self.slowed(&self.parameters.limits).times(part);
             let bound = |number: usize, leg: Leg| {
                 let bound = behind(&limits, leg.gear.ratio())?;
-                let shift = self.taken_by_shift(number);
-                Some((leg.master, shift.map_or(bound, |shift| beside(&bound, shift))))
+                Some((leg.master, self.beside_shift(number, bound)))
             };
             let second = gearing.second.and_then(|leg| bound(1, leg));
             [bound(0, gearing.first), second]
         });
-        bounds.into_iter().flatten()
+        let on_cam = self.master_on_cam().zip(self.bound_on_cam());
+        let on_cam = on_cam.map(|(master, bound)| (master, self.beside_shift(0, bound)));
+        bounds.into_iter().flatten().chain(on_cam)
+    }
+
+    /// What is left of `bound` beside a shift of the master of this number that is changing.
+    fn beside_shift(&self, leg: usize, bound: Limits) -> Limits {
+        let shift = self.taken_by_shift(leg);
+        shift.map_or(bound, |shift| beside(&bound, shift))
     }
 
     /// The most a shift between master and slave may have of `room`, of which the slave has `limits` in all, in units of the

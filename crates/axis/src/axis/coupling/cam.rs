@@ -12,6 +12,7 @@
 //! | [`start`] | a start that waits for a place of the master |
 //! | [`shadow`] | its shadow in step with the master |
 //! | [`ahead`] | whether it keeps its limits along what the master does next |
+//! | [`beside`] | what it leaves to a shift, and to its master |
 //! | [`ends`], [`after`] | ends of periods, and what follows then |
 //! | [`laid`] | how the cam lies, for who draws it |
 //!
@@ -20,6 +21,7 @@
 
 mod after;
 mod ahead;
+mod beside;
 mod ends;
 mod follow;
 mod laid;
@@ -122,6 +124,8 @@ pub(in crate::axis) struct OnCam {
     moves: u32,
     /// By how much the slave is off the cam at its master's place (u).
     deviation: f64,
+    /// What it leaves to its master, once that keeps the limits of the slave.
+    bound: Option<Limits>,
 }
 
 /// A cam as it lies.
@@ -191,6 +195,7 @@ impl OnCam {
             limits,
             moves,
             deviation: 0.0,
+            bound: None,
         }
     }
 
@@ -351,13 +356,13 @@ impl<P: Planner> Axis<P> {
         let place = on_cam.shadow.map(|shadow| shadow.place);
         let turn = on_cam.camming.law.master_turn;
         let shadow = place.map(|place| match turn {
-            Some(length) => standstill_planner::turns::split(place.position, length).1,
-            None => place.position,
+            Some(length) => standstill_planner::turns::split(place.position + place.phase, length).1,
+            None => place.position + place.phase,
         });
         Some(Coupled {
             master: on_cam.camming.master,
             deviation: on_cam.deviation,
-            phase: 0.0,
+            phase: self.phases()[0],
             second: None,
             superimposed: 0.0,
             shadow,
@@ -447,10 +452,6 @@ impl<P: Planner> Axis<P> {
             if !(value.abs() <= most) {
                 return refuse(pin, value, most, ErrorId::SyncPositionInvalid);
             }
-        }
-        if self.config.following.on_limit == OnLimit::SlowMaster {
-            let number = f64::from(self.id.number());
-            return refuse("Slave", number, f64::NAN, ErrorId::CamBesideUnsupported);
         }
         let Some(selection) = scope.cams.selection(cam.table) else {
             let number = f64::from(cam.table.number());

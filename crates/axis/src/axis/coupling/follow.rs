@@ -702,3 +702,8 @@ impl<P: Planner> Axis<P> {
 pub(super) fn off(one: Place, other: Place, length: f64) -> f64 {
     (one.turns.wrapping_sub(other.turns)) as f64 * length + (one.position - other.position)
 }
+
+/// The same of two masters as their slave sees them: with what shifts them.
+pub(super) fn apart(one: Place, other: Place, length: f64) -> f64 {
+    off(one, other, length) + (one.phase - other.phase)
+}

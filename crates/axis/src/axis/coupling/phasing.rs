@@ -10,7 +10,7 @@
 use super::super::Axis;
 use super::super::commands::{Entry, Work, refusal};
 use super::view::{Course, Kind, Seen, View};
-use crate::{AxisId, BufferMode, CommandId, ErrorId, Event, Fate, InstanceId, PhaseShift, Scope};
+use crate::{AxisId, BufferMode, Cams, CommandId, ErrorId, Event, Fate, InstanceId, PhaseShift, Scope};
 use standstill_planner::{Limits, Plan, Planner, Setpoint};
 
 /// How a shift is to change.
@@ -119,9 +119,6 @@ impl<P: Planner> Axis<P> {
             return Err(self.refuse("BufferMode", number, f64::NAN, ErrorId::BufferModeInvalid, scope));
         };
         self.finite("PhaseShift", request.shift, scope)?;
-        if self.master_on_cam() == Some(request.master) {
-            self.beside_no_cam("Master", scope)?;
-        }
         let limits = self.limits_of_shift(request, scope)?;
         let is_asked = |master: &Option<AxisId>| *master == Some(request.master);
         let leg = self.followed().iter().position(is_asked);
@@ -344,7 +341,7 @@ impl<P: Planner> Axis<P> {
         {
             return;
         }
-        let Some(room) = self.room_for_shift(leg, view) else {
+        let Some(room) = self.room_for_shift((leg, &shift.limits), view, &scope.cams) else {
             return;
         };
         let from = if shift.is_relative { now.position } else { 0.0 };
@@ -410,7 +407,15 @@ impl<P: Planner> Axis<P> {
 
     /// What the law leaves of the slave's limits, in units of the master; none while it leaves nothing, or while the slave is not
     /// in gear or what the master does next is not known.
-    fn room_for_shift(&self, leg: usize, view: &View<'_, P::Plan>) -> Option<Limits> {
+    fn room_for_shift(
+        &self,
+        (leg, asked): (usize, &Limits),
+        view: &View<'_, P::Plan>,
+        cams: &Cams<'_>,
+    ) -> Option<Limits> {
+        if self.is_on_cam() {
+            return self.room_for_shift_on_cam(asked, view, cams);
+        }
         let coupling = self.coupling.as_ref()?;
         if !coupling.rung.is_locked() || self.adds_motion() {
             return None;

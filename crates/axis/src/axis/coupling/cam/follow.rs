@@ -4,7 +4,7 @@ use super::super::super::commands::ROUNDING;
 use super::super::super::power::Reaction;
 use super::super::super::{Axis, Motion};
 use super::super::FURTHEST;
-use super::super::follow::{Beyond, off};
+use super::super::follow::{Beyond, apart, off};
 use super::super::needs::RESOLVED;
 use super::super::view::{Kind, View};
 use super::{Curve, OnCam, Rung, Shadow};
@@ -21,6 +21,8 @@ impl<P: Planner> Axis<P> {
         if !self.still_follows(view, scope) {
             return;
         }
+        let shifts = self.is_phasing();
+        let view = &self.shifted_view(view, scope);
         self.rebase_cam(view, scope.scan);
         let is_new = self.look_ahead_on_cam(view);
         if self.stays_paused(is_new, scope) {
@@ -31,7 +33,13 @@ impl<P: Planner> Axis<P> {
         let stays = is_locked && self.config.following.on_limit == OnLimit::Error;
         if (is_new && !stays) || self.cam_rung() == Some(Rung::Due) {
             self.decide_on_cam(view, true, scope);
-            self.note_source();
+            // The last step of a shift is one of its own.
+            if !shifts {
+                self.note_source();
+            }
+        }
+        if is_new && self.slows_master() {
+            self.bound_master_on_cam(&scope.cams);
         }
         if self.is_on_cam() {
             self.step_on_cam(view, scope);
@@ -277,7 +285,7 @@ impl<P: Planner> Axis<P> {
         let Some(on_cam) = &self.on_cam else { return false };
         let turn = on_cam.camming.law.master_turn.unwrap_or(0.0);
         let numbers = shadow.place.position.abs() + view.now.place.position.abs() + turn;
-        let is_there = off(shadow.place, view.now.place, turn).abs() <= RESOLVED * 4.0 * numbers;
+        let is_there = apart(shadow.place, view.now.place, turn).abs() <= RESOLVED * 4.0 * numbers;
         let speed = on_cam.shadow_limits.velocity.min(f64::MAX);
         let is_even = (shadow.at.velocity - view.now.at.velocity).abs() <= ROUNDING * speed;
         let cam = scope.cams.cam(on_cam.camming.cam);
@@ -357,6 +365,7 @@ impl<P: Planner> Axis<P> {
             self.in_force = on_cam.limits;
             self.before = on_cam.limits;
         }
+        self.bound_master_on_cam(&scope.cams);
         self.motion = Motion::Geared;
         self.stir();
         self.record(Event::InSync, &mut self.owner_scope(scope));

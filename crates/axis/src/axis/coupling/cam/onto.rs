@@ -10,7 +10,7 @@
 
 use super::super::super::commands::{Entry, ROUNDING, refusal};
 use super::super::super::{Axis, Motion};
-use super::super::follow::off;
+use super::super::follow::{apart, off};
 use super::super::needs::RESOLVED;
 use super::super::view::{Kind, UNKNOWN, View};
 use super::{Curve, OnCam, Rung, Shadow};
@@ -209,7 +209,7 @@ impl<P: Planner> Axis<P> {
             return;
         };
         let turn = curve.law.master_turn.unwrap_or(0.0);
-        let behind = off(on_cam.was.place, shadow.place, turn);
+        let behind = apart(on_cam.was.place, shadow.place, turn);
         let period = curve.period();
         let whole = (behind / period) as i64 as f64;
         // Ahead it lets the master come.
@@ -249,7 +249,7 @@ impl<P: Planner> Axis<P> {
         let turn = curve.law.master_turn.unwrap_or(0.0);
         let was = &on_cam.was;
         let difference = Setpoint {
-            position: off(shadow.place, was.place, turn),
+            position: apart(shadow.place, was.place, turn),
             velocity: shadow.at.velocity - was.at.velocity,
             acceleration: shadow.at.acceleration - was.at.acceleration,
             jerk: shadow.at.jerk - was.at.jerk,
@@ -281,7 +281,7 @@ impl<P: Planner> Axis<P> {
         let (was, now) = (&on_cam.was, &view.now);
         let cycle = self.planner.cycle();
         let turn = on_cam.camming.law.master_turn.unwrap_or(0.0);
-        let step = off(now.place, was.place, turn);
+        let step = apart(now.place, was.place, turn);
         let at = |further: f64| Place {
             position: was.place.position + further,
             ..was.place

@@ -3,7 +3,7 @@
 
 use super::super::super::commands::ROUNDING;
 use super::super::super::{Axis, Motion};
-use super::super::follow::off;
+use super::super::follow::apart;
 use super::super::needs::RESOLVED;
 use super::super::view::{UNKNOWN, View};
 use super::onto::{Choice, LEAST, Stretch, Way};
@@ -25,7 +25,7 @@ const GAINED: f64 = 1.25;
 const FLAT: f64 = 1e-3;
 
 /// The most a shadow may have of the highest velocity of its cam: above it nothing is left to its acceleration.
-const FASTEST: f64 = 0.98;
+pub(super) const FASTEST: f64 = 0.98;
 
 impl<P: Planner> Axis<P> {
     /// Limits of the shadow with a velocity of its own (u/s of the master). `None` if nothing is left of the slave's.
@@ -284,7 +284,7 @@ impl<P: Planner> Axis<P> {
         let along = limits.velocity - speed;
         let turn = curve.law.master_turn.unwrap_or(0.0);
         let start = Setpoint {
-            position: off(shadow.place, stretch.now, turn) + laps,
+            position: apart(shadow.place, stretch.now, turn) + laps,
             velocity: shadow.at.velocity - stretch.velocity,
             ..shadow.at
         };

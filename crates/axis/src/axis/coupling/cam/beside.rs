@@ -1,0 +1,119 @@
+//! What a slave in sync leaves of its limits: to a shift between it and its master, and to the master itself (`on_limit`
+//! `slow_master`).
+//!
+//! Both are boxes: within them the slave keeps its limits wherever it is on the cam. A box with a higher velocity leaves less of the
+//! other three.
+
+use super::super::super::Axis;
+use super::super::view::{Kind, View};
+use super::Rung;
+use super::shadow::FASTEST;
+use crate::{Cams, OnLimit};
+use standstill_planner::{Limits, Planner, Setpoint};
+
+/// The share of the highest velocity of its cam that a slave leaves to its master.
+const LEFT: f64 = 0.8;
+
+/// The share of what is between the master's velocity and the highest one that a shift has which asks for no velocity.
+const SHARE: f64 = 0.4;
+
+impl<P: Planner> Axis<P> {
+    /// Before bounds are collected: whether its master keeps the limits of the slave is noted.
+    pub(in crate::axis::coupling) fn begin_bound_on_cam(&mut self) {
+        if let Some(on_cam) = &mut self.on_cam
+            && on_cam.rung == Rung::Lost
+        {
+            on_cam.bound = None;
+        }
+    }
+
+    /// What is left to its master, which keeps the limits of the slave.
+    pub(in crate::axis::coupling) fn bound_on_cam(&self) -> Option<Limits> {
+        self.on_cam.as_ref()?.bound
+    }
+
+    /// In sync: from now on its master keeps the limits of the slave, if that is how it is set up.
+    pub(super) fn bound_master_on_cam(&mut self, cams: &Cams<'_>) {
+        if self.config.following.on_limit != OnLimit::SlowMaster {
+            return;
+        }
+        let Some(on_cam) = &self.on_cam else { return };
+        let cam = cams.cam(on_cam.camming.cam);
+        let Some(curve) = cam.and_then(|cam| on_cam.curve(cam)) else {
+            return;
+        };
+        let limits = self.slowed(&self.parameters.limits);
+        let bounds = curve.bounds();
+        let most = LEFT * bounds.highest_velocity(&limits);
+        // A cam that does not move its slave leaves everything.
+        let bound = (!bounds.is_level())
+            .then(|| bounds.shadow(&limits, most, 0.0))
+            .flatten();
+        if let Some(on_cam) = &mut self.on_cam {
+            on_cam.bound = Some(bound.unwrap_or(Limits::NONE));
+        }
+    }
+
+    /// What the cam leaves to a shift that asks for these limits, in units of the master; none while it leaves nothing, or while the
+    /// slave is not in sync or what the master does next is not known.
+    pub(in crate::axis::coupling) fn room_for_shift_on_cam(
+        &self,
+        asked: &Limits,
+        view: &View<'_, P::Plan>,
+        cams: &Cams<'_>,
+    ) -> Option<Limits> {
+        let on_cam = self.on_cam.as_ref()?;
+        let is_free = on_cam.rung.is_locked() && !self.adds_motion();
+        if !is_free || (self.slows_master() && (view.future.is_new || view.future.is_late())) {
+            return None;
+        }
+        let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
+        let bounds = curve.bounds();
+        let limits = self.slowed(&self.parameters.limits);
+        if bounds.is_level() {
+            return Some(limits);
+        }
+        let most = self.most_of_master(view)?;
+        let highest = FASTEST * bounds.highest_velocity(&limits).min(1e12);
+        let left = highest - most.velocity;
+        if !(left > 0.0) {
+            return None;
+        }
+        let share = if asked.velocity.is_finite() {
+            asked.velocity.min(left)
+        } else {
+            SHARE * left
+        };
+        let own = bounds.shadow(&limits, most.velocity + share, 0.0)?;
+        let rate = own.acceleration - most.acceleration;
+        let room = Limits {
+            velocity: own.velocity - most.velocity,
+            acceleration: rate,
+            deceleration: rate,
+            jerk: own.jerk - most.jerk,
+            snap: own.snap - most.snap,
+        };
+        let all = [room.velocity, rate, room.jerk, room.snap];
+        let is_room = all.into_iter().all(|room| room > 0.0);
+        is_room.then(|| self.share_of_shift(room, &own))
+    }
+
+    /// The largest magnitudes of the derivatives of the master from now on, as far as is known.
+    fn most_of_master(&self, view: &View<'_, P::Plan>) -> Option<Setpoint> {
+        match view.future.kind() {
+            Kind::Still => Some(Setpoint::default()),
+            Kind::Plan => {
+                let lead = self.lead_of_master(view)?;
+                let peaks = self.planner.peaks((lead.plan, lead.elapsed))?.times(lead.factor);
+                Some(Setpoint {
+                    position: 0.0,
+                    velocity: peaks.velocity.abs(),
+                    acceleration: peaks.acceleration.abs(),
+                    jerk: peaks.jerk.abs(),
+                    snap: peaks.snap.abs(),
+                })
+            }
+            Kind::Unknown | Kind::Measured | Kind::NotSeen => None,
+        }
+    }
+}
