@@ -260,10 +260,6 @@ error_ids! {
     FeedbackInvalid = 602, "The drive told a position or torque that is NaN or infinite, or a position that means an infinite velocity.",
         "Mend what makes such numbers, an encoder or a scaling in the drive's own code, then call MC_Reset.";
 
-
-    CamBesideUnsupported = 706, "MC_MoveSuperimposed, MC_PhasingAbsolute, MC_PhasingRelative, MasterStartDistance and on_limit slow_master are not supported on the slave of a cam in this version.",
-        "Shift the cam by MasterOffset or SlaveOffset with ContinuousUpdate, give MasterSyncPosition alone, or use on_limit lag or error.";
-
     SetpointBroken = 901, "A plan gave a set-point that is not finite.",
         "This is a defect of standstill: please report the trace.";
     FateLost = 902, "The instance was not called while 64 later commands of the axis ended, so its result is gone.",

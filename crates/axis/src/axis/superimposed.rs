@@ -219,14 +219,13 @@ impl<P: Planner> Axis<P> {
     ) -> Result<CommandId, ErrorId> {
         self.admit_superimposed()
             .map_err(|error| self.refuse("", f64::NAN, f64::NAN, error, scope))?;
-        self.beside_no_cam("Axis", scope)?;
         let layer = self
             .layer
             .unwrap_or_else(|| Layer::on(self.setpoint, &self.config.limits));
         let id = self.new_id();
         let command = self.added(id, layer.added.position, &layer, request, scope)?;
         let refuse = |error| self.refuse("Distance", request.distance, f64::NAN, error, scope);
-        if self.is_coupled() {
+        if self.follows() {
             self.propose_alone(&layer, &command).map_err(refuse)?;
             self.end_superimposed_command(Fate::Aborted);
             self.await_room(layer, command);
@@ -289,7 +288,7 @@ impl<P: Planner> Axis<P> {
             },
             orphaned: false,
         };
-        if self.is_coupled() {
+        if self.follows() {
             self.end_superimposed_command(Fate::Aborted);
             self.await_room(layer, command);
             return Ok(command.id);
@@ -375,7 +374,7 @@ impl<P: Planner> Axis<P> {
                 .and_then(|owner| owner.end)
                 .unwrap_or(f64::NAN),
             // Behind a master it has no end of its own.
-            _ if self.is_coupled() => f64::NAN,
+            _ if self.follows() => f64::NAN,
             (Motion::Run { plan, .. }, _) => plan.at(u64::from(plan.scans())).position,
             (_, _) => layer.base.position,
         }

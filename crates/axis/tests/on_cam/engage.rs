@@ -382,9 +382,9 @@ fn a_cam_selected_anew_does_not_change_the_one_in_use() {
     assert!((rig.at() - table(rig.axes[MASTER].setpoint().position)).abs() < 1e-9);
 }
 
-/// Covers: G49, S5
+/// Covers: G66, G17
 #[test]
-fn nothing_is_superimposed_on_a_cam() {
+fn what_is_superimposed_moves_the_cam_on() {
     let mut rig = Rig::new(config(L1, 0.0, None), config(WIDE, 0.0, None));
     let cam = rig.select(&up_and_back(), RELATIVE);
     let cam_in = CamIn {
@@ -401,10 +401,24 @@ fn nothing_is_superimposed_on_a_cam() {
             ..Dynamics::default()
         },
     };
-    assert_eq!(
-        rig.axes[SLAVE].superimpose(&added, scope),
-        Err(ErrorId::CamBesideUnsupported)
-    );
+    let id = rig.axes[SLAVE].superimpose(&added, scope).unwrap();
+    rig.run(100.0);
+    let mut ended = None;
+    for scan in 0..5000 {
+        rig.step();
+        assert!(rig.slave().is_in_gear(), "{:?}", rig.events());
+        let at = table(rig.axes[MASTER].setpoint().position);
+        if ended.is_none() && rig.slave().covered_distance(id) == Some(1.0) {
+            ended = Some(scan);
+        }
+        if ended.is_some_and(|ended| scan > ended) {
+            assert!((rig.at() - at - 1.0).abs() < 1e-9);
+        }
+        assert!((-1e-9..=1.0 + 1e-9).contains(&(rig.at() - at)));
+    }
+    assert!(ended.is_some());
+    rig.keeps_limits().unwrap();
+    let scope = &mut Scope::new(rig.scan, &mut rig.log);
     let gear_out = Request::aborting(Command::GearOut);
     assert_eq!(
         rig.axes[SLAVE].command(&gear_out, scope),

@@ -124,6 +124,10 @@ pub(in crate::axis) struct OnCam {
     moves: u32,
     /// By how much the slave is off the cam at its master's place (u).
     deviation: f64,
+    /// What was superimposed on the cam and where that lay first, less the place of the layer that is added to it (u).
+    lead: f64,
+    /// Where the cam lay first, without what was superimposed on it since (u).
+    laid: f64,
     /// What it leaves to its master, once that keeps the limits of the slave.
     bound: Option<Limits>,
 }
@@ -195,6 +199,8 @@ impl OnCam {
             limits,
             moves,
             deviation: 0.0,
+            lead: 0.0,
+            laid: 0.0,
             bound: None,
         }
     }
@@ -364,9 +370,16 @@ impl<P: Planner> Axis<P> {
             deviation: on_cam.deviation,
             phase: self.phases()[0],
             second: None,
-            superimposed: 0.0,
+            superimposed: on_cam
+                .anchor
+                .map_or(0.0, |anchor| anchor.slave.phase - on_cam.laid),
             shadow,
         })
+    }
+
+    /// The master of its cam at the end of the scan before.
+    pub(super) fn master_of_cam_was(&self) -> Option<&Seen> {
+        self.on_cam.as_ref().map(|on_cam| &on_cam.was)
     }
 
     /// Before any axis has moved in this scan: its master is there.
@@ -382,22 +395,6 @@ impl<P: Planner> Axis<P> {
             on_cam.rung = Rung::Due;
             on_cam.shadow = None;
         }
-    }
-
-    /// What can't be beside a cam is refused at `pin`.
-    ///
-    /// # Errors
-    /// [`ErrorId::CamBesideUnsupported`].
-    pub(in crate::axis) fn beside_no_cam(
-        &self,
-        pin: &'static str,
-        scope: &mut Scope<'_>,
-    ) -> Result<(), ErrorId> {
-        if !self.is_on_cam() {
-            return Ok(());
-        }
-        let error = ErrorId::CamBesideUnsupported;
-        Err(self.refuse(pin, f64::from(self.id.number()), f64::NAN, error, scope))
     }
 
     /// The values at the pins of MC_CamIn.

@@ -117,7 +117,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The owner follows a master, behind a gear or on a cam.
-    fn follows(&self) -> bool {
+    pub(in crate::axis) fn follows(&self) -> bool {
         self.is_coupled() || self.is_on_cam()
     }
 
@@ -255,11 +255,15 @@ impl<P: Planner> Axis<P> {
 
     /// In gear, so that the next set-point is the law.
     pub(in crate::axis) fn is_on_law(&self) -> bool {
-        self.is_locked() && matches!(self.motion, Motion::Geared)
+        (self.is_locked() || self.is_locked_on_cam()) && matches!(self.motion, Motion::Geared)
     }
 
     /// The masters have not moved in this scan, and will not as far as is known.
     pub(in crate::axis) fn law_stands(&self, view: &View<'_, P::Plan>) -> bool {
+        if let Some(was) = self.master_of_cam_was() {
+            let has_stood = was.place == view.now.place && was.at.is_at_rest();
+            return self.holds_end_of_cam() || (view.future.kind() == Kind::Still && has_stood);
+        }
         let Some(coupling) = &self.coupling else {
             return false;
         };
@@ -268,8 +272,11 @@ impl<P: Planner> Axis<P> {
             && both.all(|(was, now)| was.place == now.place && was.at.is_at_rest())
     }
 
-    /// The plans ahead, as the law has them; `None` while it rests or is not known.
+    /// The plans ahead, as the law of a gear has them, or as they are for a cam; `None` while it rests or is not known.
     pub(in crate::axis) fn leads_of_law<'a>(&self, view: &View<'a, P::Plan>) -> Option<Leads<'a, P::Plan>> {
+        if self.is_on_cam() {
+            return self.lead_of_master(view).map(|lead| [Some(lead), None]);
+        }
         let leads = self.coupling.as_ref()?.leads(&view.future)?;
         leads.iter().any(Option::is_some).then_some(leads)
     }
@@ -532,6 +539,9 @@ impl<P: Planner> Axis<P> {
 
     /// No longer in gear: the law asks for `value` of what may be at most `limit`.
     pub(in crate::axis) fn lose_gear(&mut self, (what, value, limit): Beyond, scope: &mut Scope<'_>) {
+        if self.is_on_cam() {
+            return self.lose_sync((what, value, limit), scope);
+        }
         self.leave_law();
         self.rest_superimposed();
         self.stir();

@@ -11,8 +11,8 @@ use super::plan::{Proposal, Room};
 use super::{Added, Adds, Layer, Progress};
 use crate::axis::coupling::{Kind, View};
 use crate::axis::{Axis, Motion};
-use crate::{ErrorId, Event, Fate, Scope};
-use standstill_planner::{Lead, Limits, Plan, Planner, Setpoint};
+use crate::{Cams, ErrorId, Event, Fate, Scope};
+use standstill_planner::{CamBounds, Lead, Limits, Plan, Planner, Setpoint};
 
 /// Where the plan of a master ends.
 fn end_of<Q: Plan>(lead: &Lead<'_, Q>) -> Setpoint {
@@ -107,8 +107,10 @@ impl<P: Planner> Axis<P> {
     /// What the law does from the end of the scan before on is known.
     fn sees_law(&self, view: &View<'_, P::Plan>) -> bool {
         match view.future.kind() {
-            // Of measured values each step is looked at.
-            Kind::Plan | Kind::Measured => true,
+            _ if self.holds_end_of_cam() => true,
+            // Of measured values each step is looked at, but not on a cam.
+            Kind::Measured => !self.is_on_cam(),
+            Kind::Plan => true,
             // It may have come to rest in this scan.
             Kind::Still => self.law_stands(view),
             Kind::Unknown | Kind::NotSeen => false,
@@ -127,7 +129,7 @@ impl<P: Planner> Axis<P> {
         // Where the way of the master is not known each step is looked at.
         if !self.sees_law(view)
             || view.future.kind() == Kind::Measured
-            || self.fits_law(view, (plan, *elapsed))
+            || self.fits_law(view, (plan, *elapsed), &scope.cams)
         {
             return;
         }
@@ -138,7 +140,11 @@ impl<P: Planner> Axis<P> {
             return;
         }
         let beside = self.planner.peaks((plan, *elapsed)).unwrap_or_default();
-        let reason = self.reason_beside(view, &beside);
+        let reason = if self.is_on_cam() {
+            self.beyond_beside_cam(view, &beside, &scope.cams)
+        } else {
+            self.reason_beside(view, &beside)
+        };
         let limit = self.parameters.limits.velocity;
         self.lose_gear(reason.unwrap_or(("velocity", f64::NAN, limit)), scope);
     }
@@ -169,8 +175,8 @@ impl<P: Planner> Axis<P> {
         let Some(command) = &layer.command else {
             return false;
         };
-        let room = || self.room_of_law(view);
-        let fits = |plan: &P::Plan| self.fits_law(view, (plan, 0));
+        let room = || self.room_of_law(view, &scope.cams);
+        let fits = |plan: &P::Plan| self.fits_law(view, (plan, 0), &scope.cams);
         // What the planner took once it takes again; while it is barred everything stays as it is.
         let Ok(proposed) = self.propose_within(layer, command, room, fits) else {
             return false;
@@ -179,6 +185,9 @@ impl<P: Planner> Axis<P> {
         let (place, moves) = (layer.added.position, layer.moves());
         if let (false, Some(coupling)) = (moves, &mut self.coupling) {
             coupling.lay_layer(place);
+        }
+        if !moves {
+            self.lay_layer_on_cam(place);
         }
         self.add(proposed, scope);
         self.stir();
@@ -204,8 +213,8 @@ impl<P: Planner> Axis<P> {
             halting: true,
             ..command
         };
-        let room = || self.room_of_law(view);
-        let fits = |plan: &P::Plan| self.fits_law(view, (plan, 0));
+        let room = || self.room_of_law(view, &scope.cams);
+        let fits = |plan: &P::Plan| self.fits_law(view, (plan, 0), &scope.cams);
         let proposed = self.propose_within(layer, &stop, room, fits);
         let (Ok(Some(Proposal { plan, limits, .. })), Some(layer)) = (proposed, &mut self.layer) else {
             return false;
@@ -239,7 +248,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// What the law leaves of the limits of the slave all the time.
-    fn room_of_law(&self, view: &View<'_, P::Plan>) -> Room {
+    fn room_of_law(&self, view: &View<'_, P::Plan>, cams: &Cams<'_>) -> Room {
         let limits = &self.slowed(&self.parameters.limits);
         let none = Limits {
             velocity: 0.0,
@@ -248,6 +257,10 @@ impl<P: Planner> Axis<P> {
             jerk: 0.0,
             snap: 0.0,
         };
+        if self.is_on_cam() {
+            let (limits, endless) = self.room_on_cam(view, cams).unwrap_or((none, true));
+            return Room { limits, endless };
+        }
         match self.leads_of_law(view) {
             Some(leads) => Room {
                 limits: self.room_beside(&leads, limits).unwrap_or(none),
@@ -266,7 +279,13 @@ impl<P: Planner> Axis<P> {
 
     /// Whether what is superimposed, so many scans after its start at the end of the scan before, keeps the limits together with
     /// the law as far as that is known.
-    fn fits_law(&self, view: &View<'_, P::Plan>, (plan, elapsed): (&P::Plan, u64)) -> bool {
+    fn fits_law(&self, view: &View<'_, P::Plan>, (plan, elapsed): (&P::Plan, u64), cams: &Cams<'_>) -> bool {
+        if self.is_on_cam() {
+            let room = self.room_on_cam(view, cams);
+            let peaks = self.planner.peaks((plan, elapsed));
+            let both = room.zip(peaks);
+            return both.is_some_and(|((room, _), peaks)| CamBounds::beyond(&peaks, &room).is_none());
+        }
         let Some((before, after)) = self.law_before_and_now(view) else {
             return false;
         };
@@ -300,6 +319,11 @@ impl<P: Planner> Axis<P> {
 
     /// Where the slave will stand once everything is added (u), if its master comes to rest as far as is known.
     fn end_behind(&self, view: &View<'_, P::Plan>, layer: &Layer<P::Plan>) -> Option<f64> {
+        if self.is_on_cam() {
+            // Where a cam leads its slave is not looked at.
+            let stands = self.law_stands(view);
+            return stands.then(|| self.setpoint.position + layer.left());
+        }
         let mut way = 0.0;
         for lead in self.leads_of_law(view).iter().flatten().flatten() {
             let end = end_of(lead);

@@ -291,7 +291,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn try_again(&mut self, scope: &mut Scope<'_>) {
         let Some(layer) = &self.layer else { return };
         let Some(command) = &layer.command else { return };
-        if self.is_coupled() {
+        if self.follows() {
             // Its own motion step decides.
             return;
         }

@@ -31,7 +31,7 @@ impl<P: Planner> Axis<P> {
         };
         let command = self.added(id, origin, &layer, request, scope)?;
         let refuse = |error| self.refuse("Distance", request.distance, f64::NAN, error, scope);
-        if self.is_coupled() {
+        if self.follows() {
             self.propose_alone(&layer, &command).map_err(refuse)?;
             self.await_room(layer, command);
             return Ok(());

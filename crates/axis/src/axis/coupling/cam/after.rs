@@ -100,6 +100,7 @@ impl<P: Planner> Axis<P> {
         if let Some(on_cam) = &mut self.on_cam {
             on_cam.camming.law = camming.law;
             on_cam.anchor = Some(anchor);
+            on_cam.laid = anchor.slave.phase;
             on_cam.at = at;
             if meets {
                 on_cam.shadow = Some(*shadow);

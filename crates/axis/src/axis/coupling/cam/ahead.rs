@@ -43,7 +43,7 @@ impl<P: Planner> Axis<P> {
     /// What a slave on `curve` would need beyond `limits` along the rest of a plan, which begins with the master at `place`. A plan
     /// of a lower `degree` than those limits changes at once what the slave may not.
     ///
-    /// Cost: at most [`PARTS_MOST`] parts, for each three points of the plan and a look at up to four pieces of the cam.
+    /// Cost: that of [`Axis::along_cam`].
     pub(super) fn beyond_on_cam(
         &self,
         curve: &Curve<'_>,
@@ -52,6 +52,44 @@ impl<P: Planner> Axis<P> {
         limits: &Limits,
     ) -> Option<Beyond> {
         let is_rough = degree < limits.order().degree();
+        self.along_cam(curve, lead, place, |bounds, master| {
+            if is_rough && master.acceleration != 0.0 && !bounds.is_level() {
+                Some(rough(degree, limits))
+            } else {
+                CamBounds::beyond(&bounds.most(master), limits)
+            }
+        })
+    }
+
+    /// The largest magnitudes of the derivatives of a slave on `curve` along the rest of a plan, which begins with the master at
+    /// `place`.
+    pub(super) fn peaks_on_cam(&self, curve: &Curve<'_>, lead: &Lead<'_, P::Plan>, place: Place) -> Setpoint {
+        let mut peaks = Setpoint::default();
+        let _none: Option<()> = self.along_cam(curve, lead, place, |bounds, master| {
+            let most = bounds.most(master);
+            peaks = Setpoint {
+                position: 0.0,
+                velocity: larger(peaks.velocity, most.velocity),
+                acceleration: larger(peaks.acceleration, most.acceleration),
+                jerk: larger(peaks.jerk, most.jerk),
+                snap: larger(peaks.snap, most.snap),
+            };
+            None
+        });
+        peaks
+    }
+
+    /// Looks along the rest of a plan, which begins with the master at `place`, in parts: at what the cam is bounded by in each, and at
+    /// the largest magnitudes of the derivatives of the master. Returns the first thing that is `found`.
+    ///
+    /// Cost: at most [`PARTS_MOST`] parts, for each three points of the plan and a look at up to four pieces of the cam.
+    fn along_cam<T>(
+        &self,
+        curve: &Curve<'_>,
+        lead: &Lead<'_, P::Plan>,
+        place: Place,
+        mut found: impl FnMut(&CamBounds, &Setpoint) -> Option<T>,
+    ) -> Option<T> {
         let cycle = self.planner.cycle();
         let path = Path {
             lead,
@@ -62,7 +100,8 @@ impl<P: Planner> Axis<P> {
         let (mut scan, mut parts) = (lead.elapsed, 0);
         for _ in 0..PIECES {
             if scan >= end {
-                return self.beyond_on_cruise(curve, x, &path.at(scan), limits);
+                let (bounds, even) = curve.cruise(x, &path.at(scan))?;
+                return found(&bounds, &even);
             }
             let switch = self.planner.next_switch((lead.plan, scan));
             let switch = if switch > scan { switch.min(end) } else { end };
@@ -82,19 +121,13 @@ impl<P: Planner> Axis<P> {
                 // The last scan may end in the next piece, and is a part of its own.
                 let inside = switch.saturating_sub(1).max(scan.saturating_add(1));
                 let next = scan.saturating_add(step).min(inside);
-                let most = part_of(&path, scan, next, cycle);
-                let (low, high) = most.0;
+                let ((low, high), most) = part_of(&path, scan, next, cycle);
                 let per = 1.0 / curve.law.master_scaling;
                 let (low, high) = (x + low * per, x + high * per);
                 let bounds = curve.law.bounds_between(&curve.cam, low.min(high), low.max(high));
-                let jumps = is_rough && most.1.acceleration != 0.0 && !bounds.is_level();
-                let found = if jumps {
-                    Some(rough(degree, limits))
-                } else {
-                    CamBounds::beyond(&bounds.most(&most.1), limits)
-                };
-                if found.is_some() {
-                    return found;
+                let answer = found(&bounds, &most);
+                if answer.is_some() {
+                    return answer;
                 }
                 scan = next;
                 parts += 1;
@@ -104,27 +137,22 @@ impl<P: Planner> Axis<P> {
             }
         }
         // The box of all that is left.
-        let peaks = self.planner.peaks((lead.plan, scan));
-        let bounds = curve.bounds();
-        let most = peaks.map(|peaks| bounds.most(&peaks.times(lead.factor)));
-        most.and_then(|most| CamBounds::beyond(&most, limits))
+        let peaks = self.planner.peaks((lead.plan, scan))?;
+        found(&curve.bounds(), &peaks.times(lead.factor))
     }
+}
 
-    /// The same for a master that goes on with a constant velocity, or stands.
-    fn beyond_on_cruise(
-        &self,
-        curve: &Curve<'_>,
-        x: f64,
-        from: &Setpoint,
-        limits: &Limits,
-    ) -> Option<Beyond> {
+impl Curve<'_> {
+    /// What the cam is bounded by on the way of a master at `x` that goes on with a constant velocity, and how that moves; nothing for
+    /// one that stands.
+    fn cruise(&self, x: f64, from: &Setpoint) -> Option<(CamBounds, Setpoint)> {
         if from.velocity == 0.0 {
             return None;
         }
-        let per = 1.0 / curve.law.master_scaling;
-        let head = curve.cam.head;
+        let per = 1.0 / self.law.master_scaling;
+        let head = self.cam.head;
         let bounds = if head.periodic {
-            curve.bounds()
+            self.bounds()
         } else {
             let here = x + from.position * per;
             let forwards = from.velocity * per > 0.0;
@@ -133,13 +161,13 @@ impl<P: Planner> Axis<P> {
             } else {
                 (head.begin, here)
             };
-            curve.law.bounds_between(&curve.cam, low, high)
+            self.law.bounds_between(&self.cam, low, high)
         };
         let even = Setpoint {
             velocity: from.velocity,
             ..Setpoint::default()
         };
-        CamBounds::beyond(&bounds.most(&even), limits)
+        Some((bounds, even))
     }
 }
 

@@ -1,15 +1,16 @@
-//! What a slave in sync leaves of its limits: to a shift between it and its master, and to the master itself (`on_limit`
-//! `slow_master`).
+//! What a slave in sync leaves of its limits: to a shift between it and its master, to the master itself (`on_limit`
+//! `slow_master`), and to what is superimposed on it.
 //!
-//! Both are boxes: within them the slave keeps its limits wherever it is on the cam. A box with a higher velocity leaves less of the
+//! The first two are boxes: within them the slave keeps its limits wherever it is on the cam. A box with a higher velocity leaves less of the
 //! other three.
 
 use super::super::super::Axis;
+use super::super::follow::Beyond;
 use super::super::view::{Kind, View};
 use super::Rung;
 use super::shadow::FASTEST;
 use crate::{Cams, OnLimit};
-use standstill_planner::{Limits, Planner, Setpoint};
+use standstill_planner::{CamBounds, Limits, Plan, Planner, Setpoint};
 
 /// The share of the highest velocity of its cam that a slave leaves to its master.
 const LEFT: f64 = 0.8;
@@ -96,6 +97,70 @@ impl<P: Planner> Axis<P> {
         let all = [room.velocity, rate, room.jerk, room.snap];
         let is_room = all.into_iter().all(|room| room > 0.0);
         is_room.then(|| self.share_of_shift(room, &own))
+    }
+
+    /// What the cam leaves of the limits of the slave all the time, and whether that is all there will be: the master goes on for ever.
+    /// None while nothing is left, or what the master does next is not known.
+    pub(in crate::axis) fn room_on_cam(
+        &self,
+        view: &View<'_, P::Plan>,
+        cams: &Cams<'_>,
+    ) -> Option<(Limits, bool)> {
+        let limits = self.slowed(&self.parameters.limits);
+        if self.law_stands(view) {
+            return Some((limits, false));
+        }
+        let (used, endless) = self.used_on_cam(view, cams)?;
+        let rate = limits.lower_acceleration() - used.acceleration;
+        let room = Limits {
+            velocity: limits.velocity - used.velocity,
+            acceleration: rate,
+            deceleration: rate,
+            jerk: limits.jerk - used.jerk,
+            snap: limits.snap - used.snap,
+        };
+        let all = [room.velocity, rate, room.jerk, room.snap];
+        all.into_iter().all(|room| room > 0.0).then_some((room, endless))
+    }
+
+    /// The largest magnitudes of what the cam asks for along what the master does next, and whether that does not end.
+    fn used_on_cam(&self, view: &View<'_, P::Plan>, cams: &Cams<'_>) -> Option<(Setpoint, bool)> {
+        let on_cam = self.on_cam.as_ref()?;
+        let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
+        let lead = self.lead_of_master(view)?;
+        let place = if view.future.is_late() {
+            view.now.place
+        } else {
+            on_cam.was.place
+        };
+        let end = lead.plan.at(u64::from(lead.plan.scans()));
+        Some((self.peaks_on_cam(&curve, &lead, place), end.velocity != 0.0))
+    }
+
+    /// What of the cam and a motion with these largest magnitudes beside it is beyond the limits of the slave.
+    pub(in crate::axis) fn beyond_beside_cam(
+        &self,
+        view: &View<'_, P::Plan>,
+        beside: &Setpoint,
+        cams: &Cams<'_>,
+    ) -> Option<Beyond> {
+        let limits = self.slowed(&self.parameters.limits);
+        let (used, _) = self.used_on_cam(view, cams)?;
+        let all = Setpoint {
+            position: 0.0,
+            velocity: used.velocity + beside.velocity.abs(),
+            acceleration: used.acceleration + beside.acceleration.abs(),
+            jerk: used.jerk + beside.jerk.abs(),
+            snap: used.snap + beside.snap.abs(),
+        };
+        CamBounds::beyond(&all, &limits)
+    }
+
+    /// What is added from now on moves the cam on from where it lies: the layer is at `place` (u).
+    pub(in crate::axis) fn lay_layer_on_cam(&mut self, place: f64) {
+        if let Some(on_cam) = &mut self.on_cam {
+            on_cam.lead = on_cam.anchor.map_or(0.0, |anchor| anchor.slave.phase) - place;
+        }
     }
 
     /// The largest magnitudes of the derivatives of the master from now on, as far as is known.

@@ -30,7 +30,10 @@ impl<P: Planner> Axis<P> {
         }
         // A slave that must not lag is in sync until it can't be.
         let is_locked = self.is_locked_on_cam();
-        let stays = is_locked && self.config.following.on_limit == OnLimit::Error;
+        let stays = self.config.following.on_limit == OnLimit::Error;
+        self.superimpose_behind(view, is_new, !stays, scope);
+        let is_locked = is_locked && self.is_locked_on_cam();
+        let stays = is_locked && (stays || self.adds_motion());
         if (is_new && !stays) || self.cam_rung() == Some(Rung::Due) {
             self.decide_on_cam(view, true, scope);
             // The last step of a shift is one of its own.
@@ -44,12 +47,13 @@ impl<P: Planner> Axis<P> {
         if self.is_on_cam() {
             self.step_on_cam(view, scope);
         }
+        self.note_own_part();
         self.measure_on_cam(view, scope);
         self.end_of_cam(view, scope);
         self.finish_reset();
     }
 
-    pub(super) fn is_locked_on_cam(&self) -> bool {
+    pub(in crate::axis::coupling) fn is_locked_on_cam(&self) -> bool {
         self.on_cam.as_ref().is_some_and(|on_cam| on_cam.rung.is_locked())
     }
 
@@ -120,7 +124,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The plan of the master, if it is known.
-    pub(super) fn lead_of_master<'a>(&self, view: &View<'a, P::Plan>) -> Option<Lead<'a, P::Plan>> {
+    pub(in crate::axis) fn lead_of_master<'a>(&self, view: &View<'a, P::Plan>) -> Option<Lead<'a, P::Plan>> {
         let leads = view
             .future
             .leads(|leg, factor| if leg == 0 { factor } else { 0.0 })?;
@@ -193,11 +197,20 @@ impl<P: Planner> Axis<P> {
         Some(curve.at(place, moving, on_cam.at.piece))
     }
 
-    /// In sync: the set-point is the cam.
+    /// In sync: the set-point is the cam, moved on by what is superimposed on it.
     fn step_in_sync(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        let held = self.held_end();
+        let added = self.next_added();
+        // What is added to a law that stands was held against the limits before.
+        let is_held = added.is_some() && self.law_stands(view);
+        let before = self.on_cam.as_ref().and_then(|on_cam| on_cam.anchor);
+        let held = self.held_end(added.as_ref());
+        if let (Some(added), Some(on_cam)) = (&added, &mut self.on_cam)
+            && let Some(anchor) = &mut on_cam.anchor
+        {
+            anchor.slave.phase = on_cam.lead + added.position;
+        }
         let at = held.or_else(|| self.on_curve(view.now.place, &view.now.at, scope));
-        let (Some(at), Some(on_cam)) = (at, &self.on_cam) else {
+        let (Some(mut at), Some(on_cam)) = (at, &self.on_cam) else {
             return self.fail(ErrorId::SetpointBroken, scope);
         };
         let limits = on_cam.limits;
@@ -208,8 +221,17 @@ impl<P: Planner> Axis<P> {
             Kind::Plan if view.future.is_late() => Some(false),
             Kind::Plan => None,
         };
-        let rough = rough.filter(|_| held.is_none());
+        let rough = rough.filter(|_| held.is_none() && !is_held);
+        if let Some(added) = &added {
+            at.state = Setpoint {
+                position: at.state.position,
+                ..at.state.plus(added)
+            };
+        }
         if let Some(reason) = self.beyond(Some(at.place), &at.state, &limits, rough) {
+            if let Some(on_cam) = &mut self.on_cam {
+                on_cam.anchor = before;
+            }
             self.lose_sync(reason, scope);
             if self.config.following.on_limit == OnLimit::Error {
                 return self.fail(ErrorId::DeviationTooLarge, scope);
@@ -227,6 +249,9 @@ impl<P: Planner> Axis<P> {
             at: view.now.at,
         };
         self.publish_on_cam(&at, shadow, scope);
+        if let (true, Some(added)) = (self.is_on_law(), added) {
+            self.note_added(added);
+        }
     }
 
     /// Publishes a place of the curve, at which the slave is from now on.
@@ -375,10 +400,20 @@ impl<P: Planner> Axis<P> {
     }
 
     /// No longer in sync: the cam asks for more than a limit.
-    pub(super) fn lose_sync(&mut self, (what, value, limit): Beyond, scope: &mut Scope<'_>) {
+    pub(in crate::axis::coupling) fn lose_sync(
+        &mut self,
+        (what, value, limit): Beyond,
+        scope: &mut Scope<'_>,
+    ) {
+        let adds = self.adds_motion();
         if let Some(on_cam) = &mut self.on_cam {
             on_cam.rung = Rung::Due;
+            if adds {
+                // It has the velocity of what was being added, which no place of the curve has.
+                on_cam.shadow = None;
+            }
         }
+        self.rest_superimposed();
         self.stir();
         let event = Event::SyncLost { what, value, limit };
         self.record(event, &mut self.owner_scope(scope));
@@ -410,13 +445,19 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The end of a cam without periods at which the slave holds.
-    pub(super) fn held_end(&self) -> Option<CamAt> {
-        let is_held = |on_cam: &&OnCam| on_cam.ends.is_over();
-        let on_cam = self.on_cam.as_ref().filter(is_held)?;
-        Some(CamAt {
-            state: Setpoint::at_rest(on_cam.at.place.position),
-            ..on_cam.at
-        })
+    /// The end of a cam without periods at which the slave holds, moved on by what is `added` to that.
+    pub(super) fn held_end(&self, added: Option<&Setpoint>) -> Option<CamAt> {
+        let on_cam = self.on_cam.as_ref().filter(|_| self.holds_end_of_cam())?;
+        let mut at = on_cam.at;
+        if let (Some(added), Some(anchor)) = (added, &on_cam.anchor) {
+            at.place.position += on_cam.lead + added.position - anchor.slave.phase;
+        }
+        at.state = Setpoint::at_rest(at.place.position);
+        Some(at)
+    }
+
+    /// A cam without periods is over, and the slave holds its last place.
+    pub(in crate::axis) fn holds_end_of_cam(&self) -> bool {
+        self.on_cam.as_ref().is_some_and(|on_cam| on_cam.ends.is_over())
     }
 }

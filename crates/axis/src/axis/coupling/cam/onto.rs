@@ -120,7 +120,9 @@ impl<P: Planner> Axis<P> {
             let settled = on_cam.begins;
             let (master, origin) = settled.unwrap_or_else(|| camming.laid(on_cam.was.place, cam.head));
             camming.law.origin = origin;
-            on_cam.anchor = Some(self.laid(&on_cam, &cam, master));
+            let anchor = self.laid(&on_cam, &cam, master);
+            on_cam.laid = anchor.slave.phase;
+            on_cam.anchor = Some(anchor);
             self.on_cam = Some(on_cam);
         }
         let curve = on_cam.curve(cam)?;
