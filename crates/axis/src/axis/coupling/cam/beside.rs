@@ -128,6 +128,11 @@ impl<P: Planner> Axis<P> {
         let on_cam = self.on_cam.as_ref()?;
         let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
         let lead = self.lead_of_master(view)?;
+        // What changes at once leaves nothing, smooth as it may be beside that.
+        let is_rough = view.degree() < on_cam.limits.order().degree();
+        if is_rough && self.planner.peaks((lead.plan, lead.elapsed))?.acceleration != 0.0 {
+            return None;
+        }
         let place = if view.future.is_late() {
             view.now.place
         } else {
