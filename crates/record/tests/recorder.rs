@@ -210,3 +210,30 @@ fn every_move_of_coordinates_is_told_however_few_records_are_kept() {
     let expected: Vec<_> = (0..10).map(|row| (row, "coordinates moved by 3.0")).collect();
     assert_eq!(moves, expected);
 }
+
+/// The ring of records holds 64: of 70 axes that move their coordinates in one scan it has lost some.
+#[test]
+fn the_moves_of_70_axes_in_one_scan_are_told() {
+    let axis = |number| Axis::new(AxisId::new(number), config(), Standard::new(0.001)).expect("a good axis");
+    let mut axes: Vec<_> = (0..70).map(axis).collect();
+    let names: Vec<_> = (1..=axes.len()).map(|number| format!("X{number}")).collect();
+    let signals = names.iter().fold(Signals::new(), |signals, name| {
+        signals.axis(name, "mm", &config())
+    });
+    let mut recorder = Recorder::new(Setup::default(), signals);
+    let (mut log, scan) = (Log::default(), 0);
+    let scope = &mut Scope::new(scan, &mut log);
+    for axis in &mut axes {
+        axis.set_position(3.0, true, ExecutionMode::Immediately.into(), scope)
+            .expect("at rest");
+    }
+    recorder.observe(&axes);
+    steps::advance(&mut axes, scope);
+    recorder.record(scan, &axes, &log, |_| {});
+    let trace = recorder.trace("t", 1_000_000).expect("a trace");
+    let told = |name: &&String| {
+        let mut notes = trace.notes().iter();
+        notes.any(|note| note.subject == **name && note.text == "coordinates moved by 3.0")
+    };
+    assert_eq!(names.iter().filter(told).count(), names.len());
+}
