@@ -276,7 +276,7 @@ impl Report {
             .map(|it| renderer.render(&[self.group(it)]));
         let mut out: Vec<String> = rendered.collect();
         if self.hidden > 0 {
-            out.push(format!("error: {} more of these", self.hidden));
+            out.push(format!("{} more are not shown", self.hidden));
         }
         out.join("\n\n")
     }
@@ -350,6 +350,8 @@ pub(crate) fn did_you_mean<'a>(name: &str, candidates: impl Iterator<Item = &'a 
     let wanted: String = name.to_ascii_lowercase().chars().take(100).collect();
     let slips = (wanted.chars().count() / 3).max(1);
     candidates
+        // So many letters more or less are so many slips; most names need no closer look.
+        .filter(|candidate| candidate.len().abs_diff(wanted.len()) <= slips)
         .map(|candidate| {
             (
                 strsim::osa_distance(&wanted, &candidate.to_ascii_lowercase()),

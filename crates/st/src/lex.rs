@@ -43,12 +43,9 @@ keywords! {
 
 impl Word {
     pub(crate) fn find(text: &str) -> Option<Self> {
-        if text.len() > 20 {
-            return None;
-        }
-        let upper = text.to_ascii_uppercase();
+        let upper = || text.bytes().map(|byte| byte.to_ascii_uppercase());
         let place = Self::ALL
-            .binary_search_by(|(word, _)| (*word).cmp(upper.as_str()))
+            .binary_search_by(|(word, _)| word.bytes().cmp(upper()))
             .ok()?;
         Self::ALL.get(place).map(|(_, word)| *word)
     }
@@ -135,40 +132,47 @@ struct Lexer<'a> {
     found: &'a mut Found,
 }
 
-const SIGNS: &[(&str, Token)] = &[
-    (":=", Token::Assign),
-    ("=>", Token::Output),
-    ("==", Token::Foreign),
-    ("<>", Token::NotEqual),
-    ("<=", Token::LessEqual),
-    (">=", Token::GreaterEqual),
-    ("**", Token::Power),
-    ("..", Token::Range),
-    ("!=", Token::Foreign),
-    ("&&", Token::Foreign),
-    ("||", Token::Foreign),
-    ("+=", Token::Foreign),
-    ("-=", Token::Foreign),
-    ("++", Token::Foreign),
-    ("=", Token::Equal),
-    ("<", Token::Less),
-    (">", Token::Greater),
-    ("+", Token::Plus),
-    ("-", Token::Minus),
-    ("*", Token::Star),
-    ("/", Token::Slash),
-    ("&", Token::Ampersand),
-    ("(", Token::Open),
-    (")", Token::Close),
-    ("[", Token::OpenBracket),
-    ("]", Token::CloseBracket),
-    (",", Token::Comma),
-    (";", Token::Semicolon),
-    (":", Token::Colon),
-    (".", Token::Dot),
-    ("^", Token::Caret),
-    ("!", Token::Foreign),
-];
+/// The sign that begins with these two bytes, and how many of them are its own.
+const fn sign(one: u8, two: u8) -> Option<(usize, Token)> {
+    let long = match (one, two) {
+        (b':', b'=') => Some(Token::Assign),
+        (b'=', b'>') => Some(Token::Output),
+        (b'<', b'>') => Some(Token::NotEqual),
+        (b'<', b'=') => Some(Token::LessEqual),
+        (b'>', b'=') => Some(Token::GreaterEqual),
+        (b'*', b'*') => Some(Token::Power),
+        (b'.', b'.') => Some(Token::Range),
+        (b'=' | b'!' | b'+' | b'-', b'=') | (b'&', b'&') | (b'|', b'|') | (b'+', b'+') => {
+            Some(Token::Foreign)
+        }
+        _ => None,
+    };
+    if let Some(token) = long {
+        return Some((2, token));
+    }
+    let token = match one {
+        b'=' => Token::Equal,
+        b'<' => Token::Less,
+        b'>' => Token::Greater,
+        b'+' => Token::Plus,
+        b'-' => Token::Minus,
+        b'*' => Token::Star,
+        b'/' => Token::Slash,
+        b'&' => Token::Ampersand,
+        b'(' => Token::Open,
+        b')' => Token::Close,
+        b'[' => Token::OpenBracket,
+        b']' => Token::CloseBracket,
+        b',' => Token::Comma,
+        b';' => Token::Semicolon,
+        b':' => Token::Colon,
+        b'.' => Token::Dot,
+        b'^' => Token::Caret,
+        b'!' => Token::Foreign,
+        _ => return None,
+    };
+    Some((1, token))
+}
 
 const fn is_name(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || byte == b'_'
@@ -288,14 +292,18 @@ impl Lexer<'_> {
             b'"' => return self.quoted_text(b'"', Token::WideText),
             b'%' if is_name_start(self.peek(1)) => {
                 self.at += 1;
-                self.skip_while(|byte| is_name(byte) || byte == b'.' || byte == b'*');
+                self.skip_while(|byte| is_name(byte) || byte == b'.');
+                // `%I*`; behind a number it multiplies.
+                if self.peek(0) == b'*' && !self.bytes.get(self.at - 1).is_some_and(u8::is_ascii_digit) {
+                    self.at += 1;
+                }
                 return Some(Token::Address);
             }
             _ => {}
         }
-        if let Some((sign, token)) = SIGNS.iter().find(|(sign, _)| self.starts_with(sign)) {
-            self.at += sign.len();
-            return Some(*token);
+        if let Some((bytes, token)) = sign(byte, self.peek(1)) {
+            self.at += bytes;
+            return Some(token);
         }
         let from = self.at;
         self.at += 1;

@@ -14,31 +14,36 @@ pub fn play(bytes: &[u8]) {
         coverage: bytes.len().is_multiple_of(2),
         ..Options::default()
     };
-    match compile(&[source], &options) {
+    let report = match compile(&[source], &options) {
         Ok(compiled) => {
-            let _shown = compiled.report.render();
             wasmparser::validate(&compiled.wasm).expect("a valid module");
+            compiled.report
         }
-        Err(report) => {
+        Err(report) => *report,
+    };
+    // The bytes choose what else is asked, and where: most of the time is left to the compiler.
+    let chosen = bytes.iter().fold(0_usize, |sum, byte| sum + usize::from(*byte));
+    let place = chosen / 4 % (bytes.len() + 1);
+    match chosen % 4 {
+        0 => drop(complete(&[source], &options, 0, place)),
+        1 => {
+            let (sources, found) = hover(&[source], &options, 0, place);
+            if let Some(declared) = found.and_then(|it| it.declared) {
+                let (file, range) = sources.locate(declared);
+                assert!(file == 0 && range.end <= bytes.len(), "{range:?}");
+            }
+        }
+        2 => {
+            if let Ok(once) = format("prog.st", bytes) {
+                let twice = format("prog.st", once.as_bytes()).expect("what was laid out can be read");
+                assert_eq!(once, twice);
+            }
+        }
+        _ => {
             let _shown = report.render();
+            if let Ok(text) = std::str::from_utf8(bytes) {
+                let _names = references(text);
+            }
         }
-    }
-    // At a place that the bytes choose.
-    let place = bytes.iter().fold(0_usize, |sum, byte| sum + usize::from(*byte)) % (bytes.len() + 1);
-    if bytes.len().is_multiple_of(3) {
-        let _offered = complete(&[source], &options, 0, place);
-    } else {
-        let (sources, found) = hover(&[source], &options, 0, place);
-        if let Some(declared) = found.and_then(|it| it.declared) {
-            let (file, range) = sources.locate(declared);
-            assert!(file == 0 && range.end <= bytes.len(), "{range:?}");
-        }
-    }
-    if let Ok(once) = format("prog.st", bytes) {
-        let twice = format("prog.st", once.as_bytes()).expect("what was laid out can be read");
-        assert_eq!(once, twice);
-    }
-    if let Ok(text) = std::str::from_utf8(bytes) {
-        let _names = references(text);
     }
 }
