@@ -96,7 +96,7 @@ impl<R: Point> ProfileCore<R> {
     /// One call. Cost while the profile runs: some comparisons; at its start and when a value changes that of reading
     /// the table and of [`Axis::profile`].
     pub fn scan<P: Planner>(&mut self, pins: &Pins, shape: &Shape<R>, context: &mut Context<'_, P>) -> Phase {
-        if let Some((axis, id)) = self.execute.running(pins.execute) {
+        if let Some((axis, id)) = self.execute.running(pins.execute, context) {
             self.follow(axis, id, pins, shape, context);
         }
         let (given, continuous) = (&mut self.given, &mut self.continuous);

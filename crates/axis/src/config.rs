@@ -49,6 +49,47 @@ pub enum OnMasterLost {
     Hold,
 }
 
+/// What a held jog does at a software limit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum JogAtLimit {
+    /// It goes on towards the limit, and the axis stops before it with an error.
+    #[default]
+    Error,
+    /// It comes to rest on the limit and stays there while the button is held.
+    Stop,
+}
+
+/// What becomes of the target of an absolute move that is outside the first turn of a modulo axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ModuloTargets {
+    /// The move is refused (119).
+    #[default]
+    Error,
+    /// It is brought into the first turn: 370 of 360 degrees is 10.
+    Wrap,
+}
+
+/// What a rising edge of Execute does while the instance is Busy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EdgeWhileBusy {
+    /// It starts the command anew, with the values at the pins.
+    #[default]
+    Restart,
+    /// Nothing: the instance goes on with its command.
+    Ignore,
+}
+
+/// Dynamics of stops alone; each may be above the limit of the axis. `None` takes that limit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StopLimits {
+    /// Deceleration (u/s^2).
+    pub deceleration: Option<f64>,
+    /// Jerk (u/s^3).
+    pub jerk: Option<f64>,
+    /// Snap (u/s^4).
+    pub snap: Option<f64>,
+}
+
 /// How an axis follows another one, and how others follow its actual values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Following {
@@ -122,6 +163,8 @@ pub struct InPosition {
 pub struct AxisConfig {
     /// What no set-point exceeds.
     pub limits: Limits,
+    /// What commands get at most, each at most the limit of the axis, until MC_WriteParameter changes it; `None` for the limits.
+    pub application_limits: Option<Limits>,
     /// What 0 at a pin stands for.
     pub defaults: Defaults,
     /// Position at the start (u).
@@ -144,6 +187,9 @@ pub struct AxisConfig {
     pub stop_deceleration: Option<f64>,
     /// Jerk of ramps nobody commanded (u/s^3); `None` takes the limit.
     pub stop_jerk: Option<f64>,
+    /// Dynamics of MC_Stop and of ramps nobody commanded, which may exceed the limits; then `stop_deceleration` and `stop_jerk`
+    /// are `None`.
+    pub stop: Option<StopLimits>,
     /// How the axis stops when switched off while moving.
     pub on_power_off: PowerOff,
     /// What MC_Home does.
@@ -164,6 +210,12 @@ pub struct AxisConfig {
     pub in_position: Option<InPosition>,
     /// How it follows another axis.
     pub following: Following,
+    /// What a held jog does at a software limit.
+    pub jog_at_limit: JogAtLimit,
+    /// What becomes of absolute targets outside the first turn.
+    pub modulo_targets: ModuloTargets,
+    /// What a rising edge of Execute does while the instance is Busy.
+    pub edge_while_busy: EdgeWhileBusy,
 }
 
 impl AxisConfig {
@@ -171,6 +223,7 @@ impl AxisConfig {
     pub const fn new(limits: Limits) -> Self {
         Self {
             limits,
+            application_limits: None,
             defaults: Defaults {
                 acceleration: None,
                 deceleration: None,
@@ -187,6 +240,7 @@ impl AxisConfig {
             queue: 8,
             stop_deceleration: None,
             stop_jerk: None,
+            stop: None,
             on_power_off: PowerOff::Ramp,
             homing: Homing::DIRECT,
             hardware_limits: true,
@@ -196,6 +250,9 @@ impl AxisConfig {
             max_following_error: None,
             in_position: None,
             following: Following::DEFAULT,
+            jog_at_limit: JogAtLimit::Error,
+            modulo_targets: ModuloTargets::Error,
+            edge_while_busy: EdgeWhileBusy::Restart,
         }
     }
 
@@ -204,6 +261,7 @@ impl AxisConfig {
     /// # Errors
     /// [`ConfigError`] names the first key that is not usable, with its value.
     pub fn check(&self) -> Result<(), ConfigError> {
+        let application = |part: fn(&Limits) -> f64| self.application_limits.as_ref().map(part);
         let positive = [
             ("limits.velocity", Some(self.limits.velocity), true),
             ("limits.acceleration", Some(self.limits.acceleration), true),
@@ -216,6 +274,26 @@ impl AxisConfig {
             ("defaults.snap", self.defaults.snap, true),
             ("stop_deceleration", self.stop_deceleration, true),
             ("stop_jerk", self.stop_jerk, true),
+            (
+                "stop.deceleration",
+                self.stop.and_then(|it| it.deceleration),
+                true,
+            ),
+            ("stop.jerk", self.stop.and_then(|it| it.jerk), false),
+            ("stop.snap", self.stop.and_then(|it| it.snap), false),
+            ("application_limits.velocity", application(|it| it.velocity), true),
+            (
+                "application_limits.acceleration",
+                application(|it| it.acceleration),
+                true,
+            ),
+            (
+                "application_limits.deceleration",
+                application(|it| it.deceleration),
+                true,
+            ),
+            ("application_limits.jerk", application(|it| it.jerk), false),
+            ("application_limits.snap", application(|it| it.snap), false),
             ("max_following_error", self.max_following_error, true),
             ("in_position.window", self.in_position.map(|it| it.window), true),
             ("coupling.max_deviation", self.following.max_deviation, true),
@@ -246,6 +324,31 @@ impl AxisConfig {
                 self.limits.deceleration,
             ),
             ("stop_jerk", self.stop_jerk, self.limits.jerk),
+            (
+                "application_limits.velocity",
+                application(|it| it.velocity),
+                self.limits.velocity,
+            ),
+            (
+                "application_limits.acceleration",
+                application(|it| it.acceleration),
+                self.limits.acceleration,
+            ),
+            (
+                "application_limits.deceleration",
+                application(|it| it.deceleration),
+                self.limits.deceleration,
+            ),
+            (
+                "application_limits.jerk",
+                application(|it| it.jerk),
+                self.limits.jerk,
+            ),
+            (
+                "application_limits.snap",
+                application(|it| it.snap),
+                self.limits.snap,
+            ),
         ];
         for (key, value, limit) in above {
             if let Some(value) = value
@@ -253,6 +356,9 @@ impl AxisConfig {
             {
                 return Err(ConfigError::AboveLimit { key, value, limit });
             }
+        }
+        if self.stop.is_some() && (self.stop_deceleration.is_some() || self.stop_jerk.is_some()) {
+            return Err(ConfigError::StopTwice);
         }
         if !(self.override_max >= 1.0 && self.override_max.is_finite()) {
             return Err(ConfigError::OverrideMax {
@@ -379,6 +485,8 @@ pub enum ConfigError {
         /// The limit.
         limit: f64,
     },
+    /// `stop` beside `stop_deceleration` or `stop_jerk`.
+    StopTwice,
     /// The lower software limit is not below the upper one.
     SoftwareLimits {
         /// Lower limit (u).
@@ -478,6 +586,7 @@ impl ConfigError {
             | Self::HomingFaster { key, .. }
             | Self::HomingKey { key, .. } => key,
             Self::HomingMissing { .. } => "homing",
+            Self::StopTwice => "stop",
             Self::SoftwareLimits { .. } => "software_limits",
             Self::Modulo { .. } | Self::ModuloNotRational { .. } => "modulo",
             Self::PositionOutsideModulo { .. } => "position",
@@ -507,6 +616,10 @@ impl fmt::Display for ConfigError {
                     "{key} is {value:?}, above the axis limit {limit:?}: lower it or raise the limit"
                 )
             }
+            Self::StopTwice => write!(
+                f,
+                "stop beside stop_deceleration or stop_jerk: say in stop alone how the axis stops"
+            ),
             Self::SoftwareLimits { min, max } => {
                 write!(
                     f,

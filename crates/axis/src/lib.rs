@@ -40,8 +40,8 @@ pub use command::{
     Trigger, ValueSource,
 };
 pub use config::{
-    ACTUAL_FILTER_MAX, AboveLimit, AxisConfig, ConfigError, Defaults, Following, InPosition, MODULO_MAX,
-    OnLimit, OnMasterLost, PowerOff, StartState,
+    ACTUAL_FILTER_MAX, AboveLimit, AxisConfig, ConfigError, Defaults, EdgeWhileBusy, Following, InPosition,
+    JogAtLimit, MODULO_MAX, ModuloTargets, OnLimit, OnMasterLost, PowerOff, StartState, StopLimits,
 };
 pub use couple::{couple, update_coupled};
 pub use drive::{

@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section on Execute/Done; rules R19 to R38.
 
 use crate::Context;
-use standstill_axis::{AxisId, CommandId, ErrorId, Fate, Planner};
+use standstill_axis::{AxisId, AxisState, CommandId, EdgeWhileBusy, ErrorId, Fate, Planner};
 
 /// What an Execute-type block shows. Outputs are derived from it, so two terminal outputs at once cannot be
 /// written (R21).
@@ -105,7 +105,7 @@ impl ExecuteCore {
         context: &mut Context<'_, P>,
         issue: impl FnOnce(&mut Context<'_, P>, Option<CommandId>) -> Result<(AxisId, CommandId), ErrorId>,
     ) -> Phase {
-        let rising = execute && !self.executed;
+        let rising = execute && !self.executed && !self.ignores_edges(context);
         self.executed = execute;
         if rising && let Err(id) = self.start(context, issue) {
             self.phase = Phase::Failed(id);
@@ -128,9 +128,26 @@ impl ExecuteCore {
     }
 
     /// The command that goes on in a call with `execute`: none if it ended, or a rising edge is about to replace it.
-    pub fn running(&self, execute: bool) -> Option<(AxisId, CommandId)> {
-        let rising = execute && !self.executed;
+    pub fn running<P: Planner>(
+        &self,
+        execute: bool,
+        context: &Context<'_, P>,
+    ) -> Option<(AxisId, CommandId)> {
+        let rising = execute && !self.executed && !self.ignores_edges(context);
         self.command.filter(|_| !rising)
+    }
+
+    /// Whether the command is under way on an axis that is set up to ignore edges while an instance is Busy. An edge at MC_Stop is
+    /// never ignored: Execute is its lock.
+    fn ignores_edges<P: Planner>(&self, context: &Context<'_, P>) -> bool {
+        let Some((axis, id)) = self.command else {
+            return false;
+        };
+        context.axes.get(axis.index()).is_some_and(|axis| {
+            axis.config().edge_while_busy == EdgeWhileBusy::Ignore
+                && axis.state() != AxisState::Stopping
+                && Phase::from(axis.fate(id)).is_busy()
+        })
     }
 
     fn start<P: Planner>(

@@ -108,7 +108,7 @@ impl<V: Values> UpdateCore<V> {
     /// Before the fate is asked for, so that what the new values change shows in the same call.
     fn update<P: Planner>(&mut self, pins: Move, context: &mut Context<'_, P>, values: &impl Fn() -> V) {
         let values = values();
-        let running = self.execute.running(pins.execute);
+        let running = self.execute.running(pins.execute, context);
         let (Some((axis, id)), Some(seen), true) = (running, &mut self.seen, pins.continuous_update) else {
             self.seen = None;
             return;

@@ -3,7 +3,10 @@
 //! With it an editor completes and checks keys, block names, pins and enum elements. What a schema cannot say
 //! (which names exist, the types of wires, multiples of the cycle) only the reader checks.
 
-use crate::read::axis::{ABOVE_LIMIT, ON_LIMIT, ON_MASTER_LOST, ON_POWER_OFF, PROFILES, START_STATES};
+use crate::read::axis::{
+    ABOVE_LIMIT, EDGE_WHILE_BUSY, JOG_AT_LIMIT, MODULO_TARGETS, ON_LIMIT, ON_MASTER_LOST, ON_POWER_OFF,
+    PROFILES, START_STATES,
+};
 use crate::read::block::is_needed;
 use crate::read::drive::{NODE_DIRECTIONS, REACTIONS};
 use crate::read::homing::{HOME_DIRECTIONS, PROCEDURES, SWITCH_EDGES};
@@ -260,6 +263,11 @@ fn axis_key(key: &str) -> Value {
                 _ => of("optional_limit"),
             }),
         ),
+        "application_limits" => object(&shape::APPLICATION_LIMITS, |_| of("optional_limit")),
+        "stop" => object(&shape::STOP, |_| of("positive")),
+        "jog_at_limit" => words(&JOG_AT_LIMIT),
+        "modulo_targets" => words(&MODULO_TARGETS),
+        "edge_while_busy" => words(&EDGE_WHILE_BUSY),
         "defaults" => object(&shape::DEFAULTS, |_| of("positive")),
         "stop_deceleration" | "stop_jerk" | "modulo" => of("positive"),
         "state" => words(&START_STATES),

@@ -244,7 +244,7 @@ impl<P: Planner> Axis<P> {
                 ref dynamics,
             } => self.jog(forward, distance, dynamics, scope),
             Command::Halt { ref dynamics } => Ok((Work::Halt, self.resolve(dynamics, scope)?)),
-            Command::Stop { ref dynamics } => Ok((Work::Stop, self.resolve(dynamics, scope)?)),
+            Command::Stop { ref dynamics } => Ok((Work::Stop, self.resolve_stop(dynamics, scope)?)),
             Command::Home { position } => {
                 let position = self.finite("Position", position, scope)?;
                 self.in_first_turn(position)
@@ -295,7 +295,7 @@ impl<P: Planner> Axis<P> {
             let number = f64::from(direction.number());
             return Err(self.refuse("Direction", number, 4.0, ErrorId::DirectionInvalid, scope));
         }
-        let position = self.finite("Position", position, scope)?;
+        let position = self.target(self.finite("Position", position, scope)?);
         self.in_first_turn(position)
             .map_err(|(length, error)| self.refuse("Position", position, length, error, scope))?;
         self.inside("Position", position, scope)?;

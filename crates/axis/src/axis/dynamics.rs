@@ -5,7 +5,7 @@
 //! the limit are clamped and recorded, or refused (V2).
 
 use super::Axis;
-use crate::{AboveLimit, Dynamics, ErrorId, Event, Scope};
+use crate::{AboveLimit, Defaults, Dynamics, ErrorId, Event, Scope, StopLimits};
 use standstill_planner::{Limits, Planner};
 
 /// Scans a rate may take to change what it changes from nothing to its limit. A lower rate is of no use, and a
@@ -29,7 +29,29 @@ struct Magnitude {
 impl<P: Planner> Axis<P> {
     /// Limits of a motion; the velocity is that of the axis, positioning moves lower it.
     pub(super) fn resolve(&self, dynamics: &Dynamics, scope: &mut Scope<'_>) -> Result<Limits, ErrorId> {
-        let (limits, defaults) = (&self.parameters.limits, &self.config.defaults);
+        self.resolve_within(&self.parameters.limits, &self.config.defaults, dynamics, scope)
+    }
+
+    /// The same for MC_Stop, which has the dynamics of stops where the axis has some of their own.
+    pub(super) fn resolve_stop(&self, dynamics: &Dynamics, scope: &mut Scope<'_>) -> Result<Limits, ErrorId> {
+        if self.config.stop.is_none() {
+            return self.resolve(dynamics, scope);
+        }
+        let limits = Limits {
+            acceleration: self.parameters.limits.acceleration,
+            velocity: self.parameters.limits.velocity,
+            ..self.stop_limits()
+        };
+        self.resolve_within(&limits, &Defaults::default(), dynamics, scope)
+    }
+
+    fn resolve_within(
+        &self,
+        limits: &Limits,
+        defaults: &Defaults,
+        dynamics: &Dynamics,
+        scope: &mut Scope<'_>,
+    ) -> Result<Limits, ErrorId> {
         let longest = self.longest();
         let rate = limits.acceleration.max(limits.deceleration);
         let jolt = if limits.jerk.is_finite() {
@@ -142,12 +164,24 @@ impl<P: Planner> Axis<P> {
     /// Limits of a ramp nobody commanded: power-off, ErrorStop.
     pub(super) fn stop_limits(&self) -> Limits {
         let limits = self.config.limits;
-        let deceleration = self.config.stop_deceleration.unwrap_or(limits.deceleration);
-        let jerk = self.config.stop_jerk.unwrap_or(limits.jerk);
+        let stop = self.config.stop.unwrap_or(StopLimits {
+            deceleration: self.config.stop_deceleration,
+            jerk: self.config.stop_jerk,
+            snap: None,
+        });
         Limits {
-            deceleration,
-            jerk,
+            deceleration: stop.deceleration.unwrap_or(limits.deceleration),
+            jerk: stop.jerk.unwrap_or(limits.jerk),
+            snap: stop.snap.unwrap_or(limits.snap),
             ..limits
+        }
+    }
+
+    /// What no motion of the axis exceeds, stops included.
+    pub(super) fn hardest_limits(&self) -> Limits {
+        match self.config.stop {
+            Some(_) => self.config.limits.or_larger(&self.stop_limits()),
+            None => self.config.limits,
         }
     }
 

@@ -16,13 +16,13 @@ impl<P: Planner> Axis<P> {
     /// What `plan` exceeds of the axis limits. A faster motion that a slower command takes over from is no excess.
     pub(super) fn beyond_axis(&self, plan: &P::Plan) -> Option<Excess> {
         plan.excess()?;
-        plan.excess_over(&self.config.limits)
+        plan.excess_over(&self.hardest_limits())
     }
 
     /// The same, and of what slaves leave of the axis limits.
     pub(super) fn beyond_bound(&self, plan: &P::Plan) -> Option<Excess> {
         plan.excess()?;
-        plan.excess_over(&self.slowed(&self.config.limits))
+        plan.excess_over(&self.slowed(&self.hardest_limits()))
     }
 
     /// The same for a motion.

@@ -1,11 +1,13 @@
 //! What MC_Jog asks for: an endless motion while a button is held, or one step.
 //!
 //! MC_Jog is not in the standard. It has no motion of its own: an endless jog is that of MC_MoveVelocity, a step
-//! that of MC_MoveRelative, a release that of MC_Halt.
+//! that of MC_MoveRelative, a release that of MC_Halt. With `jog_at_limit` `stop` an endless jog towards a
+//! software limit is that of MC_MoveContinuousAbsolute to it with an end velocity of 0: it stays there, in control, until the
+//! release. A step that leads further ends there.
 
 use super::Axis;
-use super::commands::Work;
-use crate::{Dynamics, ErrorId, Scope};
+use super::commands::{Place, Work};
+use crate::{Dynamics, ErrorId, JogAtLimit, Scope};
 use standstill_planner::{Limits, Planner};
 
 impl<P: Planner> Axis<P> {
@@ -23,14 +25,35 @@ impl<P: Planner> Axis<P> {
         let velocity = self.positive_velocity("Velocity", dynamics.velocity, scope)?;
         let limits = self.resolve(dynamics, scope)?;
         let way = |magnitude: f64| if forward { magnitude } else { -magnitude };
-        Ok(if distance > 0.0 {
-            (Work::Distance(way(distance)), Limits { velocity, ..limits })
-        } else {
-            let work = Work::Velocity {
-                velocity: way(velocity),
-                along: false,
-            };
-            (work, limits)
+        let of_move = Limits { velocity, ..limits };
+        Ok(match self.jog_ends_at(forward, distance) {
+            Some(limit) if distance > 0.0 => (Work::Position(limit), of_move),
+            Some(limit) => {
+                let to = Place::At(limit);
+                let end_velocity = 0.0;
+                (Work::Through { to, end_velocity }, of_move)
+            }
+            None if distance > 0.0 => (Work::Distance(way(distance)), of_move),
+            None => {
+                let (velocity, along) = (way(velocity), false);
+                (Work::Velocity { velocity, along }, limits)
+            }
         })
+    }
+
+    /// The software limit (u) a jog is to stop at, if it leads there and not away from it.
+    fn jog_ends_at(&self, forward: bool, distance: f64) -> Option<f64> {
+        if self.config.jog_at_limit == JogAtLimit::Error {
+            return None;
+        }
+        let (min, max) = self.parameters.software_limits?;
+        let here = self.setpoint.position;
+        let (limit, left) = if forward {
+            (max, max - here)
+        } else {
+            (min, here - min)
+        };
+        let leads_there = distance == 0.0 || distance > left;
+        (limit.is_finite() && left >= 0.0 && leads_there).then_some(limit)
     }
 }

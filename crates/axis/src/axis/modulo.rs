@@ -9,7 +9,7 @@
 
 use super::commands::{Entry, Place, REST, Work};
 use super::{Axis, Motion};
-use crate::{AxisConfig, Direction, DrivePosition, ErrorId, Scaling, Turn};
+use crate::{AxisConfig, Direction, DrivePosition, ErrorId, ModuloTargets, Scaling, Turn};
 use standstill_planner::turns::{split, two_product};
 use standstill_planner::{Plan, Planner, Setpoint};
 
@@ -125,6 +125,14 @@ impl<P: Planner> Axis<P> {
         if let Some(modulo) = &mut self.modulo {
             modulo.turns = modulo.actual_turns;
             modulo.stood = None;
+        }
+    }
+
+    /// The target of an absolute move to `position` (u): in the first turn, if the axis brings targets there.
+    pub(super) fn target(&self, position: f64) -> f64 {
+        match (&self.modulo, self.config.modulo_targets) {
+            (Some(Modulo { length, .. }), ModuloTargets::Wrap) => split(position, *length).1,
+            _ => position,
         }
     }
 

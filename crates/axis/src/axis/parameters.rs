@@ -68,7 +68,7 @@ impl Parameters {
             .software_limits
             .unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         Self {
-            limits: config.limits,
+            limits: config.application_limits.unwrap_or(config.limits),
             software_limits: config.software_limits,
             lag: Lag::new(config.max_following_error),
             lower: (min, min.is_finite()),

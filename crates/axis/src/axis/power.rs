@@ -298,7 +298,10 @@ impl<P: Planner> Axis<P> {
         self.power.go_off();
         match self.config.on_power_off {
             PowerOff::Ramp => {
-                let (stop, axis) = (self.slowed(&self.stop_limits()), self.slowed(&self.config.limits));
+                let (stop, axis) = (
+                    self.slowed(&self.stop_limits()),
+                    self.slowed(&self.hardest_limits()),
+                );
                 self.ramp_down(stop, &axis, scope);
             }
             PowerOff::Coast | PowerOff::Drive => self.motion = Motion::Follow,
@@ -357,7 +360,7 @@ impl<P: Planner> Axis<P> {
         match reaction {
             // A fault does not look at slaves.
             Reaction::Ramp if self.power.is_on() && !self.moves_itself() => {
-                self.ramp_down(self.stop_limits(), &{ self.config.limits }, scope);
+                self.ramp_down(self.stop_limits(), &self.hardest_limits(), scope);
             }
             Reaction::Ramp | Reaction::Follow => self.motion = Motion::Follow,
         }

@@ -6,8 +6,8 @@ use super::{Reader, shape};
 use crate::error::{Code, Diagnostic};
 use crate::model::{Axis, Span};
 use standstill_axis::{
-    AboveLimit, AxisConfig, AxisState, Defaults, Following, InPosition, Limits, MoveProfile, OnLimit,
-    OnMasterLost, PowerOff, QUEUE_MAX, Scaling, StartState,
+    AboveLimit, AxisConfig, AxisState, Defaults, EdgeWhileBusy, Following, InPosition, JogAtLimit, Limits,
+    ModuloTargets, MoveProfile, OnLimit, OnMasterLost, PowerOff, QUEUE_MAX, Scaling, StartState, StopLimits,
 };
 
 pub(crate) const ABOVE_LIMIT: [(&str, AboveLimit); 2] =
@@ -34,6 +34,14 @@ pub(crate) const ON_LIMIT: [(&str, OnLimit); 3] = [
 ];
 pub(crate) const ON_MASTER_LOST: [(&str, OnMasterLost); 2] =
     [("error", OnMasterLost::Error), ("hold", OnMasterLost::Hold)];
+pub(crate) const JOG_AT_LIMIT: [(&str, JogAtLimit); 2] =
+    [("error", JogAtLimit::Error), ("stop", JogAtLimit::Stop)];
+pub(crate) const MODULO_TARGETS: [(&str, ModuloTargets); 2] =
+    [("error", ModuloTargets::Error), ("wrap", ModuloTargets::Wrap)];
+pub(crate) const EDGE_WHILE_BUSY: [(&str, EdgeWhileBusy); 2] = [
+    ("restart", EdgeWhileBusy::Restart),
+    ("ignore", EdgeWhileBusy::Ignore),
+];
 pub(crate) const START_STATES: [(&str, StartState); 2] = [
     ("Disabled", StartState::Disabled),
     ("Standstill", StartState::Standstill),
@@ -177,6 +185,23 @@ impl Reader {
             .map_or(Some(None), |node| self.scans(node, "`power_timeout`").map(Some));
         let scaling = self.scaling(fields);
         let modulo = self.optional(fields, "modulo", "`modulo`");
+        let application_limits = self.application_limits(fields, &config.limits);
+        let stop = self.stop(fields);
+        let jog_at_limit = fields
+            .get("jog_at_limit")
+            .map_or(Some(JogAtLimit::default()), |node| {
+                self.choice(node, "`jog_at_limit`", &JOG_AT_LIMIT)
+            });
+        let modulo_targets = fields
+            .get("modulo_targets")
+            .map_or(Some(ModuloTargets::default()), |node| {
+                self.choice(node, "`modulo_targets`", &MODULO_TARGETS)
+            });
+        let edge_while_busy = fields
+            .get("edge_while_busy")
+            .map_or(Some(EdgeWhileBusy::default()), |node| {
+                self.choice(node, "`edge_while_busy`", &EDGE_WHILE_BUSY)
+            });
         let software_limits = self.software_limits(fields);
 
         config.defaults = defaults?;
@@ -199,6 +224,11 @@ impl Reader {
         config.scaling = scaling?;
         config.modulo = modulo?;
         config.software_limits = software_limits?;
+        config.application_limits = application_limits?;
+        config.stop = stop?;
+        config.jog_at_limit = jog_at_limit?;
+        config.modulo_targets = modulo_targets?;
+        config.edge_while_busy = edge_while_busy?;
         Some(())
     }
 
@@ -216,6 +246,49 @@ impl Reader {
             jerk: jerk?,
             snap: snap?,
         })
+    }
+
+    /// What is left out, or null, is the limit of the axis, given as `limits`.
+    fn application_limits(&mut self, axis: &Fields<'_>, limits: &Limits) -> Option<Option<Limits>> {
+        let Some(node) = axis.get("application_limits") else {
+            return Some(None);
+        };
+        let fields = self.fields(node, &shape::APPLICATION_LIMITS)?;
+        let mut one = |key: &str| match fields.get(key) {
+            None | Some(Node { json: Json::Null, .. }) => Some(None),
+            Some(node) => self
+                .finite(node, &format!("`application_limits.{key}`"))
+                .map(Some),
+        };
+        let (velocity, acceleration) = (one("velocity"), one("acceleration"));
+        let (deceleration, jerk, snap) = (one("deceleration"), one("jerk"), one("snap"));
+        let acceleration = acceleration?;
+        Some(Some(Limits {
+            velocity: velocity?.unwrap_or(limits.velocity),
+            acceleration: acceleration.unwrap_or(limits.acceleration),
+            // As in `limits` the acceleration stands for it, as far as the axis has that.
+            deceleration: deceleration?.unwrap_or_else(|| {
+                acceleration
+                    .unwrap_or(limits.deceleration)
+                    .min(limits.deceleration)
+            }),
+            jerk: jerk?.unwrap_or(limits.jerk),
+            snap: snap?.unwrap_or(limits.snap),
+        }))
+    }
+
+    fn stop(&mut self, axis: &Fields<'_>) -> Option<Option<StopLimits>> {
+        let Some(node) = axis.get("stop") else {
+            return Some(None);
+        };
+        let fields = self.fields(node, &shape::STOP)?;
+        let mut one = |key: &str| self.optional(&fields, key, &format!("`stop.{key}`"));
+        let (deceleration, jerk, snap) = (one("deceleration"), one("jerk"), one("snap"));
+        Some(Some(StopLimits {
+            deceleration: deceleration?,
+            jerk: jerk?,
+            snap: snap?,
+        }))
     }
 
     fn start_state(&mut self, node: &Node) -> Option<StartState> {

@@ -76,6 +76,7 @@ pub(crate) const AXIS: Shape = Shape {
     keys: &[
         "unit",
         "limits",
+        "application_limits",
         "defaults",
         "position",
         "state",
@@ -87,6 +88,7 @@ pub(crate) const AXIS: Shape = Shape {
         "queue",
         "stop_deceleration",
         "stop_jerk",
+        "stop",
         "on_power_off",
         "hardware_limits",
         "homing",
@@ -96,6 +98,9 @@ pub(crate) const AXIS: Shape = Shape {
         "in_position",
         "max_following_error",
         "coupling",
+        "jog_at_limit",
+        "modulo_targets",
+        "edge_while_busy",
         "drive",
         "vacuous",
         "note",
@@ -106,6 +111,11 @@ pub(crate) const LIMITS: Shape = shape(
     "`limits`",
     &["velocity", "acceleration", "deceleration", "jerk", "snap", "note"],
 );
+pub(crate) const APPLICATION_LIMITS: Shape = shape(
+    "`application_limits`",
+    &["velocity", "acceleration", "deceleration", "jerk", "snap", "note"],
+);
+pub(crate) const STOP: Shape = shape("`stop`", &["deceleration", "jerk", "snap", "note"]);
 pub(crate) const DEFAULTS: Shape = shape(
     "`defaults`",
     &["acceleration", "deceleration", "jerk", "snap", "note"],
