@@ -467,6 +467,27 @@ mod tests {
     }
 
     #[test]
+    fn a_name_that_stays_is_the_same_one_and_does_not_move() {
+        let mut trace = small();
+        let hidden = "b\u{202e}";
+        let names = ["a", "a", hidden, hidden, "a"];
+        for name in names {
+            trace
+                .push_row(&[Cell::Bool(false), Cell::Real(f64::NAN), Cell::Name(name)])
+                .expect("the row fits");
+        }
+        assert_eq!(trace.texts(), ["a", &*printable(hidden)]);
+        let told: Vec<_> = trace.cells(2).collect();
+        assert_eq!(
+            told,
+            names.map(|name| Cell::Name(trace.texts()[usize::from(name == hidden)].as_str()))
+        );
+        let moves = |columns: &[usize]| (0..5).map(|scan| trace.moves(scan, columns)).collect::<Vec<_>>();
+        assert_eq!(moves(&[0, 2]), [true, false, true, false, true]);
+        assert_eq!(moves(&[0, 1]), [true, false, false, false, false]);
+    }
+
+    #[test]
     fn zero_has_no_sign_and_nan_no_payload() {
         let mut trace = small();
         for value in [-0.0, f64::from_bits(0xfff8_0000_0000_0001), f64::NEG_INFINITY] {
