@@ -3,10 +3,10 @@
 //! Source: PLCopen Motion Control Part 1, section of that name; V20 to V20b.
 
 use standstill_axis::{
-    AxisId, BufferMode, CamId, CamIn, Command, ErrorId, Master, Planner, Raw, Request, StartMode,
-    ValueSource, couple,
+    AxisId, BufferMode, CamId, CamIn, Command, CommandId, ErrorId, Master, Planner, Raw, Request, StartMode,
+    ValueSource, couple, update_coupled,
 };
-use standstill_fb::{Block, Context, Group, Move, UpdateCore, pins};
+use standstill_fb::{Block, Context, Group, Move, UpdateCore, Values, pins};
 
 pins! {
     in_outs {
@@ -43,7 +43,11 @@ pins! {
         /// How the command follows the one before it.
         BufferMode => buffer_mode: Raw<BufferMode> = Raw::new(0), "";
     }
-    vendor_inputs {}
+    vendor_inputs {
+        /// With BufferMode mcBuffered behind another cam: the place of that cam's master side at which this one takes over; 0 for its
+        /// end.
+        SwitchAt => switch_at: f64 = 0.0, "u of the master";
+    }
     outputs {
         /// The set position of the slave is the one the cam asks for.
         InSync => in_sync: bool, "";
@@ -68,11 +72,71 @@ pins! {
     }
 }
 
+/// What the block commands, as it stands at its pins: less than a [`Command`] takes.
+#[derive(Clone, Copy, Debug)]
+struct Commanded {
+    master: AxisId,
+    source: Raw<ValueSource>,
+    start_mode: Raw<StartMode>,
+    table: u32,
+    offsets: [f64; 2],
+    scalings: [f64; 2],
+    sync: [f64; 2],
+    switch_at: f64,
+}
+
+impl Commanded {
+    fn command<P: Planner>(&self, context: &Context<'_, P>) -> Command {
+        let master = context.axes.get(self.master.index());
+        let [master_offset, slave_offset] = self.offsets;
+        let [master_scaling, slave_scaling] = self.scalings;
+        let [start_distance, sync_position] = self.sync;
+        Command::CamIn(CamIn {
+            master: Master {
+                axis: self.master,
+                turn: master.and_then(|master| master.config().modulo),
+            },
+            source: self.source,
+            table: CamId::from_number(self.table),
+            start_mode: self.start_mode,
+            master_offset,
+            slave_offset,
+            master_scaling,
+            slave_scaling,
+            start_distance,
+            sync_position,
+            switch_at: self.switch_at,
+        })
+    }
+}
+
+impl Values for Commanded {
+    fn is_same(&self, other: &Self) -> bool {
+        let bits = |values: &Self| {
+            let [a, b] = values.offsets;
+            let [c, d] = values.scalings;
+            let [e, f] = values.sync;
+            [a, b, c, d, e, f, values.switch_at].map(f64::to_bits)
+        };
+        let numbers = |values: &Self| {
+            let modes = [values.source.number(), values.start_mode.number()];
+            (values.master, modes, values.table)
+        };
+        bits(self) == bits(other) && numbers(self) == numbers(other)
+    }
+
+    fn apply<P: Planner>(&self, axis: AxisId, id: CommandId, context: &mut Context<'_, P>) {
+        let command = self.command(context);
+        // The block shows no Error: its command goes on as it was (R21).
+        let _recorded = update_coupled(context.axes, axis, id, &command, &mut context.scope);
+    }
+}
+
 /// State kept between calls.
 #[doc(alias = "MC_CamIn")]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct McCamIn {
-    core: UpdateCore<Command>,
+    core: UpdateCore<Commanded>,
     /// Ends of cams the slave has reached, while it is active.
     ends: Option<u32>,
 }
@@ -90,30 +154,21 @@ impl Block for McCamIn {
             execute: inputs.execute,
             continuous_update: inputs.continuous_update,
         };
-        let master = context.axes.get(inputs.master.index());
-        let turn = master.and_then(|master| master.config().modulo);
-        let values = || {
-            Command::CamIn(CamIn {
-                master: Master {
-                    axis: inputs.master,
-                    turn,
-                },
-                source: inputs.master_value_source,
-                table: CamId::from_number(inputs.cam_table_id),
-                start_mode: inputs.start_mode,
-                master_offset: inputs.master_offset,
-                slave_offset: inputs.slave_offset,
-                master_scaling: inputs.master_scaling,
-                slave_scaling: inputs.slave_scaling,
-                start_distance: inputs.master_start_distance,
-                sync_position: inputs.master_sync_position,
-            })
+        let values = || Commanded {
+            master: inputs.master,
+            source: inputs.master_value_source,
+            start_mode: inputs.start_mode,
+            table: inputs.cam_table_id,
+            offsets: [inputs.master_offset, inputs.slave_offset],
+            scalings: [inputs.master_scaling, inputs.slave_scaling],
+            sync: [inputs.master_start_distance, inputs.master_sync_position],
+            switch_at: inputs.switch_at,
         };
         let phase = self
             .core
-            .scan_among(pins, context, values, |context, command, replaces| {
+            .scan_among(pins, context, values, |context, commanded, replaces| {
                 let request = Request {
-                    command,
+                    command: commanded.command(context),
                     buffer_mode: inputs.buffer_mode,
                     replaces,
                 };

@@ -390,11 +390,13 @@ pub struct CamIn {
     pub start_distance: f64,
     /// Where in the cam the slave is to be in sync first (u of the cam's master side); 0 leaves it open.
     pub sync_position: f64,
+    /// Where in the cam before it takes over (u of that cam's master side); 0 for its end.
+    pub switch_at: f64,
 }
 
 impl CamIn {
     /// All but the master, as bits.
-    fn bits(&self) -> ([u64; 6], [i64; 3]) {
+    fn bits(&self) -> ([u64; 7], [i64; 3]) {
         let values = [
             self.master_offset,
             self.slave_offset,
@@ -402,6 +404,7 @@ impl CamIn {
             self.slave_scaling,
             self.start_distance,
             self.sync_position,
+            self.switch_at,
         ];
         let numbers = [
             i64::from(self.source.number()),

@@ -22,6 +22,12 @@ impl<P: Planner> Axis<P> {
     pub fn command(&mut self, request: &Request, scope: &mut Scope<'_>) -> Result<CommandId, ErrorId> {
         let (mode, start) = self.admit_recorded(request, scope)?;
         let (work, limits) = self.check(&request.command, start, scope)?;
+        if let Work::Cam(camming) = work
+            && let (Some(place), BufferMode::Aborting) = (camming.switch_at, mode)
+        {
+            let error = ErrorId::BufferModeNotHere;
+            return Err(self.refuse("SwitchAt", place, 0.0, error, scope));
+        }
         if work.waits_for_start() {
             return self.await_start(work, limits, mode, scope);
         }

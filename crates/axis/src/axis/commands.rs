@@ -134,6 +134,8 @@ pub(super) struct Camming {
     /// How far before that its master is where the slave sets off (u of the cam's master side), with the sign of its direction; 0
     /// for at once.
     pub start_distance: f64,
+    /// Where in the cam before it takes over, if not at its end (u of that cam's master side).
+    pub switch_at: Option<f64>,
 }
 
 impl Work {

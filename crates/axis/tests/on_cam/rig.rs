@@ -146,6 +146,7 @@ impl Rig {
             slave_scaling: 1.0,
             start_distance: 0.0,
             sync_position: 0.0,
+            switch_at: 0.0,
         }
     }
 

@@ -440,11 +440,12 @@ impl<P: Planner> Axis<P> {
         for (pin, value) in [
             ("MasterSyncPosition", cam.sync_position),
             ("MasterStartDistance", cam.start_distance),
+            ("SwitchAt", cam.switch_at),
         ] {
-            let most = if pin == "MasterSyncPosition" {
-                FURTHEST
-            } else {
+            let most = if pin == "MasterStartDistance" {
                 f64::MAX
+            } else {
+                FURTHEST
             };
             if !(value.abs() <= most) {
                 return refuse(pin, value, most, ErrorId::SyncPositionInvalid);
@@ -491,6 +492,7 @@ impl<P: Planner> Axis<P> {
             slave_offset: cam.slave_offset,
             sync: (cam.sync_position != 0.0 || cam.start_distance != 0.0).then_some(cam.sync_position),
             start_distance: cam.start_distance,
+            switch_at: (cam.switch_at != 0.0).then_some(cam.switch_at),
         })
     }
 

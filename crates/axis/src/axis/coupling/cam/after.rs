@@ -1,7 +1,11 @@
-//! What follows a cam at its end: another cam on which the slave may stay in sync, or whatever else waits.
+//! What follows a cam at its end, or at a place of it: another cam on which the slave may stay in sync, or whatever else waits.
+//!
+//! Where the next cam meets the one in progress with all derivatives that the slave's order asks for, the slave is on the next one in
+//! the scan in which its master passes that place. Where it does not, the slave ends that scan on the cam in progress, and comes onto the
+//! next one as onto any.
 
 use super::super::super::Axis;
-use super::super::super::commands::Camming;
+use super::super::super::commands::{Camming, ROUNDING, Work};
 use super::super::follow::off;
 use super::super::needs::RESOLVED;
 use super::super::view::View;
@@ -9,14 +13,15 @@ use super::ends::Passed;
 use super::onto::goes_on;
 use super::{Curve, OnCam, Rung, Shadow};
 use crate::{Event, Scope};
-use standstill_planner::{Anchor, CamLaw, Place, Planner};
+use standstill_planner::{Anchor, Cam, CamLaw, Place, Planner, Setpoint};
 
-/// Where a cam ended.
+/// Where a cam gives way to another.
 #[derive(Clone, Copy)]
 struct Ended {
-    /// By how much the master is past it (u), with its sign.
+    /// The master there, and by how much it is past it (u), with its sign.
+    master: Place,
     over: f64,
-    /// Of the slave.
+    /// The slave there.
     slave: Place,
     /// The master goes up.
     upwards: bool,
@@ -24,8 +29,10 @@ struct Ended {
 
 impl<P: Planner> Axis<P> {
     /// The slave has moved: whether it has come to an end of its cam, and what follows then.
-    pub(super) fn end_of_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+    pub(super) fn end_of_cam(&mut self, scope: &mut Scope<'_>) {
         let is_paused = self.is_paused();
+        let switch = self.switch_of_next();
+        let cycle = self.planner.cycle();
         let Some(on_cam) = self.on_cam.as_mut().filter(|_| !is_paused) else {
             return;
         };
@@ -33,24 +40,38 @@ impl<P: Planner> Axis<P> {
             return;
         };
         let at = on_cam.at;
-        let Some(passed) = on_cam.ends.note(&cam, &at) else {
-            if on_cam.ends.is_over() && !self.queue.is_empty() {
-                self.hand_over(self.setpoint.position, scope);
+        let passed = on_cam.ends.note(&cam, &at);
+        let is_over = on_cam.ends.is_over();
+        let Some(curve) = on_cam.curve(cam) else { return };
+        let ended = match (switch, &passed) {
+            (Some(place), _) if !is_over => {
+                let here = curve.unwound(shadow.place);
+                let before = if on_cam.rung.is_locked() {
+                    curve.unwound(on_cam.was.place)
+                } else {
+                    // Where it was it is not known to the last bit.
+                    let step = shadow.at.velocity * cycle / curve.law.master_scaling;
+                    here - step * (1.0 + ROUNDING)
+                };
+                curve
+                    .passes(place, before, here)
+                    .map(|x| curve.ended(x, here > before, &shadow))
             }
-            return;
+            (_, Some(passed)) => Some(curve.ended(curve.end(passed), passed.forwards, &shadow)),
+            _ => None,
         };
-        self.cam_ends = self.cam_ends.wrapping_add(1);
-        let ended = on_cam.curve(cam).map(|curve| ended(&curve, &passed, &shadow));
-        if passed.ends > 1 {
-            let periods = passed.ends;
-            self.record(Event::CamPassed { periods }, &mut self.owner_scope(scope));
+        if let Some(passed) = passed {
+            self.cam_ends = self.cam_ends.wrapping_add(1);
+            if passed.ends > 1 {
+                let periods = passed.ends;
+                self.record(Event::CamPassed { periods }, &mut self.owner_scope(scope));
+            }
         }
-        if self.queue.is_empty() {
+        if self.queue.is_empty() || !(ended.is_some() || is_over) {
             return;
         }
         let before = self.values_on_cam();
         let was = self.on_cam.map(|on_cam| (on_cam.was, on_cam.known));
-        let is_locked = self.is_locked_on_cam();
         self.hand_over(self.setpoint.position, scope);
         let goes_on = before == self.values_on_cam() && self.is_now_due();
         if let (true, Some(ended), Some((was, known))) = (goes_on, ended, was) {
@@ -58,7 +79,15 @@ impl<P: Planner> Axis<P> {
                 on_cam.was = was;
                 on_cam.known = known;
             }
-            self.go_on_behind(&ended, &shadow, is_locked, view, scope);
+            self.go_on_behind(&ended, &shadow, scope);
+        }
+    }
+
+    /// Where in the cam in progress the next one is to take over, if a cam waits and that is not the end.
+    fn switch_of_next(&self) -> Option<f64> {
+        match self.queue.first()?.work {
+            Work::Cam(camming) => camming.switch_at,
+            _ => None,
         }
     }
 
@@ -68,122 +97,238 @@ impl<P: Planner> Axis<P> {
         self.on_cam.as_ref().is_some_and(is_new)
     }
 
-    /// The next cam begins where the one before ended. Where both meet, the slave stays in sync.
-    fn go_on_behind(
-        &mut self,
-        ended: &Ended,
-        shadow: &Shadow,
-        is_locked: bool,
-        view: &View<'_, P::Plan>,
-        scope: &mut Scope<'_>,
-    ) {
-        let Some(on_cam) = &self.on_cam else { return };
+    /// The next cam begins where the one before gave way; the slave comes onto it.
+    fn go_on_behind(&mut self, ended: &Ended, shadow: &Shadow, scope: &Scope<'_>) {
+        let Some(mut on_cam) = self.on_cam else { return };
         let Some(cam) = scope.cams.cam(on_cam.camming.cam) else {
             return;
         };
-        let Some((camming, anchor)) = self.laid_behind(on_cam, &cam, ended, shadow) else {
+        let Some(curve) = self.laid_behind(&mut on_cam, cam, ended, shadow) else {
             return;
         };
-        let curve = Curve {
-            cam,
-            law: camming.law,
-            anchor,
-        };
-        let at = curve.at(shadow.place, &shadow.at, 0);
-        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
-        let here = self.place();
-        let resolved = RESOLVED * 4.0 * (here.position.abs() + at.place.position.abs() + length);
-        let limits = self.slowed(&self.parameters.limits);
-        let meets =
-            off(here, at.place, length).abs() <= resolved && goes_on(&self.setpoint, &at.state, &limits);
-        let keeps = self.keeps_on_cam(&curve, view, true).is_ok();
-        if let Some(on_cam) = &mut self.on_cam {
-            on_cam.camming.law = camming.law;
-            on_cam.anchor = Some(anchor);
-            on_cam.laid = anchor.slave.phase;
-            on_cam.at = at;
-            if meets {
-                on_cam.shadow = Some(*shadow);
-            }
-            let _begun = on_cam.ends.note(&cam, &at);
+        on_cam.at = curve.at(shadow.place, &shadow.at, 0);
+        if self.goes_on_at(
+            &(self.place(), self.setpoint),
+            &(on_cam.at.place, on_cam.at.state),
+        ) {
+            on_cam.shadow = Some(*shadow);
         }
-        if meets && keeps && is_locked {
-            self.lock_on_cam(scope);
-        }
+        let _begun = on_cam.ends.note(&cam, &on_cam.at);
+        self.on_cam = Some(on_cam);
     }
 
-    /// Where the next cam lies if it is counted from the end of the one before.
-    fn laid_behind(
-        &self,
-        on_cam: &OnCam,
-        cam: &standstill_planner::Cam<'_>,
-        ended: &Ended,
-        shadow: &Shadow,
-    ) -> Option<(Camming, Anchor)> {
-        let mut camming = on_cam.camming;
-        if camming.master_absolute {
+    /// In sync, before the step of this scan: the master passes the place at which a cam that waits takes over, and both meet there. Then
+    /// the slave is on that in the same scan. Returns whether it is.
+    pub(super) fn switches_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) -> bool {
+        let Some((next, passed)) = self.next_cam_met(view, scope) else {
+            return false;
+        };
+        let shadow = Shadow {
+            place: view.now.place,
+            at: view.now.at,
+        };
+        let before = self.values_on_cam();
+        self.hand_over(self.setpoint.position, scope);
+        if !(before == self.values_on_cam() && self.is_now_due()) {
+            return false;
+        }
+        if let Some(passed) = passed {
+            self.cam_ends = self.cam_ends.wrapping_add(1);
+            if passed.ends > 1 {
+                let periods = passed.ends;
+                self.record(Event::CamPassed { periods }, &mut self.owner_scope(scope));
+            }
+        }
+        self.on_cam = Some(next);
+        self.lock_on_cam(scope);
+        self.publish_on_cam(&next.at, shadow, scope);
+        true
+    }
+
+    /// The next cam as it is at the end of this scan, if it takes over in it and meets the one in progress; with the end of that which
+    /// is passed.
+    fn next_cam_met(
+        &mut self,
+        view: &View<'_, P::Plan>,
+        scope: &Scope<'_>,
+    ) -> Option<(OnCam, Option<Passed>)> {
+        let Work::Cam(camming) = self.queue.first().filter(|entry| entry.barred.is_none())?.work else {
+            return None;
+        };
+        let own = self.on_cam?;
+        let is_same_master = Some((camming.master, camming.source)) == self.values_on_cam();
+        if !is_same_master || self.layer.is_some() || own.ends.is_over() {
             return None;
         }
-        let forwards = ended.upwards == (camming.law.master_scaling > 0.0);
-        let first = if forwards { cam.head.begin } else { cam.head.end };
-        camming.law.origin = first + ended.over / camming.law.master_scaling;
-        let master = Place {
-            turns: shadow.place.turns,
-            position: camming.master_offset,
-            phase: shadow.place.position,
+        let curve = own.curve(scope.cams.cam(own.camming.cam)?)?;
+        let cam = scope.cams.cam(camming.cam)?;
+        let now = Shadow {
+            place: view.now.place,
+            at: view.now.at,
         };
-        let mut anchor = Anchor {
+        let (before, here) = (curve.unwound(own.was.place), curve.unwound(now.place));
+        let mut ends = own.ends;
+        let passed = ends.note(&curve.cam, &curve.at(now.place, &now.at, own.at.piece));
+        let (x, forwards) = match camming.switch_at {
+            Some(place) => (curve.passes(place, before, here)?, here > before),
+            None => {
+                let passed = passed.as_ref()?;
+                (curve.end(passed), passed.forwards)
+            }
+        };
+        let ended = curve.ended(x, forwards, &now);
+        let limits = self.slowed(&self.parameters.limits);
+        let mut next = OnCam {
+            was: own.was,
+            known: own.known,
+            shadow: Some(now),
+            ..OnCam::new(camming, limits, self.frame.moves())
+        };
+        let new = self.laid_behind(&mut next, cam, &ended, &now)?;
+        let (last, first) = (
+            curve.at(ended.master, &now.at, own.at.piece),
+            new.at(ended.master, &now.at, 0),
+        );
+        let meets = self.goes_on_at(&(last.place, last.state), &(first.place, first.state));
+        if !meets {
+            return None;
+        }
+        let _begun = next.ends.note(&cam, &first);
+        next.at = new.at(now.place, &now.at, first.piece);
+        self.on_cam = Some(next);
+        let keeps = self.keeps_on_cam(&new, view, false).is_ok();
+        self.on_cam = Some(own);
+        keeps.then_some((next, passed))
+    }
+
+    /// Whether a slave in one state may go on in another: the place is the same, and what its limits do not let jump.
+    fn goes_on_at(&self, last: &(Place, Setpoint), next: &(Place, Setpoint)) -> bool {
+        let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
+        let numbers = last.0.position.abs() + next.0.position.abs() + length;
+        let limits = self.slowed(&self.parameters.limits);
+        let is_there = off(last.0, next.0, length).abs() <= RESOLVED * 4.0 * numbers;
+        is_there && goes_on(&last.1, &next.1, &limits)
+    }
+
+    /// The cam of `next`, laid so that it goes on where the one before gave way, the master being at `now`.
+    fn laid_behind<'a>(
+        &self,
+        next: &mut OnCam,
+        cam: Cam<'a>,
+        ended: &Ended,
+        now: &Shadow,
+    ) -> Option<Curve<'a>> {
+        let camming = &mut next.camming;
+        let master = if camming.master_absolute {
+            let (master, origin) = camming.laid(next.was.place, cam.head);
+            camming.law.origin = origin;
+            master
+        } else {
+            let forwards = ended.upwards == (camming.law.master_scaling > 0.0);
+            let first = if forwards { cam.head.begin } else { cam.head.end };
+            camming.law.origin = first + ended.over / camming.law.master_scaling;
+            Place {
+                turns: now.place.turns,
+                position: camming.master_offset,
+                phase: now.place.position + now.place.phase,
+            }
+        };
+        let slave = self.slave_behind(camming, &cam, master, ended, now);
+        let anchor = Anchor {
             master,
-            slave: Place {
-                position: camming.slave_offset,
-                ..Place::default()
-            },
+            slave,
             ..Anchor::default()
+        };
+        next.anchor = Some(anchor);
+        next.laid = anchor.slave.phase;
+        next.curve(cam)
+    }
+
+    /// Where the next cam lies at its slave.
+    fn slave_behind(
+        &self,
+        camming: &Camming,
+        cam: &Cam<'_>,
+        master: Place,
+        ended: &Ended,
+        now: &Shadow,
+    ) -> Place {
+        let at = |law: &CamLaw, slave: Place| {
+            let anchor = Anchor {
+                master,
+                slave,
+                ..Anchor::default()
+            };
+            law.at(cam, &anchor, ended.master, &now.at, 0).place
         };
         if !camming.slave_absolute {
             let straight = CamLaw {
                 slave_turn: None,
                 ..camming.law
             };
-            let without = Anchor {
-                slave: Place::default(),
-                ..anchor
-            };
-            let begins = Place {
-                position: shadow.place.position - ended.over,
-                ..shadow.place
-            };
-            let on_curve = straight.at(cam, &without, begins, &shadow.at, 0).place.position;
-            anchor.slave = Place {
-                phase: camming.slave_offset - on_curve,
+            return Place {
+                phase: camming.slave_offset - at(&straight, Place::default()).position,
                 ..ended.slave
             };
-        } else if self.modulo.is_some() {
-            // Which turn is meant is found as for any cam.
-            return None;
         }
-        Some((camming, anchor))
+        let mut slave = Place {
+            position: camming.slave_offset,
+            ..Place::default()
+        };
+        if let Some(modulo) = &self.modulo {
+            // Of the turns that mean the same the nearest one.
+            let away = off(ended.slave, at(&camming.law, slave), modulo.length) / modulo.length;
+            let nearest = if away < 0.0 { away - 0.5 } else { away + 0.5 };
+            slave.turns = nearest as i64;
+        }
+        slave
     }
 }
 
-/// Where a cam ended that has just been passed by a shadow there.
-fn ended(curve: &Curve<'_>, passed: &Passed, shadow: &Shadow) -> Ended {
-    let head = curve.cam.head;
-    let end = if head.periodic {
-        head.begin + passed.end as f64 * (head.end - head.begin)
-    } else if passed.forwards {
-        head.end
-    } else {
-        head.begin
-    };
-    let over = (curve.unwound(shadow.place) - end) * curve.law.master_scaling;
-    let place = Place {
-        position: shadow.place.position - over,
-        ..shadow.place
-    };
-    Ended {
-        over,
-        slave: curve.at(place, &shadow.at, 0).place,
-        upwards: passed.forwards == (curve.law.master_scaling > 0.0),
+impl Curve<'_> {
+    /// The end that was passed, as a place on the master's side (u) that is not taken back into one period.
+    fn end(&self, passed: &Passed) -> f64 {
+        let head = self.cam.head;
+        if head.periodic {
+            head.begin + passed.end as f64 * (head.end - head.begin)
+        } else if passed.forwards {
+            head.end
+        } else {
+            head.begin
+        }
+    }
+
+    /// Where `place` of the cam (u of the master's side) is passed on the way from `before` to `here`, neither taken back into one
+    /// period; on a cam with periods in whichever period.
+    fn passes(&self, place: f64, before: f64, here: f64) -> Option<f64> {
+        let head = self.cam.head;
+        let length = head.end - head.begin;
+        let is_in = |x: f64| {
+            let forwards = before < x && x <= here;
+            forwards || (here <= x && x < before)
+        };
+        if !head.periodic {
+            return is_in(place).then_some(place);
+        }
+        let whole = ((here - place) / length) as i64 as f64;
+        [whole - 1.0, whole, whole + 1.0]
+            .into_iter()
+            .map(|periods| place + periods * length)
+            .find(|x| is_in(*x))
+    }
+
+    /// The cam gives way at `x` of the master's side, not taken back into one period, and its slave is led from there on by `now`.
+    fn ended(&self, x: f64, forwards: bool, now: &Shadow) -> Ended {
+        let over = (self.unwound(now.place) - x) * self.law.master_scaling;
+        let master = Place {
+            position: now.place.position - over,
+            ..now.place
+        };
+        Ended {
+            master,
+            over,
+            slave: self.at(master, &now.at, 0).place,
+            upwards: forwards == (self.law.master_scaling > 0.0),
+        }
     }
 }

@@ -49,7 +49,7 @@ impl<P: Planner> Axis<P> {
         }
         self.note_own_part();
         self.measure_on_cam(view, scope);
-        self.end_of_cam(view, scope);
+        self.end_of_cam(scope);
         self.finish_reset();
     }
 
@@ -199,6 +199,9 @@ impl<P: Planner> Axis<P> {
 
     /// In sync: the set-point is the cam, moved on by what is superimposed on it.
     fn step_in_sync(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        if !self.queue.is_empty() && self.switches_cam(view, scope) {
+            return;
+        }
         let added = self.next_added();
         // What is added to a law that stands was held against the limits before.
         let is_held = added.is_some() && self.law_stands(view);
@@ -255,7 +258,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Publishes a place of the curve, at which the slave is from now on.
-    fn publish_on_cam(&mut self, at: &CamAt, shadow: Shadow, scope: &mut Scope<'_>) {
+    pub(super) fn publish_on_cam(&mut self, at: &CamAt, shadow: Shadow, scope: &mut Scope<'_>) {
         if let Some(on_cam) = &mut self.on_cam {
             on_cam.at = *at;
             on_cam.shadow = Some(shadow);
