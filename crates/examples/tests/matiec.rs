@@ -1,10 +1,12 @@
 //! `prog.st` through matiec: linked to the C library, and as a guest, with the digest of the other hosts.
 //!
 //! matiec is in no package registry and not in Debian, so CI cannot install it and these tests say SKIP there; what CI holds
-//! of this path is said in `docs/porting.md`. Here it is found as `iec2c` on the PATH, its library in `MATIEC_LIB`, or beside
-//! it; a C library for WebAssembly in `WASI_SYSROOT`, or where Debian puts it.
+//! of this path is said in `docs/porting.md`. Here it is found as `iec2c` on the PATH; a C library for WebAssembly
+//! in `WASI_SYSROOT`, or where Debian puts it.
 
 mod common;
+#[path = "../../st/tests/foreign/matiec.rs"]
+mod matiec;
 
 use common::*;
 use standstill_export::Target;
@@ -13,31 +15,16 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-/// Where `iec2c` has its standard functions in Structured Text; the headers are in `C` below it.
-fn library_of_matiec() -> Option<PathBuf> {
-    if Command::new("iec2c").arg("-v").output().is_err() {
-        skip("there is no iec2c; matiec is in no package registry, so nothing installs it (docs/porting.md)");
-        return None;
-    }
-    let path = env::var_os("PATH").unwrap_or_default();
-    let mut beside: Vec<_> = env::split_paths(&path)
-        .filter(|folder| folder.join("iec2c").exists())
-        .flat_map(|folder| {
-            ["lib", "../lib", "../lib/matiec", "../share/matiec/lib"].map(|lib| folder.join(lib))
-        })
-        .collect();
-    beside.splice(0..0, env::var_os("MATIEC_LIB").map(PathBuf::from));
-    let found = beside.into_iter().find(|lib| lib.join("ieclib.txt").exists());
-    Some(found.expect("iec2c is here, but not its library: set MATIEC_LIB to the folder with ieclib.txt"))
-}
-
 fn text(path: &Path) -> String {
     path.to_str().unwrap().to_owned()
 }
 
 /// Translates `prog.st`, with the shim before it, into the folder; `None` without matiec.
 fn translated(name: &str) -> Option<(PathBuf, PathBuf)> {
-    let matiec = library_of_matiec()?;
+    let Some(matiec) = matiec::library() else {
+        skip(matiec::MISSING);
+        return None;
+    };
     let out = scratch(name);
     exported(Target::StMatiec, &out);
     let shim = fs::read_to_string(out.join("standstill_matiec.st")).unwrap();

@@ -4,21 +4,9 @@
 
 mod play;
 
+use standstill_testkit::Random;
 use std::fs;
 use std::path::Path;
-
-/// Splitmix64.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, count: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) % count.max(1) as u64) as usize
-    }
-}
 
 /// Programs of the repository, in the order of their names.
 fn programs() -> Vec<Vec<u8>> {
@@ -34,28 +22,28 @@ fn programs() -> Vec<Vec<u8>> {
 }
 
 fn damaged(random: &mut Random, programs: &[Vec<u8>]) -> Vec<u8> {
-    let mut text = programs[random.below(programs.len())].clone();
-    for _ in 0..=random.below(5) {
-        let at = random.below(text.len());
-        let to = (at + random.below(40)).min(text.len());
-        match random.below(6) {
-            0 if at < text.len() => text[at] = random.below(256) as u8,
+    let mut text = programs[random.place(programs.len())].clone();
+    for _ in 0..=random.place(5) {
+        let at = random.place(text.len());
+        let to = (at + random.place(40)).min(text.len());
+        match random.place(6) {
+            0 if at < text.len() => text[at] = random.place(256) as u8,
             1 => drop(text.drain(at..to)),
             2 => {
                 let piece = text[at..to].to_vec();
-                let place = random.below(text.len());
+                let place = random.place(text.len());
                 text.splice(place..place, piece);
             }
             3 => {
-                let other = &programs[random.below(programs.len())];
-                let from = random.below(other.len());
-                let piece = other[from..(from + random.below(200)).min(other.len())].to_vec();
+                let other = &programs[random.place(programs.len())];
+                let from = random.place(other.len());
+                let piece = other[from..(from + random.place(200)).min(other.len())].to_vec();
                 text.splice(at..at, piece);
             }
             4 => text.truncate(at),
             _ => {
                 let signs = b"()[]{};:='$#.,*/-%\n\"\xc3\xbc\0";
-                text.insert(at, signs[random.below(signs.len())]);
+                text.insert(at, signs[random.place(signs.len())]);
             }
         }
     }

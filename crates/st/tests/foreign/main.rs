@@ -1,15 +1,15 @@
 //! What edition 2 of the standard has, other compilers accept with the same results.
 //!
-//! matiec is in no package registry, so this says SKIP where there is no `iec2c` on the PATH, its library in `MATIEC_LIB` or beside
-//! it. What else is accepted here and not there stands in `docs/structured-text.md`.
+//! matiec is in no package registry, so this says SKIP where there is none. What else is accepted here and not there stands in `docs/structured-text.md`.
 
 #[path = "../common/mod.rs"]
 mod common;
+mod matiec;
 
 use common::{Running, compiled};
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::{env, fs};
 
 const PORTABLE: &str = include_str!("portable.st");
 
@@ -53,23 +53,6 @@ int main(void) {
     }
 }
 "#;
-
-/// Where `iec2c` has its standard functions; `None` without it.
-fn matiec() -> Option<PathBuf> {
-    Command::new("iec2c").arg("-v").output().ok()?;
-    let path = env::var_os("PATH")?;
-    let beside = env::split_paths(&path)
-        .filter(|folder| folder.join("iec2c").exists())
-        .flat_map(|folder| {
-            ["lib", "../lib", "../lib/matiec", "../share/matiec/lib"].map(|lib| folder.join(lib))
-        });
-    let named = env::var_os("MATIEC_LIB").map(PathBuf::from);
-    let found = named
-        .into_iter()
-        .chain(beside)
-        .find(|lib| lib.join("ieclib.txt").exists());
-    Some(found.expect("iec2c is here, but not its library: set MATIEC_LIB to the folder with ieclib.txt"))
-}
 
 fn run(command: &mut Command) -> String {
     let ran = command.output().unwrap();
@@ -117,8 +100,8 @@ fn edition_2_is_worth_the_same_in_matiec() {
         told.push('\n');
     }
     assert_eq!(told, AGREED, "not what matiec and this compiler agreed on");
-    let Some(library) = matiec() else {
-        eprintln!("SKIP: there is no iec2c; matiec is in no package registry, so nothing installs it");
+    let Some(library) = matiec::library() else {
+        eprintln!("SKIP: {}", matiec::MISSING);
         return;
     };
     let theirs = of_matiec(&library);
