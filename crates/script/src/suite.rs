@@ -296,14 +296,42 @@ fn read_as(
     coverage: bool,
 ) -> Result<(Script, String), SuiteError> {
     let text = read_text(path)?;
-    let mut load = |inner: &str| included(path, inner, allowed);
-    let mut guest = |inner: &str| module(path, inner, allowed);
     let terms = Terms {
         guest_memory: allowed.guest_memory,
         coverage,
     };
-    let script = read_within(&text, &shown(path), parameters, &mut load, &mut guest, terms)?;
+    let script = read_at(&text, path, parameters, allowed, terms)?;
     Ok((script, text))
+}
+
+/// Reads a text as the script that would stand at `path`; what it names is looked for from there. Arguments as for
+/// [`run_file`].
+///
+/// # Errors
+/// [`ScriptError`].
+pub fn read_given(
+    text: &str,
+    path: &Path,
+    parameters: &[(String, f64)],
+    allowed: &Allowed,
+) -> Result<Script, ScriptError> {
+    let terms = Terms {
+        guest_memory: allowed.guest_memory,
+        coverage: false,
+    };
+    read_at(text, path, parameters, allowed, terms)
+}
+
+fn read_at(
+    text: &str,
+    path: &Path,
+    parameters: &[(String, f64)],
+    allowed: &Allowed,
+    terms: Terms,
+) -> Result<Script, ScriptError> {
+    let mut load = |inner: &str| included(path, inner, allowed);
+    let mut guest = |inner: &str| module(path, inner, allowed);
+    read_within(text, &shown(path), parameters, &mut load, &mut guest, terms)
 }
 
 /// How often each statement and branch of the script's programs in Structured Text is executed: `None` if it has no such

@@ -95,7 +95,7 @@ fn of_columns(trace: &Trace) -> Vec<(u64, bool)> {
             }
         })
         .collect();
-    let names: Vec<u64> = trace.texts().iter().map(|text| of_text(text)).collect();
+    let names: Vec<u64> = trace.names().iter().map(|text| of_text(text)).collect();
     for row in trace.words() {
         for (state, &word) in states.iter_mut().zip(row) {
             let word = match state.is_name {

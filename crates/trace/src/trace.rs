@@ -348,8 +348,23 @@ impl Trace {
         self.names.text(word)
     }
 
-    /// The names that occur.
-    pub(crate) fn texts(&self) -> &[String] {
+    /// Takes the rows out, row after row, a word a cell: a BOOL is 0 or 1, a number its bits, a whole number itself, a name its
+    /// place in [`Trace::names`]. The trace is empty then; [`Trace::put_words`] gives them back.
+    #[must_use]
+    pub fn take_words(&mut self) -> Vec<u64> {
+        std::mem::take(&mut self.bits)
+    }
+
+    /// Gives back the rows that [`Trace::take_words`] took; words that are no whole row at the end are left away.
+    pub fn put_words(&mut self, mut words: Vec<u64>) {
+        let width = self.columns.len();
+        words.truncate(words.len() - words.len().checked_rem(width).unwrap_or(words.len()));
+        self.bits = words;
+    }
+
+    /// The names that occur in rows.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
         &self.names.texts
     }
 
@@ -476,11 +491,11 @@ mod tests {
                 .push_row(&[Cell::Bool(false), Cell::Real(f64::NAN), Cell::Name(name)])
                 .expect("the row fits");
         }
-        assert_eq!(trace.texts(), ["a", &*printable(hidden)]);
+        assert_eq!(trace.names(), ["a", &*printable(hidden)]);
         let told: Vec<_> = trace.cells(2).collect();
         assert_eq!(
             told,
-            names.map(|name| Cell::Name(trace.texts()[usize::from(name == hidden)].as_str()))
+            names.map(|name| Cell::Name(trace.names()[usize::from(name == hidden)].as_str()))
         );
         let moves = |columns: &[usize]| (0..5).map(|scan| trace.moves(scan, columns)).collect::<Vec<_>>();
         assert_eq!(moves(&[0, 2]), [true, false, true, false, true]);

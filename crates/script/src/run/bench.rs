@@ -3,6 +3,7 @@
 use super::RunError;
 use super::cams::Cams;
 use super::cells;
+use super::drive::ScriptDrive;
 use super::formulas::{self, Formulas, Reading, Truths};
 use super::guests::Guests;
 use super::layout::Layout;
@@ -12,14 +13,13 @@ use super::schedule::Schedule;
 use super::values::Values;
 use crate::model::{Action, FaultKind, FormulaInput, Point, Script, Signal, Variable, Wire};
 use standstill_axis::{Axis, AxisId, AxisState, ErrorId, InstanceId, Standard};
-use standstill_drives::simulated::SimulatedDrive;
 use standstill_fb::{AnyInstance, Context, PinType, Value};
 use standstill_record::told::Cells;
 use standstill_scan::{Machine, ProgramFault, ProgramId, Programs, RUNTIME, ScanTime, TaskId};
 use standstill_trace::{Cell, Note, Trace};
 
 /// The machine of a script: Standard planners over simulated drives.
-pub(crate) type ScriptMachine = Machine<Standard, SimulatedDrive>;
+pub(crate) type ScriptMachine = Machine<Standard, ScriptDrive>;
 
 /// The number of an instance in records: 0 is nobody's, so that it can stand for the host.
 pub(crate) fn instance_id(index: usize) -> InstanceId {
@@ -33,12 +33,11 @@ pub(crate) fn machine(script: &Script) -> Result<ScriptMachine, RunError> {
     machine.set_cam_store(script.cams.0, script.cams.1);
     let planner = Standard::new(script.cycle_ns as f64 / 1e9);
     for axis in &script.axes {
-        let drive = SimulatedDrive::new(&axis.drive, &axis.config, script.cycle_ns).map_err(|error| {
-            RunError::Axis {
+        let drive =
+            ScriptDrive::new(&axis.drive, &axis.config, script.cycle_ns).map_err(|error| RunError::Axis {
                 axis: axis.name.clone(),
                 reason: error.to_string(),
-            }
-        })?;
+            })?;
         machine
             .add_axis(axis.config, planner, drive)
             .map_err(|error| RunError::Axis {
@@ -53,9 +52,9 @@ pub(crate) fn machine(script: &Script) -> Result<ScriptMachine, RunError> {
 fn fail(axis: usize, kind: FaultKind, code: u16, time: ScanTime, machine: &mut ScriptMachine) {
     let drive = machine.drives_mut().get_mut(axis);
     match (kind, drive) {
-        (FaultKind::Drive, Some(drive)) => drive.fail(code),
-        (FaultKind::Power, Some(drive)) => drive.cut_power(),
-        (FaultKind::Communication, Some(drive)) => drive.cut_communication(),
+        (FaultKind::Drive, Some(drive)) => drive.simulated.fail(code),
+        (FaultKind::Power, Some(drive)) => drive.simulated.cut_power(),
+        (FaultKind::Communication, Some(drive)) => drive.simulated.cut_communication(),
         (FaultKind::Axis, _) => {
             let mut context = machine.context(time, InstanceId::default());
             let id = u16::try_from(axis).map_or(AxisId::NONE, AxisId::new);
@@ -157,6 +156,8 @@ pub(crate) struct Bench<'a> {
     cams: Cams,
     /// What the next latch writes after its steps.
     changes: Vec<(Point, Value)>,
+    /// What the next latch makes fail after its steps, or heals.
+    faults: Vec<Action>,
     /// Last scan of the run, once `stop_when` has held.
     last_scan: Option<u64>,
     /// An expression in a wire had no value.
@@ -195,6 +196,7 @@ impl<'a> Bench<'a> {
             shifts: Vec::new(),
             cams: Cams::new(script),
             changes: Vec::new(),
+            faults: Vec::new(),
             last_scan: None,
             wire_fault: false,
             error: None,
@@ -278,6 +280,14 @@ impl<'a> Bench<'a> {
         self.values.read(point)
     }
 
+    /// Has the next latch make an axis or its drive fail, after its steps; without a fault the cause is gone.
+    pub(crate) fn fail(&mut self, axis: usize, fault: Option<(FaultKind, u16)>) {
+        self.faults.push(match fault {
+            Some((kind, code)) => Action::Fault { axis, kind, code },
+            None => Action::Clear { axis },
+        });
+    }
+
     /// Has the next latch write a value, after its steps.
     pub(crate) fn change(&mut self, point: Point, value: Value) {
         self.changes.push((point, value));
@@ -314,7 +324,7 @@ impl<'a> Bench<'a> {
             Action::Fault { axis, kind, code } => fail(axis, kind, code, time, machine),
             Action::Clear { axis } => {
                 if let Some(drive) = machine.drives_mut().get_mut(axis) {
-                    drive.clear_cause();
+                    drive.simulated.clear_cause();
                 }
                 if let Some(axis) = machine.axes_mut().get_mut(axis) {
                     axis.clear_cause();
@@ -322,7 +332,7 @@ impl<'a> Bench<'a> {
             }
             Action::Drive { axis, change } => {
                 let drive = machine.drives_mut().get_mut(axis);
-                if drive.is_some_and(|drive| drive.change(change).is_err()) {
+                if drive.is_some_and(|drive| drive.simulated.change(change).is_err()) {
                     let axis = self.script.axes.get(axis);
                     let axis = axis.map_or_else(String::new, |axis| axis.name.clone());
                     self.stop(RunError::Displaced { step, scan, axis });
@@ -449,7 +459,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-impl Programs<Standard, SimulatedDrive> for Bench<'_> {
+impl Programs<Standard, ScriptDrive> for Bench<'_> {
     fn latch(&mut self, time: ScanTime, machine: &mut ScriptMachine) {
         let script = self.script;
         self.cams.look(machine, &mut self.trace);
@@ -459,6 +469,10 @@ impl Programs<Standard, SimulatedDrive> for Bench<'_> {
                 self.apply(index, action, time, machine);
                 self.notes.collect(machine.log());
             }
+        }
+        for action in std::mem::take(&mut self.faults) {
+            self.apply(script.steps.len(), &action, time, machine);
+            self.notes.collect(machine.log());
         }
         for (point, value) in std::mem::take(&mut self.changes) {
             self.write(point, Some(value), time.scan);

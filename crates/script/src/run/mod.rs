@@ -3,6 +3,7 @@
 mod bench;
 mod cams;
 pub(crate) mod cells;
+mod drive;
 mod formulas;
 mod guests;
 mod layout;
@@ -14,6 +15,7 @@ mod session;
 mod values;
 mod variables;
 
+pub use drive::Ordered;
 pub(crate) use formulas::turned;
 pub use guests::Counted;
 pub use recorded::{RecordingError, judge_recording};

@@ -2,11 +2,12 @@
 
 use super::bench::{self, Bench, ScriptMachine};
 use super::cells;
+use super::drive::Ordered;
 use super::layout::{self, Layout};
 use super::{Outcome, RunError, executor, told};
 use crate::CELLS_MAX;
 use crate::claims::{self, Standing, Standings};
-use crate::model::{Point, Script, Variable};
+use crate::model::{FaultKind, Point, Script, Variable};
 use crate::read::time;
 use crate::why;
 use standstill_fb::{Direction, PinType, Value};
@@ -223,6 +224,29 @@ impl<'a> Session<'a> {
     /// # Errors
     /// Why it cannot be written there, for people.
     pub fn change(&mut self, point: Point, text: &str) -> Result<(), String> {
+        let change = self.checked(point, text)?;
+        self.enter(change);
+        Ok(())
+    }
+
+    /// Writes all of these as [`Session::change`] does, or none where one of them cannot be written.
+    ///
+    /// # Errors
+    /// As [`Session::change`], of the first.
+    pub fn change_all(&mut self, changes: &[(Point, String)]) -> Result<(), String> {
+        let checked = changes.iter().map(|(point, text)| self.checked(*point, text));
+        let checked: Vec<(Value, Change)> = checked.collect::<Result<_, _>>()?;
+        checked.into_iter().for_each(|change| self.enter(change));
+        Ok(())
+    }
+
+    fn enter(&mut self, (value, change): (Value, Change)) {
+        self.bench.change(change.point, value);
+        self.changes.push(change);
+    }
+
+    /// A value that can be written at a point, given as text.
+    fn checked(&self, point: Point, text: &str) -> Result<(Value, Change), String> {
         let name = cells::point_name(self.script, point);
         if self.over {
             return Err("the run is over".to_owned());
@@ -239,14 +263,13 @@ impl<'a> Session<'a> {
             let ty = symbol.own.iec_name();
             return Err(format!("{name}: a {ty} does not hold `{}`", text.trim()));
         }
-        self.bench.change(point, value);
-        self.changes.push(Change {
+        let change = Change {
             scan: self.scans,
             point,
             name,
             json,
-        });
-        Ok(())
+        };
+        Ok((value, change))
     }
 
     /// Why a point cannot be written; `None` if it can.
@@ -363,6 +386,75 @@ impl<'a> Session<'a> {
                 Err("it is set once and for all".to_owned())
             }
         }
+    }
+
+    /// The variable or pin that scripts call so; case does not count.
+    #[must_use]
+    pub fn point(&self, name: &str) -> Option<Point> {
+        let same = |known: &str| known.eq_ignore_ascii_case(name);
+        if let Some(input) = self.script.inputs.iter().position(|input| same(&input.name)) {
+            return Some(Point::Input(input));
+        }
+        let (subject, signal) = name.split_once('.')?;
+        for (index, instance) in self.script.blocks.iter().enumerate() {
+            if instance.name.eq_ignore_ascii_case(subject) {
+                let mut pins = instance.block.pins();
+                let pin = pins.position(|pin| pin.name.eq_ignore_ascii_case(signal))?;
+                return Some(Point::Pin(index, pin));
+            }
+        }
+        for (index, program) in self.script.programs.iter().enumerate() {
+            if program.name.eq_ignore_ascii_case(subject) {
+                let mut symbols = program.symbols.iter();
+                let symbol = symbols.position(|symbol| symbol.name.eq_ignore_ascii_case(signal))?;
+                return Some(Point::Symbol(index, symbol));
+            }
+        }
+        None
+    }
+
+    /// Names that [`Session::change`] can write to.
+    #[must_use]
+    pub fn settable(&self) -> Vec<String> {
+        let script = self.script;
+        let inputs = (0..script.inputs.len()).map(Point::Input);
+        let pins = script.blocks.iter().enumerate().flat_map(|(index, instance)| {
+            (0..instance.block.pins().count()).map(move |pin| Point::Pin(index, pin))
+        });
+        let symbols = script.programs.iter().enumerate().flat_map(|(index, program)| {
+            (0..program.symbols.len()).map(move |symbol| Point::Symbol(index, symbol))
+        });
+        let points = inputs.chain(pins).chain(symbols);
+        points
+            .filter(|point| self.obstacle(*point).is_none())
+            .map(|point| cells::point_name(script, point))
+            .collect()
+    }
+
+    /// What an axis, by its place in the script, asked of its drive in the last scan; before the first one where it starts.
+    #[must_use]
+    pub fn ordered(&self, axis: usize) -> Option<Ordered> {
+        Some(self.machine.drives().get(axis)?.ordered())
+    }
+
+    /// Leads the drive of an axis by the hand: from the next scan on it is at this position (u), in the drive's own coordinates
+    /// (see [`Ordered`]), whatever its simulation does. Power and faults stay those of the simulation.
+    ///
+    /// # Errors
+    /// Why not, for people: it is no number, or there is no such axis.
+    pub fn lead(&mut self, axis: usize, position: f64) -> Result<(), String> {
+        if !position.is_finite() {
+            return Err(format!("the position is {position}: a drive is somewhere"));
+        }
+        let drive = self.machine.drives_mut().get_mut(axis);
+        drive.ok_or("there is no such axis")?.lead(position);
+        Ok(())
+    }
+
+    /// Makes an axis or its drive fail at the latch of the next scan, as a step `fault` would; without a fault its cause is
+    /// gone, as by a step `clear`.
+    pub fn fail(&mut self, axis: usize, fault: Option<(FaultKind, u16)>) {
+        self.bench.fail(axis, fault);
     }
 
     /// What was changed from outside so far.

@@ -1,0 +1,105 @@
+//! The drive under an axis of a script: a simulated one, which a host may lead by the hand.
+
+use standstill_axis::{
+    AxisConfig, Drive, DriveCommand, DriveFeedback, DriveOrder, DrivePosition, DriveReport, DriveRequest,
+    Scaling,
+};
+use standstill_drives::mechanism::MechanismError;
+use standstill_drives::simulated::{DriveSetup, SimulatedDrive};
+
+/// What an axis asked of its drive, in the drive's own coordinates: MC_Home and MC_SetPosition do not move them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ordered {
+    /// What it asks of the power stage.
+    pub request: DriveRequest,
+    /// Where the drive is to be at the end of the scan (u); it goes on past the turns of a modulo axis.
+    pub position: f64,
+    /// With which velocity (u/s).
+    pub velocity: f64,
+}
+
+/// The drive of a script.
+#[derive(Clone, Debug)]
+pub(crate) struct ScriptDrive {
+    pub(crate) simulated: SimulatedDrive,
+    scaling: Option<Scaling>,
+    /// What a host says of the position (u), in the drive's own coordinates.
+    told: Option<f64>,
+    request: DriveRequest,
+    /// The last command, in units as the axis calls them or in increments.
+    commanded: DrivePosition,
+    velocity: f64,
+    /// By how much positions are called more than at the start (u); increments never change their names.
+    renamed: f64,
+}
+
+impl ScriptDrive {
+    pub(crate) fn new(setup: &DriveSetup, axis: &AxisConfig, cycle_ns: i64) -> Result<Self, MechanismError> {
+        let commanded = match axis.scaling {
+            Some(scaling) => DrivePosition::Increments(scaling.to_increments(axis.position)),
+            None => DrivePosition::Units(axis.position),
+        };
+        Ok(Self {
+            simulated: SimulatedDrive::new(setup, axis, cycle_ns)?,
+            scaling: axis.scaling,
+            told: None,
+            request: DriveRequest::Off,
+            commanded,
+            velocity: 0.0,
+            renamed: 0.0,
+        })
+    }
+
+    /// From the next scan on the drive is here (u), whatever the simulated one does.
+    pub(crate) fn lead(&mut self, position: f64) {
+        self.told = Some(position);
+    }
+
+    /// What it was told last; before the first scan where it starts.
+    pub(crate) fn ordered(&self) -> Ordered {
+        let position = match (self.commanded, self.scaling) {
+            (DrivePosition::Units(position), _) => position - self.renamed,
+            (DrivePosition::Increments(increments), Some(scaling)) => scaling.to_units(increments),
+            // A drive counts only under an axis with a scaling, or one increment a unit.
+            (DrivePosition::Increments(increments), None) => increments as f64,
+        };
+        Ordered {
+            request: self.request,
+            position,
+            velocity: self.velocity,
+        }
+    }
+}
+
+impl Drive for ScriptDrive {
+    fn read(&mut self, now_ns: i64) -> DriveFeedback {
+        let mut feedback = self.simulated.read(now_ns);
+        if let Some(position) = self.told {
+            feedback.position = match (feedback.position, self.scaling) {
+                (DrivePosition::Units(_), _) => DrivePosition::Units(position + self.renamed),
+                (DrivePosition::Increments(_), Some(scaling)) => {
+                    DrivePosition::Increments(scaling.to_increments(position))
+                }
+                // Saturates; see above.
+                (DrivePosition::Increments(_), None) => DrivePosition::Increments(position as i64),
+            };
+        }
+        feedback
+    }
+
+    fn write(&mut self, now_ns: i64, command: &DriveCommand) {
+        if let (Some(name), DrivePosition::Units(before)) = (command.rename, self.commanded) {
+            self.renamed += name - before;
+        }
+        (self.request, self.commanded, self.velocity) = (command.request, command.position, command.velocity);
+        self.simulated.write(now_ns, command);
+    }
+
+    fn report(&mut self, report: &mut DriveReport) {
+        self.simulated.report(report);
+    }
+
+    fn order(&mut self, order: &DriveOrder) {
+        self.simulated.order(order);
+    }
+}
