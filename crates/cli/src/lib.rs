@@ -53,6 +53,7 @@ use clap::Parser;
 use exit::{Exit, Failure};
 use out::Out;
 use standstill_script::suite::shown;
+use std::ffi::OsString;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, IsTerminal, Write};
 use std::path::Path;
@@ -60,11 +61,18 @@ use std::process::ExitCode;
 
 /// The program: takes the arguments of the process, and gives the status it is to end with.
 pub fn main() -> ExitCode {
-    exit::guarded(program).into()
+    status_of(std::env::args_os()).into()
 }
 
-fn program() -> Exit {
-    let arguments = match Arguments::try_parse() {
+/// The program with these arguments, the first of which is its name: the status it is to end with. It may end the process
+/// itself, as `--time-limit` does.
+pub fn status_of(arguments: impl IntoIterator<Item = OsString>) -> Exit {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    exit::guarded(|| program(&arguments))
+}
+
+fn program(arguments: &[OsString]) -> Exit {
+    let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => return explained(&error),
     };

@@ -54,7 +54,7 @@ fn rows(text: &[u8]) -> Result<Rows, Refusal> {
     let n_star = match fields.take("n_star") {
         None => None,
         Some(text) => Some(
-            serde_json::from_str::<u32>(text)
+            serde_json::from_str::<u32>(&text)
                 .map_err(|_| fields.invalid("n_star", "`n_star` must be a number of scans".to_owned()))?,
         ),
     };

@@ -1,11 +1,13 @@
 //! The fields of a line: which exist, which values they may have.
 
+use crate::json::Object;
 use crate::plan::methods::{self, MethodInfo};
 use crate::plan::refusal::{Code, Refusal};
 use crate::suggest::nearest;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 use standstill_planner::{DirectedLimits, Field, Limits, Setpoint};
+use std::borrow::Cow;
 use std::fmt;
 
 /// The fields every method takes. What only some take stands in the table of methods.
@@ -87,16 +89,30 @@ impl<'a> Fields<'a> {
         })
     }
 
+    /// The fields of a host that has them apart. Keys are checked as those of a line.
+    pub fn of_members(members: Vec<Member<'a>>) -> Self {
+        Self {
+            members: Members(members),
+            limits: Members::default(),
+            limits_before: Members::default(),
+            velocity_limits: Members::default(),
+        }
+    }
+
     /// The `id` as it stands on the line; `null` if there is none.
     pub fn id(&self) -> &'a str {
-        self.members.get("id").unwrap_or("null")
+        match self.members.get("id") {
+            Some(Given::Json(text)) => text,
+            // A host has its `id` itself.
+            Some(Given::Number(_) | Given::Object(_)) | None => "null",
+        }
     }
 
     /// Without a field of this name; gives its text, if it is there once.
-    pub fn take(&mut self, name: &str) -> Option<&'a str> {
+    pub fn take(&mut self, name: &str) -> Option<Cow<'a, str>> {
         let index = self.members.0.iter().position(|(key, _)| key == name)?;
         let (_, value) = self.members.0.remove(index);
-        Some(value.get())
+        Some(value.json())
     }
 
     /// Opens `limits` and checks that all keys exist and stand there once.
@@ -124,10 +140,12 @@ impl<'a> Fields<'a> {
 
     /// The members of a field that is an object; none if it is null or not there.
     fn opened(&self, field: &str) -> Result<Members<'a>, Refusal> {
+        let wrong = || self.invalid(field, format!("`{field}` must be an object of numbers"));
         match self.members.get(field) {
-            None | Some("null") => Ok(Members::default()),
-            Some(text) => serde_json::from_str(text)
-                .map_err(|_| self.invalid(field, format!("`{field}` must be an object of numbers"))),
+            None | Some(Given::Json("null")) => Ok(Members::default()),
+            Some(Given::Json(text)) => serde_json::from_str(text).map_err(|_| wrong()),
+            Some(Given::Object(members)) => Ok(Members(members.to_vec())),
+            Some(Given::Number(_)) => Err(wrong()),
         }
     }
 
@@ -158,17 +176,17 @@ impl<'a> Fields<'a> {
 
     /// The value of a field as JSON, for an answer; `limits.jerk` is a field of `limits`.
     pub fn echo(&self, field: &str) -> Option<String> {
-        let text = self.text(field)?;
+        let text = self.given(field)?.json();
         // A number no f64 can hold would make the answer unreadable to many, so it goes out as a string.
-        let readable = serde_json::from_str::<serde_json::Value>(text).is_ok();
+        let readable = serde_json::from_str::<serde_json::Value>(&text).is_ok();
         Some(if readable {
-            text.to_owned()
+            text.into_owned()
         } else {
-            crate::json::string(text)
+            crate::json::string(&text)
         })
     }
 
-    fn text(&self, field: &str) -> Option<&'a str> {
+    fn given(&self, field: &str) -> Option<Given<'a>> {
         match field.split_once('.') {
             Some(("limits", name)) => self.limits.get(name),
             Some(("limits_before", name)) => self.limits_before.get(name),
@@ -179,8 +197,10 @@ impl<'a> Fields<'a> {
 
     /// A finite number, if the field is there.
     pub fn number(&self, field: &str) -> Result<Option<f64>, Refusal> {
-        let Some(text) = self.text(field) else {
-            return Ok(None);
+        let text = match self.given(field) {
+            None => return Ok(None),
+            Some(Given::Number(value)) if value.is_finite() => return Ok(Some(value)),
+            Some(given) => &*given.json(),
         };
         if ["\"NaN\"", "\"Infinity\"", "\"-Infinity\""].contains(&text) {
             let remedy = if field.starts_with("limits") || field.starts_with("velocity_limits") {
@@ -207,19 +227,21 @@ impl<'a> Fields<'a> {
 
     /// A string, if the field is there.
     pub fn string(&self, field: &str) -> Result<Option<String>, Refusal> {
-        let read = self.text(field).map(serde_json::from_str).transpose();
+        let given = self.given(field).map(Given::json);
+        let read = given.as_deref().map(serde_json::from_str).transpose();
         read.map_err(|_| self.invalid(field, format!("`{field}` must be a string")))
     }
 
     /// A list of pairs of finite numbers, if the field is there.
     pub fn pairs(&self, field: &str) -> Result<Option<Vec<(f64, f64)>>, Refusal> {
-        let read = self.text(field).map(serde_json::from_str).transpose();
+        let given = self.given(field).map(Given::json);
+        let read = given.as_deref().map(serde_json::from_str).transpose();
         read.map_err(|_| self.invalid(field, format!("`{field}` must be a list of pairs of numbers")))
     }
 
     /// A bound of `limits`; `absent` if it is null or not there.
     fn limit(&self, field: &str, absent: f64) -> Result<f64, Refusal> {
-        if self.text(field) == Some("null") {
+        if self.given(field).is_some_and(Given::is_null) {
             return Ok(absent);
         }
         Ok(self.number(field)?.unwrap_or(absent))
@@ -281,7 +303,7 @@ impl<'a> Fields<'a> {
     fn limits(&self, object: &str, absent: &Limits) -> Result<Limits, Refusal> {
         let bound = |name: &str, absent| self.limit(&format!("{object}.{name}"), absent);
         let acceleration = bound("acceleration", absent.acceleration)?;
-        let given = self.text(&format!("{object}.acceleration")).is_some();
+        let given = self.given(&format!("{object}.acceleration")).is_some();
         let deceleration = if given { acceleration } else { absent.deceleration };
         Ok(Limits {
             velocity: bound("velocity", absent.velocity)?,
@@ -311,7 +333,7 @@ impl<'a> Fields<'a> {
 
     /// The names of all fields on the line.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.members.0.iter().map(|(key, _)| key.as_str())
+        self.members.0.iter().map(|(key, _)| &**key)
     }
 }
 
@@ -323,16 +345,48 @@ fn cause(error: &serde_json::Error) -> String {
     format!("{what} at column {}", error.column())
 }
 
+/// The value of a field, as it was given.
+#[derive(Clone, Copy, Debug)]
+pub enum Given<'a> {
+    /// JSON.
+    Json(&'a str),
+    /// A number, of a host that has it as one.
+    Number(f64),
+    /// An object, of a host that has it apart.
+    Object(&'a [Member<'a>]),
+}
+
+/// A field of a line, or of an object on it: its key and its value.
+pub type Member<'a> = (Cow<'a, str>, Given<'a>);
+
+impl<'a> Given<'a> {
+    /// As JSON.
+    fn json(self) -> Cow<'a, str> {
+        match self {
+            Self::Json(text) => text.into(),
+            Self::Number(value) => crate::json::number(value).into(),
+            Self::Object(members) => {
+                let with = |object: Object, (key, value): &Member<'_>| object.with(key, value.json());
+                members.iter().fold(Object::new(), with).text().into()
+            }
+        }
+    }
+
+    fn is_null(self) -> bool {
+        matches!(self, Self::Json("null"))
+    }
+}
+
 /// The members of an object in the order of the text, duplicates included.
 #[derive(Clone, Debug, Default)]
-struct Members<'a>(Vec<(String, &'a RawValue)>);
+struct Members<'a>(Vec<Member<'a>>);
 
 impl<'a> Members<'a> {
-    fn get(&self, key: &str) -> Option<&'a str> {
+    fn get(&self, key: &str) -> Option<Given<'a>> {
         self.0
             .iter()
             .find(|(name, _)| name == key)
-            .map(|(_, value)| value.get())
+            .map(|(_, value)| *value)
     }
 }
 
@@ -341,7 +395,7 @@ impl<'de: 'a, 'a> Deserialize<'de> for Members<'a> {
         struct Collect;
 
         impl<'de> Visitor<'de> for Collect {
-            type Value = Vec<(String, &'de RawValue)>;
+            type Value = Vec<Member<'de>>;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("an object")
@@ -349,8 +403,8 @@ impl<'de: 'a, 'a> Deserialize<'de> for Members<'a> {
 
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
                 let mut members = Vec::new();
-                while let Some(member) = map.next_entry()? {
-                    members.push(member);
+                while let Some((key, value)) = map.next_entry::<Cow<'de, str>, &RawValue>()? {
+                    members.push((key, Given::Json(value.get())));
                 }
                 Ok(members)
             }

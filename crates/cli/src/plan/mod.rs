@@ -17,12 +17,14 @@ use crate::exit::{Exit, Failure};
 use crate::{limit, out};
 use drawn::Drawn;
 use fields::Fields;
-use methods::Planned;
 use samples::Samples;
 use std::io::{BufRead, Write};
 use std::path::Path;
 
 pub use compare::compare;
+pub use fields::{Given, Member};
+pub use methods::Planned;
+pub use refusal::Refusal;
 
 /// The files to write, each if it is wanted.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,6 +64,14 @@ pub fn plan_to_files(
     }
     drawn.finish(files)?;
     Ok(exit)
+}
+
+/// Plans what a host asks for that has the fields of a line apart, each key once: the name of the method, and the plan.
+///
+/// # Errors
+/// [`Refusal`], as on a line.
+pub fn planned(members: Vec<Member<'_>>) -> Result<(&'static str, Planned), Refusal> {
+    methods::plan(&Fields::of_members(members).checked()?)
 }
 
 /// A line that was planned.

@@ -104,6 +104,26 @@ impl Refusal {
         self.code.name()
     }
 
+    /// The field that was refused; none where it is the line as a whole.
+    pub fn field(&self) -> Option<&str> {
+        self.field.as_deref()
+    }
+
+    /// The value that was refused, as JSON.
+    pub fn value_json(&self) -> Option<&str> {
+        self.value.as_deref()
+    }
+
+    /// The nearest value that would have been taken, as JSON.
+    pub fn nearest_json(&self) -> Option<&str> {
+        self.nearest.as_deref()
+    }
+
+    /// Why, for people.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
     /// The line to write; `id` is JSON.
     pub fn line(&self, id: &str) -> String {
         let null = || "null".to_owned();
