@@ -197,6 +197,10 @@ fn same_bits(example: &str, script: &str, reals: &[&str], flags: &[&str]) {
     let source = root().join("examples").join(format!("{example}.c"));
     compile(&C, &source, &root().join("include"), &libraries().0, &program);
     let printed = text(&run(&program, &[OsStr::new("trace")]));
+    same_rows(&printed, script, reals, flags);
+}
+
+fn same_rows(printed: &str, script: &str, reals: &[&str], flags: &[&str]) {
     let is_row = |line: &&str| {
         let first = line.split(' ').next().unwrap_or_default();
         first.len() == 16 && first.bytes().all(|byte| byte.is_ascii_hexdigit())
@@ -228,6 +232,29 @@ fn same_bits(example: &str, script: &str, reals: &[&str], flags: &[&str]) {
 fn c_and_a_scan_script_move_by_the_same_bits() {
     same_bits(
         "single_axis",
+        "power_there_and_back.scan.json",
+        &["X.Position", "X.Velocity", "X.Acceleration"],
+        &["power.Status", "there.Done", "back.Done"],
+    );
+}
+
+#[test]
+fn ctypes_and_a_scan_script_move_by_the_same_bits() {
+    if !has("python3") {
+        return;
+    }
+    let program = root().join("examples/single_axis.py");
+    let include = root().join("include");
+    let arguments = [
+        program.as_os_str(),
+        libraries().1.as_os_str(),
+        include.as_os_str(),
+        OsStr::new("bits"),
+    ];
+    let printed = text(&run("python3", &arguments));
+    assert!(printed.ends_with("there and back, and off\n"), "{printed}");
+    same_rows(
+        &printed,
         "power_there_and_back.scan.json",
         &["X.Position", "X.Velocity", "X.Acceleration"],
         &["power.Status", "there.Done", "back.Done"],
