@@ -302,6 +302,16 @@ fn layers_depend_only_downwards() {
             ],
         ),
         (
+            "crates/python",
+            "standstill-python",
+            &[
+                "standstill-axis",
+                "standstill-cli",
+                "standstill-script",
+                "standstill-trace",
+            ],
+        ),
+        (
             "crates/xtask",
             "standstill-xtask",
             &[

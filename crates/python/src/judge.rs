@@ -1,0 +1,25 @@
+//! A script as a test, for pytest.
+
+use crate::errors;
+use pyo3::prelude::*;
+use standstill_script::golden::{Mode, Standing};
+use standstill_script::suite::{self, Allowed};
+use standstill_trace::compare::Yardstick;
+use std::path::PathBuf;
+
+/// Holds a script against its claims and its golden, as `standstill test` does, and writes nothing: whether it passed, what it
+/// says of that as the command line does, and what it warns of.
+#[pyfunction]
+pub fn judge(py: Python<'_>, path: PathBuf) -> PyResult<(bool, String, String)> {
+    let judged = py.detach(|| {
+        let allowed = Allowed::default();
+        suite::judge_file(&path, Mode::Check, Yardstick::Exact, &allowed, |_| {})
+    });
+    let report = judged.map_err(|error| errors::suite(py, &error))?;
+    let note = match &report.golden {
+        Standing::Old(note) if report.passed() => format!("{note}\n"),
+        _ => String::new(),
+    };
+    let warnings = format!("{note}{}", report.warnings);
+    Ok((report.passed(), report.to_string(), warnings))
+}
