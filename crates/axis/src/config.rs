@@ -1,5 +1,6 @@
 //! How an axis is set up, checked once before the first scan.
 
+use crate::keys::{self, Bounds, Holds};
 use crate::{Homing, Procedure, QUEUE_MAX, Scaling};
 use core::fmt;
 use standstill_planner::{Limits, MoveProfile};
@@ -261,50 +262,8 @@ impl AxisConfig {
     /// # Errors
     /// [`ConfigError`] names the first key that is not usable, with its value.
     pub fn check(&self) -> Result<(), ConfigError> {
+        self.check_positive()?;
         let application = |part: fn(&Limits) -> f64| self.application_limits.as_ref().map(part);
-        let positive = [
-            ("limits.velocity", Some(self.limits.velocity), true),
-            ("limits.acceleration", Some(self.limits.acceleration), true),
-            ("limits.deceleration", Some(self.limits.deceleration), true),
-            ("limits.jerk", Some(self.limits.jerk), false),
-            ("limits.snap", Some(self.limits.snap), false),
-            ("defaults.acceleration", self.defaults.acceleration, true),
-            ("defaults.deceleration", self.defaults.deceleration, true),
-            ("defaults.jerk", self.defaults.jerk, true),
-            ("defaults.snap", self.defaults.snap, true),
-            ("stop_deceleration", self.stop_deceleration, true),
-            ("stop_jerk", self.stop_jerk, true),
-            (
-                "stop.deceleration",
-                self.stop.and_then(|it| it.deceleration),
-                true,
-            ),
-            ("stop.jerk", self.stop.and_then(|it| it.jerk), false),
-            ("stop.snap", self.stop.and_then(|it| it.snap), false),
-            ("application_limits.velocity", application(|it| it.velocity), true),
-            (
-                "application_limits.acceleration",
-                application(|it| it.acceleration),
-                true,
-            ),
-            (
-                "application_limits.deceleration",
-                application(|it| it.deceleration),
-                true,
-            ),
-            ("application_limits.jerk", application(|it| it.jerk), false),
-            ("application_limits.snap", application(|it| it.snap), false),
-            ("max_following_error", self.max_following_error, true),
-            ("in_position.window", self.in_position.map(|it| it.window), true),
-            ("coupling.max_deviation", self.following.max_deviation, true),
-        ];
-        for (key, value, finite) in positive {
-            if let Some(value) = value
-                && (!(value > 0.0) || (finite && !value.is_finite()))
-            {
-                return Err(ConfigError::NotPositive { key, value });
-            }
-        }
         let above = [
             (
                 "defaults.acceleration",
@@ -410,6 +369,23 @@ impl AxisConfig {
             });
         }
         self.check_profile()
+    }
+
+    /// Refuses numbers that must be above 0 and are not; `homing` looks at its own, some of which mean nothing for others of
+    /// its procedures.
+    fn check_positive(&self) -> Result<(), ConfigError> {
+        let mut wrong = Ok(());
+        keys::AXIS.each(&mut |key| {
+            if let Holds::Number { bounds, get, .. } = key.holds
+                && bounds == Bounds::POSITIVE
+                && !key.path.starts_with("homing.")
+                && let Some(value) = get(self).filter(|value| !bounds.hold(*value))
+                && wrong.is_ok()
+            {
+                wrong = Err(ConfigError::NotPositive { key: key.path, value });
+            }
+        });
+        wrong
     }
 
     /// Refuses a profile that could serve no move of the axis, because it cannot keep one of its limits.

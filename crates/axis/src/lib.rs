@@ -20,6 +20,7 @@ mod error_id;
 mod fate;
 mod homing;
 mod ideal_drive;
+pub mod keys;
 mod log;
 mod parameter;
 mod scaling;

@@ -12,6 +12,7 @@
 extern crate std;
 
 pub mod cia402;
+pub mod keys;
 pub mod mechanism;
 pub mod peripherals;
 pub mod simulated;

@@ -38,6 +38,68 @@ pub struct PlantSetup {
     pub switches: Switches,
 }
 
+impl PlantSetup {
+    /// Nothing that moves yet: without inertia, friction and load, and with gains that are still to be found.
+    pub const NONE: Self = Self {
+        power_on: Some(0),
+        plant: Plant {
+            inertia: 0.0,
+            viscous: 0.0,
+            coulomb: 0.0,
+            load: None,
+        },
+        stops: None,
+        gains: Gains {
+            position: f64::NAN,
+            velocity: f64::NAN,
+            integral: f64::NAN,
+            feed_velocity: 1.0,
+            feed_acceleration: 1.0,
+            torque: f64::INFINITY,
+        },
+        switches: Switches::NONE,
+    };
+
+    /// With the gains of [`Gains::of`] in scans of `cycle` seconds where they are NaN.
+    #[must_use]
+    pub fn with_gains(self, cycle: f64) -> Self {
+        let own = Gains::of(&self.plant, cycle);
+        let or = |given: f64, own: f64| if given.is_nan() { own } else { given };
+        let gains = Gains {
+            position: or(self.gains.position, own.position),
+            velocity: or(self.gains.velocity, own.velocity),
+            integral: or(self.gains.integral, own.integral),
+            ..self.gains
+        };
+        Self { gains, ..self }
+    }
+}
+
+impl Cia402Setup {
+    /// A drive that follows at once, ramps down at a quick stop and a fault, and coasts where it is disabled.
+    pub const PLAIN: Self = Self {
+        delay: 0,
+        power_on: Some(0),
+        start_up: 0,
+        deceleration: None,
+        quick_stop: Reaction::Ramp,
+        on_disable: Reaction::Coast,
+        on_fault: Reaction::Ramp,
+        homing: None,
+        motor: None,
+        switches: Switches::NONE,
+    };
+}
+
+impl IdealDriveSetup {
+    /// A drive that follows at once.
+    pub const PLAIN: Self = Self {
+        delay: 0,
+        power_on: Some(0),
+        switches: Switches::NONE,
+    };
+}
+
 impl DriveSetup {
     /// What stands along its travel.
     pub fn switches(&self) -> &Switches {
@@ -51,11 +113,7 @@ impl DriveSetup {
 
 impl Default for DriveSetup {
     fn default() -> Self {
-        Self::Ideal(IdealDriveSetup {
-            delay: 0,
-            power_on: Some(0),
-            switches: Switches::default(),
-        })
+        Self::Ideal(IdealDriveSetup::PLAIN)
     }
 }
 

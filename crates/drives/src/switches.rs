@@ -28,6 +28,14 @@ pub struct Switches {
 }
 
 impl Switches {
+    /// Nothing along the travel.
+    pub const NONE: Self = Self {
+        limits: None,
+        home: None,
+        marker: None,
+        turn: None,
+    };
+
     /// What there is.
     pub fn equipment(&self) -> Equipment {
         Equipment {

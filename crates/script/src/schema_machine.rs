@@ -1,7 +1,7 @@
 //! The JSON Schema of machine files, which scripts include: of what the one of scripts says, the part they may hold.
 
 use crate::read::shape;
-use crate::schema::{add, definitions, object, required, script_key};
+use crate::schema::{add, definitions, object, required};
 use serde_json::{Map, Value, json};
 
 /// The JSON Schema (draft 2020-12) of machine files (`*.machine.json`), in the layout of [`format`](crate::format).
@@ -16,7 +16,7 @@ pub fn machine_schema() -> String {
 }
 
 fn document() -> Value {
-    let mut root = required(&["standstill"], object(&shape::MACHINE, script_key));
+    let mut root = required(&["standstill"], object(&shape::MACHINE));
     let schema = "https://json-schema.org/draft/2020-12/schema";
     let description =
         "Axes with their drives, inputs, tasks, blocks and parameters that several scan scripts share.";

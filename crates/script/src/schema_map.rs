@@ -2,6 +2,7 @@
 
 use crate::read::machine_map::{COLUMNS_MAX, DECIMALS, DELIMITERS, MAP_VERSION, UNITS};
 use crate::read::shape::machine as shape;
+use crate::schema::of::words;
 use crate::schema::{add, object, required};
 use serde_json::{Value, json};
 
@@ -19,7 +20,7 @@ pub fn map_schema() -> String {
 fn document() -> Value {
     let mut root = required(
         &["standstill_compare", "recording", "offset", "signals"],
-        object(&shape::MAP, map_key),
+        object(&shape::MAP),
     );
     let schema = "https://json-schema.org/draft/2020-12/schema";
     let description =
@@ -38,77 +39,82 @@ fn document() -> Value {
     root
 }
 
-fn time() -> Value {
+pub(crate) fn map_version() -> Value {
+    json!({"const": MAP_VERSION})
+}
+
+pub(crate) fn recording() -> Value {
+    required(&["time"], object(&shape::RECORDING))
+}
+
+pub(crate) fn delimiter() -> Value {
+    words(&DELIMITERS)
+}
+
+pub(crate) fn decimal() -> Value {
+    words(&DECIMALS)
+}
+
+pub(crate) fn recording_time() -> Value {
+    json!({"anyOf": [
+        required(&["column", "unit"], object(&shape::TIME)),
+        required(&["every"], object(&shape::TIME)),
+    ]})
+}
+
+pub(crate) fn time_unit() -> Value {
+    words(&UNITS)
+}
+
+pub(crate) fn column() -> Value {
+    json!({"$ref": "#/$defs/column"})
+}
+
+pub(crate) fn map_time() -> Value {
     json!({"$ref": "#/$defs/time"})
 }
 
-fn words<T>(table: &[(&str, T)]) -> Value {
-    json!({"enum": table.iter().map(|(word, _)| *word).collect::<Vec<_>>()})
+pub(crate) fn offset() -> Value {
+    json!({"anyOf": [
+        map_time(),
+        required(&["edge", "to"], object(&shape::EDGE)),
+        required(&["fit", "from", "to"], object(&shape::FIT)),
+    ]})
 }
 
-fn map_key(key: &str) -> Value {
-    match key {
-        "standstill_compare" => json!({"const": MAP_VERSION}),
-        "recording" => required(&["time"], object(&shape::RECORDING, recording_key)),
-        "offset" => json!({"anyOf": [
-            time(),
-            required(&["edge", "to"], object(&shape::EDGE, offset_key)),
-            required(&["fit", "from", "to"], object(&shape::FIT, fit_key)),
-        ]}),
-        "window" => required(&["from", "to"], object(&shape::WINDOW, |_| time())),
-        "time_tolerance" => time(),
-        "signals" => json!({"type": "object", "minProperties": 1, "additionalProperties": {"anyOf": [
-            required(&["column", "tolerance"], object(&shape::CURVE, signal_key)),
-            required(&["column"], object(&shape::BOOL, signal_key)),
-            required(&["column"], object(&shape::WHOLE, signal_key)),
-            required(&["column"], object(&shape::WORD, signal_key)),
-        ]}}),
-        _ => json!({"type": "string"}),
-    }
+pub(crate) fn edge_value() -> Value {
+    json!({"type": ["boolean", "integer", "string"]})
 }
 
-fn recording_key(key: &str) -> Value {
-    match key {
-        "delimiter" => words(&DELIMITERS),
-        "decimal" => words(&DECIMALS),
-        _ => json!({"anyOf": [
-            required(&["column", "unit"], object(&shape::TIME, time_key)),
-            required(&["every"], object(&shape::TIME, time_key)),
-        ]}),
-    }
+pub(crate) fn edge_number() -> Value {
+    json!({"type": "integer", "minimum": 1})
 }
 
-fn time_key(key: &str) -> Value {
-    match key {
-        "column" => json!({"$ref": "#/$defs/column"}),
-        "unit" => words(&UNITS),
-        _ => time(),
-    }
+pub(crate) fn map_window() -> Value {
+    required(&["from", "to"], object(&shape::WINDOW))
 }
 
-fn offset_key(key: &str) -> Value {
-    match key {
-        "edge" => json!({"type": "string"}),
-        "number" => json!({"type": "integer", "minimum": 1}),
-        _ => json!({"type": ["boolean", "integer", "string"]}),
-    }
+pub(crate) fn signals() -> Value {
+    json!({"type": "object", "minProperties": 1, "additionalProperties": {"anyOf": [
+        required(&["column", "tolerance"], object(&shape::CURVE)),
+        required(&["column"], object(&shape::BOOL)),
+        required(&["column"], object(&shape::WHOLE)),
+        required(&["column"], object(&shape::WORD)),
+    ]}})
 }
 
-fn fit_key(key: &str) -> Value {
-    match key {
-        "fit" => json!({"type": "string"}),
-        _ => time(),
-    }
+pub(crate) fn plain() -> Value {
+    json!({"type": "number"})
 }
 
-fn signal_key(key: &str) -> Value {
-    match key {
-        "column" => json!({"$ref": "#/$defs/column"}),
-        "factor" | "zero" => json!({"type": "number"}),
-        "sign" => json!({"enum": [1, -1]}),
-        "tolerance" => json!({"type": "number", "minimum": 0}),
-        "invert" => json!({"type": "boolean"}),
-        "values" => json!({"type": "object", "additionalProperties": {"type": "string"}}),
-        _ => time(),
-    }
+pub(crate) fn sign() -> Value {
+    json!({"enum": [1, -1]})
+}
+
+pub(crate) fn not_negative() -> Value {
+    json!({"type": "number", "minimum": 0})
+}
+
+pub(crate) fn map_values() -> Value {
+    json!({"type": "object", "additionalProperties": {"type": "string"}})
 }

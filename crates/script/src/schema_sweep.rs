@@ -16,19 +16,7 @@ pub fn sweep_schema() -> String {
 }
 
 fn document() -> Value {
-    let mut root = required(
-        &["standstill_sweep", "script"],
-        object(&shape::SWEEP, |key| match key {
-            "standstill_sweep" => json!({"const": SWEEP_VERSION}),
-            "grid" => varied(required(
-                &["from", "to", "count"],
-                object(&shape::STEPS, range_key),
-            )),
-            "sample" => required(&["seed", "count", "of"], object(&shape::SAMPLE, sample_key)),
-            "measure" => json!({"type": "object", "additionalProperties": {"oneOf": measures()}}),
-            _ => json!({"type": "string"}),
-        }),
-    );
+    let mut root = required(&["standstill_sweep", "script"], object(&shape::SWEEP));
     let description = "Says which parameters of a scan script vary, and what is taken of every run.";
     add(
         &mut root,
@@ -61,26 +49,48 @@ fn varied(range: Value) -> Value {
     })
 }
 
-fn sample_key(key: &str) -> Value {
-    match key {
-        "seed" => json!({"type": "integer", "minimum": 0}),
-        "count" => json!({"type": "integer", "minimum": 1, "maximum": CASES_MAX}),
-        "of" => varied(required(&["from", "to"], object(&shape::RANGE, range_key))),
-        _ => json!({"type": "string"}),
-    }
+pub(crate) fn sweep_version() -> Value {
+    json!({"const": SWEEP_VERSION})
 }
 
-fn range_key(key: &str) -> Value {
-    match key {
-        "count" => json!({"type": "integer", "minimum": 2, "maximum": CASES_MAX}),
-        "scale" => json!({"enum": SCALES.map(|(word, _)| word)}),
-        "note" => json!({"type": "string"}),
-        _ => json!({"type": "number"}),
-    }
+pub(crate) fn grid() -> Value {
+    varied(required(&["from", "to", "count"], object(&shape::STEPS)))
+}
+
+pub(crate) fn sample() -> Value {
+    required(&["seed", "count", "of"], object(&shape::SAMPLE))
+}
+
+pub(crate) fn seed() -> Value {
+    json!({"type": "integer", "minimum": 0})
+}
+
+pub(crate) fn cases() -> Value {
+    json!({"type": "integer", "minimum": 1, "maximum": CASES_MAX})
+}
+
+pub(crate) fn grid_count() -> Value {
+    json!({"type": "integer", "minimum": 2, "maximum": CASES_MAX})
+}
+
+pub(crate) fn sampled() -> Value {
+    varied(required(&["from", "to"], object(&shape::RANGE)))
+}
+
+pub(crate) fn scale() -> Value {
+    json!({"enum": SCALES.map(|(word, _)| word)})
+}
+
+pub(crate) fn plain() -> Value {
+    json!({"type": "number"})
+}
+
+pub(crate) fn measures() -> Value {
+    json!({"type": "object", "additionalProperties": {"oneOf": each_measure()}})
 }
 
 /// A measure for each thing that can be taken: exactly one of the keys.
-fn measures() -> Vec<Value> {
+fn each_measure() -> Vec<Value> {
     let text = json!({"type": "string"});
     TAKES
         .iter()

@@ -11,6 +11,7 @@ mod compliance;
 mod error_ids;
 mod faults;
 mod front;
+mod keys;
 mod packages;
 mod pictures;
 mod requirements;
@@ -43,6 +44,7 @@ pub fn generated() -> Vec<Generated> {
     files.extend(packages::readmes());
     files.push(error_ids::page());
     files.push(Faults::read().page());
+    files.push(keys::page());
     files.push(bad_input::page());
     files.extend(Compliance::read().pages());
     files.extend(states::pages());

@@ -37,9 +37,13 @@ impl Reader {
 
     fn claim(&mut self, node: &Node) -> Option<ClaimKind> {
         let members = self.map(node, "a claim")?;
-        let kind = |shape: &&Shape| members.iter().any(|(key, _)| key.text == shape.keys[0]);
+        let kind = |shape: &&Shape| {
+            members
+                .iter()
+                .any(|(key, _)| shape.names().next() == Some(&key.text))
+        };
         let Some(shape) = shape::CLAIMS.iter().find(kind) else {
-            let kinds = shape::CLAIMS.iter().map(|shape| shape.keys[0]);
+            let kinds = shape::CLAIMS.iter().filter_map(|shape| shape.names().next());
             let slip = members
                 .iter()
                 .filter(|(key, _)| key.text != "note")
@@ -53,7 +57,7 @@ impl Reader {
         };
         let fields = self.fields(node, shape)?;
         self.may_be_vacuous(&fields);
-        let key = shape.keys[0];
+        let key = shape.names().next()?;
         let value = fields.get(key)?;
         match key {
             "at" => {

@@ -12,9 +12,9 @@ pub(crate) mod drive;
 mod expect;
 mod formula;
 mod hints;
-pub(crate) mod homing;
 mod include;
 pub(crate) mod json;
+mod keys;
 pub(crate) mod machine_map;
 pub(crate) mod names;
 pub(crate) mod program;
@@ -429,8 +429,7 @@ impl Reader {
             node.is_some_and(|json| !matches!(json, Json::Map(_)))
         };
         let is_slip = |key: &str| {
-            !shape::SCRIPT.keys.contains(&key)
-                && names::nearest(key, ["inputs", "programs"].into_iter()).is_some()
+            !shape::SCRIPT.has(key) && names::nearest(key, ["inputs", "programs"].into_iter()).is_some()
         };
         self.lacks_names = !is_there("axes")
             || !is_there("blocks")

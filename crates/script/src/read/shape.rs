@@ -1,4 +1,11 @@
-//! Which keys stand in which object of a script. The reader and the JSON Schema both read this.
+//! Which keys stand in which object of a script, and what each may hold. The reader and the JSON Schema both read this; the
+//! keys of axes and drives stand beside what they set up ([`standstill_axis::keys`], [`standstill_drives::keys`]).
+
+use crate::schema::of::*;
+use serde_json::Value;
+
+/// A key, and what it may hold: its schema.
+pub(crate) type Field = (&'static str, fn() -> Value);
 
 /// The keys of one kind of object.
 #[derive(Clone, Copy, Debug)]
@@ -6,371 +13,425 @@ pub(crate) struct Shape {
     /// The object in words, as in "unknown key `x` in ..".
     pub(crate) what: &'static str,
     /// Keys that exist.
-    pub(crate) keys: &'static [&'static str],
-    /// Keys of the format whose feature does not exist yet.
-    pub(crate) later: &'static [&'static str],
+    pub(crate) keys: &'static [Field],
 }
 
-const fn shape(what: &'static str, keys: &'static [&'static str]) -> Shape {
-    Shape {
-        what,
-        keys,
-        later: &[],
+impl Shape {
+    /// The names of the keys.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> + Clone + use<> {
+        self.keys.iter().map(|(name, _)| *name)
     }
+
+    /// Whether there is such a key.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.names().any(|known| known == name)
+    }
+}
+
+const fn shape(what: &'static str, keys: &'static [Field]) -> Shape {
+    Shape { what, keys }
 }
 
 pub(crate) const SCRIPT: Shape = shape(
     "a script",
     &[
-        "$schema",
-        "standstill",
-        "title",
-        "covers",
-        "cycle",
-        "scans",
-        "include",
-        "override",
-        "parameters",
-        "axes",
-        "inputs",
-        "tasks",
-        "blocks",
-        "tables",
-        "cams",
-        "programs",
-        "steps",
-        "expect",
-        "stop_when",
-        "after",
-        "golden",
-        "clamps",
+        ("$schema", text),
+        ("standstill", version),
+        ("title", text),
+        ("covers", texts),
+        ("cycle", cycle),
+        ("scans", rows),
+        ("include", text_or_texts),
+        ("override", text_or_texts),
+        ("parameters", parameters),
+        ("axes", axes),
+        ("inputs", inputs),
+        ("tasks", tasks),
+        ("blocks", blocks),
+        ("tables", tables),
+        ("cams", cams),
+        ("programs", programs),
+        ("steps", steps),
+        ("expect", claims),
+        ("stop_when", conditions),
+        ("after", scans),
+        ("golden", boolean),
+        ("clamps", clamps),
     ],
 );
 /// What scripts include.
 pub(crate) const MACHINE: Shape = shape(
     "a machine file",
     &[
-        "$schema",
-        "standstill",
-        "title",
-        "include",
-        "override",
-        "parameters",
-        "axes",
-        "inputs",
-        "tasks",
-        "blocks",
-        "note",
+        ("$schema", text),
+        ("standstill", version),
+        ("title", text),
+        ("include", text_or_texts),
+        ("override", text_or_texts),
+        ("parameters", parameters),
+        ("axes", axes),
+        ("inputs", inputs),
+        ("tasks", tasks),
+        ("blocks", blocks),
+        ("note", text),
     ],
 );
 /// A table of a script.
-pub(crate) const TABLE: Shape = shape("a table", &["type", "rows", "csv", "note"]);
+pub(crate) const TABLE: Shape = shape(
+    "a table",
+    &[
+        ("type", text),
+        ("rows", table_rows),
+        ("csv", text),
+        ("note", text),
+    ],
+);
 /// Where a pin takes it.
-pub(crate) const TABLE_USE: Shape = shape("a table's use", &["table", "note"]);
+pub(crate) const TABLE_USE: Shape = shape("a table's use", &[("table", text), ("note", text)]);
 /// The store of cams.
-pub(crate) const CAMS: Shape = shape("`cams`", &["slots", "stretches", "note"]);
-pub(crate) const PARAM: Shape = shape("a parameter's use", &["param", "note"]);
+pub(crate) const CAMS: Shape = shape(
+    "`cams`",
+    &[("slots", cam_slots), ("stretches", cam_pieces), ("note", text)],
+);
+pub(crate) const PARAM: Shape = shape("a parameter's use", &[("param", text), ("note", text)]);
 
-pub(crate) const AXIS: Shape = Shape {
-    what: "an axis",
-    keys: &[
-        "unit",
-        "limits",
-        "application_limits",
-        "defaults",
-        "position",
-        "state",
-        "scaling",
-        "modulo",
-        "software_limits",
-        "above_limit",
-        "profile",
-        "queue",
-        "stop_deceleration",
-        "stop_jerk",
-        "stop",
-        "on_power_off",
-        "hardware_limits",
-        "homing",
-        "needs_homed",
-        "override_max",
-        "power_timeout",
-        "in_position",
-        "max_following_error",
-        "coupling",
-        "jog_at_limit",
-        "modulo_targets",
-        "edge_while_busy",
-        "drive",
-        "vacuous",
-        "note",
-    ],
-    later: &[],
-};
-pub(crate) const LIMITS: Shape = shape(
-    "`limits`",
-    &["velocity", "acceleration", "deceleration", "jerk", "snap", "note"],
-);
-pub(crate) const APPLICATION_LIMITS: Shape = shape(
-    "`application_limits`",
-    &["velocity", "acceleration", "deceleration", "jerk", "snap", "note"],
-);
-pub(crate) const STOP: Shape = shape("`stop`", &["deceleration", "jerk", "snap", "note"]);
-pub(crate) const DEFAULTS: Shape = shape(
-    "`defaults`",
-    &["acceleration", "deceleration", "jerk", "snap", "note"],
-);
-pub(crate) const SCALING: Shape = shape("`scaling`", &["increments", "units", "invert", "offset", "note"]);
-pub(crate) const SOFTWARE_LIMITS: Shape = shape("`software_limits`", &["min", "max", "note"]);
-pub(crate) const IN_POSITION: Shape = shape("`in_position`", &["window", "time", "note"]);
-pub(crate) const COUPLING: Shape = Shape {
-    what: "`coupling`",
-    keys: &[
-        "on_limit",
-        "max_deviation",
-        "on_master_lost",
-        "actual_filter",
-        "actual_lead",
-        "note",
-    ],
-    later: &["cam_continuity"],
-};
-pub(crate) const HOMING: Shape = shape(
-    "`homing`",
+pub(crate) const DRIVE: Shape = shape(
+    "`drive`",
     &[
-        "procedure",
-        "direction",
-        "edge",
-        "velocity",
-        "creep",
-        "pulse",
-        "block",
-        "time_limit",
-        "distance_limit",
-        "note",
+        ("ideal", ideal_drive),
+        ("cia402", cia402_drive),
+        ("plant", plant),
+        ("note", text),
     ],
 );
-pub(crate) const BLOCK_DETECTION: Shape = shape("`block` of a homing", &["velocity", "time", "note"]);
-pub(crate) const DRIVE: Shape = Shape {
-    what: "`drive`",
-    keys: &["ideal", "cia402", "plant", "note"],
-    later: &[],
-};
-pub(crate) const IDEAL: Shape = shape(
-    "the ideal drive",
-    &[
-        "delay",
-        "power_on",
-        "limit_switches",
-        "home_switch",
-        "marker",
-        "note",
-    ],
-);
-pub(crate) const CIA402: Shape = shape(
-    "a CiA 402 drive",
-    &[
-        "delay",
-        "power_on",
-        "start_up",
-        "deceleration",
-        "quick_stop",
-        "on_disable",
-        "on_fault",
-        "homing",
-        "motor",
-        "limit_switches",
-        "home_switch",
-        "marker",
-        "note",
-    ],
-);
-pub(crate) const PLANT: Shape = shape(
-    "a plant",
-    &[
-        "power_on",
-        "inertia",
-        "viscous",
-        "coulomb",
-        "load",
-        "gains",
-        "torque",
-        "stops",
-        "limit_switches",
-        "home_switch",
-        "marker",
-        "note",
-    ],
-);
-pub(crate) const LOAD: Shape = shape(
-    "the load of a plant",
-    &["inertia", "stiffness", "damping", "note"],
-);
-pub(crate) const STOPS: Shape = shape(
-    "the stops of a plant",
-    &["negative", "positive", "stiffness", "damping", "note"],
-);
-pub(crate) const GAINS: Shape = shape(
-    "the gains of a plant",
-    &[
-        "position",
-        "velocity",
-        "integral",
-        "feed_velocity",
-        "feed_acceleration",
-        "note",
-    ],
-);
-pub(crate) const LIMIT_SWITCHES: Shape = shape("`limit_switches`", &["negative", "positive", "note"]);
-pub(crate) const HOME_SWITCH: Shape = shape("`home_switch`", &["from", "to", "note"]);
-pub(crate) const NODE_HOMING: Shape = shape("`homing` of a drive", &["direction", "velocity", "note"]);
-pub(crate) const MOTOR: Shape = shape(
-    "the motor of a drive",
-    &[
-        "rated_torque",
-        "max_torque",
-        "inertia",
-        "viscous",
-        "coulomb",
-        "note",
-    ],
-);
-pub(crate) const MARKER: Shape = shape("`marker`", &["at", "every", "note"]);
 
-pub(crate) const BLOCK: Shape = shape("a block", &["name", "type", "task", "pins", "vacuous", "note"]);
-pub(crate) const WIRE: Shape = shape("a wire", &["from", "not", "any", "all", "note"]);
+pub(crate) const BLOCK: Shape = shape(
+    "a block",
+    &[
+        ("name", identifier),
+        ("type", block_type),
+        ("task", text),
+        ("pins", any_object),
+        ("vacuous", vacuous),
+        ("note", text),
+    ],
+);
+pub(crate) const WIRE: Shape = shape(
+    "a wire",
+    &[
+        ("from", text),
+        ("not", text),
+        ("any", some_texts),
+        ("all", some_texts),
+        ("note", text),
+    ],
+);
 /// The keys of a wire that say what it does; it has exactly one of them.
 pub(crate) const WIRE_KINDS: [&str; 4] = ["from", "not", "any", "all"];
-pub(crate) const TASK: Shape = shape("a task", &["interval", "priority", "single", "watchdog"]);
+pub(crate) const TASK: Shape = shape(
+    "a task",
+    &[
+        ("interval", interval),
+        ("priority", priority),
+        ("single", wire),
+        ("watchdog", watchdog),
+    ],
+);
 
 pub(crate) const PROGRAM: Shape = shape(
     "a program",
     &[
-        "wasm",
-        "st",
-        "program",
-        "task",
-        "axes",
-        "trace",
-        "fuel",
-        "memory",
-        "symbols",
-        "may_fault",
-        "vacuous",
-        "note",
+        ("wasm", text),
+        ("st", files),
+        ("program", text),
+        ("task", text),
+        ("axes", program_axes),
+        ("trace", texts),
+        ("fuel", fuel),
+        ("memory", memory),
+        ("symbols", symbols),
+        ("may_fault", boolean),
+        ("vacuous", vacuous),
+        ("note", text),
     ],
 );
 /// The keys of a program that is a module already.
 pub(crate) const PROGRAM_MODULE: Shape = shape(
     "a program",
     &[
-        "wasm",
-        "task",
-        "fuel",
-        "memory",
-        "symbols",
-        "may_fault",
-        "vacuous",
-        "note",
+        ("wasm", text),
+        ("task", text),
+        ("fuel", fuel),
+        ("memory", memory),
+        ("symbols", symbols),
+        ("may_fault", boolean),
+        ("vacuous", vacuous),
+        ("note", text),
     ],
 );
 /// The keys of a program in Structured Text.
 pub(crate) const PROGRAM_TEXT: Shape = shape(
     "a program",
     &[
-        "st",
-        "program",
-        "task",
-        "axes",
-        "trace",
-        "fuel",
-        "memory",
-        "may_fault",
-        "vacuous",
-        "note",
+        ("st", files),
+        ("program", text),
+        ("task", text),
+        ("axes", program_axes),
+        ("trace", texts),
+        ("fuel", fuel),
+        ("memory", memory),
+        ("may_fault", boolean),
+        ("vacuous", vacuous),
+        ("note", text),
     ],
 );
-pub(crate) const SYMBOL: Shape = shape("a symbol", &["type", "address", "export", "note"]);
+pub(crate) const SYMBOL: Shape = shape(
+    "a symbol",
+    &[
+        ("type", symbol_type),
+        ("address", count),
+        ("export", text),
+        ("note", text),
+    ],
+);
 
-pub(crate) const INPUT: Shape = shape("an input variable", &["value", "vacuous", "note"]);
+pub(crate) const INPUT: Shape = shape(
+    "an input variable",
+    &[("value", input_value), ("vacuous", vacuous), ("note", text)],
+);
 
 pub(crate) const STEP: Shape = shape(
     "a step",
     &[
-        "at", "when", "after", "every", "set", "fault", "clear", "drive", "vacuous", "note",
+        ("at", scans),
+        ("when", conditions),
+        ("after", scans),
+        ("every", boolean),
+        ("set", set),
+        ("fault", fault),
+        ("clear", clear),
+        ("drive", drive_step),
+        ("vacuous", vacuous),
+        ("note", text),
     ],
 );
-pub(crate) const FAULT: Shape = shape("`fault`", &["axis", "kind", "code", "note"]);
-pub(crate) const CLEAR: Shape = shape("`clear`", &["axis", "note"]);
+pub(crate) const FAULT: Shape = shape(
+    "`fault`",
+    &[
+        ("axis", text),
+        ("kind", fault_kind),
+        ("code", word_16),
+        ("note", text),
+    ],
+);
+pub(crate) const CLEAR: Shape = shape("`clear`", &[("axis", text), ("note", text)]);
 pub(crate) const DRIVE_STEP: Shape = shape(
     "a `drive` step",
     &[
-        "axis", "displace", "remote", "warning", "input", "probe", "report", "note",
+        ("axis", text),
+        ("displace", finite),
+        ("remote", boolean),
+        ("warning", boolean),
+        ("input", drive_input),
+        ("probe", drive_probe),
+        ("report", drive_report),
+        ("note", text),
     ],
 );
-pub(crate) const DRIVE_REPORT: Shape = shape("`report` of a drive", &["position", "torque", "note"]);
-pub(crate) const DRIVE_INPUT: Shape = shape("`input` of a drive", &["number", "value", "note"]);
-pub(crate) const DRIVE_PROBE: Shape = shape("`probe` of a drive", &["number", "at", "value", "note"]);
+pub(crate) const DRIVE_REPORT: Shape = shape(
+    "`report` of a drive",
+    &[("position", number), ("torque", number), ("note", text)],
+);
+pub(crate) const DRIVE_INPUT: Shape = shape(
+    "`input` of a drive",
+    &[("number", input_number), ("value", boolean), ("note", text)],
+);
+pub(crate) const DRIVE_PROBE: Shape = shape(
+    "`probe` of a drive",
+    &[
+        ("number", probe_number),
+        ("at", part),
+        ("value", boolean),
+        ("note", text),
+    ],
+);
 
 pub(crate) const COMPARISON: Shape = shape(
     "a comparison",
     &[
-        "near", "within", "le", "ge", "lt", "gt", "ne", "abs_le", "same_as", "note",
+        ("near", near),
+        ("within", within),
+        ("le", bound),
+        ("ge", bound),
+        ("lt", bound),
+        ("gt", bound),
+        ("ne", value),
+        ("abs_le", bound),
+        ("same_as", text),
+        ("note", text),
     ],
 );
 
-pub(crate) const CLAIM_AT: Shape = shape("a claim with `at`", &["at", "that", "vacuous", "note"]);
-pub(crate) const CLAIM_BY: Shape = shape("a claim with `by`", &["by", "from", "that", "vacuous", "note"]);
+pub(crate) const CLAIM_AT: Shape = shape(
+    "a claim with `at`",
+    &[
+        ("at", scans),
+        ("that", conditions),
+        ("vacuous", vacuous),
+        ("note", text),
+    ],
+);
+pub(crate) const CLAIM_BY: Shape = shape(
+    "a claim with `by`",
+    &[
+        ("by", scans),
+        ("from", range_end),
+        ("that", conditions),
+        ("vacuous", vacuous),
+        ("note", text),
+    ],
+);
 pub(crate) const CLAIM_ALWAYS: Shape = shape(
     "a claim with `always`",
-    &["always", "from", "to", "while", "vacuous", "note"],
+    &[
+        ("always", conditions),
+        ("from", range_end),
+        ("to", range_end),
+        ("while", conditions),
+        ("vacuous", vacuous),
+        ("note", text),
+    ],
 );
 pub(crate) const CLAIM_NEVER: Shape = shape(
     "a claim with `never`",
-    &["never", "for", "from", "to", "while", "vacuous", "note"],
+    &[
+        ("never", conditions),
+        ("for", rows),
+        ("from", range_end),
+        ("to", range_end),
+        ("while", conditions),
+        ("vacuous", vacuous),
+        ("note", text),
+    ],
 );
-pub(crate) const CLAIM_ONCE: Shape = shape("a claim with `once`", &["once", "from", "to", "vacuous", "note"]);
+pub(crate) const CLAIM_ONCE: Shape = shape(
+    "a claim with `once`",
+    &[
+        ("once", conditions),
+        ("from", range_end),
+        ("to", range_end),
+        ("vacuous", vacuous),
+        ("note", text),
+    ],
+);
 pub(crate) const CLAIM_EXCLUSIVE: Shape = shape(
     "a claim with `exclusive`",
-    &["exclusive", "from", "to", "vacuous", "note"],
+    &[
+        ("exclusive", two_texts),
+        ("from", range_end),
+        ("to", range_end),
+        ("vacuous", vacuous),
+        ("note", text),
+    ],
 );
 pub(crate) const CLAIM_WITHIN_LIMITS: Shape = shape(
     "a claim with `within_limits`",
-    &["within_limits", "factor", "from", "to", "vacuous", "note"],
+    &[
+        ("within_limits", text),
+        ("factor", positive),
+        ("from", range_end),
+        ("to", range_end),
+        ("vacuous", vacuous),
+        ("note", text),
+    ],
 );
 pub(crate) const CLAIM_FOLLOWS: Shape = shape(
     "a claim with `follows`",
-    &["follows", "from", "to", "vacuous", "note"],
+    &[
+        ("follows", follows),
+        ("from", range_end),
+        ("to", range_end),
+        ("vacuous", vacuous),
+        ("note", text),
+    ],
 );
 pub(crate) const FOLLOWS: Shape = shape(
     "`follows`",
-    &["slave", "master", "num", "den", "while", "anchor", "note"],
+    &[
+        ("slave", text),
+        ("master", text),
+        ("num", int_16),
+        ("den", ratio_den),
+        ("while", conditions),
+        ("anchor", anchor),
+        ("note", text),
+    ],
 );
-pub(crate) const ANCHOR: Shape = shape("`anchor`", &["master", "slave", "note"]);
+pub(crate) const ANCHOR: Shape = shape(
+    "`anchor`",
+    &[("master", number), ("slave", number), ("note", text)],
+);
 
 pub(crate) const CLAIM_WHEN: Shape = shape(
     "a claim with `when`",
-    &["when", "within", "that", "from", "to", "while", "vacuous", "note"],
+    &[
+        ("when", conditions),
+        ("within", scans),
+        ("that", conditions),
+        ("from", range_end),
+        ("to", range_end),
+        ("while", conditions),
+        ("vacuous", vacuous),
+        ("note", text),
+    ],
 );
 pub(crate) const CLAIM_AFTER: Shape = shape(
     "a claim with `after`",
-    &["after", "by", "that", "from", "to", "while", "vacuous", "note"],
+    &[
+        ("after", conditions),
+        ("by", scans),
+        ("that", conditions),
+        ("from", range_end),
+        ("to", range_end),
+        ("while", conditions),
+        ("vacuous", vacuous),
+        ("note", text),
+    ],
 );
 pub(crate) const CLAIM_DURATION: Shape = shape(
     "a claim with `duration`",
     &[
-        "duration", "le", "ge", "each", "from", "to", "while", "vacuous", "note",
+        ("duration", two_conditions),
+        ("le", scans),
+        ("ge", scans),
+        ("each", boolean),
+        ("from", range_end),
+        ("to", range_end),
+        ("while", conditions),
+        ("vacuous", vacuous),
+        ("note", text),
     ],
 );
 pub(crate) const CLAIM_COUNT: Shape = shape(
     "a claim with `count`",
     &[
-        "count", "eq", "le", "ge", "from", "to", "while", "vacuous", "note",
+        ("count", conditions),
+        ("eq", scans),
+        ("le", scans),
+        ("ge", scans),
+        ("from", range_end),
+        ("to", range_end),
+        ("while", conditions),
+        ("vacuous", vacuous),
+        ("note", text),
     ],
 );
 /// Where a window begins or ends.
-pub(crate) const WINDOW_EDGE: Shape = shape("the begin or end of a window", &["when", "note"]);
-pub(crate) const NEAR_TO: Shape = shape("`near`", &["of", "plus", "note"]);
+pub(crate) const WINDOW_EDGE: Shape = shape(
+    "the begin or end of a window",
+    &[("when", conditions), ("note", text)],
+);
+pub(crate) const NEAR_TO: Shape = shape("`near`", &[("of", text), ("plus", bound), ("note", text)]);
 
 /// The kinds of claims; the first key of each names it. One with `after` has a `by`, too.
 pub(crate) const CLAIMS: [Shape; 12] = [
@@ -391,70 +452,145 @@ pub(crate) const CLAIMS: [Shape; 12] = [
 /// The objects of a map for `standstill compare`.
 pub(crate) mod machine {
     use super::{Shape, shape};
+    use crate::schema::of::{boolean, text};
+    use crate::schema_map::*;
 
     pub(crate) const MAP: Shape = shape(
         "a map",
         &[
-            "$schema",
-            "standstill_compare",
-            "recording",
-            "offset",
-            "window",
-            "time_tolerance",
-            "signals",
-            "note",
+            ("$schema", text),
+            ("standstill_compare", map_version),
+            ("recording", recording),
+            ("offset", offset),
+            ("window", map_window),
+            ("time_tolerance", map_time),
+            ("signals", signals),
+            ("note", text),
         ],
     );
-    pub(crate) const RECORDING: Shape = shape("`recording`", &["delimiter", "decimal", "time", "note"]);
-    pub(crate) const TIME: Shape = shape("`time`", &["column", "unit", "every", "note"]);
-    pub(crate) const WINDOW: Shape = shape("`window`", &["from", "to", "note"]);
-    pub(crate) const EDGE: Shape = shape("an offset by an edge", &["edge", "to", "number", "note"]);
-    pub(crate) const FIT: Shape = shape("a fitted offset", &["fit", "from", "to", "note"]);
+    pub(crate) const RECORDING: Shape = shape(
+        "`recording`",
+        &[
+            ("delimiter", delimiter),
+            ("decimal", decimal),
+            ("time", recording_time),
+            ("note", text),
+        ],
+    );
+    pub(crate) const TIME: Shape = shape(
+        "`time`",
+        &[
+            ("column", column),
+            ("unit", time_unit),
+            ("every", map_time),
+            ("note", text),
+        ],
+    );
+    pub(crate) const WINDOW: Shape = shape(
+        "`window`",
+        &[("from", map_time), ("to", map_time), ("note", text)],
+    );
+    pub(crate) const EDGE: Shape = shape(
+        "an offset by an edge",
+        &[
+            ("edge", text),
+            ("to", edge_value),
+            ("number", edge_number),
+            ("note", text),
+        ],
+    );
+    pub(crate) const FIT: Shape = shape(
+        "a fitted offset",
+        &[
+            ("fit", text),
+            ("from", map_time),
+            ("to", map_time),
+            ("note", text),
+        ],
+    );
     pub(crate) const CURVE: Shape = shape(
         "the map of a number",
         &[
-            "column",
-            "factor",
-            "sign",
-            "zero",
-            "tolerance",
-            "time_tolerance",
-            "note",
+            ("column", column),
+            ("factor", plain),
+            ("sign", sign),
+            ("zero", plain),
+            ("tolerance", not_negative),
+            ("time_tolerance", map_time),
+            ("note", text),
         ],
     );
     pub(crate) const BOOL: Shape = shape(
         "the map of a truth value",
-        &["column", "invert", "time_tolerance", "note"],
+        &[
+            ("column", column),
+            ("invert", boolean),
+            ("time_tolerance", map_time),
+            ("note", text),
+        ],
     );
-    pub(crate) const WHOLE: Shape = shape("the map of a whole number", &["column", "time_tolerance", "note"]);
+    pub(crate) const WHOLE: Shape = shape(
+        "the map of a whole number",
+        &[("column", column), ("time_tolerance", map_time), ("note", text)],
+    );
     pub(crate) const WORD: Shape = shape(
         "the map of a word",
-        &["column", "values", "time_tolerance", "note"],
+        &[
+            ("column", column),
+            ("values", map_values),
+            ("time_tolerance", map_time),
+            ("note", text),
+        ],
     );
 }
 
 /// The objects of a sweep.
 pub(crate) mod sweep {
     use super::{Shape, shape};
+    use crate::schema::of::text;
+    use crate::schema_sweep::*;
 
     pub(crate) const SWEEP: Shape = shape(
         "a sweep",
         &[
-            "$schema",
-            "standstill_sweep",
-            "title",
-            "script",
-            "grid",
-            "sample",
-            "measure",
-            "note",
+            ("$schema", text),
+            ("standstill_sweep", sweep_version),
+            ("title", text),
+            ("script", text),
+            ("grid", grid),
+            ("sample", sample),
+            ("measure", measures),
+            ("note", text),
         ],
     );
-    pub(crate) const SAMPLE: Shape = shape("`sample`", &["seed", "count", "of", "note"]);
-    pub(crate) const STEPS: Shape = shape("a range of a grid", &["from", "to", "count", "scale", "note"]);
-    pub(crate) const RANGE: Shape = shape("a range of a sample", &["from", "to", "scale", "note"]);
+    pub(crate) const SAMPLE: Shape = shape(
+        "`sample`",
+        &[("seed", seed), ("count", cases), ("of", sampled), ("note", text)],
+    );
+    pub(crate) const STEPS: Shape = shape(
+        "a range of a grid",
+        &[
+            ("from", plain),
+            ("to", plain),
+            ("count", grid_count),
+            ("scale", scale),
+            ("note", text),
+        ],
+    );
+    pub(crate) const RANGE: Shape = shape(
+        "a range of a sample",
+        &[("from", plain), ("to", plain), ("scale", scale), ("note", text)],
+    );
     pub(crate) const MEASURE: Shape = shape(
         "a measure",
-        &["last", "max", "min", "abs_max", "first", "count", "note"],
+        &[
+            ("last", text),
+            ("max", text),
+            ("min", text),
+            ("abs_max", text),
+            ("first", text),
+            ("count", text),
+            ("note", text),
+        ],
     );
 }

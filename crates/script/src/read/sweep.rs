@@ -161,7 +161,7 @@ impl Reader {
             Some((value, node.span))
         };
         let (from, to) = (end(self, "from"), end(self, "to"));
-        let count = if shape.keys.contains(&"count") {
+        let count = if shape.has("count") {
             let node = self.require(&fields, "count", shape.what)?;
             self.whole(node, "`count`", 2..=CASES_MAX as i64)?.unsigned_abs()
         } else {

@@ -12,7 +12,7 @@ use standstill_fb::{PinType, Value};
 use std::ops::RangeInclusive;
 
 /// Whole numbers up to here are exact in a 64-bit float.
-pub(super) const WHOLE_MAX: f64 = 9_007_199_254_740_992.0;
+pub(crate) const WHOLE_MAX: f64 = 9_007_199_254_740_992.0;
 
 /// The members of an object whose keys have been checked.
 #[derive(Clone, Copy)]
@@ -22,6 +22,14 @@ pub(super) struct Fields<'n> {
 }
 
 impl<'n> Fields<'n> {
+    /// The members of a node whose keys have been checked.
+    pub(super) const fn of(node: &Node, members: &'n [(Key, Node)]) -> Self {
+        Self {
+            span: node.span,
+            members,
+        }
+    }
+
     pub(super) fn entry(&self, key: &str) -> Option<(&'n Key, &'n Node)> {
         let (key, node) = self.members.iter().find(|(k, _)| k.text == key)?;
         Some((key, node))
@@ -91,26 +99,37 @@ impl Reader {
 
     /// The members of `node`, every key of which `shape` must have.
     pub(super) fn fields<'n>(&mut self, node: &'n Node, shape: &Shape) -> Option<Fields<'n>> {
-        let fields = self.map(node, shape.what)?;
+        self.members(node, shape.what, &shape.names().collect::<Vec<_>>(), &[])
+    }
+
+    /// The members of an object, each of which must be one of `keys`; those of `later` are none yet.
+    pub(super) fn members<'n>(
+        &mut self,
+        node: &'n Node,
+        what: &str,
+        keys: &[&str],
+        later: &[&str],
+    ) -> Option<Fields<'n>> {
+        let fields = self.map(node, what)?;
         for (key, value) in fields.iter() {
-            if key.text == "note" && shape.keys.contains(&"note") {
+            if key.text == "note" && keys.contains(&"note") {
                 let _ = self.text(value, "`note`");
-            } else if shape.later.contains(&key.text.as_str()) {
+            } else if later.contains(&key.text.as_str()) {
                 self.report(Diagnostic::new(
                     Code::Unsupported,
                     key.span,
-                    format!("{} in {} is not supported yet", quoted(&key.text), shape.what),
+                    format!("{} in {what} is not supported yet", quoted(&key.text)),
                 ));
-            } else if !shape.keys.contains(&key.text.as_str()) {
+            } else if !keys.contains(&key.text.as_str()) {
                 self.report(
                     Diagnostic::new(
                         Code::UnknownKey,
                         key.span,
-                        format!("unknown key {} in {}", quoted(&key.text), shape.what),
+                        format!("unknown key {} in {what}", quoted(&key.text)),
                     )
                     .maybe_help(
-                        hints::key(&key.text, shape.keys.iter().copied())
-                            .or_else(|| suggestion(&key.text, shape.keys.iter().copied())),
+                        hints::key(&key.text, keys.iter().copied())
+                            .or_else(|| suggestion(&key.text, keys.iter().copied())),
                     ),
                 );
             }

@@ -196,7 +196,7 @@ pub fn cases() -> Vec<Case> {
         ),
         case(
             "bad_value",
-            Reader,
+            Schema,
             "software limits where positions come round",
             "\"state\"",
             "\"modulo\": 360, \"software_limits\": {\"min\": 5}, \"state\"",
@@ -210,7 +210,7 @@ pub fn cases() -> Vec<Case> {
         ),
         case(
             "bad_value",
-            Reader,
+            Schema,
             "a following error of nothing",
             "\"state\"",
             "\"max_following_error\": 0, \"state\"",
@@ -259,7 +259,7 @@ pub fn cases() -> Vec<Case> {
         ),
         case(
             "bad_value",
-            Reader,
+            Schema,
             "no deviation at all",
             "\"state\"",
             "\"coupling\": {\"max_deviation\": 0}, \"state\"",
@@ -273,21 +273,21 @@ pub fn cases() -> Vec<Case> {
         ),
         case(
             "bad_value",
-            Reader,
+            Schema,
             "a window below nothing",
             "\"state\"",
             "\"in_position\": {\"window\": -1, \"time\": 2}, \"state\"",
         ),
         case(
             "missing_key",
-            Reader,
+            Schema,
             "a CiA 402 drive without increments",
             "\"state\"",
             "\"drive\": {\"cia402\": {}}, \"state\"",
         ),
         case(
             "bad_value",
-            Reader,
+            Schema,
             "two drives",
             "\"state\"",
             "\"drive\": {\"ideal\": {}, \"cia402\": {}}, \"state\"",
@@ -378,7 +378,7 @@ pub fn cases() -> Vec<Case> {
         ),
         case(
             "bad_value",
-            Reader,
+            Schema,
             "a motor that friction drives",
             "\"state\"",
             "\"scaling\": {\"increments\": 9, \"units\": 1}, \"drive\": {\"cia402\": {\"motor\": {\"rated_torque\": 2, \"inertia\": 1, \"coulomb\": -1}}}, \"state\"",
@@ -413,14 +413,14 @@ pub fn cases() -> Vec<Case> {
         ),
         case(
             "bad_value",
-            Reader,
+            Schema,
             "a plant with a load of nothing",
             "\"state\"",
             "\"drive\": {\"plant\": {\"inertia\": 1, \"load\": {\"inertia\": 0, \"stiffness\": 1}}}, \"state\"",
         ),
         case(
             "bad_value",
-            Reader,
+            Schema,
             "gains below zero",
             "\"state\"",
             "\"drive\": {\"plant\": {\"inertia\": 1, \"gains\": {\"position\": -1}}}, \"state\"",
@@ -655,7 +655,7 @@ pub fn cases() -> Vec<Case> {
             "\"T#2ms\"",
             "\"T#2ms1s\"",
         ),
-        case("bad_time", Reader, "a cycle of nothing", "\"T#2ms\"", "\"T#0ms\""),
+        case("bad_time", Schema, "a cycle of nothing", "\"T#2ms\"", "\"T#0ms\""),
         case(
             "bad_value",
             Schema,
@@ -894,7 +894,7 @@ pub fn cases() -> Vec<Case> {
         ),
         case(
             "missing_key",
-            Reader,
+            Schema,
             "a drive step that does nothing",
             STEP,
             "{\"at\": 1, \"drive\": {\"axis\": \"X\"}}",
@@ -915,7 +915,7 @@ pub fn cases() -> Vec<Case> {
         ),
         case(
             "bad_value",
-            Reader,
+            Schema,
             "a probe after the end of its scan",
             STEP,
             "{\"at\": 1, \"drive\": {\"axis\": \"X\", \"probe\": {\"number\": 1, \"at\": 1.5, \"value\": true}}}",

@@ -69,7 +69,7 @@ fn every_key_is_named() {
     keys(&serde_json::from_str(&schema()).unwrap(), &mut found);
     assert!(found.len() > 60, "{found:?}");
     for key in found {
-        let named = [format!("`{key}`"), format!("\"{key}\":")]
+        let named = [format!("`{key}`"), format!(".{key}`"), format!("\"{key}\":")]
             .iter()
             .any(|word| DOCUMENT.contains(word));
         assert!(named, "docs/scan-scripts.md does not name {key}");

@@ -1,5 +1,6 @@
 //! Reading scripts: good ones into the model, bad ones into messages; layout, schema and document.
 
+mod agreement;
 mod cases;
 mod contract;
 mod document;

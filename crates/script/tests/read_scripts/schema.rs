@@ -5,13 +5,13 @@ use boon::{Compiler, SchemaIndex, Schemas};
 use standstill_script::{machine_schema, map_schema, read, schema, sweep_schema};
 use std::path::{Path, PathBuf};
 
-struct Validator {
+pub(crate) struct Validator {
     schemas: Schemas,
     index: SchemaIndex,
 }
 
 impl Validator {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self::of(&schema())
     }
 
@@ -24,7 +24,7 @@ impl Validator {
         Self { schemas, index }
     }
 
-    fn accepts(&self, script: &str) -> Result<(), String> {
+    pub(crate) fn accepts(&self, script: &str) -> Result<(), String> {
         let value = serde_json::from_str(script).map_err(|error| error.to_string())?;
         self.schemas
             .validate(&value, self.index)
@@ -154,12 +154,14 @@ fn good_scripts_pass_the_schema_and_the_reader() {
 #[test]
 fn the_schema_refuses_what_a_schema_can_refuse() {
     let validator = Validator::new();
+    let mut wrong = Vec::new();
     for case in cases() {
         let accepted = validator.accepts(&case.text()).is_ok();
         match case.by {
-            By::Syntax => {}
-            By::Schema => assert!(!accepted, "the schema takes: {}", case.title),
-            By::Reader => assert!(accepted, "the schema also refuses: {}", case.title),
+            By::Schema if accepted => wrong.push(format!("the schema takes: {}", case.title)),
+            By::Reader if !accepted => wrong.push(format!("the schema also refuses: {}", case.title)),
+            By::Syntax | By::Schema | By::Reader => {}
         }
     }
+    assert_eq!(wrong, Vec::<String>::new());
 }

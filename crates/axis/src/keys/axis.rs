@@ -1,0 +1,662 @@
+//! The keys of an axis.
+
+use super::{Bounds, Holds, Key, Null, Object};
+use crate::{
+    ACTUAL_FILTER_MAX, AboveLimit, AxisConfig, BlockDetection, HomeDirection, InPosition, MODULO_MAX,
+    OnLimit, OnMasterLost, PowerOff, Procedure, QUEUE_MAX, Scaling, StartState, SwitchEdge,
+};
+use standstill_planner::MoveProfile;
+
+/// The place of a value in a list of all.
+macro_rules! place {
+    ($all:expr, $value:expr) => {
+        $all.iter().position(|known| *known == $value)
+    };
+}
+
+/// A key that is TRUE or FALSE.
+macro_rules! flag {
+    ($path:literal, $($field:ident).+, $absent:literal, $doc:literal) => {
+        Key {
+            path: $path,
+            doc: $doc,
+            absent: Some($absent),
+            null: None,
+            holds: Holds::Bool {
+                get: |config| config.$($field).+,
+                set: |config, value| config.$($field).+ = value,
+            },
+        }
+    };
+}
+
+/// A key for one of the words of an enumeration.
+macro_rules! word {
+    ($path:literal, $($field:ident).+, [$(($word:expr, $value:expr)),+ $(,)?], $absent:expr, $doc:literal) => {
+        Key {
+            path: $path,
+            doc: $doc,
+            absent: $absent,
+            null: None,
+            holds: Holds::Word {
+                words: &[$($word),+],
+                get: |config| place!([$($value),+], config.$($field).+),
+                set: |config, place| {
+                    if let Some(value) = [$($value),+].get(place) {
+                        config.$($field).+ = *value;
+                    }
+                },
+            },
+        }
+    };
+}
+
+/// A key for a number that may be absent.
+macro_rules! optional {
+    ($path:literal, $($field:ident).+, $absent:literal, $doc:literal) => {
+        Key {
+            path: $path,
+            doc: $doc,
+            absent: Some($absent),
+            null: None,
+            holds: Holds::Number {
+                bounds: Bounds::POSITIVE,
+                get: |config| config.$($field).+,
+                set: |config, value| config.$($field).+ = Some(value),
+            },
+        }
+    };
+}
+
+/// A key for a limit that an axis may be without.
+macro_rules! limit {
+    ($path:literal, $field:ident, $absent:literal, $doc:literal) => {
+        Key {
+            path: $path,
+            doc: $doc,
+            absent: Some($absent),
+            null: Some(Null {
+                is: |_| false,
+                set: |_| {},
+            }),
+            holds: Holds::Number {
+                bounds: Bounds::POSITIVE,
+                get: |config| Some(config.limits.$field).filter(|limit| *limit != f64::INFINITY),
+                set: |config, value| config.limits.$field = value,
+            },
+        }
+    };
+}
+
+/// The largest number of scans that a file can say to the unit.
+const SCANS: u64 = 1 << 53;
+
+/// The keys of an axis.
+pub static AXIS: Object<AxisConfig> = Object::new(
+    "an axis",
+    &[
+        Key {
+            path: "limits",
+            doc: "what no set-point exceeds",
+            absent: None,
+            null: None,
+            holds: Holds::Object(Object::new("`limits`", LIMITS)),
+        },
+        Key {
+            path: "defaults",
+            doc: "what a 0 at the pins Acceleration, Deceleration, Jerk, Snap stands for; not above the limits",
+            absent: Some("the limits"),
+            null: None,
+            holds: Holds::Object(Object::new("`defaults`", DEFAULTS)),
+        },
+        Key {
+            path: "position",
+            doc: "position at the start (u); of an axis with `modulo` in its first turn",
+            absent: Some("0"),
+            null: None,
+            holds: Holds::Number {
+                bounds: Bounds::FINITE,
+                get: |config| Some(config.position),
+                set: |config, value| config.position = value,
+            },
+        },
+        word!(
+            "state",
+            start,
+            [
+                ("Disabled", StartState::Disabled),
+                ("Standstill", StartState::Standstill)
+            ],
+            Some("`Disabled`"),
+            "`Disabled`, or `Standstill`: powered as if MC_Power had been called"
+        ),
+        Key {
+            path: "scaling",
+            doc: "the drive counts increments",
+            absent: Some("the drive speaks user units"),
+            null: None,
+            holds: Holds::Object(Object::new("`scaling`", SCALING)),
+        },
+        Key {
+            path: "modulo",
+            doc: "length of a turn (u), above 0: positions come round and are shown in [0, length), see modulo.md",
+            absent: Some("the axis is linear"),
+            null: None,
+            holds: Holds::Number {
+                bounds: Bounds {
+                    most: MODULO_MAX,
+                    ..Bounds::POSITIVE
+                },
+                get: |config| config.modulo,
+                set: |config, value| config.modulo = Some(value),
+            },
+        },
+        Key {
+            path: "software_limits",
+            doc: "where a move may end, at least one of them; see below",
+            absent: Some("none"),
+            null: None,
+            holds: Holds::Object(Object {
+                needs_one: true,
+                ..Object::new("`software_limits`", SOFTWARE_LIMITS)
+            }),
+        },
+        word!(
+            "above_limit",
+            above_limit,
+            [("clamp", AboveLimit::Clamp), ("error", AboveLimit::Error)],
+            Some("`clamp`"),
+            "a value above a limit is lowered and recorded: `clamp`; the command is refused: `error`"
+        ),
+        Key {
+            path: "profile",
+            doc: "how moves to a position are planned (planner.md, section 13): from rest with every switch at a scan end by `overlapped`, `grid`, `sequential`; with switches anywhere by `online`; `fastest` is the shorter of `overlapped` and `online`, ties to `overlapped`; by a paper's method `s-curve`, `short-path` (no limit on snap) or `trapezoid` (none on jerk either). What the profile cannot serve, such as a move that takes over from a motion, is planned by `online`",
+            absent: Some("`overlapped`"),
+            null: None,
+            holds: Holds::Word {
+                words: &PROFILES,
+                get: |config| place!(MoveProfile::ALL, config.profile),
+                set: |config, place| {
+                    if let Some(profile) = MoveProfile::ALL.get(place) {
+                        config.profile = *profile;
+                    }
+                },
+            },
+        },
+        Key {
+            path: "queue",
+            doc: "commands that can wait behind the active one, 0 to 16",
+            absent: Some("8"),
+            null: None,
+            holds: Holds::Whole {
+                range: (0, QUEUE_MAX as u64),
+                get: |config| Some(config.queue as u64),
+                set: |config, value| config.queue = usize::try_from(value).unwrap_or(usize::MAX),
+            },
+        },
+        optional!(
+            "stop_deceleration",
+            stop_deceleration,
+            "the limit",
+            "deceleration (u/s^2) of ramps nobody commanded: after power-off and after faults; not above the limit"
+        ),
+        optional!(
+            "stop_jerk",
+            stop_jerk,
+            "the limit",
+            "jerk (u/s^3) of the same ramps; not above the limit"
+        ),
+        word!(
+            "on_power_off",
+            on_power_off,
+            [
+                ("ramp", PowerOff::Ramp),
+                ("coast", PowerOff::Coast),
+                ("drive", PowerOff::Drive)
+            ],
+            Some("`ramp`"),
+            "what the axis does when it is switched off while moving: `ramp`, `coast`, `drive`"
+        ),
+        flag!(
+            "hardware_limits",
+            hardware_limits,
+            "true",
+            "the axis stops at the limit switches of its drive (410, 210), see homing.md"
+        ),
+        Key {
+            path: "homing",
+            doc: "what MC_Home does, see homing.md",
+            absent: Some("the position is taken over where the axis stands"),
+            null: None,
+            holds: Holds::Object(Object::new("`homing`", HOMING)),
+        },
+        flag!(
+            "needs_homed",
+            needs_homed,
+            "false",
+            "absolute moves need MC_Home first"
+        ),
+        Key {
+            path: "override_max",
+            doc: "the largest factor MC_SetOverride takes, from 1; the limits hold all the same",
+            absent: Some("1"),
+            null: None,
+            holds: Holds::Number {
+                bounds: Bounds::from(1.0),
+                get: |config| Some(config.override_max),
+                set: |config, value| config.override_max = value,
+            },
+        },
+        Key {
+            path: "power_timeout",
+            doc: "time (scans, or TIME, above 0) in which the drive has to confirm power that MC_Power asks for; later MC_Power shows Error 503, the axis stays Disabled, and power is asked for again by a new Enable or by MC_Reset",
+            absent: Some("it may take for ever"),
+            null: None,
+            holds: Holds::Scans {
+                range: (1, SCANS),
+                get: |config| config.power_timeout,
+                set: |config, value| config.power_timeout = Some(value),
+            },
+        },
+        Key {
+            path: "in_position",
+            doc: "when a move that ends at rest is done",
+            absent: Some("the set position decides alone"),
+            null: None,
+            holds: Holds::Object(Object::new("`in_position`", IN_POSITION)),
+        },
+        optional!(
+            "max_following_error",
+            max_following_error,
+            "not supervised",
+            "a set position further than this (u) from the actual position is an axis error (404); MC_WriteParameter changes it"
+        ),
+        Key {
+            path: "coupling",
+            doc: "what the axis does as a slave, and how slaves of its actual values see it, see coupling.md",
+            absent: Some("as without its keys"),
+            null: None,
+            holds: Holds::Object(Object::new("`coupling`", COUPLING)),
+        },
+    ],
+);
+
+const PROFILES: [&str; MoveProfile::ALL.len()] = {
+    let mut words = [""; MoveProfile::ALL.len()];
+    let mut index = 0;
+    while index < words.len() {
+        words[index] = MoveProfile::ALL[index].name();
+        index += 1;
+    }
+    words
+};
+
+const LIMITS: &[Key<AxisConfig>] = &[
+    Key {
+        path: "limits.velocity",
+        doc: "largest velocity (u/s)",
+        absent: None,
+        null: None,
+        holds: Holds::Number {
+            bounds: Bounds::POSITIVE,
+            get: |config| Some(config.limits.velocity),
+            set: |config, value| config.limits.velocity = value,
+        },
+    },
+    Key {
+        path: "limits.acceleration",
+        doc: "largest rate while the speed grows (u/s^2)",
+        absent: None,
+        null: None,
+        holds: Holds::Number {
+            bounds: Bounds::POSITIVE,
+            get: |config| Some(config.limits.acceleration),
+            // The deceleration is the same where none is given.
+            set: |config, value| {
+                config.limits.acceleration = value;
+                if config.limits.deceleration == f64::INFINITY {
+                    config.limits.deceleration = value;
+                }
+            },
+        },
+    },
+    limit!(
+        "limits.deceleration",
+        deceleration,
+        "the acceleration",
+        "largest rate while the speed falls (u/s^2)"
+    ),
+    limit!(
+        "limits.jerk",
+        jerk,
+        "no limit: the axis is of order 2",
+        "largest jerk (u/s^3)"
+    ),
+    limit!(
+        "limits.snap",
+        snap,
+        "no limit: the axis is of order 3 or 2",
+        "largest snap (u/s^4)"
+    ),
+];
+
+const DEFAULTS: &[Key<AxisConfig>] = &[
+    optional!(
+        "defaults.acceleration",
+        defaults.acceleration,
+        "the limit",
+        "for Acceleration (u/s^2)"
+    ),
+    optional!(
+        "defaults.deceleration",
+        defaults.deceleration,
+        "the limit",
+        "for Deceleration (u/s^2)"
+    ),
+    optional!("defaults.jerk", defaults.jerk, "the limit", "for Jerk (u/s^3)"),
+    optional!("defaults.snap", defaults.snap, "the limit", "for Snap (u/s^4)"),
+];
+
+/// Changes a scaling, from one increment to the unit on; a change that makes none of it is left out.
+fn scale(config: &mut AxisConfig, change: impl FnOnce(&mut (u32, u32, bool, f64))) {
+    let mut parts = config.scaling.map_or((1, 1, false, 0.0), |old| {
+        (old.increments(), old.units(), old.invert(), old.offset())
+    });
+    change(&mut parts);
+    let (increments, units, invert, offset) = parts;
+    if let Ok(scaling) = Scaling::new(increments, units, invert, offset) {
+        config.scaling = Some(scaling);
+    }
+}
+
+const COUNT: (u64, u64) = (1, u32::MAX as u64);
+
+const SCALING: &[Key<AxisConfig>] = &[
+    Key {
+        path: "scaling.increments",
+        doc: "so many increments of the drive ..",
+        absent: None,
+        null: None,
+        holds: Holds::Whole {
+            range: COUNT,
+            get: |config| config.scaling.map(|scaling| scaling.increments().into()),
+            set: |config, value| scale(config, |parts| parts.0 = u32::try_from(value).unwrap_or(0)),
+        },
+    },
+    Key {
+        path: "scaling.units",
+        doc: ".. are so many user units",
+        absent: None,
+        null: None,
+        holds: Holds::Whole {
+            range: COUNT,
+            get: |config| config.scaling.map(|scaling| scaling.units().into()),
+            set: |config, value| scale(config, |parts| parts.1 = u32::try_from(value).unwrap_or(0)),
+        },
+    },
+    Key {
+        path: "scaling.invert",
+        doc: "the drive counts the other way",
+        absent: Some("false"),
+        null: None,
+        holds: Holds::Bool {
+            get: |config| config.scaling.is_some_and(|scaling| scaling.invert()),
+            set: |config, value| scale(config, |parts| parts.2 = value),
+        },
+    },
+    Key {
+        path: "scaling.offset",
+        doc: "position at increment 0 (u)",
+        absent: Some("0"),
+        null: None,
+        holds: Holds::Number {
+            bounds: Bounds::FINITE,
+            get: |config| config.scaling.map(|scaling| scaling.offset()),
+            set: |config, value| scale(config, |parts| parts.3 = value),
+        },
+    },
+];
+
+const NO_END: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+const SOFTWARE_LIMITS: &[Key<AxisConfig>] = &[
+    Key {
+        path: "software_limits.min",
+        doc: "lowest position (u)",
+        absent: Some("none"),
+        null: None,
+        holds: Holds::Number {
+            bounds: Bounds::FINITE,
+            get: |config| {
+                config
+                    .software_limits
+                    .map(|(min, _)| min)
+                    .filter(|min| *min != NO_END.0)
+            },
+            set: |config, value| config.software_limits.get_or_insert(NO_END).0 = value,
+        },
+    },
+    Key {
+        path: "software_limits.max",
+        doc: "highest position (u), above the lowest",
+        absent: Some("none"),
+        null: None,
+        holds: Holds::Number {
+            bounds: Bounds::FINITE,
+            get: |config| {
+                config
+                    .software_limits
+                    .map(|(_, max)| max)
+                    .filter(|max| *max != NO_END.1)
+            },
+            set: |config, value| config.software_limits.get_or_insert(NO_END).1 = value,
+        },
+    },
+];
+
+const NO_WINDOW: InPosition = InPosition {
+    window: 0.0,
+    scans: 0,
+};
+
+const IN_POSITION: &[Key<AxisConfig>] = &[
+    Key {
+        path: "in_position.window",
+        doc: "the actual position has been within this (u) of the set position ..",
+        absent: None,
+        null: None,
+        holds: Holds::Number {
+            bounds: Bounds::POSITIVE,
+            get: |config| config.in_position.map(|it| it.window),
+            set: |config, value| config.in_position.get_or_insert(NO_WINDOW).window = value,
+        },
+    },
+    Key {
+        path: "in_position.time",
+        doc: ".. for this long (scans, or TIME)",
+        absent: Some("0"),
+        null: None,
+        holds: Holds::Scans {
+            range: (0, SCANS),
+            get: |config| config.in_position.map(|it| it.scans.into()),
+            set: |config, value| {
+                config.in_position.get_or_insert(NO_WINDOW).scans = u32::try_from(value).unwrap_or(u32::MAX);
+            },
+        },
+    },
+];
+
+const COUPLING: &[Key<AxisConfig>] = &[
+    word!(
+        "coupling.on_limit",
+        following.on_limit,
+        [
+            ("lag", OnLimit::Lag),
+            ("error", OnLimit::Error),
+            ("slow_master", OnLimit::SlowMaster)
+        ],
+        Some("`lag`"),
+        "where it cannot follow, it lags (`lag`), stops with error 420 (`error`), or has its master move no faster than it can follow (`slow_master`)"
+    ),
+    optional!(
+        "coupling.max_deviation",
+        following.max_deviation,
+        "any",
+        "how far it may be off the law (u) once it was on it; further is error 420"
+    ),
+    word!(
+        "coupling.on_master_lost",
+        following.on_master_lost,
+        [("error", OnMasterLost::Error), ("hold", OnMasterLost::Hold)],
+        Some("`error`"),
+        "where its master goes out of operation it stops with error 421 (`error`), or comes to rest and stays coupled (`hold`)"
+    ),
+    Key {
+        path: "coupling.actual_filter",
+        doc: "each of the four averages through which slaves see its actual values (scans, at most 64, or TIME; 0 for none)",
+        absent: Some("16 scans"),
+        null: None,
+        holds: Holds::Scans {
+            range: (0, ACTUAL_FILTER_MAX as u64),
+            get: |config| Some(config.following.actual_filter.into()),
+            set: |config, value| config.following.actual_filter = u32::try_from(value).unwrap_or(u32::MAX),
+        },
+    },
+    flag!(
+        "coupling.actual_lead",
+        following.actual_lead,
+        "false",
+        "slaves of its actual values see it ahead by the delay of the averages"
+    ),
+];
+
+const PROCEDURES: [&str; Procedure::ALL.len()] = {
+    let mut words = [""; Procedure::ALL.len()];
+    let mut index = 0;
+    while index < words.len() {
+        words[index] = Procedure::ALL[index].name();
+        index += 1;
+    }
+    words
+};
+
+const NO_BLOCK: BlockDetection = BlockDetection {
+    velocity: 0.0,
+    scans: 0,
+};
+
+const HOMING: &[Key<AxisConfig>] = &[
+    Key {
+        path: "homing.procedure",
+        doc: "`direct`, `absolute_switch`, `limit_switch`, `reference_pulse`, `block`, `drive`",
+        absent: None,
+        null: None,
+        holds: Holds::Word {
+            words: &PROCEDURES,
+            get: |config| place!(Procedure::ALL, config.homing.procedure),
+            set: |config, place| {
+                if let Some(procedure) = Procedure::ALL.get(place) {
+                    config.homing.procedure = *procedure;
+                }
+            },
+        },
+    },
+    word!(
+        "homing.direction",
+        homing.direction,
+        [
+            ("positive", HomeDirection::Positive),
+            ("negative", HomeDirection::Negative),
+            ("switch_positive", HomeDirection::SwitchPositive),
+            ("switch_negative", HomeDirection::SwitchNegative),
+        ],
+        Some("`positive`"),
+        "where the search begins: `positive`, `negative`; for a home switch also `switch_positive`, `switch_negative`"
+    ),
+    word!(
+        "homing.edge",
+        homing.edge,
+        [
+            ("rising", SwitchEdge::Rising),
+            ("falling", SwitchEdge::Falling),
+            ("switch_positive", SwitchEdge::SwitchPositive),
+            ("switch_negative", SwitchEdge::SwitchNegative),
+        ],
+        Some("`rising`"),
+        "of the home switch: `rising`, `falling`, `switch_positive`, `switch_negative`"
+    ),
+    Key {
+        path: "homing.velocity",
+        doc: "of the search (u/s), not above that of the limits",
+        absent: Some("needed for a search"),
+        null: None,
+        holds: Holds::Number {
+            bounds: Bounds::POSITIVE,
+            get: |config| Some(config.homing.velocity).filter(|velocity| *velocity != 0.0),
+            set: |config, value| config.homing.velocity = value,
+        },
+    },
+    optional!(
+        "homing.creep",
+        homing.creep,
+        "the first one counts",
+        "of the second approach of a switch (u/s), not above `velocity`"
+    ),
+    flag!(
+        "homing.pulse",
+        homing.pulse,
+        "false",
+        "the next reference pulse behind the edge of the switch is the reference"
+    ),
+    Key {
+        path: "homing.block",
+        doc: "when the axis stands at a mechanical stop",
+        absent: Some("needed for `block`"),
+        null: None,
+        holds: Holds::Object(Object::new("`block` of a homing", BLOCK)),
+    },
+    Key {
+        path: "homing.time_limit",
+        doc: "of the search (scans, or TIME)",
+        absent: Some("none"),
+        null: None,
+        holds: Holds::Scans {
+            range: (0, SCANS),
+            get: |config| config.homing.time_limit,
+            set: |config, value| config.homing.time_limit = Some(value),
+        },
+    },
+    optional!(
+        "homing.distance_limit",
+        homing.distance_limit,
+        "none",
+        "way of the search (u)"
+    ),
+];
+
+const BLOCK: &[Key<AxisConfig>] = &[
+    Key {
+        path: "homing.block.velocity",
+        doc: "the actual velocity is below this (u/s), which is not above that of the search ..",
+        absent: None,
+        null: None,
+        holds: Holds::Number {
+            bounds: Bounds::POSITIVE,
+            get: |config| config.homing.block.map(|block| block.velocity),
+            set: |config, value| config.homing.block.get_or_insert(NO_BLOCK).velocity = value,
+        },
+    },
+    Key {
+        path: "homing.block.time",
+        doc: ".. for this long (scans, or TIME)",
+        absent: None,
+        null: None,
+        holds: Holds::Scans {
+            range: (0, SCANS),
+            get: |config| config.homing.block.map(|block| block.scans.into()),
+            set: |config, value| {
+                config.homing.block.get_or_insert(NO_BLOCK).scans = u32::try_from(value).unwrap_or(u32::MAX);
+            },
+        },
+    },
+];

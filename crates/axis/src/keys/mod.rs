@@ -1,0 +1,219 @@
+//! The keys of a configuration, each said once: what it is called, what it may hold, what it means, and where that stands in
+//! the structure.
+//!
+//! What follows from these tables: the reader of scripts, the JSON Schema, the tables in the docs, the check of ranges, the
+//! C library's set-up, the writer of scripts, and what of a random program is made plainer. A key that is added here is in
+//! all of them.
+
+mod axis;
+
+pub use axis::AXIS;
+
+/// The range of a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The lowest value.
+    pub least: f64,
+    /// `least` itself is outside.
+    pub is_above: bool,
+    /// The highest value.
+    pub most: f64,
+}
+
+impl Bounds {
+    /// Any finite number.
+    pub const FINITE: Self = Self {
+        least: f64::MIN,
+        is_above: false,
+        most: f64::MAX,
+    };
+
+    /// Above 0.
+    pub const POSITIVE: Self = Self {
+        least: 0.0,
+        is_above: true,
+        most: f64::MAX,
+    };
+
+    /// From `least` on.
+    pub const fn from(least: f64) -> Self {
+        Self {
+            least,
+            ..Self::FINITE
+        }
+    }
+
+    /// Whether a value is inside; NaN is not.
+    pub fn hold(&self, value: f64) -> bool {
+        let is_enough = if self.is_above {
+            value > self.least
+        } else {
+            value >= self.least
+        };
+        is_enough && value <= self.most
+    }
+}
+
+/// What a key may hold, and where that stands in `T`.
+#[derive(Clone, Copy, Debug)]
+pub enum Holds<T: 'static> {
+    /// TRUE or FALSE.
+    Bool {
+        /// Its value.
+        get: fn(&T) -> bool,
+        /// Gives it one.
+        set: fn(&mut T, bool),
+    },
+    /// One of some words.
+    Word {
+        /// The words; the place of one is its value.
+        words: &'static [&'static str],
+        /// Its value, if it has one.
+        get: fn(&T) -> Option<usize>,
+        /// Gives it one.
+        set: fn(&mut T, usize),
+    },
+    /// A number.
+    Number {
+        /// Its range.
+        bounds: Bounds,
+        /// Its value, if it has one.
+        get: fn(&T) -> Option<f64>,
+        /// Gives it one.
+        set: fn(&mut T, f64),
+    },
+    /// A whole number.
+    Whole {
+        /// The lowest and the highest value.
+        range: (u64, u64),
+        /// Its value, if it has one.
+        get: fn(&T) -> Option<u64>,
+        /// Gives it one.
+        set: fn(&mut T, u64),
+    },
+    /// A count of scans, which may be given as a time.
+    Scans {
+        /// The lowest and the highest value.
+        range: (u64, u64),
+        /// Its value, if it has one.
+        get: fn(&T) -> Option<u64>,
+        /// Gives it one.
+        set: fn(&mut T, u64),
+    },
+    /// Keys of its own.
+    Object(Object<T>),
+}
+
+/// What null at a key stands for.
+#[derive(Clone, Copy, Debug)]
+pub struct Null<T: 'static> {
+    /// Whether it stands there.
+    pub is: fn(&T) -> bool,
+    /// Puts it there.
+    pub set: fn(&mut T),
+}
+
+/// A key.
+#[derive(Clone, Copy, Debug)]
+pub struct Key<T: 'static> {
+    /// The names of the objects it stands in and its own, such as `homing.velocity`.
+    pub path: &'static str,
+    /// What it means, with unit and range.
+    pub doc: &'static str,
+    /// What is so without it; none if it must be given.
+    pub absent: Option<&'static str>,
+    /// What null stands for, where it may be given.
+    pub null: Option<Null<T>>,
+    /// What it may hold.
+    pub holds: Holds<T>,
+}
+
+impl<T> Key<T> {
+    /// Its own name.
+    pub fn name(&self) -> &'static str {
+        self.path.rsplit('.').next().unwrap_or(self.path)
+    }
+
+    /// It must be given where its object is.
+    pub const fn is_needed(&self) -> bool {
+        self.absent.is_none()
+    }
+
+    /// Whether both have the same there.
+    pub fn is_same(&self, one: &T, other: &T) -> bool {
+        match &self.holds {
+            Holds::Bool { get, .. } => get(one) == get(other),
+            Holds::Word { get, .. } => get(one) == get(other),
+            Holds::Number { get, .. } => get(one) == get(other),
+            Holds::Whole { get, .. } | Holds::Scans { get, .. } => get(one) == get(other),
+            Holds::Object(object) => object.keys.iter().all(|key| key.is_same(one, other)),
+        }
+    }
+
+    /// What `other` has there, it has, too. What has no value there leaves it as it is.
+    pub fn take(&self, from: &T, to: &mut T) {
+        match &self.holds {
+            Holds::Bool { get, set } => set(to, get(from)),
+            Holds::Word { get, set, .. } => give(to, get(from), *set),
+            Holds::Number { get, set, .. } => give(to, get(from), *set),
+            Holds::Whole { get, set, .. } | Holds::Scans { get, set, .. } => give(to, get(from), *set),
+            Holds::Object(object) => object.keys.iter().for_each(|key| key.take(from, to)),
+        }
+    }
+}
+
+fn give<T, V>(to: &mut T, value: Option<V>, set: fn(&mut T, V)) {
+    if let Some(value) = value {
+        set(to, value);
+    }
+}
+
+/// Some keys.
+#[derive(Clone, Copy, Debug)]
+pub struct Object<T: 'static> {
+    /// The object in messages.
+    pub what: &'static str,
+    /// Its keys, in the order in which they are read.
+    pub keys: &'static [Key<T>],
+    /// At least one of them must be given.
+    pub needs_one: bool,
+}
+
+impl<T> Object<T> {
+    /// An object that may be empty, unless it has keys that are needed.
+    pub const fn new(what: &'static str, keys: &'static [Key<T>]) -> Self {
+        Self {
+            what,
+            keys,
+            needs_one: false,
+        }
+    }
+
+    /// The key with a path that begins here.
+    pub fn find(&self, path: &str) -> Option<&'static Key<T>> {
+        self.keys.iter().find_map(|key| match &key.holds {
+            _ if key.path == path => Some(key),
+            Holds::Object(object) if path.starts_with(key.path) => object.find(path),
+            Holds::Object(_)
+            | Holds::Bool { .. }
+            | Holds::Word { .. }
+            | Holds::Number { .. }
+            | Holds::Whole { .. }
+            | Holds::Scans { .. } => None,
+        })
+    }
+
+    /// Calls `look` with every key that is no object.
+    pub fn each(&self, look: &mut impl FnMut(&'static Key<T>)) {
+        for key in self.keys {
+            match &key.holds {
+                Holds::Object(object) => object.each(look),
+                Holds::Bool { .. }
+                | Holds::Word { .. }
+                | Holds::Number { .. }
+                | Holds::Whole { .. }
+                | Holds::Scans { .. } => look(key),
+            }
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Objects whose keys stand in a table: those of axes and drives.
+
+use super::Reader;
+use super::json::{Json, Node};
+use super::value::Fields;
+use crate::error::{Code, Diagnostic};
+use crate::format::number_text;
+use standstill_axis::keys::{Bounds, Holds, Key, Object};
+
+/// Keys of the format whose feature does not exist yet, by their object.
+const LATER: [(&str, &[&str]); 1] = [("`coupling`", &["cam_continuity"])];
+
+/// What a key is called in messages: with the object it stands in.
+fn called<T>(key: &Key<T>) -> String {
+    match key.path.rsplit_once('.') {
+        Some((above, name)) => format!("`{}.{name}`", above.rsplit('.').next().unwrap_or(above)),
+        None => format!("`{}`", key.path),
+    }
+}
+
+impl Reader {
+    /// Reads the keys of `object` in `node` into `to`, and gives all its members. All mistakes are reported before it gives up.
+    /// `others` are keys that are read elsewhere.
+    pub(super) fn keys<'n, T>(
+        &mut self,
+        node: &'n Node,
+        object: &Object<T>,
+        others: &[&'static str],
+        to: &mut T,
+    ) -> Option<Fields<'n>> {
+        let names: Vec<_> = object
+            .keys
+            .iter()
+            .map(Key::name)
+            .chain(others.iter().copied())
+            .collect();
+        let known: Vec<_> = names.iter().copied().chain(["note"]).collect();
+        let later = LATER.iter().find(|(what, _)| *what == object.what);
+        let fields = self.members(node, object.what, &known, later.map_or(&[][..], |(_, keys)| keys))?;
+        if object.needs_one && names.iter().all(|name| fields.get(name).is_none()) {
+            let quoted: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
+            let message = format!("{} needs {} or both", object.what, quoted.join(", "));
+            self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
+            return None;
+        }
+        let mut good = true;
+        for key in object.keys {
+            good &= match fields.get(key.name()) {
+                Some(node) if key.is_needed() && matches!(node.json, Json::Null) => {
+                    let message = format!("{} needs the key `{}`", object.what, key.name());
+                    self.report(Diagnostic::new(Code::MissingKey, node.span, message));
+                    false
+                }
+                Some(node) => self.key(node, key, to).is_some(),
+                None if key.is_needed() => self.require(&fields, key.name(), object.what).is_some(),
+                None => true,
+            };
+        }
+        good.then_some(fields)
+    }
+
+    fn key<T>(&mut self, node: &Node, key: &Key<T>, to: &mut T) -> Option<()> {
+        if let (Some(null), Json::Null) = (&key.null, &node.json) {
+            (null.set)(to);
+            return Some(());
+        }
+        let what = called(key);
+        match &key.holds {
+            Holds::Bool { set, .. } => set(to, self.boolean(node, &what)?),
+            Holds::Word { words, set, .. } => set(to, self.word(node, key.path, &what, words)?),
+            Holds::Number { set, .. } => set(to, self.finite(node, &what)?),
+            Holds::Whole { range, set, .. } => {
+                let end = |end: u64| i64::try_from(end).unwrap_or(i64::MAX);
+                let value = self.whole(node, &what, end(range.0)..=end(range.1))?;
+                set(to, value.unsigned_abs());
+            }
+            Holds::Scans { set, .. } => set(to, self.scans(node, &what)?),
+            Holds::Object(object) => {
+                self.keys(node, object, &[], to)?;
+            }
+        }
+        Some(())
+    }
+
+    /// The place of a word among those that a key takes.
+    fn word(&mut self, node: &Node, path: &str, what: &str, words: &[&'static str]) -> Option<usize> {
+        if path == "state" {
+            return self.start_state(node, words);
+        }
+        let places: Vec<_> = words.iter().copied().zip(0..).collect();
+        self.choice(node, what, &places)
+    }
+
+    /// Refuses numbers and scans outside the ranges of their keys. An axis has words of its own for that, a drive has not.
+    pub(super) fn in_range<T>(&mut self, fields: &Fields<'_>, object: &Object<T>, of: &T) -> Option<()> {
+        let mut good = Some(());
+        for key in object.keys {
+            let Some(node) = fields.get(key.name()) else {
+                continue;
+            };
+            let refused = match &key.holds {
+                Holds::Number { bounds, get, .. } => get(of)
+                    .filter(|value| !bounds.hold(*value))
+                    .map(|value| format!("is {}: it must be {}", number_text(value), range_text(bounds))),
+                Holds::Scans { range, get, .. } => get(of)
+                    .filter(|scans| !(range.0..=range.1).contains(scans))
+                    .map(|scans| format!("is {scans} scans: it must be from {} to {}", range.0, range.1)),
+                Holds::Object(object) => {
+                    if let Json::Map(members) = &node.json {
+                        let inner = Fields::of(node, members);
+                        good = self.in_range(&inner, object, of).and(good);
+                    }
+                    None
+                }
+                Holds::Bool { .. } | Holds::Word { .. } | Holds::Whole { .. } => None,
+            };
+            if let Some(why) = refused {
+                let message = format!("{} {why}", called(key));
+                self.report(Diagnostic::new(Code::BadValue, node.span, message));
+                good = None;
+            }
+        }
+        good
+    }
+}
+
+fn range_text(bounds: &Bounds) -> String {
+    match (bounds.is_above, bounds.most == f64::MAX) {
+        (true, true) => format!("above {}", number_text(bounds.least)),
+        (false, true) => format!("at least {}", number_text(bounds.least)),
+        (true, false) => format!(
+            "above {} and at most {}",
+            number_text(bounds.least),
+            number_text(bounds.most)
+        ),
+        (false, false) => format!(
+            "from {} to {}",
+            number_text(bounds.least),
+            number_text(bounds.most)
+        ),
+    }
+}

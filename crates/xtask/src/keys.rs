@@ -1,0 +1,82 @@
+//! The tables of keys of axes and drives in the page on scan scripts: from the tables that the reader and the schema use.
+
+use crate::{Generated, root};
+use standstill_axis::keys::{AXIS, Holds, Object};
+use standstill_drives::keys::{CIA402, IDEAL, PLANT};
+use std::fmt::Write;
+use std::fs;
+
+/// The page; everything else in it is written by hand.
+const PAGE: &str = "docs/scan-scripts.md";
+
+/// Keys of an axis that are none of its configuration.
+const OTHERS: [(&str, &str, &str); 2] = [
+    ("unit", "label of the axis's unit u", "empty"),
+    ("drive", "the drive of the axis, see below", "ideal, no delay"),
+];
+
+/// The page with its tables made anew.
+///
+/// # Panics
+/// If the page is not there, or has no place for a table.
+pub fn page() -> Generated {
+    let path = root().join(PAGE);
+    let mut text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{PAGE}: {error}"));
+    let others = OTHERS.map(|(name, doc, absent)| row(name, doc, Some(absent)));
+    let travel: Vec<_> = IDEAL.keys.iter().map(|key| key.path).collect();
+    for (name, rows) in [
+        ("axis", others.concat() + &rows(&AXIS, &[])),
+        ("ideal", rows(&IDEAL, &[])),
+        ("cia402", rows(&CIA402, &travel)),
+        ("plant", rows(&PLANT, &travel)),
+    ] {
+        let (open, close) = (format!("<!-- keys: {name}, generated -->\n"), "<!-- end -->\n");
+        let place = text.find(&open).map(|at| at + open.len());
+        let place = place.unwrap_or_else(|| panic!("{PAGE} has no `{}`", open.trim()));
+        let end = text.get(place..).and_then(|rest| rest.find(close));
+        let end = place + end.unwrap_or_else(|| panic!("{PAGE}: nothing ends the keys of {name}"));
+        let table = format!("\n| key | meaning | if absent |\n| --- | --- | --- |\n{rows}\n");
+        text.replace_range(place..end, &table);
+    }
+    Generated {
+        path: PAGE.to_owned(),
+        text,
+    }
+}
+
+/// A row for every key, but for those at `left_out`, and for those in it.
+fn rows<T>(object: &Object<T>, left_out: &[&str]) -> String {
+    let keys = object.keys.iter().filter(|key| !left_out.contains(&key.path));
+    keys.map(|key| {
+        let inner = match &key.holds {
+            Holds::Object(inner) => rows(inner, &[]),
+            Holds::Bool { .. }
+            | Holds::Word { .. }
+            | Holds::Number { .. }
+            | Holds::Whole { .. }
+            | Holds::Scans { .. } => String::new(),
+        };
+        row(key.path, key.doc, key.absent) + &inner
+    })
+    .collect()
+}
+
+fn row(name: &str, doc: &str, absent: Option<&str>) -> String {
+    let mut row = String::new();
+    let absent = absent.unwrap_or("needed");
+    // A string takes whatever is written to it.
+    let _ = writeln!(row, "| `{name}` | {} | {absent} |", linked(doc));
+    row
+}
+
+/// A text whose names of pages are links.
+fn linked(text: &str) -> String {
+    let words = text.split(' ').map(|word| {
+        let bare = word.trim_matches(|sign: char| !sign.is_ascii_alphanumeric());
+        match bare.ends_with(".md") {
+            true => word.replace(bare, &format!("[{bare}]({bare})")),
+            false => word.to_owned(),
+        }
+    });
+    words.collect::<Vec<_>>().join(" ")
+}
