@@ -2,10 +2,11 @@
 
 use super::{Bounds, Holds, Key, Null, Object};
 use crate::{
-    ACTUAL_FILTER_MAX, AboveLimit, AxisConfig, BlockDetection, HomeDirection, InPosition, MODULO_MAX,
-    OnLimit, OnMasterLost, PowerOff, Procedure, QUEUE_MAX, Scaling, StartState, SwitchEdge,
+    ACTUAL_FILTER_MAX, AboveLimit, AxisConfig, BlockDetection, EdgeWhileBusy, HomeDirection, InPosition,
+    JogAtLimit, MODULO_MAX, ModuloTargets, OnLimit, OnMasterLost, PowerOff, Procedure, QUEUE_MAX, Scaling,
+    StartState, SwitchEdge,
 };
-use standstill_planner::MoveProfile;
+use standstill_planner::{Limits, MoveProfile};
 
 /// The place of a value in a list of all.
 macro_rules! place {
@@ -101,6 +102,13 @@ pub static AXIS: Object<AxisConfig> = Object::new(
             absent: None,
             null: None,
             holds: Holds::Object(Object::new("`limits`", LIMITS)),
+        },
+        Key {
+            path: "application_limits",
+            doc: "what commands get at most, each at most that of `limits`; MC_WriteParameter changes them, see parameters.md",
+            absent: Some("`limits`"),
+            null: None,
+            holds: Holds::Object(Object::new("`application_limits`", APPLICATION_LIMITS)),
         },
         Key {
             path: "defaults",
@@ -206,6 +214,16 @@ pub static AXIS: Object<AxisConfig> = Object::new(
             "the limit",
             "jerk (u/s^3) of the same ramps; not above the limit"
         ),
+        Key {
+            path: "stop",
+            doc: "dynamics of stops alone, which may be above `limits`: of MC_Stop (where 0 at a pin stands for them, and they are the most), of ramps nobody commanded, of limit switches, software limits and barred directions; at least one of them, and not beside `stop_deceleration` and `stop_jerk`",
+            absent: Some("MC_Stop has those of a command"),
+            null: None,
+            holds: Holds::Object(Object {
+                needs_one: true,
+                ..Object::new("`stop`", STOP)
+            }),
+        },
         word!(
             "on_power_off",
             on_power_off,
@@ -278,6 +296,30 @@ pub static AXIS: Object<AxisConfig> = Object::new(
             null: None,
             holds: Holds::Object(Object::new("`coupling`", COUPLING)),
         },
+        word!(
+            "jog_at_limit",
+            jog_at_limit,
+            [("error", JogAtLimit::Error), ("stop", JogAtLimit::Stop)],
+            Some("`error`"),
+            "a held MC_Jog at a software limit: ErrorStop before it, `error`; at rest on it, `stop`, see jogging.md"
+        ),
+        word!(
+            "modulo_targets",
+            modulo_targets,
+            [("error", ModuloTargets::Error), ("wrap", ModuloTargets::Wrap)],
+            Some("`error`"),
+            "the target of an absolute move outside the first turn: refused (119), `error`; brought into it, `wrap`, see modulo.md"
+        ),
+        word!(
+            "edge_while_busy",
+            edge_while_busy,
+            [
+                ("restart", EdgeWhileBusy::Restart),
+                ("ignore", EdgeWhileBusy::Ignore)
+            ],
+            Some("`restart`"),
+            "a rising edge of Execute while the instance is Busy: starts the command anew, `restart`; does nothing, `ignore`, as blocks of Tc2 do. An edge of MC_Stop is never ignored: Execute is its lock"
+        ),
     ],
 );
 
@@ -338,6 +380,103 @@ const LIMITS: &[Key<AxisConfig>] = &[
         "no limit: the axis is of order 3 or 2",
         "largest snap (u/s^4)"
     ),
+];
+
+/// A key for a limit of the application; the others are those of the axis, which are read before.
+macro_rules! application {
+    ($path:literal, $field:ident, $absent:literal, $doc:literal) => {
+        Key {
+            path: $path,
+            doc: $doc,
+            absent: Some($absent),
+            null: Some(Null {
+                is: |_| false,
+                set: |_| {},
+            }),
+            holds: Holds::Number {
+                bounds: Bounds::POSITIVE,
+                get: |config| {
+                    let limits = config.application_limits.as_ref();
+                    limits.map(|it| it.$field).filter(|limit| *limit != f64::INFINITY)
+                },
+                set: |config, value| application(config).$field = value,
+            },
+        }
+    };
+}
+
+/// The limits of the application, which begin as those of the axis.
+fn application(config: &mut AxisConfig) -> &mut Limits {
+    config.application_limits.get_or_insert(config.limits)
+}
+
+const APPLICATION_LIMITS: &[Key<AxisConfig>] = &[
+    application!(
+        "application_limits.velocity",
+        velocity,
+        "that of the axis",
+        "largest velocity (u/s)"
+    ),
+    Key {
+        path: "application_limits.acceleration",
+        doc: "largest rate while the speed grows (u/s^2)",
+        absent: Some("that of the axis"),
+        null: None,
+        holds: Holds::Number {
+            bounds: Bounds::POSITIVE,
+            get: |config| config.application_limits.map(|it| it.acceleration),
+            // The deceleration is the same where none is given, as far as the axis has it.
+            set: |config, value| {
+                let deceleration = config.limits.deceleration;
+                let limits = application(config);
+                limits.acceleration = value;
+                if limits.deceleration == deceleration {
+                    limits.deceleration = value.min(deceleration);
+                }
+            },
+        },
+    },
+    application!(
+        "application_limits.deceleration",
+        deceleration,
+        "the acceleration given here, as far as the axis has it; else that of the axis",
+        "largest rate while the speed falls (u/s^2)"
+    ),
+    application!(
+        "application_limits.jerk",
+        jerk,
+        "that of the axis",
+        "largest jerk (u/s^3)"
+    ),
+    application!(
+        "application_limits.snap",
+        snap,
+        "that of the axis",
+        "largest snap (u/s^4)"
+    ),
+];
+
+/// A key for a part of what stops have for themselves.
+macro_rules! stop {
+    ($path:literal, $field:ident, $doc:literal) => {
+        Key {
+            path: $path,
+            doc: $doc,
+            absent: Some("the limit"),
+            null: None,
+            holds: Holds::Number {
+                bounds: Bounds::POSITIVE,
+                get: |config| config.stop.and_then(|stop| stop.$field),
+                set: |config, value| config.stop.get_or_insert_default().$field = Some(value),
+            },
+        }
+    };
+}
+
+const STOP: &[Key<AxisConfig>] = &[
+    stop!("stop.deceleration", deceleration, "deceleration (u/s^2)"),
+    stop!("stop.jerk", jerk, "jerk (u/s^3)"),
+    stop!("stop.snap", snap, "snap (u/s^4)"),
 ];
 
 const DEFAULTS: &[Key<AxisConfig>] = &[

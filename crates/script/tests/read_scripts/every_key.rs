@@ -1,8 +1,8 @@
 //! A script with every key of the format, looked at where the example of the format says nothing.
 
 use standstill_axis::{
-    AboveLimit, AxisId, BlockDetection, DrivePosition, Following, HomeDirection, Homing, Limits, MoveProfile,
-    OnLimit, OnMasterLost, PowerOff, Procedure, Scaling, SwitchEdge,
+    AboveLimit, AxisId, BlockDetection, DrivePosition, EdgeWhileBusy, Following, HomeDirection, Homing, JogAtLimit,
+    Limits, ModuloTargets, MoveProfile, OnLimit, OnMasterLost, PowerOff, Procedure, Scaling, StopLimits, SwitchEdge,
 };
 use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
@@ -95,6 +95,25 @@ fn axes_take_their_configuration() {
     };
     assert_eq!(y.config, standstill_axis::AxisConfig::new(limits));
     assert_eq!(y.drive, DriveSetup::default());
+
+    let own = &script.axes.last().unwrap().config;
+    let application = Limits {
+        velocity: 0.5,
+        acceleration: 1.0,
+        deceleration: 2.0,
+        jerk: 3.0,
+        snap: inf,
+    };
+    assert_eq!(own.application_limits, Some(application));
+    let stop = StopLimits {
+        deceleration: Some(4.0),
+        jerk: Some(5.0),
+        snap: Some(6.0),
+    };
+    assert_eq!(own.stop, Some(stop));
+    assert_eq!(own.jog_at_limit, JogAtLimit::Stop);
+    assert_eq!(own.modulo_targets, ModuloTargets::Wrap);
+    assert_eq!(own.edge_while_busy, EdgeWhileBusy::Ignore);
 
     assert_eq!(
         script.axes[2].drive,
