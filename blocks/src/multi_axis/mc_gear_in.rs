@@ -112,11 +112,20 @@ impl Block for McGearIn {
                 };
                 couple(context.axes, inputs.slave, &request, &mut context.scope)
             });
+        if phase.is_reached() {
+            // Nothing else is to be told.
+            return Outputs {
+                in_gear: true,
+                busy: true,
+                active: true,
+                ..Outputs::default()
+            };
+        }
         let slave = context.axes.get(inputs.slave.index());
         let slave = slave.filter(|_| phase.is_active());
         let deviation = slave.map(|slave| slave.deviation());
         Outputs {
-            in_gear: phase.is_reached(),
+            in_gear: false,
             busy: phase.is_busy(),
             active: phase.is_active(),
             command_aborted: phase.is_aborted(),

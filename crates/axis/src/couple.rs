@@ -114,12 +114,21 @@ fn obstacle<P: Planner>(axes: &mut [Axis<P>], slave: AxisId, (master, source): V
     (!is_operating).then_some(ErrorId::MasterLost)
 }
 
-/// A master at the end of this scan, or before it moved in it.
-fn seen<P: Planner>(axes: &[Axis<P>], (master, source): Values, is_before: bool, scan: u64) -> Option<Seen> {
+/// A master at the end of this scan.
+fn seen<P: Planner>(axes: &[Axis<P>], (master, source): Values, scan: u64) -> Option<Seen> {
     let axis = axes.get(master.index())?;
     Some(match source {
-        ValueSource::Actual => axis.seen_actual(scan, is_before),
+        ValueSource::Actual => axis.seen_actual(scan, false),
         ValueSource::Set | ValueSource::Commanded => axis.seen(scan),
+    })
+}
+
+/// The same before it moved in this scan.
+fn seen_before<P: Planner>(axes: &[Axis<P>], (master, source): Values, scan: u64) -> Option<Seen> {
+    let axis = axes.get(master.index())?;
+    Some(match source {
+        ValueSource::Actual => axis.seen_actual(scan, true),
+        ValueSource::Set | ValueSource::Commanded => axis.seen_before(scan),
     })
 }
 
@@ -158,32 +167,51 @@ fn is_above<P: Planner>(axes: &mut [Axis<P>], upper: AxisId, lower: AxisId) -> b
 /// The motion step where some axis may follow another: masters first, axes of one rank in the order of their numbers.
 #[inline(never)]
 pub(crate) fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
-    let highest = set_ranks(axes);
-    for index in 0..axes.len() {
-        let Some(axis) = axes.get_mut(index) else { continue };
-        axis.note_source();
-        if axis.is_bound() {
-            note_masters(axes, index, scope.scan);
-        }
+    let is_known = axes.first().is_some_and(|axis| axis.nth().1 == axes.len());
+    let mut is_new = !is_known || !axes.iter().all(Axis::is_settled);
+    if is_new {
+        prepare(axes, scope.scan);
     }
-    // No chain is longer than there are axes.
-    for rank in 0..=highest {
-        for index in 0..axes.len() {
-            if axes.get(index).is_some_and(|axis| axis.rank() == rank) {
-                bar_rings(axes, index);
-                advance_one(axes, index, scope);
-            }
-        }
+    for place in 0..axes.len() {
+        let Some((index, _)) = axes.get(place).map(Axis::nth) else {
+            continue;
+        };
+        is_new |= !advance_one(axes, index, scope);
     }
-    slow_masters(axes, highest, scope);
+    if is_new && axes.iter().any(Axis::may_bound) {
+        slow_masters(axes, scope);
+    }
 }
 
-/// Before any axis has moved in this scan: a slave's masters are there.
+/// Before any axis has moved in this scan, where something is new: finds the order anew if it is another, and slaves take note of
+/// their masters.
+#[inline(never)]
+fn prepare<P: Planner>(axes: &mut [Axis<P>], scan: u64) {
+    if !is_in_order(axes) {
+        set_order(axes);
+    }
+    for index in 0..axes.len() {
+        note_masters(axes, index, scan);
+    }
+}
+
+/// Before any axis has moved in this scan: the masters of a slave for which something may be new are there.
 fn note_masters<P: Planner>(axes: &mut [Axis<P>], index: usize, scan: u64) {
+    let Some(axis) = axes.get_mut(index).filter(|axis| !axis.is_settled()) else {
+        return;
+    };
+    if !axis.is_bound() {
+        return axis.settle_alone();
+    }
     let Some(axis) = axes.get(index) else { return };
-    let see = |values: Option<Values>| seen(axes, values?, true, scan);
+    let see = |values: Option<Values>| seen_before(axes, values?, scan);
     let [first, second] = axis.followed_values();
     let (first, second, awaited) = (see(first), see(second), see(axis.awaited_values()));
+    for master in axis.masters() {
+        if let Some(master) = axes.get_mut(master.index()) {
+            master.note_followed();
+        }
+    }
     let Some(axis) = axes.get_mut(index) else { return };
     if let Some(seen) = first {
         axis.note_masters([seen, second.unwrap_or_default()]);
@@ -197,13 +225,11 @@ fn note_masters<P: Planner>(axes: &mut [Axis<P>], index: usize, scan: u64) {
 /// slave has left counts for its master.
 ///
 /// Cost: a look at each axis; where a slave slows its master, one for each rank, and where a bound changes that of an override.
-fn slow_masters<P: Planner>(axes: &mut [Axis<P>], highest: u16, scope: &mut Scope<'_>) {
-    if !axes.iter().any(Axis::may_bound) {
-        return;
-    }
+fn slow_masters<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     for axis in axes.iter_mut() {
         axis.begin_bound();
     }
+    let highest = axes.iter().map(Axis::rank).max().unwrap_or(0);
     for rank in (0..=highest).rev() {
         for index in 0..axes.len() {
             let Some(axis) = axes.get_mut(index).filter(|axis| axis.rank() == rank) else {
@@ -219,15 +245,45 @@ fn slow_masters<P: Planner>(axes: &mut [Axis<P>], highest: u16, scope: &mut Scop
     }
 }
 
-/// Tells every axis how many masters stand above it, those included whose place a command waits for. Returns the most.
+/// Whether the order found last is the one of ranks and numbers: each axis is in it once, and masters stand above their slaves.
 ///
-/// Cost: a look at all axes while nothing has changed; else as many as the longest chain has axes. What waits may close a ring, which
-/// takes one for each axis.
-fn set_ranks<P: Planner>(axes: &mut [Axis<P>]) -> u16 {
-    // Without a ring there are no other ranks than those that agree with each other.
-    if axes.iter().all(|axis| axis.rank() == rank_below(axes, axis)) {
-        return axes.iter().map(Axis::rank).max().unwrap_or(0);
+/// Cost: a look at each axis, and at its masters.
+fn is_in_order<P: Planner>(axes: &[Axis<P>]) -> bool {
+    let mut last = None;
+    axes.iter().all(|axis| {
+        let (index, among) = axis.nth();
+        let Some(axis) = axes.get(index) else { return false };
+        let this = Some((axis.rank(), index));
+        let is_next = this > last && among == axes.len();
+        last = this;
+        is_next && axis.rank() == rank_below(axes, axis)
+    })
+}
+
+/// Finds the order in which axes move: how many masters stand above each, those included whose place a command waits for, and which
+/// axis moves after how many.
+///
+/// Cost: two times as many looks at all axes as the longest chain has axes. What waits may close a ring, which takes one for each
+/// axis.
+#[cold]
+#[inline(never)]
+fn set_order<P: Planner>(axes: &mut [Axis<P>]) {
+    let (highest, count) = (set_ranks(axes), axes.len());
+    let mut place = 0;
+    for rank in 0..=highest {
+        for index in 0..count {
+            if axes.get(index).is_some_and(|axis| axis.rank() == rank)
+                && let Some(axis) = axes.get_mut(place)
+            {
+                axis.set_nth(index, count);
+                place += 1;
+            }
+        }
     }
+}
+
+/// Tells every axis how many masters stand above it. Returns the most.
+fn set_ranks<P: Planner>(axes: &mut [Axis<P>]) -> u16 {
     for axis in axes.iter_mut() {
         axis.set_rank(0);
     }
@@ -281,7 +337,47 @@ fn bar_rings<P: Planner>(axes: &mut [Axis<P>], index: usize) {
     }
 }
 
-fn advance_one<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope<'_>) {
+/// The step of one axis. Returns FALSE if something may be new for a slave, or for its masters.
+#[inline(always)]
+fn advance_one<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope<'_>) -> bool {
+    let Some(axis) = axes.get_mut(index) else {
+        return true;
+    };
+    axis.note_before(scope.scan);
+    if !axis.is_bound() {
+        axis.advance(scope);
+        return true;
+    }
+    let goes_on = goes_on(axes, index, scope);
+    if !goes_on {
+        advance_bound(axes, index, scope);
+    }
+    goes_on
+}
+
+/// The step of a slave for which nothing is new. Returns FALSE, and nothing has moved, if something is.
+#[inline(always)]
+fn goes_on<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope<'_>) -> bool {
+    let Some(master) = axes.get(index).and_then(Axis::steady_master) else {
+        return false;
+    };
+    let Ok([slave, master]) = axes.get_disjoint_mut([index, master.index()]) else {
+        return false;
+    };
+    let goes_on = slave.follow_steadily(master, scope);
+    if !goes_on {
+        slave.note_masters([master.was(), Seen::default()]);
+    }
+    goes_on
+}
+
+/// The step of an axis that follows another, or may.
+#[inline(never)]
+fn advance_bound<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope<'_>) {
+    if let Some(axis) = axes.get_mut(index) {
+        axis.begin_anew();
+    }
+    bar_rings(axes, index);
     start_at_point(axes, index, scope);
     let masters = axes.get(index).map_or([None; 2], Axis::followed_values);
     if let [Some(first), second] = masters {
@@ -302,7 +398,7 @@ fn start_at_point<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Sc
     let Some(followed) = axes.get(index).and_then(Axis::awaited_values) else {
         return;
     };
-    let (Some(now), turn) = (seen(axes, followed, false, scope.scan), turn_of(axes, followed)) else {
+    let (Some(now), turn) = (seen(axes, followed, scope.scan), turn_of(axes, followed)) else {
         return;
     };
     let Some(slave) = axes.get_mut(index) else { return };
@@ -333,10 +429,10 @@ fn look<P: Planner>(
     scope: &mut Scope<'_>,
     act: impl FnOnce(&mut Axis<P>, &View<'_, P::Plan>, &mut Scope<'_>),
 ) {
-    let (Some(now), turn) = (seen(axes, first, false, scope.scan), turn_of(axes, first)) else {
+    let (Some(now), turn) = (seen(axes, first, scope.scan), turn_of(axes, first)) else {
         return;
     };
-    let seen_second = second.and_then(|second| seen(axes, second, false, scope.scan));
+    let seen_second = second.and_then(|second| seen(axes, second, scope.scan));
     let first_root = root(axes, first);
     let second_root = second.map(|second| root(axes, second));
     let Some((before, rest)) = axes.split_at_mut_checked(index) else {

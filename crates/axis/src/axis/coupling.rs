@@ -15,6 +15,7 @@
 //! | [`bound`] | what the limits of slaves leave to their master |
 //! | [`cam`] | the same on a cam, in a folder of its own |
 //! | [`phasing`] | a shift between the master and what the slave sees of it |
+//! | [`steady`] | the same in a scan in which nothing is new |
 //! | [`sync`] | MC_GearInPos: a law that is given, and a start that waits for a place of the master |
 //!
 //! Source: PLCopen Motion Control Part 1, MC_GearIn, MC_GearOut; V16, V18, V18b, V18d. What the standard leaves open is told in
@@ -26,6 +27,7 @@ mod cam;
 mod follow;
 mod needs;
 mod phasing;
+mod steady;
 mod sync;
 mod view;
 
@@ -517,6 +519,22 @@ impl<P: Planner> Axis<P> {
         self.is_bound
     }
 
+    /// The index of the axis that moves after as many as its own index, and of how many.
+    #[inline]
+    pub(crate) fn nth(&self) -> (usize, usize) {
+        (self.nth, self.among)
+    }
+
+    /// After as many axes as its own index, of so many, the one of this index moves.
+    pub(crate) fn set_nth(&mut self, nth: usize, axes: usize) {
+        (self.nth, self.among) = (nth, axes);
+    }
+
+    /// Some slave may follow it.
+    pub(crate) fn note_followed(&mut self) {
+        self.is_followed = true;
+    }
+
     /// How many masters stand above it, as told last.
     pub(crate) fn rank(&self) -> u16 {
         self.rank
@@ -543,15 +561,16 @@ impl<P: Planner> Axis<P> {
         [first, second, self.awaited_master()].into_iter().flatten()
     }
 
-    /// A command that follows a master waits.
+    /// A command waits, maybe one that follows a master.
     pub(super) fn note_bound(&mut self, entry: &Entry) {
+        self.unsettle();
         self.is_bound |= matches!(entry.work, Work::Gear(_) | Work::Cam(_));
     }
 
     /// Notes anew whether the owner, or a command that waits, may follow a master. Returns whether one that waits may.
     pub(crate) fn renew_bound(&mut self) -> bool {
         let couples = |entry: &Entry| matches!(entry.work, Work::Gear(_) | Work::Cam(_));
-        let waits = self.queue.iter().any(couples);
+        let waits = !self.queue.is_empty() && self.queue.iter().any(couples);
         self.is_bound = self.is_coupled() || self.is_on_cam() || self.awaited.is_some() || waits;
         waits
     }

@@ -312,6 +312,15 @@ pub struct Axis<P: Planner = Standard> {
     bound: coupling::Bound,
     /// How many masters stand above it.
     rank: u16,
+    /// The index of the axis that moves after as many as this one's own index, of so many axes.
+    nth: usize,
+    among: usize,
+    /// Some slave may follow it, or did.
+    is_followed: bool,
+    /// Where it was before its step in this scan; only where some slave may follow it.
+    was: Seen,
+    /// Nothing is new where some axis may follow another; never stale where it is TRUE.
+    is_settled: bool,
     /// Reached in the search for a ring that is under way.
     is_above: bool,
     /// The owner is MC_Stop, stands, and is held by its Execute.
@@ -387,6 +396,11 @@ impl<P: Planner> Axis<P> {
             source: coupling::Source::default(),
             bound: coupling::Bound::default(),
             rank: 0,
+            nth: 0,
+            among: 0,
+            is_followed: false,
+            was: Seen::default(),
+            is_settled: false,
             is_above: false,
             stop_held: false,
             queue: Queue::default(),

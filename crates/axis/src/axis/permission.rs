@@ -55,6 +55,7 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     pub(super) fn permit(&mut self, permitted: Permission, scope: &mut Scope<'_>) {
         self.power.permit(permitted);
+        self.unsettle();
         if let Some(error) = self.barred_now() {
             self.pause(error, scope);
         }

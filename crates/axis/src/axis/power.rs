@@ -113,6 +113,7 @@ impl<P: Planner> Axis<P> {
     /// Something is pending, or may be.
     pub(super) fn stir(&mut self) {
         self.calm = Calm::No;
+        self.unsettle();
     }
 
     /// The actual position (u), of a number.
@@ -184,6 +185,7 @@ impl<P: Planner> Axis<P> {
         }
         self.finish_reset();
         self.calm = self.calmness();
+        self.unsettle();
     }
 
     fn follow_power(&mut self, feedback: &DriveFeedback, scope: &mut Scope<'_>) {

@@ -195,6 +195,7 @@ impl<P: Planner> Axis<P> {
         match start {
             Start::Wait => {
                 self.looked_at(profile, scope)?;
+                self.unsettle();
                 self.queue.push(entry);
                 self.start_beside(scope);
             }

@@ -33,6 +33,7 @@ impl<P: Planner> Axis<P> {
             .map_err(|(_, error)| self.refuse("ExecutionMode", 1.0, f64::NAN, error, scope))?;
         let id = self.new_id();
         let entry = Entry::new(id, scope.instance, work, self.config.limits, BufferMode::Buffered);
+        self.unsettle();
         self.queue.push(entry);
         Ok(id)
     }

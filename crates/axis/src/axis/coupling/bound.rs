@@ -188,6 +188,7 @@ impl<P: Planner> Axis<P> {
             return;
         }
         self.bound.now = self.bound.next;
+        self.unsettle();
         self.override_queue();
         self.bound_owner(scope);
         self.override_superimposed(scope);

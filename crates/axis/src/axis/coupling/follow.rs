@@ -13,6 +13,9 @@ use standstill_planner::{Anchor, Leads, Limits, Place, Plan, Planner, Setpoint};
 /// What of a motion is beyond a limit: its name, its value and the limit.
 pub(in crate::axis) type Beyond = (&'static str, f64, f64);
 
+/// The last scan of the master's plan, or of one beside the law, may be longer: times a scan.
+pub(super) const LONGEST: f64 = 1.0 + LAST_SCAN;
+
 impl Coupling {
     /// Where the law is for masters that are there, and how it moves.
     pub(super) fn law(&self, anchor: &Anchor, seen: &SeenBoth) -> (Place, Setpoint) {
@@ -88,6 +91,7 @@ impl<P: Planner> Axis<P> {
             self.hand_over(self.setpoint.position, scope);
         }
         self.finish_reset();
+        self.note_steady();
     }
 
     /// What comes first in the motion step of a slave, behind a gear or on a cam: power, a master that is lost. Returns whether it
@@ -559,19 +563,7 @@ impl<P: Planner> Axis<P> {
         limits: &Limits,
         rough: Option<bool>,
     ) -> Option<Beyond> {
-        let rate = if next.velocity * next.acceleration < 0.0 {
-            limits.deceleration
-        } else {
-            limits.acceleration
-        };
-        let told = [
-            ("velocity", next.velocity, limits.velocity),
-            ("acceleration", next.acceleration, rate),
-            ("jerk", next.jerk, limits.jerk),
-            ("snap", next.snap, limits.snap),
-        ];
-        let beyond = |(_, value, limit): &Beyond| !(value.abs() <= limit * (1.0 + ROUNDING));
-        let found = told.into_iter().find(beyond);
+        let found = beyond_limits(next, limits);
         let Some(is_rough) = rough.filter(|_| found.is_none()) else {
             return found;
         };
@@ -663,13 +655,9 @@ impl<P: Planner> Axis<P> {
 
     /// Whether `next` is no further from the last set-point than the axis may go in a scan.
     fn is_step_behind(&self, next: &Setpoint) -> bool {
-        let limits = self
-            .config
-            .limits
-            .or_larger(&self.before)
-            .or_larger(&self.stop_limits());
-        // The last scan of the master's plan, or of one beside the law, may be longer.
-        self.steps_within(next, &limits, 1.0 + LAST_SCAN, 0.0)
+        let steps_within = |limits: &Limits| self.steps_within(next, limits, LONGEST, 0.0);
+        let limits = &self.config.limits;
+        steps_within(limits) || steps_within(&limits.or_larger(&self.before).or_larger(&self.stop_limits()))
     }
 
     /// The master went out of operation: to rest, and no way onto the law is looked for.
@@ -706,6 +694,24 @@ impl<P: Planner> Axis<P> {
             self.trip(ErrorId::DeviationTooLarge, 0, Reaction::Ramp, scope);
         }
     }
+}
+
+/// The first derivative of a state that is beyond its limit.
+#[inline]
+pub(super) fn beyond_limits(next: &Setpoint, limits: &Limits) -> Option<Beyond> {
+    let rate = if next.velocity * next.acceleration < 0.0 {
+        limits.deceleration
+    } else {
+        limits.acceleration
+    };
+    let told = [
+        ("velocity", next.velocity, limits.velocity),
+        ("acceleration", next.acceleration, rate),
+        ("jerk", next.jerk, limits.jerk),
+        ("snap", next.snap, limits.snap),
+    ];
+    let beyond = |(_, value, limit): &Beyond| !(value.abs() <= limit * (1.0 + ROUNDING));
+    told.into_iter().find(beyond)
 }
 
 /// How far `one` is from `other` (u), turns of `length` (u) and all.

@@ -67,7 +67,7 @@ impl<Plan> Default for Phasing<Plan> {
 
 impl<Plan> Phasing<Plan> {
     /// There is no shift, and none is asked for.
-    fn is_none(&self) -> bool {
+    pub(super) fn is_none(&self) -> bool {
         let rests = |leg: &Shifts| leg.command.is_none() && leg.now.position == 0.0;
         self.motion.is_none() && self.legs.iter().all(rests)
     }
@@ -126,6 +126,7 @@ impl<P: Planner> Axis<P> {
             let master = f64::from(request.master.number());
             return Err(self.refuse("Master", master, f64::NAN, ErrorId::NotCoupled, scope));
         };
+        self.unsettle();
         let shift = Shift {
             id: self.new_id(),
             instance: scope.instance,

@@ -1,5 +1,6 @@
 //! What a slave may know of its master in its motion step: where it is, where it was, and its plan. Nothing else.
 
+use super::super::modulo::Modulo;
 use super::super::{Axis, Motion};
 use standstill_planner::{Anchor, Lead, Leads, Limits, Place, Plan, Planner, Setpoint};
 
@@ -118,10 +119,10 @@ pub(super) type Known = [KnownPart; 2];
 /// What it remembers of one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct KnownPart {
-    root: usize,
+    pub root: usize,
     factor: f64,
-    kind: Kind,
-    elapsed: u64,
+    pub kind: Kind,
+    pub elapsed: u64,
     /// Position and velocity at the end of the plan.
     end: (f64, f64),
 }
@@ -283,26 +284,35 @@ impl<Plan> View<'_, Plan> {
 
 impl<P: Planner> Axis<P> {
     /// Where it is: whole turns, and the position programs see.
+    #[inline(always)]
     pub(crate) fn place(&self) -> Place {
-        let shown = self.setpoint().position;
-        let turns = self.modulo.as_ref().map_or(0, |modulo| {
-            let further = (self.setpoint.position - shown) / modulo.length;
-            let nearest = if further < 0.0 {
-                further - 0.5
-            } else {
-                further + 0.5
-            };
-            modulo.turns().saturating_add(nearest as i64)
-        });
+        match &self.modulo {
+            None => Place {
+                position: self.setpoint.position,
+                ..Place::default()
+            },
+            Some(modulo) => self.place_round(modulo),
+        }
+    }
+
+    #[inline(never)]
+    fn place_round(&self, modulo: &Modulo) -> Place {
+        let shown = modulo.in_turn(self.setpoint.position);
+        let further = (self.setpoint.position - shown) / modulo.length;
+        let nearest = if further < 0.0 {
+            further - 0.5
+        } else {
+            further + 0.5
+        };
         Place {
-            turns,
+            turns: modulo.turns().saturating_add(nearest as i64),
             position: shown,
             ..Place::default()
         }
     }
 
-    /// As its slaves see it.
-    pub(crate) fn seen(&self, scan: u64) -> Seen {
+    /// Before its step in this scan: what its slaves remember of where it was.
+    pub(crate) fn seen_before(&self, scan: u64) -> Seen {
         let place = self.place();
         Seen {
             place,
@@ -311,9 +321,17 @@ impl<P: Planner> Axis<P> {
                 ..self.setpoint
             },
             moved: self.coordinates_moved(scan),
+            ..Seen::default()
+        }
+    }
+
+    /// As its slaves see it.
+    pub(crate) fn seen(&self, scan: u64) -> Seen {
+        Seen {
             is_operating: self.is_operating(),
             degree: self.slowed(&self.config.limits).order().degree(),
             keeps_bound: self.keeps_bound(),
+            ..self.seen_before(scan)
         }
     }
 
@@ -339,6 +357,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Where its next set-point comes from.
+    #[inline]
     fn source(&self) -> Source {
         match self.course() {
             Course::Still => Source::None,
