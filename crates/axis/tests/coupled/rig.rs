@@ -1,8 +1,8 @@
 //! Axes without drives, scan by scan.
 
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, Command, CommandId, Dynamics, ErrorId, Followed, Log, Master, Raw, Request,
-    Scope, Standard, SyncPoint, ValueSource, couple, steps,
+    Axis, AxisConfig, AxisId, Command, CommandId, Comms, DriveFeedback, DriveRequest, DriveSignals, Dynamics,
+    ErrorId, Followed, Log, Master, Raw, Request, Scope, Standard, SyncPoint, ValueSource, couple, steps,
 };
 
 /// Axes, and the number of the next scan.
@@ -55,9 +55,21 @@ impl Rig {
         }
     }
 
-    /// The motion step of a scan.
+    /// The motion step of a scan, and what drives that follow at once tell at the begin of the next one.
     pub fn step(&mut self) {
         steps::advance(&mut self.axes, &mut Scope::new(self.scan, &mut self.log));
         self.scan += 1;
+        for axis in &mut self.axes {
+            let command = axis.drive_command();
+            let feedback = DriveFeedback {
+                enabled: command.request == DriveRequest::Enable,
+                voltage: true,
+                fault: None,
+                position: command.position,
+                comms: Comms::Ok,
+                signals: DriveSignals::default(),
+            };
+            axis.follow_feedback(&feedback, &mut Scope::new(self.scan, &mut self.log));
+        }
     }
 }
