@@ -2,9 +2,9 @@
 
 use crate::{AxisSetup, DriveSetup};
 use standstill_axis::{
-    AboveLimit, AxisConfig, BlockDetection, ConfigError, Defaults, Following, HomeDirection, Homing,
-    InPosition, Limits, MoveProfile, OnLimit, OnMasterLost, PowerOff, Procedure, Scaling, StartState,
-    SwitchEdge,
+    AboveLimit, AxisConfig, BlockDetection, ConfigError, Defaults, EdgeWhileBusy, Following, HomeDirection,
+    Homing, InPosition, JogAtLimit, Limits, ModuloTargets, MoveProfile, OnLimit, OnMasterLost, PowerOff,
+    Procedure, Scaling, StartState, StopLimits, SwitchEdge,
 };
 use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
@@ -68,12 +68,23 @@ impl AxisSetup {
             on_master_lost: 0,
             actual_filter: 0,
             actual_lead: 0,
+            application_velocity: 0.0,
+            application_acceleration: 0.0,
+            application_deceleration: 0.0,
+            application_jerk: 0.0,
+            application_snap: 0.0,
+            hard_stop_deceleration: 0.0,
+            hard_stop_jerk: 0.0,
+            hard_stop_snap: 0.0,
+            jog_at_limit: 0,
+            modulo_targets: 0,
+            edge_while_busy: 0,
+            reserved: 0,
         }
     }
 
     /// As the axis takes it.
     pub(crate) fn config(&self) -> Result<AxisConfig, SetupFault> {
-        let or = |value: f64, instead: f64| if value == 0.0 { instead } else { value };
         let scaling = (self.scaling_increments != 0).then(|| {
             Scaling::new(
                 self.scaling_increments,
@@ -84,14 +95,15 @@ impl AxisSetup {
         });
         let unlimited =
             self.software_limit_min == f64::NEG_INFINITY && self.software_limit_max == f64::INFINITY;
+        let limits = Limits {
+            velocity: self.velocity,
+            acceleration: self.acceleration,
+            deceleration: or(self.deceleration, self.acceleration),
+            jerk: or(self.jerk, f64::INFINITY),
+            snap: or(self.snap, f64::INFINITY),
+        };
         Ok(AxisConfig {
-            limits: Limits {
-                velocity: self.velocity,
-                acceleration: self.acceleration,
-                deceleration: or(self.deceleration, self.acceleration),
-                jerk: or(self.jerk, f64::INFINITY),
-                snap: or(self.snap, f64::INFINITY),
-            },
+            limits,
             defaults: Defaults {
                 acceleration: given(self.default_acceleration),
                 deceleration: given(self.default_deceleration),
@@ -149,7 +161,56 @@ impl AxisSetup {
                 },
                 actual_lead: self.actual_lead != 0,
             },
+            application_limits: self.application_limits(&limits),
+            stop: self.stop(),
+            jog_at_limit: choice(
+                "jog_at_limit",
+                self.jog_at_limit,
+                &[JogAtLimit::Error, JogAtLimit::Stop],
+            )?,
+            modulo_targets: choice(
+                "modulo_targets",
+                self.modulo_targets,
+                &[ModuloTargets::Error, ModuloTargets::Wrap],
+            )?,
+            edge_while_busy: choice(
+                "edge_while_busy",
+                self.edge_while_busy,
+                &[EdgeWhileBusy::Restart, EdgeWhileBusy::Ignore],
+            )?,
         })
+    }
+
+    fn application_limits(&self, limits: &Limits) -> Option<Limits> {
+        let parts = [
+            self.application_velocity,
+            self.application_acceleration,
+            self.application_deceleration,
+            self.application_jerk,
+            self.application_snap,
+        ];
+        parts.iter().any(|part| *part != 0.0).then(|| {
+            let acceleration = or(self.application_acceleration, limits.deceleration);
+            Limits {
+                velocity: or(self.application_velocity, limits.velocity),
+                acceleration: or(self.application_acceleration, limits.acceleration),
+                deceleration: or(
+                    self.application_deceleration,
+                    acceleration.min(limits.deceleration),
+                ),
+                jerk: or(self.application_jerk, limits.jerk),
+                snap: or(self.application_snap, limits.snap),
+            }
+        })
+    }
+
+    fn stop(&self) -> Option<StopLimits> {
+        let stop = StopLimits {
+            deceleration: given(self.hard_stop_deceleration),
+            jerk: given(self.hard_stop_jerk),
+            snap: given(self.hard_stop_snap),
+        };
+        (stop != StopLimits::default()).then_some(stop)
     }
 
     fn homing(&self) -> Result<Homing, SetupFault> {
@@ -405,6 +466,11 @@ const fn fault(key: &'static str, value: f64) -> SetupFault {
 }
 
 /// 0 stands for what is not given; NaN is a value, and refused as one.
+/// A value, or what 0 stands for.
+fn or(value: f64, instead: f64) -> f64 {
+    if value == 0.0 { instead } else { value }
+}
+
 fn given(value: f64) -> Option<f64> {
     (value != 0.0).then_some(value)
 }

@@ -174,6 +174,31 @@ pub struct AxisSetup {
     pub actual_filter: i32,
     /// As a master of actual values: slaves see it ahead by what the filter delays at its velocity, if not 0.
     pub actual_lead: u32,
+    /// What commands get at most: velocity (u/s), at most that of the axis; 0: that of the axis, here and in the next four.
+    pub application_velocity: f64,
+    /// .. acceleration (u/s^2).
+    pub application_acceleration: f64,
+    /// .. deceleration (u/s^2); 0: the acceleration above, as far as the axis has it.
+    pub application_deceleration: f64,
+    /// .. jerk (u/s^3).
+    pub application_jerk: f64,
+    /// .. snap (u/s^4).
+    pub application_snap: f64,
+    /// Deceleration of MC_Stop and of ramps nobody commanded, which may be above the limit (u/s^2); 0: the limit, here and in the
+    /// next two. With one of the three stop_deceleration and stop_jerk are 0.
+    pub hard_stop_deceleration: f64,
+    /// .. jerk (u/s^3).
+    pub hard_stop_jerk: f64,
+    /// .. snap (u/s^4).
+    pub hard_stop_snap: f64,
+    /// A held MC_Jog at a software limit: 0 error 402 before it, 1 at rest on it.
+    pub jog_at_limit: i32,
+    /// Absolute targets outside the first turn: 0 error 119, 1 brought into it.
+    pub modulo_targets: i32,
+    /// A rising edge of Execute while the instance is Busy: 0 starts the command anew, 1 does nothing.
+    pub edge_while_busy: i32,
+    /// 0.
+    pub reserved: u32,
 }
 
 /// The drive under an axis. drive_defaults gives an ideal one.
@@ -565,7 +590,7 @@ pub struct Dump {
 
 // No gap a compiler might fill otherwise: every byte belongs to a field.
 const _: () = assert!(size_of::<RuntimeConfig>() == 24);
-const _: () = assert!(size_of::<AxisSetup>() == 296);
+const _: () = assert!(size_of::<AxisSetup>() == 376);
 const _: () = assert!(size_of::<DriveSetup>() == 248);
 const _: () = assert!(size_of::<Feedback>() == 136);
 const _: () = assert!(size_of::<Command>() == 80);
