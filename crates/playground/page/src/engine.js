@@ -1,6 +1,6 @@
 // The workers that read, run and plan. Each is asked one thing at a time; a run that takes too long is ended with its worker.
-// Programs and expressions need an interpreter, and downloads the page of reports: half a megabyte packed. The worker that
-// has both begins when it is needed.
+// Programs and expressions need a compiler and an interpreter, and downloads the page of reports: two thirds of a megabyte packed.
+// The worker that has them begins when it is needed.
 
 const LONGEST = 60_000; // ms of a run
 
