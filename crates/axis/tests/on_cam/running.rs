@@ -107,9 +107,10 @@ fn a_period_that_is_no_part_of_the_turn_stays_exact() {
     let ends = rig.slave().cam_ends();
     assert!(ends > 27_000, "{ends}");
     let master = rig.axes[MASTER].setpoint().position;
-    let turns = (f64::from(ends) * 360.0 / 1000.0).floor();
-    let way = [turns, turns + 1.0].map(|turns| turns * 1000.0 + master);
-    let rest = way.map(|way| way - f64::from(ends) * 360.0);
+    // Whole numbers first: of millions of periods the rest is told exactly.
+    let gone = i64::from(ends) * 360;
+    let turns = [gone / 1000, gone / 1000 + 1];
+    let rest = turns.map(|turns| (turns * 1000 - gone) as f64 + master);
     let rest = rest.into_iter().find(|rest| (0.0..360.0).contains(rest)).unwrap();
     let mut other = Rig::new(config(fast, 0.0, None), config(faster, 0.0, None));
     let cam = other.select(&up_and_back(), RELATIVE);

@@ -252,7 +252,7 @@ impl<P: Planner> Axis<P> {
             Some((place, self.broken_software_limit(place), error))
         };
         CamFit {
-            needed: limits.order().degree().saturating_sub(1),
+            needed: self.needed_of_cam(),
             outside: if self.modulo.is_some() {
                 None
             } else {
@@ -261,6 +261,12 @@ impl<P: Planner> Axis<P> {
             highest: head.bounds.highest_velocity(&limits),
             limits,
         }
+    }
+
+    /// How many derivatives of a cam must go on without a jump.
+    fn needed_of_cam(&self) -> usize {
+        let limits = self.slowed(&self.parameters.limits);
+        limits.order().degree().saturating_sub(1)
     }
 
     /// What MC_CamTableSelect tells of a complete cam: the highest constant velocity of `master` (u/s) with which this axis can
@@ -276,8 +282,8 @@ impl<P: Planner> Axis<P> {
         master_velocity: f64,
         scope: &mut Scope<'_>,
     ) -> Result<f64, ErrorId> {
-        self.check_smooth(head, scope)?;
         let fit = self.fit_of_cam(head);
+        self.check_smooth(head, fit.needed, scope)?;
         if selection.slave_absolute
             && let Some((place, limit, error)) = fit.outside
         {
@@ -299,8 +305,8 @@ impl<P: Planner> Axis<P> {
 
     /// # Errors
     /// [`ErrorId::CamNotSmooth`].
-    fn check_smooth(&self, head: &CamHead, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
-        if usize::from(head.continuity) >= self.fit_of_cam(head).needed {
+    fn check_smooth(&self, head: &CamHead, needed: usize, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
+        if usize::from(head.continuity) >= needed {
             return Ok(());
         }
         let what = CamFit::DERIVATIVES
@@ -457,7 +463,7 @@ impl<P: Planner> Axis<P> {
         };
         if let Some(head) = scope.cams.cam(cam.table).map(|cam| *cam.head) {
             // It may have been selected for another slave.
-            self.check_smooth(&head, scope)?;
+            self.check_smooth(&head, self.needed_of_cam(), scope)?;
             let period = head.end - head.begin;
             if head.periodic && !(cam.start_distance.abs() < period) {
                 let error = ErrorId::SyncPositionInvalid;
