@@ -1758,14 +1758,15 @@ typedef struct standstill_mc_cam_in_in {
     double slave_offset; /* SlaveOffset: Where place 0 of the cam lies at the slave. (u) */
     double master_scaling; /* MasterScaling: The master's side of the cam is so many times as long: above 1 it takes the master longer. */
     double slave_scaling; /* SlaveScaling: The slave's side of the cam is so many times as long; negative mirrors it. */
-    double master_start_distance; /* MasterStartDistance: Master distance before MasterSyncPosition in which the slave starts to synchronise; only 0 is supported. (u of the master) */
-    double master_sync_position; /* MasterSyncPosition: Place of the cam's master side at which the slave is in sync first; 0 for the first row that it can reach in time. (u of the master) */
+    double master_start_distance; /* MasterStartDistance: How far before MasterSyncPosition the master is, on its side of the cam, where the slave sets off; above 0 for a cam that runs forwards, below 0 for one that runs backwards. 0 sets off at once. (u of the master) */
+    double master_sync_position; /* MasterSyncPosition: Place of the cam's master side at which the slave is in sync first with a MasterStartDistance; without, it joins there, and 0 is the first row that it can reach in time. (u of the master) */
     int32_t start_mode; /* StartMode: mcAbsolute as selected, mcRelative so that the cam passes through where the slave is, mcRampIn as mcAbsolute. */
     int32_t master_value_source; /* MasterValueSource: mcSetValue, or mcActualValue for what the drive of the master tells, filtered. */
     uint32_t cam_table_id; /* CamTableID: The cam, from MC_CamTableSelect. */
     int32_t buffer_mode; /* BufferMode: How the command follows the one before it. */
+    double switch_at; /* SwitchAt: With BufferMode mcBuffered behind another cam: the place of that cam's master side at which this one takes over; 0 for its end. (u of the master) */
 } standstill_mc_cam_in_in;
-STANDSTILL_ASSERT(mc_cam_in_in, sizeof(standstill_mc_cam_in_in) == 80);
+STANDSTILL_ASSERT(mc_cam_in_in, sizeof(standstill_mc_cam_in_in) == 88);
 
 typedef struct standstill_mc_cam_in_out {
     uint32_t size; /* sizeof this structure */

@@ -2042,6 +2042,7 @@ struct standstill_mc_cam_in_fb {
     int32_t master_value_source;
     uint32_t cam_table_id;
     int32_t buffer_mode;
+    double switch_at;
     uint8_t in_sync;
     uint8_t busy;
     uint8_t active;
@@ -2068,16 +2069,17 @@ STANDSTILL_ASSERT(rusty_mc_cam_in_start_mode, sizeof(void *) != 8 || offsetof(st
 STANDSTILL_ASSERT(rusty_mc_cam_in_master_value_source, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, master_value_source) == 84);
 STANDSTILL_ASSERT(rusty_mc_cam_in_cam_table_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, cam_table_id) == 88);
 STANDSTILL_ASSERT(rusty_mc_cam_in_buffer_mode, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, buffer_mode) == 92);
-STANDSTILL_ASSERT(rusty_mc_cam_in_in_sync, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, in_sync) == 96);
-STANDSTILL_ASSERT(rusty_mc_cam_in_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, busy) == 97);
-STANDSTILL_ASSERT(rusty_mc_cam_in_active, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, active) == 98);
-STANDSTILL_ASSERT(rusty_mc_cam_in_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, command_aborted) == 99);
-STANDSTILL_ASSERT(rusty_mc_cam_in_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, error) == 100);
-STANDSTILL_ASSERT(rusty_mc_cam_in_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, error_id) == 102);
-STANDSTILL_ASSERT(rusty_mc_cam_in_end_of_profile, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, end_of_profile) == 104);
-STANDSTILL_ASSERT(rusty_mc_cam_in_deviation, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, deviation) == 112);
-STANDSTILL_ASSERT(rusty_mc_cam_in_master_lost, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, master_lost) == 120);
-STANDSTILL_ASSERT(rusty_mc_cam_in_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_cam_in_fb, result) == 124 && offsetof(struct standstill_mc_cam_in_fb, key) == 128 && sizeof(struct standstill_mc_cam_in_fb) == 136));
+STANDSTILL_ASSERT(rusty_mc_cam_in_switch_at, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, switch_at) == 96);
+STANDSTILL_ASSERT(rusty_mc_cam_in_in_sync, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, in_sync) == 104);
+STANDSTILL_ASSERT(rusty_mc_cam_in_busy, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, busy) == 105);
+STANDSTILL_ASSERT(rusty_mc_cam_in_active, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, active) == 106);
+STANDSTILL_ASSERT(rusty_mc_cam_in_command_aborted, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, command_aborted) == 107);
+STANDSTILL_ASSERT(rusty_mc_cam_in_error, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, error) == 108);
+STANDSTILL_ASSERT(rusty_mc_cam_in_error_id, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, error_id) == 110);
+STANDSTILL_ASSERT(rusty_mc_cam_in_end_of_profile, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, end_of_profile) == 112);
+STANDSTILL_ASSERT(rusty_mc_cam_in_deviation, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, deviation) == 120);
+STANDSTILL_ASSERT(rusty_mc_cam_in_master_lost, sizeof(void *) != 8 || offsetof(struct standstill_mc_cam_in_fb, master_lost) == 128);
+STANDSTILL_ASSERT(rusty_mc_cam_in_key, sizeof(void *) != 8 || (offsetof(struct standstill_mc_cam_in_fb, result) == 132 && offsetof(struct standstill_mc_cam_in_fb, key) == 136 && sizeof(struct standstill_mc_cam_in_fb) == 144));
 
 void MC_CamIn(struct standstill_mc_cam_in_fb *self);
 
@@ -2098,6 +2100,7 @@ void MC_CamIn(struct standstill_mc_cam_in_fb *self) {
     in.master_value_source = (int32_t)self->master_value_source;
     in.cam_table_id = self->cam_table_id;
     in.buffer_mode = (int32_t)self->buffer_mode;
+    in.switch_at = self->switch_at;
     self->result = standstill_mc_cam_in(STANDSTILL_RUNTIME &self->key, &in, &out);
     if (self->result == 0) {
         self->in_sync = out.in_sync;
