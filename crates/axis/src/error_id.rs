@@ -153,8 +153,8 @@ error_ids! {
         "The record in the log names the row, the derivative and the jump. Use mcCamRest7 or mcCamThrough for slaves with a snap limit, mcCamRest5 for those with a jerk limit; without periods begin and end at rest.";
     CamUnknown = 155, "CamTableID is no cam: it was never selected, is not complete yet, or was selected anew since.",
         "Wire CamTableID of MC_CamTableSelect and wait for its Done.";
-    SyncPositionInvalid = 156, "MasterSyncPosition, SlaveSyncPosition or MasterStartDistance is NaN or further from 0 than 1e15, or on a modulo axis not in its first turn.",
-        "Give finite positions; on a modulo axis at least 0 and less than the length of a turn, and a distance shorter than a turn.";
+    SyncPositionInvalid = 156, "MasterSyncPosition, SlaveSyncPosition, MasterStartDistance or SwitchAt is NaN or further from 0 than 1e15, on a modulo axis not in its first turn, or not in the cam.",
+        "Give finite positions; on a modulo axis at least 0 and less than the length of a turn, on a cam between its first and its last row, and a distance shorter than a turn, or than the period of a cam.";
     CamScalingInvalid = 157, "MasterScaling or SlaveScaling is 0, NaN or infinite, or an offset is NaN or beyond 1e15.",
         "Give finite numbers, and scalings other than 0; a negative SlaveScaling mirrors the cam.";
     CouplingRatioTooFine = 158, "Master and slave both have turns, and a turn of the one is no ratio of integers below 2^63 turns of the other.",
@@ -210,8 +210,8 @@ error_ids! {
         "Give a longer MasterStartDistance or higher dynamics, or bring the slave nearer to its place before.";
     CamBeyondLimits = 220, "The slave can't follow the cam at the velocity limit of its master, and is set to stop with an error where it can't (on_limit error).",
         "Lower the velocity limit of the master to MaxMasterVelocity, raise the limits of the slave, or make the cam wider.";
-    BufferModeNotHere = 221, "MC_GearInPos with a MasterStartDistance has a BufferMode other than mcAborting: where its start point is when the motion before it ends is not known.",
-        "Use mcAborting, or a MasterStartDistance of 0.";
+    BufferModeNotHere = 221, "MC_GearInPos or MC_CamIn with a MasterStartDistance has a BufferMode other than mcAborting: where its start point is when the motion before it ends is not known. Or MC_CamIn with SwitchAt has mcAborting.",
+        "Use mcAborting, or a MasterStartDistance of 0; with SwitchAt use mcBuffered.";
 
     BufferFull = 301, "All places of the command buffer are taken.",
         "Wait for a buffered command to become active, or enlarge the queue of the axis.";

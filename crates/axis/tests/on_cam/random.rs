@@ -155,8 +155,7 @@ fn dynamics(velocity: f64) -> Dynamics {
 
 /// What is between master and slave, or on top of the slave, at random.
 fn adds(rig: &mut Rig, random: &mut Random, velocity: f64) {
-    let mut log = standstill_axis::Log::default();
-    let scope = &mut standstill_axis::Scope::new(rig.scan, &mut log);
+    let scope = &mut standstill_axis::Scope::new(rig.scan, &mut rig.log);
     let dynamics = dynamics(velocity * random.log(0.01, 2.0));
     let master = rig.axes[MASTER].id();
     let slave = &mut rig.axes[crate::rig::SLAVE];
@@ -293,6 +292,15 @@ fn play(seed: u64, master_order: u64, more: bool, tally: &mut Tally) {
             adds(&mut episode.rig, other, speed);
         }
         episode.rig.step();
+        if more && std::env::var("CAM_LOOK").is_ok() {
+            let rig = &mut episode.rig;
+            let over = rig.peaks[3] > slave.snap * (1.0 + 1e-6);
+            let events = rig.events();
+            if !events.is_empty() {
+                println!("{} {events:?}", rig.scan);
+            }
+            assert!(!over, "{:?} {:?}", rig.slave().coupled(), rig.slave().outlook());
+        }
         if episode.rig.slave().awaited_command().is_some() {
             tally.waited += 1;
             continue;
@@ -335,7 +343,7 @@ fn play(seed: u64, master_order: u64, more: bool, tally: &mut Tally) {
         tally.over[order] = tally.over[order].max(over);
         assert!(
             over <= 1e-9,
-            "seed {seed}: d{} is {over:e} over its limit: {:?}",
+            "seed {seed}, more {more}, master {master_order}: d{} is {over:e} over its limit: {:?}",
             order + 1,
             rig.peaks
         );

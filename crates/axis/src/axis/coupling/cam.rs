@@ -448,13 +448,8 @@ impl<P: Planner> Axis<P> {
             ("MasterStartDistance", cam.start_distance),
             ("SwitchAt", cam.switch_at),
         ] {
-            let most = if pin == "MasterStartDistance" {
-                f64::MAX
-            } else {
-                FURTHEST
-            };
-            if !(value.abs() <= most) {
-                return refuse(pin, value, most, ErrorId::SyncPositionInvalid);
+            if !(value.abs() <= FURTHEST) {
+                return refuse(pin, value, FURTHEST, ErrorId::SyncPositionInvalid);
             }
         }
         let Some(selection) = scope.cams.selection(cam.table) else {
