@@ -348,7 +348,9 @@ pub(crate) fn quoted(text: &str) -> String {
 /// The candidate nearest to `name` without regard to case, as a help, if one slip in three letters explains it.
 pub(crate) fn did_you_mean<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
     let wanted: String = name.to_ascii_lowercase().chars().take(100).collect();
-    let slips = (wanted.chars().count() / 3).max(1);
+    let letters = wanted.chars().count();
+    // Of one letter nothing would be left.
+    let slips = (letters / 3).max(1).min(letters.saturating_sub(1));
     candidates
         // So many letters more or less are so many slips; most names need no closer look.
         .filter(|candidate| candidate.len().abs_diff(wanted.len()) <= slips)

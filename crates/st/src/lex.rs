@@ -276,7 +276,13 @@ impl Lexer<'_> {
         if !KNOWN.iter().any(|known| known.eq_ignore_ascii_case(word)) {
             let message = format!("the pragma {} is not known and has no effect", quoted(inner));
             let span = self.span(from);
-            self.found.add(Diagnostic::warning(Code::Doubtful, span, message));
+            let conditional = ["IF", "ELSIF", "ELSE", "END_IF"]
+                .iter()
+                .any(|it| word.eq_ignore_ascii_case(it));
+            let help =
+                conditional.then(|| "what stands between such pragmas is compiled in any case".to_owned());
+            let doubt = Diagnostic::warning(Code::Doubtful, span, message);
+            self.found.add(doubt.maybe_help(help));
         }
     }
 

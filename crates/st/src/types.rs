@@ -189,6 +189,13 @@ pub(crate) struct Enumeration {
     pub library: bool,
 }
 
+impl Enumeration {
+    /// The element of this name, without regard to case.
+    pub(crate) fn find(&self, name: &str) -> Option<&(String, i128)> {
+        self.elements.iter().find(|(it, _)| it.eq_ignore_ascii_case(name))
+    }
+}
+
 #[derive(Clone, Debug)]
 pub(crate) struct Structure {
     pub name: String,

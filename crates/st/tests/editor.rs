@@ -283,6 +283,16 @@ fn statements_are_offered_what_is_in_scope() {
     assert!(names(&offered("P|")).contains(&"PROGRAM"));
 }
 
+#[test]
+fn programs_are_offered_by_their_names_with_their_variables() {
+    let other = "PROGRAM Other VAR_OUTPUT Ready : BOOL; END_VAR VAR Step : INT; END_VAR END_PROGRAM ";
+    let found = offered(&format!("{other}PROGRAM Main |; END_PROGRAM"));
+    assert!(names(&found).contains(&"Other"), "{found:?}");
+    assert!(!names(&found).contains(&"Main"), "{found:?}");
+    let found = offered(&format!("{other}PROGRAM Main IF Other.| END_PROGRAM"));
+    assert_eq!(names(&found), ["Ready", "Step"]);
+}
+
 /// Every place of a text that is cut anywhere.
 #[test]
 fn no_place_of_a_broken_text_leads_to_a_panic() {

@@ -123,7 +123,19 @@ const MISTAKES: &[(&str, Code, &str, &str)] = &[
         "PROGRAM P VAR Counter : INT; END_VAR Countr := 1; END_PROGRAM",
         Code::UnknownName,
         "Countr",
-        "COUNTER",
+        "`Counter`",
+    ),
+    (
+        "TYPE E : (eIdle, eRun); END_TYPE PROGRAM P VAR x : E; END_VAR x := eRunn; END_PROGRAM",
+        Code::UnknownName,
+        "eRunn",
+        "`eRun`",
+    ),
+    (
+        "FUNCTION_BLOCK FB_Axis END_FUNCTION_BLOCK PROGRAM P VAR x : FB_Axes; END_VAR END_PROGRAM",
+        Code::UnknownType,
+        "FB_Axes",
+        "`FB_Axis`",
     ),
     (
         "PROGRAM P VAR x : INTT; END_VAR END_PROGRAM",
@@ -234,6 +246,12 @@ const MISTAKES: &[(&str, Code, &str, &str)] = &[
         "`IN`",
     ),
     (
+        "PROGRAM P VAR c : CTU; END_VAR c(RESET := TRUE); END_PROGRAM",
+        Code::BadArgument,
+        "RESET",
+        "it has CU, R, PV",
+    ),
+    (
         "PROGRAM P VAR t : TON; END_VAR t(IN := TRUE, IN := FALSE); END_PROGRAM",
         Code::BadArgument,
         "IN := FALSE",
@@ -311,6 +329,24 @@ const MISTAKES: &[(&str, Code, &str, &str)] = &[
         Code::WrongType,
         "n",
         "INT_TO_STRING",
+    ),
+    (
+        "PROGRAM P VAR x : STRING; END_VAR x := x + 5; END_PROGRAM",
+        Code::WrongType,
+        "+",
+        "CONCAT(.., INT_TO_STRING(..))",
+    ),
+    (
+        "PROGRAM P VAR x : STRING; n : INT; END_VAR n := n * x; END_PROGRAM",
+        Code::WrongType,
+        "*",
+        "STRING_TO_INT",
+    ),
+    (
+        "PROGRAM P VAR x : STRING; y : LREAL; END_VAR x := CONCAT(x, y); END_PROGRAM",
+        Code::WrongType,
+        "y",
+        "whole number first",
     ),
     (
         "PROGRAM P VAR x : STRING; END_VAR x := LREAL_TO_STRING(1.5); END_PROGRAM",
@@ -410,6 +446,78 @@ const MISTAKES: &[(&str, Code, &str, &str)] = &[
         Code::Unsupported,
         "LD",
         "Structured Text",
+    ),
+    (
+        "PROGRAM P Stop(); END_PROGRAM ACTION Stop: ; END_ACTION FUNCTION Stop : INT END_FUNCTION",
+        Code::Unsupported,
+        "ACTION",
+        "METHOD",
+    ),
+    (
+        "FUNCTION_BLOCK B ACTION Stop: ; END_ACTION END_FUNCTION_BLOCK",
+        Code::Unsupported,
+        "ACTION",
+        "METHOD",
+    ),
+    (
+        "PROGRAM P VAR a, b : BOOL; END_VAR a S= b; END_PROGRAM",
+        Code::Unsupported,
+        "S",
+        "a := TRUE",
+    ),
+    (
+        "PROGRAM P VAR a, b : BOOL; END_VAR a R= b; END_PROGRAM",
+        Code::Unsupported,
+        "R",
+        "a := FALSE",
+    ),
+    (
+        "PROGRAM P VAR a, b : BOOL; END_VAR a := a AND THEN b; END_PROGRAM",
+        Code::Syntax,
+        "THEN",
+        "AND_THEN",
+    ),
+    (
+        "PROGRAM P VAR a : BIT; END_VAR END_PROGRAM",
+        Code::UnknownType,
+        "BIT",
+        "BOOL",
+    ),
+    (
+        "PROGRAM P VAR a : DINT; END_VAR a := ADR(a); END_PROGRAM",
+        Code::Unsupported,
+        "ADR",
+        "VAR_IN_OUT",
+    ),
+    (
+        "TYPE E : (A, B); END_TYPE PROGRAM P VAR x : E; END_VAR x := 1; END_PROGRAM",
+        Code::Conversion,
+        "1",
+        "element of E",
+    ),
+    (
+        "TYPE E : (A, B); END_TYPE PROGRAM P VAR e : E; END_VAR e := E.B; END_PROGRAM",
+        Code::UnknownMember,
+        "B",
+        "E#B",
+    ),
+    (
+        "PROGRAM P VAR x : ARRAY [1..3] OF INT := 1; END_VAR END_PROGRAM",
+        Code::Conversion,
+        "1",
+        "[1, 2, 3]",
+    ),
+    (
+        "PROGRAM P VAR n : INT; END_VAR n := 1; END_PROGRAM PROGRAM Q P.n := 2; END_PROGRAM",
+        Code::NotWritable,
+        "P.n",
+        "inside a PROGRAM",
+    ),
+    (
+        "PROGRAM P Q(); END_PROGRAM PROGRAM Q P(); END_PROGRAM",
+        Code::Circle,
+        "P()",
+        "P -> Q -> P",
     ),
     (
         "VAR_ACCESS a : B : INT; END_VAR",
@@ -823,4 +931,13 @@ fn time_grows_with_the_text_and_not_with_its_square() {
     };
     let (short, long) = (time(2000), time(20_000));
     assert!(long < short * 60.0, "{short} {long}");
+}
+
+/// Covers: ST30
+#[test]
+fn a_missing_semicolon_behind_end_if_is_told_once_for_a_file() {
+    let each = "IF x > 1 THEN x := 1; END_IF ".repeat(60);
+    let told = wrong(&format!("PROGRAM P VAR x : INT; END_VAR {each} END_PROGRAM"));
+    let message = "`;` is missing behind END_IF, and in 59 more places of this file";
+    assert_eq!(told, [("portability", message.to_owned())]);
 }

@@ -222,6 +222,49 @@ END_CONFIGURATION");
     assert_eq!(tasks, ["Late", "Early"]);
 }
 
+/// Covers: ST20, ST43
+#[test]
+fn a_program_that_is_called_by_its_name_has_one_instance() {
+    let text = "
+        PROGRAM Other
+        VAR_INPUT n : INT; END_VAR VAR_OUTPUT o : INT; END_VAR VAR k : INT := 10; END_VAR
+          k := k + 1; o := n + k;
+        END_PROGRAM
+        PROGRAM Third Other(); END_PROGRAM
+        FUNCTION_BLOCK Watch VAR_OUTPUT seen : INT; END_VAR seen := Main.x * 100 + Other.k; END_FUNCTION_BLOCK
+        PROGRAM Main
+        VAR x : INT; w : Watch; END_VAR
+          Other(n := 3, o => x); Third(); w(); Other.n := 7;
+        END_PROGRAM";
+    let main = Options {
+        program: Some("Main".to_owned()),
+        ..Options::default()
+    };
+    let source = Source {
+        name: "prog.st",
+        bytes: text.as_bytes(),
+    };
+    let mut running = Running::of(standstill_st::compile(&[source], &main).unwrap());
+    running.scan().unwrap();
+    assert_eq!(running.whole("x"), 14);
+    assert_eq!(running.whole("other.k"), 12);
+    assert_eq!(running.whole("w.seen"), 1412);
+    assert_eq!(running.whole("Other.n"), 7);
+    // One that a task runs is that of the task; of two nobody knows which.
+    let with = |programs: &str| {
+        format!(
+            "PROGRAM P VAR_OUTPUT o : INT; END_VAR o := o + 1; END_PROGRAM
+             PROGRAM Q VAR seen : INT; END_VAR seen := P.o; END_PROGRAM
+             CONFIGURATION C RESOURCE R ON PLC {programs} END_RESOURCE END_CONFIGURATION"
+        )
+    };
+    let mut running = Running::new(&with("PROGRAM A : P; PROGRAM B : Q;"));
+    running.scan().unwrap();
+    assert_eq!((running.whole("A.o"), running.whole("B.seen")), (1, 1));
+    let told = wrong(&with("PROGRAM A : P; PROGRAM B : Q; PROGRAM Z : P;"));
+    assert_eq!(told[0].1, "tasks run several instances of the PROGRAM `P`: A, Z");
+}
+
 /// Covers: ST30
 #[test]
 fn statements_do_what_they_say() {

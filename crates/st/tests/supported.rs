@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{Running, compile, compiled, wrong};
+use common::{Running, compile, wrong};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -69,10 +69,12 @@ const ROWS: &[Row] = &[
     row(TYPES, "TIME, LTIME: 64 bits of ns", "LTIME#5us", "", "r : LTIME;", "r := @;", 5000),
     row(TYPES, "STRING, STRING[n], n up to 254", "STRING[5]", "", "s : @; t : STRING := 'abcdefgh'; r : INT;", "s := t; r := LEN(s);", 5),
     row(TYPES, "enumerations", "(Red, Green := 5, Blue)", "TYPE C : @; END_TYPE", "c : C := Blue; r : INT;", "r := C_TO_INT(c);", 6),
+    row(TYPES, "enumerations of a type of their own", "(Low, High := 200) USINT", "TYPE C : @; END_TYPE", "c : C; r : INT;", "c := High; r := TO_INT(c);", 200),
     row(TYPES, "elements by `E#a` and `E.a`", "C#Green = C.Green", "TYPE C : (Red, Green) DINT; END_TYPE", "r : BOOL;", "r := @;", 1),
     row(TYPES, "subranges", "INT(0..10)", "", "a : @ := 7; r : INT;", "r := a;", 7),
     row(TYPES, "structures with first values", "STRUCT X : INT := 3; END_STRUCT", "TYPE P : @; END_TYPE", "p : P; r : INT;", "r := p.X;", 3),
     row(TYPES, "arrays of up to 6 dimensions", "ARRAY [-1..1, 0..2] OF INT", "", "a : @; r : INT;", "a[-1, 2] := 4; r := a[-1, 2];", 4),
+    row(TYPES, "arrays of arrays", "a[1][2]", "", "a : ARRAY [0..1] OF ARRAY [0..2] OF INT; r : INT;", "@ := 6; r := @;", 6),
     row(TYPES, "aliases", "TYPE Speed : INT; END_TYPE", "@", "s : Speed := 3; r : INT;", "r := s;", 3),
     row(TYPES, "first values of arrays", "[3(2), 7]", "", "a : ARRAY [0..3] OF INT := @; r : INT;", "r := a[2] + a[3];", 9),
     row(TYPES, "first values of structures and instances", "(PT := T#1s)", "", "t : TON := @; r : LINT;", "r := LTIME_TO_LINT(t.PT);", 1_000_000_000),
@@ -83,6 +85,7 @@ const ROWS: &[Row] = &[
     row(UNITS, "FUNCTION_BLOCK", "b(In := 3)", "FUNCTION_BLOCK B VAR_INPUT In : INT; END_VAR VAR_OUTPUT Out : INT; END_VAR Out := In + 1; END_FUNCTION_BLOCK", "b : B; r : INT;", "@; r := b.Out;", 4),
     row(UNITS, "METHOD, THIS^", "b.Add(3)", "FUNCTION_BLOCK B VAR n : INT := 1; END_VAR METHOD Add : INT VAR_INPUT n : INT; END_VAR Add := n + THIS^.n; END_METHOD END_FUNCTION_BLOCK", "b : B; r : INT;", "r := @;", 4),
     row(UNITS, "several units in one file, in any order", "F()", "FUNCTION F : INT F := G(); END_FUNCTION FUNCTION G : INT G := 6; END_FUNCTION", "r : INT;", "r := @;", 6),
+    row(UNITS, "calls of a PROGRAM by its name, and its variables", "Other()", "PROGRAM Other VAR n : INT := 4; END_VAR n := n + 1; END_PROGRAM", "r : INT;", "@; r := Other.n;", 5),
     row(UNITS, "VAR_GLOBAL at the top of a file", "VAR_GLOBAL g : INT := 4; END_VAR", "@", "r : INT;", "r := g;", 4),
     row(UNITS, "lists by the name of their file", "prog.g", "VAR_GLOBAL g : INT := 4; END_VAR", "r : INT;", "r := @;", 4),
     row(SECTIONS, "VAR_INPUT, VAR_OUTPUT", "VAR_OUTPUT r : INT := 2; END_VAR", "", "@", "", 2),
@@ -155,6 +158,21 @@ const REFUSED: &[(&str, &str)] = &[
         "FUNCTION F : INT VAR_INPUT a : ANY_NUM; END_VAR END_FUNCTION",
     ),
     ("SFC", "PROGRAM P INITIAL_STEP s: END_STEP END_PROGRAM"),
+    ("Instruction List", "PROGRAM P LD a ST b END_PROGRAM"),
+    ("ACTION", "PROGRAM P A(); END_PROGRAM ACTION A: ; END_ACTION"),
+    (
+        "`S=`, `R=`, `REF=`",
+        "PROGRAM P VAR a : BOOL; END_VAR a S= TRUE; END_PROGRAM",
+    ),
+    ("ADR", "PROGRAM P VAR a : INT; END_VAR a := ADR(a); END_PROGRAM"),
+    (
+        "SIZEOF",
+        "PROGRAM P VAR a : INT; END_VAR a := SIZEOF(a); END_PROGRAM",
+    ),
+    (
+        "MEMCPY and its kin",
+        "PROGRAM P VAR a : INT; END_VAR MEMCPY(a, a, 2); END_PROGRAM",
+    ),
     ("VAR_ACCESS", "PROGRAM P VAR_ACCESS a : INT; END_VAR END_PROGRAM"),
     ("VAR_CONFIG", "VAR_CONFIG a : INT; END_VAR"),
     (
@@ -234,7 +252,17 @@ fn what_the_page_says_is_supported_works() {
             "{}: the example is no part of the program",
             row.what
         );
-        let mut running = Running::of(compiled(&text));
+        let main = standstill_st::Options {
+            program: Some("Main".to_owned()),
+            ..standstill_st::Options::default()
+        };
+        let source = standstill_st::Source {
+            name: "prog.st",
+            bytes: text.as_bytes(),
+        };
+        let compiled = standstill_st::compile(&[source], &main);
+        let compiled = compiled.unwrap_or_else(|report| panic!("{}", report.render()));
+        let mut running = Running::of(compiled);
         running.scan().unwrap_or_else(|fault| panic!("{fault}\n{text}"));
         assert_eq!(running.whole("r"), row.worth, "{}\n{text}", row.what);
     }

@@ -75,9 +75,13 @@ impl Kind {
 
 impl Reader {
     pub(super) fn conditions(&mut self, node: &Node, what: &str) -> Option<Conditions> {
-        if let Json::Text(text) = &node.json
-            && expression(text).is_some()
-        {
+        if let Json::Text(text) = &node.json {
+            if expression(text).is_none() {
+                let wanted = "an object, or an expression, which begins with `=`";
+                let wrong = self.wrong_type(node, what, wanted);
+                self.report(wrong);
+                return None;
+            }
             let formula = self.formula(node, text, PinType::Bool, Reads::Row)?;
             return Some(vec![Condition {
                 text: text.clone(),

@@ -337,6 +337,8 @@ impl Declared {
         if let Some((known, _)) = self.taken.iter().find(same) {
             return known.clone();
         }
+        // An enumeration without a name is called by these words.
+        let name = if name.contains(' ') { "Enumeration" } else { name };
         let is_taken = self
             .taken
             .iter()

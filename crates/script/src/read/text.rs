@@ -34,9 +34,10 @@ fn text(bytes: &[u8]) -> String {
     text.strip_prefix('\u{FEFF}').unwrap_or(&text).to_owned()
 }
 
-/// The warnings of a report.
+/// The warnings of a report. What only other compilers refuse is no doubt about this run.
 fn doubtful(report: &st::Report) -> Vec<Doubt> {
     let each = report.diagnostics().iter();
+    let each = each.filter(|it| it.code != st::Code::Portability);
     let doubts = each.map(|it| {
         let (from, _) = report.positions(it.span);
         let (file, line, column) = (report.file_name(it.span), from.line, from.column);
@@ -275,8 +276,14 @@ impl Reader {
             let message = format!("the program {} has no variable {}", quoted(name), quoted(path));
             let known = symbols.leaves(GUESSES_MAX);
             let known: Vec<&str> = known.iter().map(|symbol| symbols.short(&symbol.path)).collect();
-            Diagnostic::new(Code::UnknownSignal, span, message)
-                .maybe_help(suggestion(path, known.iter().copied()))
+            let mut indices = path.split('[').skip(1);
+            let computed = indices.any(|index| index.starts_with(|c: char| c.is_ascii_alphabetic()));
+            let help = if computed {
+                Some("indices of signals are numbers: let the program compute what is to be read".to_owned())
+            } else {
+                suggestion(path, known.iter().copied())
+            };
+            Diagnostic::new(Code::UnknownSignal, span, message).maybe_help(help)
         };
         self.report(diagnostic);
     }

@@ -95,7 +95,7 @@ impl Reader {
             let number = self.number(node, what)?;
             let known = elements.iter().find(|(_, known)| *known as f64 == number);
             if known.is_none() {
-                let message = format!("{} has no element of this number", quoted(variable.type_name()));
+                let message = format!("{} has no element of this number", variable.type_name());
                 let names = elements.iter().map(|(name, _)| name.as_str());
                 let help = suggestion("", names);
                 self.report(Diagnostic::new(Code::UnknownElement, node.span, message).maybe_help(help));

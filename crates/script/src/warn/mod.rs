@@ -117,8 +117,8 @@ impl fmt::Display for Warnings {
                 WarningKind::Note => Level::NOTE,
                 WarningKind::Vacuous | WarningKind::Clamped | WarningKind::Doubtful => Level::WARNING,
             };
-            let diagnostic =
-                Diagnostic::new(Code::BadValue, warning.span, &warning.message).help(&warning.help);
+            let diagnostic = Diagnostic::new(Code::BadValue, warning.span, &warning.message)
+                .maybe_help(Some(warning.help.clone()).filter(|help| !help.is_empty()));
             writeln!(
                 out,
                 "{}",

@@ -3,7 +3,7 @@
 use standstill_script::{ScriptError, model::Script, read_with_programs};
 use std::fmt::Write;
 
-const FILES: [(&str, &str); 6] = [
+const FILES: [(&str, &str); 7] = [
     (
         "main.wat",
         r#"(module (memory (export "memory") 1) (func (export "plc_scan") (param i32 i64)))"#,
@@ -16,6 +16,14 @@ const FILES: [(&str, &str); 6] = [
          VAR_INPUT Go : BOOL; Speed : REAL; Level : INT(0..9); State : E_State; Wait : TIME; END_VAR
          VAR Feeder : AXIS_REF; Mv : MC_MoveAbsolute; Inner : INT; END_VAR
          Mv(Axis := Feeder, Execute := Go);
+         END_PROGRAM",
+    ),
+    (
+        "plain.st",
+        "PROGRAM Plain
+         VAR_OUTPUT Mode : (Idle, Run := 5); Level AT %IW4 : INT := 3; END_VAR
+         VAR Axes : ARRAY [1..2, 0..1] OF AXIS_REF; END_VAR
+           Mode := Run;
          END_PROGRAM",
     ),
     ("other.st", "PROGRAM Other END_PROGRAM"),
@@ -57,7 +65,7 @@ fn read(program: &str, keys: &str, that: &str) -> Result<Script, ScriptError> {
 const CELL: &str = r#"{"st": "cell.st"}"#;
 
 /// The code, what is wrong, the program, further keys, and conditions.
-const CASES: [(&str, &str, &str, &str, &str); 25] = [
+const CASES: [(&str, &str, &str, &str, &str); 26] = [
     (
         "bad_program",
         "no such file",
@@ -113,6 +121,13 @@ const CASES: [(&str, &str, &str, &str, &str); 25] = [
         "unknown_signal",
         "a reference that is not there",
         r#"{"st": "cell.st", "axes": {"Feder": "X"}}"#,
+        "",
+        "",
+    ),
+    (
+        "unknown_signal",
+        "a reference that is bound twice",
+        r#"{"st": "cell.st", "axes": {"Feeder": "X", "feeder": "X"}}"#,
         "",
         "",
     ),
@@ -268,4 +283,13 @@ fn columns_are_what_trace_names_and_what_the_script_asks_for() {
         r#""c.CELL.inner": 0"#,
     );
     assert_eq!(asked, ["Fault", "Feeder.Number", "Inner"]);
+}
+
+/// Covers: ST11, ST21, ST43
+#[test]
+fn expressions_read_addresses_and_enumerations_without_a_name() {
+    let program = r#"{"st": "plain.st", "axes": {"axes[2, 1]": "X"}}"#;
+    let keys = r#""blocks": [], "stop_when": "=c.Mode = Run AND c.%IW4*2 = 6 AND c.Axes[2, 1].Number = 1","#;
+    let script = read(program, keys, r#""c.Mode": "Run""#).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(standstill_script::run(&script).unwrap().trace.scans(), 1);
 }

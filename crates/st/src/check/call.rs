@@ -9,6 +9,9 @@ use crate::syntax::{self, Call, Expression, ExpressionKind, Path, Selector, Way}
 use crate::typed::{Argument, Base, BlockCall, Expr, FunctionCall, Kind, Place, StmtKind};
 use crate::types::{Member, MemberKind, Type, TypeId, UnitId, WRONG};
 
+/// Most pins that a message lists.
+const PINS_SHOWN: usize = 10;
+
 impl<'a> Checker<'a> {
     /// A call that is an expression.
     pub(super) fn call_value(&mut self, call: &'a Call, expected: Option<TypeId>) -> Expr {
@@ -55,7 +58,12 @@ impl<'a> Checker<'a> {
             self.look_at_function(name.span, &key);
             return value;
         }
-        let names = self.unit_names.keys().map(String::as_str);
+        if let Some(instead) = of_pointers(&key) {
+            let message = format!("{key} is not supported");
+            self.error(Code::Unsupported, name.span, message, instead);
+            return wrong;
+        }
+        let names = self.declared_units();
         let guess = self.guess(&key, names.chain(Function::ALL.iter().map(|it| it.name())));
         let block = blocks::find(&key).map(|_| {
             format!(
@@ -171,14 +179,25 @@ impl<'a> Checker<'a> {
                 self.error(Code::BadArgument, argument.span, message, "");
             }
             Some(name) => {
-                let guess = self.guess(
-                    &name.text,
-                    info.members.list.iter().map(|member| member.name.as_str()),
-                );
+                let names = info.members.list.iter().map(|member| member.name.as_str());
+                let guess = self.guess(&name.text, names);
+                let guess = guess.or_else(|| self.pins_for(unit, argument.way));
                 let message = format!("{} has no pin `{}`", info.name, name.text);
                 self.tell(Diagnostic::error(Code::BadArgument, name.span, message).maybe_help(guess));
             }
         }
+    }
+
+    /// The pins that are given in this way, for a message.
+    fn pins_for(&self, unit: UnitId, way: Way) -> Option<String> {
+        let pins = self.unit(unit).members.list.iter().filter(|member| match way {
+            Way::In => matches!(member.kind, MemberKind::Input | MemberKind::InOut),
+            Way::Out | Way::OutInverted => member.kind == MemberKind::Output,
+        });
+        let names: Vec<&str> = pins.map(|member| member.name.as_str()).collect();
+        let shown = names.get(..PINS_SHOWN).unwrap_or(&names).join(", ");
+        let more = if names.len() > PINS_SHOWN { ", .." } else { "" };
+        (!names.is_empty()).then(|| format!("it has {shown}{more}"))
     }
 
     /// The variable that is bound to an in_out.
@@ -449,7 +468,10 @@ impl<'a> Checker<'a> {
             return (!matches!(value.kind, Kind::Wrong)).then_some(StmtKind::Evaluate(value));
         }
         let key = call.callee.root.key();
-        let variable = self.variable_exists(&key) || !call.callee.selectors.is_empty() || call.callee.this;
+        let variable = self.variable_exists(&key)
+            || self.program_named(&key).is_some()
+            || !call.callee.selectors.is_empty()
+            || call.callee.this;
         if !variable {
             let block = self
                 .unit_names
@@ -458,16 +480,8 @@ impl<'a> Checker<'a> {
                 .or_else(|| self.library_block(&key));
             if let Some(unit) = block.filter(|unit| self.unit(*unit).kind != UnitKind::Function) {
                 let name = self.unit(unit).name.clone();
-                let program = self.unit(unit).kind == UnitKind::Program;
-                let message = format!(
-                    "`{name}` is {}, not an instance",
-                    if program { "a PROGRAM" } else { "a function block" }
-                );
-                let help = if program {
-                    "run it in a CONFIGURATION, or make it a FUNCTION_BLOCK".to_owned()
-                } else {
-                    format!("declare one in VAR, `My{name} : {name};`, and call that")
-                };
+                let message = format!("`{name}` is a function block, not an instance");
+                let help = format!("declare one in VAR, `My{name} : {name};`, and call that");
                 self.error(Code::WrongType, call.callee.root.span, message, &help);
                 return None;
             }
@@ -547,4 +561,19 @@ impl<'a> Checker<'a> {
         );
         (!wrong).then(|| StmtKind::Block(Box::new(made)))
     }
+}
+
+/// What to write in place of a function that works with addresses.
+fn of_pointers(key: &str) -> Option<&'static str> {
+    Some(match key {
+        "ADR" | "REF" | "ADRINST" | "__ISVALIDREF" => {
+            "there are no pointers: hand variables over as VAR_IN_OUT"
+        }
+        "SIZEOF" | "XSIZEOF" => "there are no pointers, so nobody needs the size of a variable",
+        "MEMCPY" | "MEMMOVE" | "MEMSET" => {
+            "there are no pointers: arrays and structures are assigned whole, `a := b;`"
+        }
+        "LOWER_BOUND" | "UPPER_BOUND" => "arrays have constant bounds: name them in VAR CONSTANT",
+        _ => return None,
+    })
 }

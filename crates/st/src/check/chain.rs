@@ -149,12 +149,8 @@ impl<'a> Checker<'a> {
             (None, None) if self.is_text(left.ty) && self.is_text(right.ty) => {
                 wrong.help("put strings together with CONCAT(..)")
             }
-            (Some(_), None) if self.is_text(right.ty) => {
-                wrong.help(format!("convert it: {one}_TO_STRING(..)"))
-            }
-            (None, Some(_)) if self.is_text(left.ty) => {
-                wrong.help(format!("convert it: {other}_TO_STRING(..)"))
-            }
+            (Some(_), None) if self.is_text(right.ty) => wrong.help(beside_text(operator, &one)),
+            (None, Some(_)) if self.is_text(left.ty) => wrong.help(beside_text(operator, &other)),
             _ => wrong.help("structures, arrays and blocks are not computed with: use their members"),
         };
         self.tell(wrong);
@@ -576,5 +572,18 @@ const fn wholes(one: i128, operation: Operation, other: i128) -> i128 {
         Operation::Multiply => one.wrapping_mul(other),
         Operation::Divide => one / other,
         _ => one % other,
+    }
+}
+
+/// What to do where a value of this type and a string are put together.
+fn beside_text(operator: Operator, ty: &str) -> String {
+    use Operator as O;
+    match operator {
+        _ if matches!(ty, "REAL" | "LREAL") => super::library_call::TO_TEXT.to_owned(),
+        O::Add => format!("put them together with CONCAT(.., {ty}_TO_STRING(..))"),
+        O::Subtract | O::Multiply | O::Divide | O::Modulo | O::Power => {
+            format!("a string is no number; convert it: STRING_TO_{ty}(..)")
+        }
+        _ => format!("convert it: {ty}_TO_STRING(..)"),
     }
 }

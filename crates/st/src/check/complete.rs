@@ -240,7 +240,12 @@ impl Checker<'_> {
             .enumerate()
             .filter(|(_, it)| it.kind == UnitKind::Program);
         let programs = programs.map(|(index, it)| (it.name.to_ascii_uppercase(), UnitId(index as u32)));
-        let scopes: Vec<_> = self.running.iter().cloned().chain(programs).collect();
+        let scopes: Vec<_> = self
+            .running
+            .iter()
+            .map(|it| (it.name.clone(), it.unit))
+            .chain(programs)
+            .collect();
         for (name, unit) in scopes {
             self.scope = Some(unit);
             let found = match self.declared_by(&parts) {
@@ -345,9 +350,10 @@ impl Checker<'_> {
         };
         let mut ty = match local {
             Some((unit, place)) => self.unit(unit).members.list.get(place)?.ty,
-            None => match self.global_names.get(root) {
-                Some(place) => self.globals.get(*place)?.member.ty,
-                None => {
+            None => match (self.global_names.get(root), self.program_named(root)) {
+                (Some(place), _) => self.globals.get(*place)?.member.ty,
+                (None, Some(program)) => self.block_type(program),
+                (None, None) => {
                     // GVL.x
                     let file = *self.files.get(root)?;
                     let (Part::Name(name), behind) = rest.split_first()? else {
@@ -452,7 +458,12 @@ impl Checker<'_> {
                 members.map(|member| self.variable_offered(member)).collect()
             }
             Type::Block(unit) => {
-                let seen = |member: &&Member| matches!(member.kind, MemberKind::Input | MemberKind::Output);
+                let program = self.unit(*unit).kind == UnitKind::Program;
+                let seen = |member: &&Member| match member.kind {
+                    MemberKind::Input | MemberKind::Output => true,
+                    MemberKind::Var => program,
+                    _ => false,
+                };
                 let members = self.unit(*unit).members.list.iter().filter(seen);
                 let offered = members.map(|member| Completion {
                     kind: CompletionKind::Pin,
@@ -577,9 +588,13 @@ impl Checker<'_> {
             }
         }
         for (index, info) in self.units.iter().enumerate() {
+            let id = UnitId(index as u32);
             if info.kind == UnitKind::Function && !self.in_prelude(info.span) {
-                let id = UnitId(index as u32);
                 offered.push(self.unit_offered(id, CompletionKind::Function, "FUNCTION"));
+            }
+            let other = info.kind == UnitKind::Program && self.scope != Some(id);
+            if other && seen.insert(info.name.to_ascii_uppercase()) {
+                offered.push(self.unit_offered(id, CompletionKind::Block, "PROGRAM"));
             }
         }
         let enumerations = self.named.values().map(|it| it.found.0);

@@ -192,11 +192,18 @@ impl Checker<'_> {
             );
             wrong = wrong.help(match target.class() {
                 Class::Bool => "compare it: x <> 0".to_owned(),
-                _ if value.ty == ANY_INTEGER => format!("name an element of {to_name}"),
                 _ => format!("convert it: {function}(..)"),
             });
         } else {
             wrong = wrong.label(format!("this is {from_name}"));
+            let literal = matches!(value.ty, ANY_INTEGER | ANY_REAL);
+            wrong = match self.types.get(to) {
+                Type::Enumeration(_) if literal => wrong.help(format!("name an element of {to_name}")),
+                Type::Array(_) if literal => {
+                    wrong.help("the values of an array stand in brackets: [1, 2, 3]")
+                }
+                _ => wrong,
+            };
         }
         self.tell(wrong);
         Expr::wrong(value.span)

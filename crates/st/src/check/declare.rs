@@ -226,7 +226,7 @@ impl<'a> Checker<'a> {
                         retain: section.retain,
                         address: address.as_ref().map(|address| address.text.clone()),
                     },
-                    spec: &variables.spec,
+                    spec: Some(&variables.spec),
                     initial: variables.initial.as_ref(),
                     file,
                     state: State::Todo,
@@ -274,11 +274,11 @@ impl<'a> Checker<'a> {
     /// Finds out the type and the first value of a global variable.
     pub(super) fn global(&mut self, place: usize) {
         let global = &mut self.globals[place];
-        if global.state != State::Todo {
+        let (State::Todo, Some(spec)) = (global.state, global.spec) else {
             return;
-        }
+        };
         global.state = State::Busy;
-        let (spec, initial, span) = (global.spec, global.initial, global.member.span);
+        let (initial, span) = (global.initial, global.member.span);
         let (ty, start) = self.in_scope(None, |checker| {
             let (ty, default) = checker.spec(spec);
             // The first value may need this variable's type.

@@ -94,7 +94,8 @@ struct NamedType<'a> {
 #[derive(Debug)]
 pub(crate) struct Global<'a> {
     pub member: Member,
-    spec: &'a TypeSpec,
+    /// Absent for the instance of a PROGRAM, which is known.
+    spec: Option<&'a TypeSpec>,
     initial: Option<&'a Initial>,
     file: usize,
     state: State,
@@ -117,6 +118,15 @@ const NEED: usize = 4;
 enum ElementOf {
     Named(String),
     Known(TypeId),
+}
+
+/// An instance of a PROGRAM.
+#[derive(Debug)]
+struct Running {
+    /// In upper case.
+    name: String,
+    unit: UnitId,
+    address: u32,
 }
 
 /// A unit's statements, checked.
@@ -165,8 +175,8 @@ pub(crate) struct Checker<'a> {
     body: body::BodyState,
     edges: BTreeMap<UnitId, BTreeMap<UnitId, Span>>,
     look: Look,
-    /// Names of the instances of programs, for editors.
-    running: Vec<(String, UnitId)>,
+    /// The instances of programs that tasks run.
+    running: Vec<Running>,
 }
 
 /// Checks a project. There is a program if nothing is wrong.
@@ -207,11 +217,7 @@ pub(crate) fn look<'a>(
     options: &'a Options,
     look: Look,
 ) -> Checker<'a> {
-    let (mut checker, _, instances, _) = checked(sources, items, options, Found::default(), look);
-    let instances = instances
-        .into_iter()
-        .map(|it| (it.name.to_ascii_uppercase(), it.unit));
-    checker.running = instances.collect();
+    let (checker, ..) = checked(sources, items, options, Found::default(), look);
     checker
 }
 
@@ -253,6 +259,12 @@ fn checked<'a>(
     checker.resolve();
     let (mut tasks, mut instances) = checker.configuration(items);
     checker.place_all(&mut tasks, &mut instances);
+    let running = instances.iter().map(|instance| Running {
+        name: instance.name.to_ascii_uppercase(),
+        unit: instance.unit,
+        address: instance.address,
+    });
+    checker.running = running.collect();
     let bodies = checker.bodies();
     checker.run(&mut tasks, &instances);
     checker.check_calls();
@@ -278,6 +290,17 @@ impl<'a> Checker<'a> {
             return None;
         }
         did_you_mean(name, candidates)
+    }
+
+    /// The global variables as they are declared, for guesses.
+    fn declared_globals(&self) -> impl Iterator<Item = &str> {
+        self.globals.iter().map(|global| global.member.name.as_str())
+    }
+
+    /// The units that are called by their names as they are declared, for guesses.
+    fn declared_units(&self) -> impl Iterator<Item = &str> {
+        let units = self.units.iter().filter(|unit| unit.owner.is_none());
+        units.map(|unit| unit.name.as_str())
     }
 
     /// Whether a place is in the library's own text, which is the last file.

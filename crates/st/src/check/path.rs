@@ -1,12 +1,12 @@
 //! From a path in the text to a place in memory.
 
-use super::{Checker, ElementOf, UnitKind};
+use super::{Checker, ElementOf, Global, State, UnitKind};
 use crate::error::{Code, Diagnostic, quoted};
 use crate::library::{Function, blocks, conversion};
 use crate::source::Span;
 use crate::syntax::{Expression, Ident, Path, Selector};
 use crate::typed::{Base, Expr, Index, Kind, Place};
-use crate::types::{Class, Constant, MemberKind, Type, TypeId, UnitId};
+use crate::types::{Class, Constant, Member, MemberKind, Start, Type, TypeId, UnitId};
 
 /// What a path leads to.
 pub(super) enum Named {
@@ -161,9 +161,63 @@ impl<'a> Checker<'a> {
             self.look_at_member(span, unit, place);
             return Some(self.member_place(unit, place));
         }
-        let place = self.global_names.get(key).copied()?;
+        let Some(place) = self.global_names.get(key).copied() else {
+            return self.program_instance(key, span);
+        };
         self.global(place);
         self.look_at_global(span, place);
+        Some(self.global_place(place))
+    }
+
+    /// The PROGRAM of this name, if statements can mean its instance by it.
+    pub(super) fn program_named(&self, key: &str) -> Option<UnitId> {
+        let unit = self.unit_names.get(key).copied()?;
+        (self.scope.is_some() && self.unit(unit).kind == UnitKind::Program).then_some(unit)
+    }
+
+    /// The instance of a PROGRAM that is called by its name: the one that a task runs. One that no task runs has an instance
+    /// of its own, a global variable that is made when it is first named.
+    fn program_instance(&mut self, key: &str, span: Span) -> Option<(Place, Option<String>)> {
+        let unit = self.program_named(key)?;
+        self.look_at_unit(span, unit);
+        let ty = self.block_type(unit);
+        let (own, members) = (self.unit(unit).span, &self.unit(unit).members);
+        let (bytes, name) = (members.size, self.unit(unit).name.clone());
+        let mut running = self.running.iter().filter(|it| it.unit == unit);
+        match (running.next(), running.next()) {
+            (Some(only), None) => return Some((plain(Base::Memory, only.address, ty), None)),
+            (Some(one), Some(other)) => {
+                let message = format!(
+                    "tasks run several instances of the PROGRAM `{name}`: {}, {}",
+                    one.name, other.name
+                );
+                self.error(Code::UnknownName, span, message, "share VAR_GLOBAL with it");
+                return Some((plain(Base::Memory, 0, crate::types::WRONG), None));
+            }
+            (None, _) => {}
+        }
+        let place = self.globals.len();
+        let offset = self.layout.take(bytes);
+        self.check_memory(span);
+        self.globals.push(Global {
+            member: Member {
+                name,
+                ty,
+                kind: MemberKind::External(place),
+                offset,
+                start: Start::Default,
+                span: own,
+                constant: false,
+                retain: false,
+                address: None,
+            },
+            spec: None,
+            initial: None,
+            // It is in no list of global variables.
+            file: usize::MAX,
+            state: State::Done,
+        });
+        self.global_names.insert(key.to_owned(), place);
         Some(self.global_place(place))
     }
 
@@ -251,13 +305,19 @@ impl<'a> Checker<'a> {
             Type::Structure(structure) => &structure.members,
             Type::Block(unit) => &self.unit(*unit).members,
             _ => {
-                let message = format!("{} has no member `{}`", self.type_name(place.ty), name.text);
-                self.error(
-                    Code::UnknownMember,
-                    name.span,
-                    message,
-                    "only structures and blocks have members",
-                );
+                let type_name = self.type_name(place.ty);
+                let message = format!("{type_name} has no member `{}`", name.text);
+                let help = match self.types.get(place.ty) {
+                    // A variable has the name of its type.
+                    Type::Enumeration(of) if of.find(&name.text).is_some() => {
+                        format!(
+                            "a variable stands before the point; write the element as {type_name}#{}",
+                            name.text
+                        )
+                    }
+                    _ => "only structures and blocks have members".to_owned(),
+                };
+                self.error(Code::UnknownMember, name.span, message, &help);
                 return false;
             }
         };
@@ -275,6 +335,9 @@ impl<'a> Checker<'a> {
                     "`{}` is an output, which only its block writes",
                     member.name
                 ));
+            }
+            MemberKind::Var if self.is_program(place.ty) => {
+                *fixed = Some(format!("`{}` is a variable inside a PROGRAM", member.name));
             }
             _ => {
                 let what = if kind == MemberKind::InOut {
@@ -296,6 +359,10 @@ impl<'a> Checker<'a> {
         place.ty = ty;
         place.offset = place.offset.saturating_add(offset);
         true
+    }
+
+    fn is_program(&self, ty: TypeId) -> bool {
+        matches!(self.types.get(ty), Type::Block(unit) if self.unit(*unit).kind == UnitKind::Program)
     }
 
     fn index(&mut self, place: &mut Place, given: &'a [Expression], span: Span) -> bool {
@@ -456,7 +523,7 @@ impl<'a> Checker<'a> {
             .find(|(_, there)| of.library && there.eq_ignore_ascii_case(&name.text))
             .map(|(ours, _)| ours.to_owned());
         let wanted = ours.as_deref().unwrap_or(&name.text);
-        let found = of.elements.iter().find(|(it, _)| it.eq_ignore_ascii_case(wanted));
+        let found = of.find(wanted);
         match found {
             Some((element, number)) => {
                 let (number, text) = (*number, format!("{element} := {number}"));
@@ -474,6 +541,17 @@ impl<'a> Checker<'a> {
                 None
             }
         }
+    }
+
+    /// The elements of all enumerations that have a name, as they are declared.
+    fn declared_elements(&self) -> impl Iterator<Item = &str> {
+        let types = self.named.values().map(|it| it.found.0);
+        let types = types.chain(self.library_types.values().copied());
+        let elements = types.flat_map(|ty| match self.types.get(ty) {
+            Type::Enumeration(of) => of.elements.as_slice(),
+            _ => &[],
+        });
+        elements.map(|(name, _)| name.as_str())
     }
 
     fn unknown(&mut self, path: &Path) {
@@ -500,10 +578,12 @@ impl<'a> Checker<'a> {
             return;
         }
         let local = self.scope.map(|unit| &self.unit(unit).members);
-        let local = local.into_iter().flat_map(|members| members.index.keys());
-        let names = local.chain(self.global_names.keys()).chain(self.elements.keys());
-        let guess = self.guess(&key, names.map(String::as_str));
-        // The name as it is declared.
+        let local = local.into_iter().flat_map(|members| &members.list);
+        let local = local.map(|member| member.name.as_str());
+        let names = local
+            .chain(self.declared_globals())
+            .chain(self.declared_elements());
+        let guess = self.guess(&key, names);
         let message = format!("there is no variable {}", quoted(&name.text));
         let wrong = Diagnostic::error(Code::UnknownName, name.span, message);
         self.tell(wrong.maybe_help(guess.or_else(|| Some("declare it in VAR .. END_VAR".to_owned()))));

@@ -54,24 +54,22 @@ impl<'a> Checker<'a> {
         {
             help = Some("it is a FUNCTION, which has no instances: call it by its name".to_owned());
         }
-        let candidates = self
-            .named
-            .keys()
-            .chain(self.library_types.keys())
-            .chain(self.unit_names.keys());
-        let candidates = candidates.map(String::as_str);
-        let candidates = candidates.chain(
-            Elementary::ALL
-                .iter()
-                .map(|it| it.name())
-                .chain(blocks::names())
-                .map(|it| it as &str),
-        );
-        let guess = self.guess(&key, candidates);
+        let guess = match key.as_str() {
+            "BIT" => Some("use BOOL".to_owned()),
+            _ => self.guess_type(&key),
+        };
         let message = format!("there is no type or function block {}", quoted(&name.text));
         let wrong = Diagnostic::error(Code::UnknownType, name.span, message);
         self.tell(wrong.maybe_help(guess).maybe_help(help));
         (WRONG, Start::Default)
+    }
+
+    fn guess_type(&self, key: &str) -> Option<String> {
+        let types = self.named.values().map(|it| it.syntax.name.text.as_str());
+        let types = types.chain(self.library_types.keys().map(String::as_str));
+        let elementary = Elementary::ALL.iter().map(|it| it.name());
+        let units = self.declared_units().chain(blocks::names().map(|it| it as &str));
+        self.guess(key, types.chain(units).chain(elementary))
     }
 
     /// The type of this name in upper case, if there is one.

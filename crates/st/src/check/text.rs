@@ -92,9 +92,11 @@ impl<'a> Checker<'a> {
         let name = self.type_name(value.ty);
         let message = format!("{} takes a STRING, not {name}", function.name());
         let mut wrong = Diagnostic::error(Code::WrongType, value.span, message);
-        if self.types.elementary(value.ty).is_some() {
-            wrong = wrong.help(format!("convert it: {name}_TO_STRING(..)"));
-        }
+        wrong = match self.types.elementary(value.ty) {
+            Some(it) if it.is_real() => wrong.help(super::library_call::TO_TEXT),
+            Some(_) => wrong.help(format!("convert it: {name}_TO_STRING(..)")),
+            None => wrong,
+        };
         self.tell(wrong);
         Expr::wrong(value.span)
     }

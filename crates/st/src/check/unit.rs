@@ -222,7 +222,7 @@ impl<'a> Checker<'a> {
         let (ty, _) = self.spec(&variables.spec);
         for (name, _) in &variables.names {
             let Some(place) = self.global_names.get(&name.key()).copied() else {
-                let guess = self.guess(&name.text, self.global_names.keys().map(String::as_str));
+                let guess = self.guess(&name.text, self.declared_globals());
                 let message = format!("there is no global variable {}", quoted(&name.text));
                 let wrong = Diagnostic::error(Code::UnknownName, name.span, message);
                 self.tell(wrong.maybe_help(guess.or_else(|| Some("declare it in VAR_GLOBAL".to_owned()))));

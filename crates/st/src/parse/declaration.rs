@@ -8,6 +8,10 @@ use crate::syntax::{
     Configuration, Instance, Item, Section, SectionKind, Task, TypeDeclaration, Unit, UnitKind, Variables,
 };
 
+/// What to write in place of an ACTION.
+pub(super) const ACTION: &str =
+    "write a METHOD of a FUNCTION_BLOCK, or put the statements where it is called";
+
 pub(super) const FLAT: &str = "write FUNCTION_BLOCKs that hold instances of others, and FUNCTIONs";
 
 impl Parser<'_> {
@@ -16,6 +20,11 @@ impl Parser<'_> {
         let Token::Word(word) = self.token() else {
             // Between two programs a `;` does no harm.
             if self.take(Token::Semicolon) {
+                return;
+            }
+            if self.is_name("ACTION") {
+                self.unsupported(from, "ACTION", ACTION);
+                self.skip_action();
                 return;
             }
             let message = format!(

@@ -213,7 +213,15 @@ impl Parser<'_> {
             }
             _ => {
                 let message = format!("an expression is expected, not {}", self.shown());
-                self.tell_here(Code::Syntax, message, "");
+                let help = match (
+                    self.text_of(self.before()).to_ascii_uppercase().as_str(),
+                    self.token(),
+                ) {
+                    ("AND", Token::Word(Word::Then)) => "the operator is one word: AND_THEN",
+                    ("OR", Token::Word(Word::Else)) => "the operator is one word: OR_ELSE",
+                    _ => "",
+                };
+                self.tell_here(Code::Syntax, message, help);
                 Kind::Wrong
             }
         };
@@ -306,6 +314,11 @@ impl Parser<'_> {
                 let text = self.text_of(span);
                 match text.strip_prefix("%X").or_else(|| text.strip_prefix("%x")) {
                     Some(digits) => digits.to_owned(),
+                    None if self.addresses => {
+                        let text = text.to_owned();
+                        self.next();
+                        return Some(Selector::Member(Ident { text, span }));
+                    }
                     None => {
                         let what = format!("{} of a variable", quoted(text));
                         self.unsupported(

@@ -27,6 +27,7 @@ pub(crate) fn parse(sources: &Sources, found: &mut Found) -> Vec<Item> {
 /// Reads the first file, which is one expression.
 pub(crate) fn expression(sources: &Sources, found: &mut Found) -> Expression {
     let mut parser = Parser::new(sources, 0, found);
+    parser.addresses = true;
     let expression = parser.expression();
     if parser.token() != Token::End {
         let shown = parser.shown();
@@ -46,8 +47,12 @@ struct Parser<'a> {
     /// The token at which something was told last: one mistake has one message.
     told_at: Option<usize>,
     depth: usize,
+    /// Whether an address may stand in place of a member: `cell.%IX0.0`, a signal of a script.
+    addresses: bool,
     /// The words that close what is open, from the outside in.
     open: Vec<Word>,
+    /// END_IF and its kin without a `;`.
+    unended: Vec<Span>,
     found: &'a mut Found,
 }
 
@@ -62,7 +67,9 @@ impl<'a> Parser<'a> {
             at: 0,
             told_at: None,
             depth: 0,
+            addresses: false,
             open: Vec::new(),
+            unended: Vec::new(),
             found,
         }
     }
@@ -239,5 +246,6 @@ impl<'a> Parser<'a> {
                 self.next();
             }
         }
+        self.tell_unended();
     }
 }

@@ -104,6 +104,23 @@ impl Parser<'_> {
         }
     }
 
+    /// Behind the end of an ACTION, which no keyword is.
+    pub(super) fn skip_action(&mut self) {
+        loop {
+            match self.token() {
+                Token::End => return,
+                Token::Word(word) if is_item(word) => return,
+                Token::Name if self.is_name("END_ACTION") => {
+                    self.next();
+                    return;
+                }
+                _ => {
+                    self.next();
+                }
+            }
+        }
+    }
+
     /// Before the next thing at the top of a file.
     pub(super) fn skip_to_item(&mut self) {
         while !matches!(self.token(), Token::End) {

@@ -206,13 +206,21 @@ impl Parser<'_> {
     fn semicolon_after_end(&mut self) {
         let span = self.before();
         if !self.take(Token::Semicolon) {
-            let message = format!(
-                "`;` is missing behind {}",
-                self.text_of(span).to_ascii_uppercase()
-            );
-            let doubt = Diagnostic::warning(Code::Portability, span.after(), message);
-            self.found.add(doubt.help("other compilers than CODESYS want it"));
+            self.unended.push(span);
         }
+    }
+
+    /// Tells where the `;` behind END_IF and its kin is missing: once for a file, because who leaves one out leaves all out.
+    pub(super) fn tell_unended(&mut self) {
+        let Some(first) = self.unended.first() else { return };
+        let word = self.text_of(*first).to_ascii_uppercase();
+        let more = match self.unended.len() - 1 {
+            0 => String::new(),
+            more => format!(", and in {more} more places of this file"),
+        };
+        let message = format!("`;` is missing behind {word}{more}");
+        let doubt = Diagnostic::warning(Code::Portability, first.after(), message);
+        self.found.add(doubt.help("other compilers than CODESYS want it"));
     }
 
     fn condition(&mut self, end: Word, after: &str) -> Expression {
@@ -431,7 +439,13 @@ impl Parser<'_> {
             return None;
         }
         if self.ahead(1) == Token::Name {
-            let words = ["STEP", "TRANSITION", "ACTION"];
+            if self.is_name("ACTION") {
+                let span = self.span();
+                self.unsupported(span, "ACTION", super::declaration::ACTION);
+                self.skip_action();
+                return None;
+            }
+            let words = ["STEP", "TRANSITION"];
             if words.iter().any(|word| self.is_name(word)) {
                 let span = self.span();
                 self.unsupported(span, "SFC", "write the steps as CASE State OF ..");
@@ -470,6 +484,18 @@ impl Parser<'_> {
                 self.semicolon("behind the call");
                 return Some(Kind::Call(call));
             }
+            Token::Name if self.ahead(1) == Token::Equal && self.is_vendor_assignment() => {
+                let (sign, target) = (self.shown(), self.text_of(path.span).to_owned());
+                let what = format!("{}=`", sign.trim_end_matches('`'));
+                let help = match sign.to_ascii_uppercase().as_str() {
+                    "`S`" => format!("write IF .. THEN {target} := TRUE; END_IF;"),
+                    "`R`" => format!("write IF .. THEN {target} := FALSE; END_IF;"),
+                    _ => "hand variables over as VAR_IN_OUT".to_owned(),
+                };
+                self.unsupported(self.span(), &what, &help);
+                self.skip_to_semicolon();
+                return None;
+            }
             Token::Name if path.selectors.is_empty() && self.is_instruction(path.span) => {
                 self.unsupported(path.span, "Instruction List", "write it as Structured Text");
                 self.skip_to_item();
@@ -503,6 +529,11 @@ impl Parser<'_> {
             self.semicolon("behind the assignment");
         }
         Some(Kind::Assign(path, value))
+    }
+
+    /// Whether the assignment is one of those that some systems have: `S=`, `R=`, `REF=`.
+    fn is_vendor_assignment(&self) -> bool {
+        ["S", "R", "REF"].iter().any(|word| self.is_name(word))
     }
 
     /// Whether a word is an instruction of IL.

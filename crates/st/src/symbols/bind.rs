@@ -2,9 +2,12 @@
 
 use crate::Options;
 use crate::check::{Program, UnitKind};
-use crate::error::{Code, Diagnostic};
+use crate::error::{Code, Diagnostic, did_you_mean};
 use crate::source::Span;
-use crate::types::{Member, MemberKind, Type, TypeId};
+use crate::types::{Array, Member, MemberKind, Type, TypeId};
+
+/// Most variables that a message lists.
+const LISTED_MOST: usize = 8;
 
 /// Writes which axis each variable of type AXIS_REF begins as.
 pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) -> Result<(), Diagnostic> {
@@ -37,25 +40,44 @@ pub(crate) fn bind(program: &Program<'_>, options: &Options, memory: &mut [u8]) 
         [one] => Some(one.name.as_str()),
         _ => None,
     };
+    let mut bound = Vec::new();
     for (path, number) in &options.bindings {
-        let within = only.map(|name| format!("{name}.{path}"));
+        let plain: String = path.chars().filter(|c| *c != ' ').collect();
+        let within = only.map(|name| format!("{name}.{plain}"));
         let same = |known: &str| {
-            known.eq_ignore_ascii_case(path)
+            known.eq_ignore_ascii_case(&plain)
                 || within.as_ref().is_some_and(|it| known.eq_ignore_ascii_case(it))
         };
         match found.iter().find(|(known, ..)| same(known)) {
-            Some((.., address)) => put(memory, *address, (*number).into()),
-            None => {
-                let known = found.iter().map(|(path, ..)| path.as_str());
-                let guess = crate::error::did_you_mean(path, known);
-                let message = format!("there is no variable `{path}` of type AXIS_REF to bind to an axis");
-                return Err(
-                    Diagnostic::error(Code::UnknownBinding, Span::default(), message).maybe_help(guess)
-                );
+            Some((.., address)) if bound.contains(address) => {
+                let message = format!("the variable `{path}` is bound to an axis twice");
+                let wrong = Diagnostic::error(Code::UnknownBinding, Span::default(), message);
+                return Err(wrong.help("paths are compared without regard to case"));
             }
+            Some((.., address)) => {
+                bound.push(*address);
+                put(memory, *address, (*number).into());
+            }
+            None => return Err(unknown(path, &found, only)),
         }
     }
     Ok(())
+}
+
+/// What is told of a path that leads to no variable of type AXIS_REF; `only` is the instance whose name may be left out.
+fn unknown(path: &str, found: &References, only: Option<&str>) -> Diagnostic {
+    let known: Vec<&str> = found
+        .iter()
+        .map(|(path, ..)| {
+            let inner = only.and_then(|name| path.strip_prefix(name)?.strip_prefix('.'));
+            inner.unwrap_or(path)
+        })
+        .collect();
+    let listed = (1..=LISTED_MOST).contains(&known.len());
+    let help = did_you_mean(path, known.iter().copied())
+        .or_else(|| listed.then(|| format!("there is {}", known.join(", "))));
+    let message = format!("there is no variable `{path}` of type AXIS_REF to bind to an axis");
+    Diagnostic::error(Code::UnknownBinding, Span::default(), message).maybe_help(help)
 }
 
 fn put(memory: &mut [u8], address: u32, number: u32) {
@@ -87,14 +109,13 @@ fn references(program: &Program<'_>, ty: TypeId, path: &str, address: u32, found
                 member_references(program, &unit.members.list, path, address, found);
             }
         }
-        Type::Array(array) if program.types.elementary(array.of).is_none() && array.bounds.len() == 1 => {
+        Type::Array(array) if program.types.elementary(array.of).is_none() => {
             let before = found.len();
             for number in 0..array.count {
-                let index = array.bounds.first().map_or(0, |(low, _)| *low) + i64::from(number);
                 references(
                     program,
                     array.of,
-                    &format!("{path}[{index}]"),
+                    &format!("{path}[{}]", indices(array, number)),
                     address + number * array.stride,
                     found,
                 );
@@ -106,6 +127,19 @@ fn references(program: &Program<'_>, ty: TypeId, path: &str, address: u32, found
         }
         _ => {}
     }
+}
+
+/// The indices of an element: `1,-1`.
+fn indices(array: &Array, number: u32) -> String {
+    let mut rest = i64::from(number);
+    let mut all = Vec::new();
+    for (low, high) in array.bounds.iter().rev() {
+        let count = high - low + 1;
+        all.push((low + rest % count).to_string());
+        rest /= count;
+    }
+    all.reverse();
+    all.join(",")
 }
 
 fn member_references(
