@@ -493,7 +493,7 @@ const MISTAKES: &[(&str, Code, &str, &str)] = &[
         "TYPE E : (A, B); END_TYPE PROGRAM P VAR x : E; END_VAR x := 1; END_PROGRAM",
         Code::Conversion,
         "1",
-        "element of E",
+        "one of its elements",
     ),
     (
         "TYPE E : (A, B); END_TYPE PROGRAM P VAR e : E; END_VAR e := E.B; END_PROGRAM",

@@ -198,7 +198,7 @@ impl Checker<'_> {
             wrong = wrong.label(format!("this is {from_name}"));
             let literal = matches!(value.ty, ANY_INTEGER | ANY_REAL);
             wrong = match self.types.get(to) {
-                Type::Enumeration(_) if literal => wrong.help(format!("name an element of {to_name}")),
+                Type::Enumeration(_) if literal => wrong.help("name one of its elements"),
                 Type::Array(_) if literal => {
                     wrong.help("the values of an array stand in brackets: [1, 2, 3]")
                 }
