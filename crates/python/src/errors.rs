@@ -68,10 +68,13 @@ fn diagnostic<'py>(py: Python<'py>, error: &ScriptError, found: &Diagnostic) -> 
     )
 }
 
+/// File, line and column.
+type Place = (String, usize, usize);
+
 /// One thing that is wrong; a line of 0 is that of what stands nowhere in the text.
 fn told<'py>(
     py: Python<'py>,
-    (code, message, help, place): (&str, &str, Option<&str>, Option<(String, usize, usize)>),
+    (code, message, help, place): (&str, &str, Option<&str>, Option<Place>),
 ) -> PyResult<Bound<'py, PyDict>> {
     let (file, line, column) = place.unwrap_or_default();
     let told = PyDict::new(py);

@@ -8,11 +8,14 @@ use standstill_trace::compare::Yardstick;
 use std::path::PathBuf;
 
 /// Holds a script against its claims and its golden, as `standstill test` does, and writes nothing: whether it passed, what it
-/// says of that as the command line does, and what it warns of.
+/// says of that as the command line does, and what it warns of. Files that it names lie in its folder and below, or in one of these.
 #[pyfunction]
-pub fn judge(py: Python<'_>, path: PathBuf) -> PyResult<(bool, String, String)> {
+pub fn judge(py: Python<'_>, path: PathBuf, folders: Vec<PathBuf>) -> PyResult<(bool, String, String)> {
     let judged = py.detach(|| {
-        let allowed = Allowed::default();
+        let allowed = Allowed {
+            folders,
+            ..Allowed::default()
+        };
         suite::judge_file(&path, Mode::Check, Yardstick::Exact, &allowed, |_| {})
     });
     let report = judged.map_err(|error| errors::suite(py, &error))?;

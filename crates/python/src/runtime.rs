@@ -285,7 +285,7 @@ impl Scans {
     /// Goes to the end of the run and judges its claims on all rows.
     fn finish(&self, py: Python<'_>) -> PyResult<Rows> {
         let state = &mut *self.state()?;
-        let ended = py.detach(|| state.with(|session| scripts::to_the_end(session)))?;
+        let ended = py.detach(|| state.with(scripts::to_the_end))?;
         ended.map_err(|ended| ended.exception(py, &self.source))?;
         let running = &mut state.running;
         let outcome = py.detach(|| running.with_dependent_mut(|_, open| open.0.take().map(Session::finish)));

@@ -23,7 +23,8 @@ class ScriptItem(pytest.Item):
     """The test that a script is."""
 
     def runtest(self) -> None:
-        passed, text, warnings = _native.judge(self.path)
+        folders: list[Path] = self.config.getini("standstill_include_from")
+        passed, text, warnings = _native.judge(self.path, folders)
         if warnings:
             self.add_report_section("call", "standstill", warnings)
         if not passed:
@@ -45,6 +46,15 @@ class ScriptFile(pytest.File):
 
     def collect(self) -> Iterator[ScriptItem]:
         yield ScriptItem.from_parent(self, name=self.path.name.removesuffix(ENDING))
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addini(
+        "standstill_include_from",
+        "further folders that files of scan scripts may lie in, as --include-from of `standstill test`",
+        type="paths",
+        default=[],
+    )
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> ScriptFile | None:

@@ -57,6 +57,19 @@ def test_they_are_chosen_as_all_tests_are(pytester):
     assert "cell/good.scan.json::good" in listed
 
 
+def test_files_from_another_folder_are_asked_for(pytester):
+    cell, machines = pytester.mkdir("cell"), pytester.mkdir("machines")
+    axes = move()["axes"]
+    (machines / "one.machine.json").write_text(json.dumps({"standstill": 1, "axes": axes}))
+    script = move(golden=False, axes={}, include="../machines/one.machine.json")
+    (cell / "good.scan.json").write_text(json.dumps(script))
+    result = pytester.runpytest_subprocess()
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*bad_include*"])
+    pytester.makeini("[pytest]\nstandstill_include_from = machines\n")
+    pytester.runpytest_subprocess().assert_outcomes(passed=1)
+
+
 @pytest.mark.parametrize("name", ["good.json", "good.machine.json"])
 def test_other_files_are_left_alone(pytester, name):
     (pytester.path / name).write_text("{}")

@@ -166,3 +166,52 @@ fn what_is_changed_on_the_way_is_a_script_too() {
         }));
     }
 }
+
+#[test]
+fn inputs_are_found_by_name_and_written_all_or_none() {
+    let script = read(SCRIPT, "one.scan.json", &[]).unwrap();
+    let mut session = Session::new(&script).unwrap();
+    let [go, way] = ["go", "WAY"].map(|name| session.point(name).unwrap());
+    assert_eq!((go, way), (Point::Input(0), Point::Input(1)));
+    assert_eq!(session.point("m.position"), Some(Point::Pin(0, 3)));
+    assert_eq!(
+        (session.point("m.Nothing"), session.point("nobody")),
+        (None, None)
+    );
+    assert_eq!(session.settable()[..3], ["GO", "way", "m.ContinuousUpdate"]);
+
+    let refused = session.change_all(&[(go, "TRUE".to_owned()), (way, "far".to_owned())]);
+    assert_eq!(refused.unwrap_err(), "way: `far` is no number");
+    session.advance().unwrap();
+    assert_eq!(session.text(go).as_deref(), Some("FALSE"));
+    assert!(session.changes().is_empty());
+    session
+        .change_all(&[(go, "TRUE".to_owned()), (way, "3".to_owned())])
+        .unwrap();
+    session.advance().unwrap();
+    assert_eq!(session.text(go).as_deref(), Some("TRUE"));
+    assert_eq!(session.text(way).as_deref(), Some("3.0"));
+}
+
+#[test]
+fn a_drive_that_is_led_is_where_it_is_led_to() {
+    let script = read(SCRIPT, "one.scan.json", &[]).unwrap();
+    let mut session = Session::new(&script).unwrap();
+    let go = session.point("GO").unwrap();
+    session.change(go, "TRUE").unwrap();
+    assert!(session.lead(1, 0.0).is_err() && session.lead(0, f64::NAN).is_err());
+    let mut ordered = session.ordered(0).unwrap();
+    assert_eq!((ordered.position, ordered.velocity), (0.0, 0.0));
+    for _ in 0..100 {
+        session.lead(0, ordered.position / 2.0).unwrap();
+        session.advance().unwrap();
+        let trace = session.trace();
+        let actual = trace.column("X.ActualPosition").unwrap();
+        let actual = trace.reals(actual).last().unwrap();
+        assert_eq!(actual, ordered.position / 2.0);
+        ordered = session.ordered(0).unwrap();
+        let position = trace.column("X.Position").unwrap();
+        assert_eq!(trace.reals(position).last(), Some(ordered.position));
+    }
+    assert!(ordered.position > 3.0);
+}
