@@ -1,7 +1,12 @@
 //! What a random program does, its minutes repeat to the bit, and its scan script is one that runs.
 
+use standstill_axis::{AxisConfig, Limits, StartState};
+use standstill_blocks::registry::find;
+use standstill_drives::simulated::DriveSetup;
 use standstill_fb::Value;
-use standstill_soak::monkey::{Action, Failure, Scenario, Who, play, record, replay, shrink_by};
+use standstill_soak::monkey::{
+    Action, AxisSetup, BlockSetup, Failure, Scenario, Step, Who, play, record, replay, shrink_by,
+};
 use standstill_soak::rules::Broken;
 
 /// Runs the script of a scenario: whether its claims hold.
@@ -22,6 +27,56 @@ fn minutes_repeat_an_episode_and_are_a_script() {
     }
     assert_eq!(play(3, 5, 600).seen, play(3, 5, 600).seen);
     assert_ne!(play(3, 5, 600).seen.digest, play(4, 5, 600).seen.digest);
+}
+
+/// The ring of records holds 64, and in one scan the coordinates of 70 axes move.
+#[test]
+fn seventy_axes_are_judged_as_one() {
+    let limits = Limits {
+        velocity: 10.0,
+        acceleration: 100.0,
+        deceleration: 100.0,
+        ..Limits::NONE
+    };
+    let config = AxisConfig {
+        start: StartState::Standstill,
+        ..AxisConfig::new(limits)
+    };
+    let info = find("MC_SetPosition").expect("a block of the registry");
+    let pin = |name| info.pin(name).expect("one of its pins").0;
+    let axes = 0..70;
+    let scenario = Scenario {
+        cycle_ns: 1_000_000,
+        scans: 10,
+        axes: axes
+            .clone()
+            .map(|_| AxisSetup {
+                config,
+                drive: DriveSetup::default(),
+            })
+            .collect(),
+        blocks: axes
+            .clone()
+            .map(|axis| BlockSetup {
+                block: info.name,
+                axis,
+                constants: vec![(pin("Position"), Value::Lreal(1e3))],
+                tables: Vec::new(),
+            })
+            .collect(),
+        steps: axes
+            .map(|block| Step {
+                scan: 5,
+                action: Action::Set {
+                    block,
+                    pin: pin("Execute"),
+                    value: Value::Bool(true),
+                },
+            })
+            .collect(),
+    };
+    let (seen, failure) = replay(&scenario);
+    assert_eq!((seen.scans, failure), (10, None));
 }
 
 #[test]

@@ -4,10 +4,14 @@ use super::scenario::{AxisSetup, BlockSetup, Scenario, TableSetup, kind_of};
 use crate::cases::extreme;
 use crate::random::Random;
 use standstill_axis::{
-    AboveLimit, AxisConfig, Defaults, Following, Limits, MoveProfile, OnLimit, OnMasterLost, PowerOff,
-    QUEUE_MAX, Scaling, StartState,
+    AboveLimit, AxisConfig, BlockDetection, Defaults, Following, HomeDirection, Homing, InPosition, Limits,
+    MoveProfile, OnLimit, OnMasterLost, PowerOff, Procedure, QUEUE_MAX, Scaling, StartState, SwitchEdge,
 };
 use standstill_blocks::REGISTRY;
+use standstill_drives::cia402::Reaction;
+use standstill_drives::mechanism::{Load, Plant, Stops};
+use standstill_drives::simulated::{Cia402Setup, DriveSetup, IdealDriveSetup, MotorSetup, PlantSetup};
+use standstill_drives::switches::{Marker, Switches};
 use standstill_fb::{BlockInfo, PinType, Value};
 
 use crate::rules::Kind;
@@ -178,18 +182,238 @@ fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
     if config.check().is_err() {
         config.scaling = None;
     }
-    AxisSetup {
-        config,
-        delay: if random.one_in(2) {
-            0
+    let drive = drive(random, &config, cycle);
+    supervise(random, &mut config, cycle);
+    homing(random, &mut config, &drive, cycle);
+    AxisSetup { config, drive }
+}
+
+/// What is looked after beside the set-points.
+fn supervise(random: &mut Random, config: &mut AxisConfig, cycle: f64) {
+    let way = config.limits.velocity * cycle;
+    if random.one_in(6) {
+        config.override_max = random.between(1.0, 2.0);
+    }
+    if random.one_in(8) {
+        config.power_timeout = Some(1 + random.below(10));
+    }
+    config.hardware_limits = !random.one_in(8);
+    if random.one_in(8) {
+        config.in_position = Some(InPosition {
+            window: way * random.log_between(0.01, 10.0),
+            scans: random.below(4) as u32,
+        });
+    }
+    if random.one_in(10) {
+        config.max_following_error = Some(way * random.log_between(1.0, 100.0));
+    }
+}
+
+/// A drive: an ideal one more often than the others.
+fn drive(random: &mut Random, config: &AxisConfig, cycle: f64) -> DriveSetup {
+    let limits = &config.limits;
+    let power_on = if random.one_in(2) {
+        Some(0)
+    } else if random.one_in(20) {
+        None
+    } else {
+        Some(random.below(6) as u32)
+    };
+    let delay = if random.one_in(2) {
+        0
+    } else {
+        random.below(4) as usize
+    };
+    let switches = switches(random, config, cycle);
+    let reactions = [Reaction::Coast, Reaction::Ramp, Reaction::RampAndStay];
+    match random.below(6) {
+        0 if config.scaling.is_some() => DriveSetup::Cia402(Cia402Setup {
+            delay,
+            power_on,
+            start_up: random.below(4) as u32,
+            deceleration: random
+                .one_in(2)
+                .then(|| limits.deceleration * random.between(0.5, 2.0)),
+            quick_stop: one_of(random, &reactions),
+            on_disable: one_of(random, &reactions[..2]),
+            on_fault: one_of(random, &reactions[..2]),
+            homing: random
+                .one_in(2)
+                .then(|| (random.one_in(2), limits.velocity * random.between(0.1, 0.5))),
+            motor: random.one_in(2).then(|| motor(random, limits)),
+            switches,
+        }),
+        1 => plant(random, config, cycle, power_on, switches),
+        _ => DriveSetup::Ideal(IdealDriveSetup {
+            delay,
+            power_on,
+            switches,
+        }),
+    }
+}
+
+/// A motor that can turn what the axis asks for, most of the time.
+fn motor(random: &mut Random, limits: &Limits) -> MotorSetup {
+    let inertia = random.log_between(0.01, 10.0);
+    let rated_torque = inertia * limits.acceleration * random.log_between(0.3, 3.0);
+    MotorSetup {
+        rated_torque,
+        max_torque: rated_torque * random.between(1.0, 4.0),
+        inertia,
+        viscous: if random.one_in(2) {
+            0.0
         } else {
-            random.below(4) as usize
+            0.1 * rated_torque / limits.velocity
         },
-        power_on: if random.one_in(2) {
-            0
-        } else {
-            random.below(6) as u32
+        coulomb: if random.one_in(2) { 0.0 } else { 0.1 * rated_torque },
+    }
+}
+
+/// A mechanism, and loops that hold it.
+fn plant(
+    random: &mut Random,
+    config: &AxisConfig,
+    cycle: f64,
+    power_on: Option<u32>,
+    switches: Switches,
+) -> DriveSetup {
+    let limits = &config.limits;
+    let motor = motor(random, limits);
+    let reach = limits.velocity * cycle * random.log_between(50.0, 2000.0);
+    let mut setup = PlantSetup {
+        power_on,
+        plant: Plant {
+            inertia: motor.inertia,
+            viscous: motor.viscous,
+            coulomb: motor.coulomb,
+            load: random.one_in(3).then(|| Load {
+                inertia: motor.inertia * random.between(0.2, 2.0),
+                stiffness: motor.inertia * random.between(0.05, 1.0) / (400.0 * cycle * cycle),
+                damping: motor.inertia * random.between(0.0, 0.05) / cycle,
+            }),
         },
+        stops: (config.modulo.is_none() && random.one_in(2)).then(|| Stops {
+            ends: (config.position - reach, config.position + reach),
+            stiffness: motor.inertia / (400.0 * cycle * cycle),
+            damping: motor.inertia * random.between(0.0, 0.1) / cycle,
+        }),
+        switches,
+        ..PlantSetup::NONE
+    };
+    if random.one_in(4) {
+        setup.gains.torque = motor.max_torque;
+    }
+    if random.one_in(4) {
+        let own = setup.with_gains(cycle).gains;
+        let mut part = |gain: f64| gain * random.between(0.3, 1.0);
+        setup.gains.position = part(own.position);
+        setup.gains.velocity = part(own.velocity);
+        setup.gains.integral = part(own.integral);
+        setup.gains.feed_velocity = part(1.0);
+        setup.gains.feed_acceleration = part(1.0);
+    }
+    DriveSetup::Plant(setup.with_gains(cycle))
+}
+
+/// What stands along the travel, now and then.
+fn switches(random: &mut Random, config: &AxisConfig, cycle: f64) -> Switches {
+    let way = config.limits.velocity * cycle;
+    let mut place = |least: f64, most: f64| config.position + way * random.log_between(least, most);
+    let near = [(); 6].map(|()| place(10.0, 1000.0));
+    let [low, high, from, wide, at, every] = near.map(|place| place - config.position);
+    Switches {
+        limits: random
+            .one_in(4)
+            .then_some((config.position - low, config.position + high)),
+        home: random.one_in(3).then(|| {
+            let from = if random.one_in(2) { from } else { -from };
+            (config.position + from, config.position + from + wide)
+        }),
+        marker: random.one_in(3).then(|| Marker {
+            at: config.position + at,
+            every: random.one_in(2).then_some(every),
+        }),
+        turn: None,
+    }
+}
+
+/// A homing that the drive has what is needed for; what the configuration says no to goes.
+fn homing(random: &mut Random, config: &mut AxisConfig, drive: &DriveSetup, cycle: f64) {
+    if !random.one_in(2) {
+        return;
+    }
+    let limits = config.limits;
+    let velocity = limits.velocity * random.between(0.05, 0.6);
+    let directions = [
+        HomeDirection::Positive,
+        HomeDirection::Negative,
+        HomeDirection::SwitchPositive,
+        HomeDirection::SwitchNegative,
+    ];
+    let edges = [
+        SwitchEdge::Rising,
+        SwitchEdge::Falling,
+        SwitchEdge::SwitchPositive,
+        SwitchEdge::SwitchNegative,
+    ];
+    let search = Homing {
+        velocity,
+        direction: one_of(random, &directions[..2]),
+        time_limit: random.one_in(3).then(|| 50 + random.below(2000)),
+        distance_limit: random
+            .one_in(3)
+            .then(|| limits.velocity * cycle * random.log_between(100.0, 2000.0)),
+        ..Homing::DIRECT
+    };
+    let creep = random.one_in(2).then(|| velocity * random.between(0.1, 1.0));
+    let pulse = drive.switches().marker.is_some() && random.one_in(2);
+    let mut homings = vec![];
+    if drive.switches().home.is_some() {
+        homings.push(Homing {
+            procedure: Procedure::AbsoluteSwitch,
+            direction: one_of(random, &directions),
+            edge: one_of(random, &edges),
+            creep,
+            pulse,
+            ..search
+        });
+    }
+    if drive.switches().limits.is_some() {
+        homings.push(Homing {
+            procedure: Procedure::LimitSwitch,
+            creep,
+            pulse,
+            ..search
+        });
+    }
+    if drive.switches().marker.is_some() {
+        homings.push(Homing {
+            procedure: Procedure::ReferencePulse,
+            ..search
+        });
+    }
+    match drive {
+        DriveSetup::Plant(plant) if plant.stops.is_some() => homings.push(Homing {
+            procedure: Procedure::Block,
+            block: Some(BlockDetection {
+                velocity: velocity * random.between(0.1, 0.9),
+                scans: 1 + random.below(20) as u32,
+            }),
+            ..search
+        }),
+        DriveSetup::Cia402(Cia402Setup { homing: Some(_), .. }) => homings.push(Homing {
+            procedure: Procedure::Drive,
+            time_limit: search.time_limit,
+            ..Homing::DIRECT
+        }),
+        DriveSetup::Plant(_) | DriveSetup::Cia402(_) | DriveSetup::Ideal(_) => {}
+    }
+    if homings.is_empty() {
+        return;
+    }
+    config.homing = one_of(random, &homings);
+    if config.check().is_err() {
+        config.homing = Homing::DIRECT;
     }
 }
 
@@ -335,15 +559,72 @@ fn one(name: &'static str) -> &'static BlockInfo {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use standstill_axis::keys::{AXIS, Key, Object};
+    use standstill_drives::keys::{CIA402, IDEAL, PLANT};
     use standstill_fb::Group;
+    use std::collections::BTreeSet;
 
     /// A block that programs do not play would be believed without being tried.
     #[test]
-    fn every_block_that_couples_axes_is_played() {
-        for info in REGISTRY.iter().filter(|info| info.group == Group::MultiAxis) {
+    fn every_block_of_an_axis_is_played() {
+        for info in REGISTRY.iter().filter(|info| info.group != Group::Standard) {
             assert_ne!(kind_of(info), Kind::Other, "{}", info.name);
             let is_favoured = FAVOURED.iter().any(|names| names.contains(&info.name));
-            assert!(is_favoured, "{}", info.name);
+            assert!(is_favoured || info.group != Group::MultiAxis, "{}", info.name);
         }
+    }
+
+    /// The keys that `of` has otherwise than `plain`.
+    fn differing<T>(object: &Object<T>, name: &str, of: &T, plain: &T, all: &mut BTreeSet<String>) {
+        object.each(&mut |key: &'static Key<T>| {
+            if !key.is_same(of, plain) {
+                all.insert(format!("{name}.{}", key.path));
+            }
+        });
+    }
+
+    fn paths<T>(object: &Object<T>, name: &str) -> Vec<String> {
+        let mut paths = Vec::new();
+        object.each(&mut |key| paths.push(format!("{name}.{}", key.path)));
+        paths
+    }
+
+    /// So would a key.
+    #[test]
+    fn every_key_of_an_axis_and_of_a_drive_is_played() {
+        let mut played = BTreeSet::new();
+        for number in 0..3000 {
+            let mut random = Random::new(7, number);
+            for axis in scenario(&mut random, 1).axes {
+                differing(
+                    &AXIS,
+                    "axis",
+                    &axis.config,
+                    &AxisConfig::new(Limits::NONE),
+                    &mut played,
+                );
+                match &axis.drive {
+                    DriveSetup::Ideal(setup) => {
+                        differing(&IDEAL, "ideal", setup, &IdealDriveSetup::PLAIN, &mut played);
+                    }
+                    DriveSetup::Cia402(setup) => {
+                        differing(&CIA402, "cia402", setup, &Cia402Setup::PLAIN, &mut played);
+                    }
+                    DriveSetup::Plant(setup) => {
+                        differing(&PLANT, "plant", setup, &PlantSetup::NONE, &mut played);
+                    }
+                }
+            }
+        }
+        let all = [
+            paths(&AXIS, "axis"),
+            paths(&IDEAL, "ideal"),
+            paths(&CIA402, "cia402"),
+            paths(&PLANT, "plant"),
+        ]
+        .concat();
+        let missing: Vec<_> = all.iter().filter(|path| !played.contains(*path)).collect();
+        // What is drawn lies around the place where an axis begins, so that may be 0.
+        assert_eq!(missing, ["axis.position"]);
     }
 }

@@ -7,10 +7,11 @@ use crate::rules::law::Law;
 use crate::rules::limits::{Track, check_excess};
 use crate::rules::{Broken, Call, Held, Kind, Outputs, Shown, Truth, check_call, check_truth};
 use standstill_axis::{
-    Axis, AxisState, CommandId, ErrorId, Event, Fate, IdealDrive, InstanceId, LOG_KEPT, Plan, Standard,
+    Axis, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, LOG_KEPT, Log, Plan, Record, Standard,
     StandardPlan, WorkKind,
 };
 use standstill_blocks::BlockInstance;
+use standstill_drives::simulated::SimulatedDrive;
 use standstill_fb::{AnyInstance, Context, Value};
 use standstill_scan::{Executor, ProgramConfig, ProgramFault, ProgramId, Programs, ScanTime, TaskConfig};
 
@@ -107,9 +108,15 @@ struct Run<'a, H> {
     /// The state of each axis as last seen.
     states: Vec<AxisState>,
     following: Vec<bool>,
+    /// The set-point of each axis is measured: a torque is held, or what takes over from one is not at rest yet.
+    measured: Vec<bool>,
     /// The motion of each axis that no instance follows, as recorded.
     orphans: Vec<Option<CommandId>>,
-    records: u64,
+    /// Records taken from the ring so far, and those of this scan.
+    taken: u64,
+    records: Vec<Record>,
+    /// How often the coordinates of each axis had moved when they were looked at last.
+    moves: Vec<u32>,
     failure: Option<Failure>,
     seen: Seen,
 }
@@ -183,8 +190,11 @@ pub fn run(scenario: &Scenario, hands: &mut impl Hands) -> (Seen, Option<Failure
         laws: vec![Law::default(); machine.axes().len()],
         states: machine.axes().iter().map(Axis::state).collect(),
         following: vec![true; machine.axes().len()],
+        measured: vec![false; machine.axes().len()],
         orphans: vec![None; machine.axes().len()],
-        records: 0,
+        taken: 0,
+        records: Vec::new(),
+        moves: machine.axes().iter().map(Axis::coordinates).collect(),
         failure: None,
         seen: Seen::default(),
     };
@@ -255,6 +265,14 @@ impl<H: Hands> Run<'_, H> {
                     self.fail(scan, Who::Axis(index), broken);
                 }
             }
+        }
+    }
+
+    /// Under a torque the set-point is the actual state (docs/torque.md), which no limit of the axis binds.
+    fn follow_torques(&mut self, axes: &[Axis<Standard>]) {
+        for (measured, axis) in self.measured.iter_mut().zip(axes) {
+            let is_held = axis.order().torque.is_some();
+            *measured = is_held || (*measured && !axis.setpoint().is_at_rest());
         }
     }
 
@@ -361,12 +379,15 @@ impl<H: Hands> Run<'_, H> {
         let setpoint = axis.setpoint();
         self.seen.fold(setpoint.position.to_bits() ^ (state as u64) << 52);
         let following = axis.is_following();
-        if following || self.following[index] {
+        if following || self.following[index] || self.measured[index] {
             // On its way back into operation it takes over where the feedback is.
             self.tracks[index].forget();
         }
+        if self.measured[index] {
+            self.fences[index].forget();
+        }
         self.following[index] = following;
-        if !following {
+        if !following && !self.measured[index] {
             // It begins in this scan, or began in the call before this step; not every one is recorded.
             if let Some((plan, 0 | 1)) = axis.plan() {
                 let scans = plan.scans();
@@ -473,33 +494,43 @@ impl<H: Hands> Run<'_, H> {
         Ok(())
     }
 
-    /// What was recorded in this scan, for the limits.
-    fn read_records(&mut self, time: ScanTime, machine: &Bench) {
-        let total = machine.log().total();
-        if total == self.records {
-            return;
+    /// Takes what was recorded since the last call. The ring holds [`LOG_KEPT`] records and a scan may have more, so this is
+    /// called after every block.
+    fn collect(&mut self, log: &Log) {
+        let new = log.total() - self.taken;
+        assert!(new <= LOG_KEPT as u64, "the ring has lost some of {new} records");
+        self.records.extend(log.since(self.taken).copied());
+        self.taken = log.total();
+    }
+
+    /// Where coordinates moved, differences mean nothing.
+    fn follow_coordinates(&mut self, axes: &[Axis<Standard>]) {
+        for (index, axis) in axes.iter().enumerate() {
+            let moves = axis.coordinates();
+            if core::mem::replace(&mut self.moves[index], moves) != moves {
+                self.tracks[index].forget();
+                self.fences[index].forget();
+                self.laws.iter_mut().for_each(Law::forget);
+            }
         }
-        // The rules take facts from the records: a machine with so many axes that some are lost would be judged wrongly.
-        let new = total - self.records;
-        assert!(new <= LOG_KEPT as u64, "{new} records in scan {}", time.scan);
+    }
+
+    /// What was recorded in this scan: the rules that ask for a record.
+    fn read_records(&mut self, time: ScanTime, machine: &Bench) {
+        self.collect(machine.log());
         let mut found = None;
-        for record in machine.log().since(self.records) {
-            let Some(track) = self.tracks.get_mut(record.axis.index()) else {
-                continue;
-            };
+        for record in core::mem::take(&mut self.records) {
             match record.event {
                 Event::Unavoidable(excess) => {
                     let index = record.axis.index();
                     let limits = &machine.axes()[index].config().limits;
                     self.seen.turned_back += 1;
-                    if let Err(broken) = check_excess(&excess, limits) {
+                    let is_planned = !self.measured[index];
+                    if let Err(broken) = check_excess(&excess, limits)
+                        && is_planned
+                    {
                         found = Some((index, broken));
                     }
-                }
-                Event::Shifted { .. } => {
-                    track.forget();
-                    self.fences[record.axis.index()].forget();
-                    self.laws.iter_mut().for_each(Law::forget);
                 }
                 Event::Orphaned => {
                     let index = record.axis.index();
@@ -507,6 +538,7 @@ impl<H: Hands> Run<'_, H> {
                 }
                 Event::Refused { .. }
                 | Event::PointRefused { .. }
+                | Event::Shifted { .. }
                 | Event::Clamped { .. }
                 | Event::Raised { .. }
                 | Event::Slowed { .. }
@@ -529,7 +561,6 @@ impl<H: Hands> Run<'_, H> {
                 | Event::Fault { .. } => {}
             }
         }
-        self.records = total;
         if let Some((axis, broken)) = found {
             self.fail(time.scan, Who::Axis(axis), broken);
         }
@@ -611,7 +642,7 @@ fn fail(axis: usize, kind: FaultKind, time: ScanTime, machine: &mut Bench) {
     }
 }
 
-impl<H: Hands> Programs<Standard, IdealDrive> for Run<'_, H> {
+impl<H: Hands> Programs<Standard, SimulatedDrive> for Run<'_, H> {
     fn latch(&mut self, time: ScanTime, machine: &mut Bench) {
         while let Some(action) = self.hands.next(time.scan, machine, &self.instances) {
             self.apply(action, time, machine);
@@ -625,6 +656,7 @@ impl<H: Hands> Programs<Standard, IdealDrive> for Run<'_, H> {
             if let Err(broken) = self.call(index, context) {
                 self.fail(context.scope.scan, Who::Instance(index), broken);
             }
+            self.collect(context.scope.log);
         }
         Ok(0)
     }
@@ -632,6 +664,8 @@ impl<H: Hands> Programs<Standard, IdealDrive> for Run<'_, H> {
     fn published(&mut self, time: ScanTime, machine: &Bench) {
         self.seen.scans += 1;
         self.follow_states(Part::Motion, time.scan, machine.axes());
+        self.follow_torques(machine.axes());
+        self.follow_coordinates(machine.axes());
         self.read_records(time, machine);
         for (index, axis) in machine.axes().iter().enumerate() {
             if let Err(broken) = self.check_axis(index, axis, machine.axes()) {

@@ -1,13 +1,14 @@
 //! A run as data: axes, block instances in call order, and what is done to them in which scan.
 
 use crate::rules::Kind;
-use standstill_axis::{AxisConfig, AxisId, DrivePosition, IdealDrive, Standard, StartState};
+use standstill_axis::{AxisConfig, AxisId, Standard};
 use standstill_blocks::BlockInstance;
+use standstill_drives::simulated::{DriveSetup, SimulatedDrive};
 use standstill_fb::{AnyInstance, BlockInfo, Pin, PinType, TableRef, Value};
 use standstill_scan::Machine;
 
-/// Axes over ideal drives.
-pub type Bench = Machine<Standard, IdealDrive>;
+/// Axes over simulated drives, as scan scripts have them.
+pub type Bench = Machine<Standard, SimulatedDrive>;
 
 /// Everything a run follows from.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,10 +30,8 @@ pub struct Scenario {
 pub struct AxisSetup {
     /// Its configuration.
     pub config: AxisConfig,
-    /// Scans from command to actual position.
-    pub delay: usize,
-    /// Scans until power is confirmed.
-    pub power_on: u32,
+    /// Its drive.
+    pub drive: DriveSetup,
 }
 
 /// A block instance.
@@ -120,7 +119,7 @@ impl FaultKind {
 /// The code faults show.
 pub const FAULT_CODE: u16 = 7;
 
-/// What a block is to the rules where its tables are not empty and its drive is an ideal one.
+/// What a block is to the rules where its tables are not empty.
 pub fn kind_of(info: &BlockInfo) -> Kind {
     match info.name {
         // Without a drive that holds a torque it is always refused, and that must leave the axis alone.
@@ -130,6 +129,9 @@ pub fn kind_of(info: &BlockInfo) -> Kind {
         // The drive sees no edge: it waits until it is aborted, or finds the probe taken.
         "MC_TouchProbe" => Kind::Administrative,
         "MC_DigitalCamSwitch" | "MC_ReadActualTorque" => Kind::Reading,
+        // Their pins are the inputs and outputs of an axis.
+        "MC_ReadDigitalInput" | "MC_ReadDigitalOutput" => Kind::Reading,
+        "MC_WriteDigitalOutput" => Kind::Administrative,
         "MC_GearIn" | "MC_GearInPos" | "MC_CombineAxes" | "MC_CamIn" => Kind::Motion,
         // Beside the coupling, which owns the axis; without one it is refused.
         "MC_PhasingAbsolute" | "MC_PhasingRelative" => Kind::Administrative,
@@ -159,18 +161,6 @@ pub fn wired(pin: &Pin, axis: usize, count: usize) -> usize {
     (axis + further) % count.max(1)
 }
 
-impl AxisSetup {
-    fn drive(&self) -> IdealDrive {
-        let config = &self.config;
-        let position = match config.scaling {
-            Some(scaling) => DrivePosition::Increments(scaling.to_increments(config.position)),
-            None => DrivePosition::Units(config.position),
-        };
-        let enabled = config.start == StartState::Standstill;
-        IdealDrive::new(position, self.delay, Some(self.power_on), enabled)
-    }
-}
-
 impl Scenario {
     /// The cycle (s).
     pub fn cycle(&self) -> f64 {
@@ -182,7 +172,8 @@ impl Scenario {
         let mut machine = Machine::new();
         let planner = Standard::new(self.cycle());
         for axis in &self.axes {
-            machine.add_axis(axis.config, planner, axis.drive()).ok()?;
+            let drive = SimulatedDrive::new(&axis.drive, &axis.config, self.cycle_ns).ok()?;
+            machine.add_axis(axis.config, planner, drive).ok()?;
         }
         let tables = self.blocks.iter().flat_map(|setup| &setup.tables);
         let cells = tables.flat_map(|table| table.records.iter().flatten());

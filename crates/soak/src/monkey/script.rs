@@ -2,10 +2,11 @@
 
 use super::run::{Failure, Who};
 use super::scenario::{Action, AxisSetup, BlockSetup, FAULT_CODE, Scenario, axis_pins, wired};
-use standstill_axis::{
-    AboveLimit, AxisConfig, Limits, MoveProfile, OnLimit, OnMasterLost, PowerOff, StartState,
-};
+use standstill_axis::keys::{AXIS, Holds, Key, Object};
+use standstill_axis::{AxisConfig, Limits};
 use standstill_blocks::{REGISTRY, registry::find};
+use standstill_drives::keys::{CIA402, IDEAL, PLANT};
+use standstill_drives::simulated::{Cia402Setup, DriveSetup, IdealDriveSetup, PlantSetup};
 use standstill_fb::{BlockInfo, Pin, PinType, Value};
 use std::fmt::Write;
 
@@ -200,105 +201,47 @@ fn cell_text(field: &Pin, cell: f64) -> String {
 
 /// The keys of an axis that differ from the default.
 fn members(axis: &AxisSetup) -> Vec<String> {
-    let config = &axis.config;
-    let plain = AxisConfig::new(config.limits);
-    let numbers = |parts: &[(&str, Option<f64>)]| {
-        let given = parts.iter().filter_map(|(key, value)| Some((key, (*value)?)));
-        let given = given.filter(|(_, value)| value.is_finite());
-        given
-            .map(|(key, value)| format!("\"{key}\": {}", number(value)))
-            .collect::<Vec<_>>()
+    let mut members = keys(&AXIS, &axis.config, &AxisConfig::new(Limits::NONE));
+    let drive = match &axis.drive {
+        DriveSetup::Ideal(setup) => drive("ideal", &IDEAL, setup, &IdealDriveSetup::PLAIN),
+        DriveSetup::Cia402(setup) => drive("cia402", &CIA402, setup, &Cia402Setup::PLAIN),
+        DriveSetup::Plant(setup) => drive("plant", &PLANT, setup, &PlantSetup::NONE),
     };
-    let Limits {
-        velocity,
-        acceleration,
-        deceleration,
-        jerk,
-        snap,
-    } = config.limits;
-    let limits = numbers(&[
-        ("velocity", Some(velocity)),
-        ("acceleration", Some(acceleration)),
-        ("deceleration", Some(deceleration)),
-        ("jerk", Some(jerk)),
-        ("snap", Some(snap)),
-    ]);
-    let mut members = vec![format!("\"limits\": {{{}}}", limits.join(", "))];
-    let defaults = numbers(&[
-        ("acceleration", config.defaults.acceleration),
-        ("deceleration", config.defaults.deceleration),
-        ("jerk", config.defaults.jerk),
-        ("snap", config.defaults.snap),
-    ]);
-    if !defaults.is_empty() {
-        members.push(format!("\"defaults\": {{{}}}", defaults.join(", ")));
-    }
-    let position = Some(config.position).filter(|position| *position != 0.0);
-    members.extend(numbers(&[
-        ("position", position),
-        ("modulo", config.modulo),
-        ("stop_deceleration", config.stop_deceleration),
-        ("stop_jerk", config.stop_jerk),
-    ]));
-    if config.start == StartState::Standstill {
-        members.push("\"state\": \"Standstill\"".to_owned());
-    }
-    if let Some((min, max)) = config.software_limits {
-        let ends = numbers(&[("min", Some(min)), ("max", Some(max))]);
-        members.push(format!("\"software_limits\": {{{}}}", ends.join(", ")));
-    }
-    if let Some(scaling) = config.scaling {
-        members.push(format!(
-            "\"scaling\": {{\"increments\": {}, \"units\": {}, \"invert\": {}, \"offset\": {}}}",
-            scaling.increments(),
-            scaling.units(),
-            scaling.invert(),
-            number(scaling.offset())
-        ));
-    }
-    if config.profile != MoveProfile::Overlapped {
-        members.push(format!("\"profile\": \"{}\"", config.profile.name()));
-    }
-    if config.above_limit == AboveLimit::Error {
-        members.push("\"above_limit\": \"error\"".to_owned());
-    }
-    if config.queue != plain.queue {
-        members.push(format!("\"queue\": {}", config.queue));
-    }
-    match config.on_power_off {
-        PowerOff::Ramp => {}
-        PowerOff::Coast => members.push("\"on_power_off\": \"coast\"".to_owned()),
-        PowerOff::Drive => members.push("\"on_power_off\": \"drive\"".to_owned()),
-    }
-    if config.needs_homed {
-        members.push("\"needs_homed\": true".to_owned());
-    }
-    let following = &config.following;
-    let mut coupling = numbers(&[("max_deviation", following.max_deviation)]);
-    match following.on_limit {
-        OnLimit::Lag => {}
-        OnLimit::Error => coupling.push("\"on_limit\": \"error\"".to_owned()),
-        OnLimit::SlowMaster => coupling.push("\"on_limit\": \"slow_master\"".to_owned()),
-    }
-    if following.on_master_lost == OnMasterLost::Hold {
-        coupling.push("\"on_master_lost\": \"hold\"".to_owned());
-    }
-    if following.actual_filter != plain.following.actual_filter {
-        coupling.push(format!("\"actual_filter\": {}", following.actual_filter));
-    }
-    if following.actual_lead {
-        coupling.push("\"actual_lead\": true".to_owned());
-    }
-    if !coupling.is_empty() {
-        members.push(format!("\"coupling\": {{{}}}", coupling.join(", ")));
-    }
-    if (axis.delay, axis.power_on) != (0, 0) {
-        members.push(format!(
-            "\"drive\": {{\"ideal\": {{\"delay\": {}, \"power_on\": {}}}}}",
-            axis.delay, axis.power_on
-        ));
-    }
+    members.extend(drive);
     members
+}
+
+/// A drive that is not as ideal drives are by default.
+fn drive<T>(name: &str, object: &Object<T>, setup: &T, plain: &T) -> Option<String> {
+    let members = keys(object, setup, plain);
+    let is_plain = name == "ideal" && members.is_empty();
+    (!is_plain).then(|| format!("\"drive\": {{\"{name}\": {{{}}}}}", members.join(", ")))
+}
+
+/// The keys of an object that differ from the default, and those that it needs; none if there is nothing to say.
+fn keys<T>(object: &Object<T>, of: &T, plain: &T) -> Vec<String> {
+    let differs =
+        |key: &&Key<T>| !key.is_same(of, plain) || key.null.as_ref().is_some_and(|null| (null.is)(of));
+    if object.keys.iter().find(differs).is_none() {
+        return Vec::new();
+    }
+    let said = object.keys.iter().filter(|key| key.is_needed() || differs(key));
+    said.filter_map(|key| Some(format!("\"{}\": {}", key.name(), held(key, of, plain)?)))
+        .collect()
+}
+
+/// What a key holds, as a script has it.
+fn held<T>(key: &Key<T>, of: &T, plain: &T) -> Option<String> {
+    if key.null.as_ref().is_some_and(|null| (null.is)(of)) {
+        return Some("null".to_owned());
+    }
+    match &key.holds {
+        Holds::Bool { get, .. } => Some(get(of).to_string()),
+        Holds::Word { words, get, .. } => Some(format!("\"{}\"", words.get(get(of)?)?)),
+        Holds::Number { get, .. } => get(of).map(number),
+        Holds::Whole { get, .. } | Holds::Scans { get, .. } => Some(get(of)?.to_string()),
+        Holds::Object(object) => Some(format!("{{{}}}", keys(object, of, plain).join(", "))),
+    }
 }
 
 fn number(value: f64) -> String {

@@ -3,7 +3,9 @@
 use super::replay;
 use super::run::Failure;
 use super::scenario::{Action, Scenario, Step};
-use standstill_axis::{AxisConfig, Following, Limits, StartState};
+use standstill_axis::keys::{AXIS, Holds};
+use standstill_axis::{AxisConfig, Limits, StartState};
+use standstill_drives::simulated::DriveSetup;
 use standstill_fb::Value;
 
 /// Scans run at most to find a smaller one.
@@ -141,35 +143,25 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
 
     /// Every part of a configuration as it is by default.
     fn plainer_axes(&mut self) {
-        let plainer: [fn(&mut AxisConfig); 16] = [
-            |config| config.start = StartState::Standstill,
-            |config| config.modulo = None,
-            |config| config.software_limits = None,
-            |config| config.scaling = None,
-            |config| config.profile = Default::default(),
-            |config| config.queue = AxisConfig::new(Limits::NONE).queue,
-            |config| config.above_limit = Default::default(),
-            |config| config.on_power_off = Default::default(),
-            |config| config.stop_deceleration = None,
-            |config| config.stop_jerk = None,
-            |config| config.needs_homed = false,
-            |config| config.following = Following::DEFAULT,
-            |config| config.defaults = Default::default(),
-            |config| config.limits.snap = f64::INFINITY,
-            |config| {
-                (config.limits.jerk, config.limits.snap) = (f64::INFINITY, f64::INFINITY);
-                config.defaults = Default::default();
-            },
-            |config| config.limits.deceleration = config.limits.acceleration,
-        ];
+        let mut keys: Vec<_> = AXIS.keys.iter().collect();
+        AXIS.each(&mut |key| keys.push(key));
+        let paths: Vec<_> = keys
+            .iter()
+            .filter(|key| !key.is_needed())
+            .map(|key| key.path)
+            .collect();
         for axis in 0..self.best.axes.len() {
-            for change in plainer {
+            for path in &paths {
                 let mut less = self.best.clone();
-                change(&mut less.axes[axis].config);
+                let config = &mut less.axes[axis].config;
+                *config = without(config, path);
                 self.attempt(less);
             }
             let mut less = self.best.clone();
-            (less.axes[axis].delay, less.axes[axis].power_on) = (0, 0);
+            less.axes[axis].config.start = StartState::Standstill;
+            self.attempt(less);
+            let mut less = self.best.clone();
+            less.axes[axis].drive = DriveSetup::default();
             self.attempt(less);
         }
     }
@@ -245,18 +237,17 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
 
     /// Numbers of one, two, three digits.
     fn rounder(&mut self) {
-        for index in 0..numbers(&mut self.best.clone()).len() {
+        for index in 0..numbers(&mut self.best.clone(), None).len() {
             for digits in 1..=4 {
                 let mut less = self.best.clone();
-                let mut numbers = numbers(&mut less);
-                let Some(number) = numbers.get_mut(index) else {
+                let Some(number) = numbers(&mut less, None).get(index).copied() else {
                     return;
                 };
-                let round = rounded(**number, digits);
-                if round == **number {
+                let round = rounded(number, digits);
+                if round == number {
                     break;
                 }
-                **number = round;
+                numbers(&mut less, Some((index, round)));
                 if self.attempt(less) {
                     break;
                 }
@@ -265,36 +256,41 @@ impl<J: Fn(&Scenario) -> (u64, Option<Failure>)> Shrinker<J> {
     }
 }
 
-/// Every number of a scenario that could be another one.
-fn numbers(scenario: &mut Scenario) -> Vec<&mut f64> {
+/// A configuration with a key, or all of an object's keys, at the default.
+fn without(config: &AxisConfig, path: &str) -> AxisConfig {
+    let mut plain = AxisConfig::new(Limits::NONE);
+    AXIS.each(&mut |key| {
+        let is_it = key.path == path
+            || key
+                .path
+                .strip_prefix(path)
+                .is_some_and(|rest| rest.starts_with('.'));
+        if !is_it && !key.is_same(config, &plain) {
+            key.take(config, &mut plain);
+        }
+    });
+    plain
+}
+
+/// Every number of a scenario that could be another one; one of them becomes another.
+fn numbers(scenario: &mut Scenario, change: Option<(usize, f64)>) -> Vec<f64> {
     let mut all = Vec::new();
+    let mut look = |number: f64| {
+        let new = change
+            .filter(|(index, _)| *index == all.len())
+            .map(|(_, new)| new);
+        all.push(number);
+        new
+    };
     for axis in &mut scenario.axes {
         let config = &mut axis.config;
-        let limits = &mut config.limits;
-        all.extend([
-            &mut limits.velocity,
-            &mut limits.acceleration,
-            &mut limits.deceleration,
-            &mut limits.jerk,
-            &mut limits.snap,
-        ]);
-        let defaults = &mut config.defaults;
-        all.extend(
-            [
-                &mut defaults.acceleration,
-                &mut defaults.deceleration,
-                &mut defaults.jerk,
-                &mut defaults.snap,
-                &mut config.stop_deceleration,
-                &mut config.stop_jerk,
-                &mut config.modulo,
-            ]
-            .into_iter()
-            .flatten(),
-        );
-        if let Some((min, max)) = &mut config.software_limits {
-            all.extend([min, max]);
-        }
+        AXIS.each(&mut |key| {
+            if let Holds::Number { get, set, .. } = &key.holds
+                && let Some(new) = get(config).and_then(&mut look)
+            {
+                set(config, new);
+            }
+        });
     }
     let constants = scenario.blocks.iter_mut().flat_map(|block| &mut block.constants);
     let constants = constants.map(|(_, value)| value);
@@ -305,10 +301,13 @@ fn numbers(scenario: &mut Scenario) -> Vec<&mut f64> {
             Action::Set { value, .. } => Some(value),
             Action::Fault { .. } | Action::Clear { .. } => None,
         });
-    all.extend(constants.chain(steps).filter_map(|value| match value {
-        Value::Lreal(number) => Some(number),
-        _ => None,
-    }));
+    for value in constants.chain(steps) {
+        if let Value::Lreal(number) = value
+            && let Some(new) = look(*number)
+        {
+            *number = new;
+        }
+    }
     all
 }
 

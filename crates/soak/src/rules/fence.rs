@@ -64,8 +64,9 @@ impl Fence {
         let near = RELATIVE * if apart.is_finite() { apart } else { position.abs() };
         let is_inside = position >= min - near && position <= max + near;
         let was_inside = core::mem::replace(&mut self.inside, is_inside);
-        let commanded =
-            !(axis.is_following() || axis.state() == AxisState::ErrorStop || axis.outlook().going_off);
+        // A search looks for what the limits refer to, so they do not hold yet (docs/homing.md).
+        let exempt = matches!(axis.state(), AxisState::ErrorStop | AxisState::Homing);
+        let commanded = !(axis.is_following() || exempt || axis.outlook().going_off);
         rule(
             is_inside || !was_inside || !commanded,
             "software limits",
