@@ -239,6 +239,7 @@ fn layers_depend_only_downwards() {
             &[
                 "standstill-axis",
                 "standstill-blocks",
+                "standstill-drives",
                 "standstill-fb",
                 "standstill-planner",
                 "standstill-scan",
