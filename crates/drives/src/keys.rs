@@ -55,7 +55,7 @@ macro_rules! delay {
     () => {
         Key {
             path: "delay",
-            doc: "the actual position follows so many scans later, 0 to 64",
+            doc: "scans by which the actual position follows its command, 0 to 64",
             absent: Some("0"),
             null: None,
             holds: Holds::Scans {
@@ -72,7 +72,7 @@ macro_rules! power_on {
     () => {
         Key {
             path: "power_on",
-            doc: "power is confirmed after so many scans; null never",
+            doc: "scans until the drive confirms its power; null: never",
             absent: Some("0"),
             null: Some(Null {
                 is: |setup| setup.power_on.is_none(),
@@ -168,7 +168,7 @@ macro_rules! marker {
                     "marker.every",
                     Bounds::POSITIVE,
                     Some("there is one"),
-                    "and one every so many units from there",
+                    "the distance from one pulse to the next (u), above 0",
                     |setup| setup.switches.marker.and_then(|marker| marker.every),
                     |setup, every| setup.switches.marker.get_or_insert(NO_MARKER).every = Some(every)
                 ),
@@ -273,7 +273,7 @@ pub static CIA402: Object<Cia402Setup> = Object::new(
             "the motor of a drive",
             MOTOR,
             "it has no torque mode and measures no torque",
-            "what it turns under a torque, in a unit of torque of your choice. In position mode it follows its target whatever that takes, and tells the torque"
+            "what it turns under a torque, in a unit of torque of your choice. In position mode it follows its target whatever that takes, and reports the torque"
         ),
         limit_switches!(),
         home_switch!(),

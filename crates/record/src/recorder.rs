@@ -103,7 +103,7 @@ impl Recorder {
         }
     }
 
-    /// The states of the axes, to be told after all blocks were called and before the motion step.
+    /// Takes the states of the axes; call it after all blocks and before the motion step.
     pub fn observe<P: Planner>(&mut self, axes: &[Axis<P>]) {
         self.ring.observe(&mut self.states, axes);
     }

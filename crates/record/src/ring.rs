@@ -50,7 +50,7 @@ pub enum Trigger {
 pub enum State {
     /// It keeps the last scans.
     Armed,
-    /// The trigger was seen; so many scans are still to come.
+    /// The trigger was seen; some scans are still to come.
     Tripped {
         /// Scans until it freezes.
         left: usize,

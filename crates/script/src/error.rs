@@ -84,7 +84,7 @@ codes! {
     BadInclude = "bad_include",
     /// An override of something that is not both in an included file and here.
     BadOverride = "bad_override",
-    /// A guest program that cannot be had or is not usable.
+    /// A guest program that cannot be read or used.
     BadProgram = "bad_program",
     /// An expression that cannot be read or has no such value.
     BadExpression = "bad_expression",
@@ -121,7 +121,7 @@ impl Diagnostic {
         }
     }
 
-    /// The same, so many bytes further on.
+    /// The same, `by` bytes further on.
     pub(crate) fn moved(mut self, by: usize) -> Self {
         self.span = self.span.map(|span| span.moved(by));
         if let Some(related) = &mut self.related {

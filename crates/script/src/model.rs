@@ -311,7 +311,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// The same piece, so many bytes further on.
+    /// The same piece, `by` bytes further on.
     pub(crate) const fn moved(self, by: usize) -> Self {
         Self {
             start: self.start + by,
@@ -672,7 +672,7 @@ pub enum ClaimKind {
         /// The law.
         follow: Follow,
     },
-    /// After each rising (or the first) `that` holds in some row, not later than so many scans.
+    /// After each rising (or the first) `that` holds in some row, at most `within` scans later.
     Answered {
         /// Scans in which risings count.
         range: Range,
@@ -687,7 +687,7 @@ pub enum ClaimKind {
         /// Only the first rising.
         first: bool,
     },
-    /// Holds in no so many rows in a row.
+    /// Does not hold in `scans` rows in a row.
     NeverFor {
         /// Scans.
         range: Range,
@@ -695,10 +695,10 @@ pub enum ClaimKind {
         during: Conditions,
         /// What does not hold.
         that: Conditions,
-        /// So many rows.
+        /// Rows.
         scans: u64,
     },
-    /// The scans from a rising of the first to the next one of the second are so many.
+    /// The scans from a rising of the first to the next one of the second are within the bounds.
     Duration {
         /// Scans in which risings of the first count.
         range: Range,
@@ -711,7 +711,7 @@ pub enum ClaimKind {
         /// Every rising of the first, not only the first one.
         each: bool,
     },
-    /// Rises so many times.
+    /// How often it becomes true is within the bounds.
     Count {
         /// Scans.
         range: Range,

@@ -50,7 +50,7 @@ pub enum Fate {
     Impossible,
 }
 
-/// All mutants of a script in file order; of more than `most` so many, drawn from the seed.
+/// All mutants of a script in file order; of more than `most` only `most` of them, drawn from the seed.
 #[must_use]
 pub fn mutants(script: &Script, seed: u64, most: usize) -> Vec<Mutant> {
     let mut all = Vec::new();

@@ -459,7 +459,7 @@ fn module(outer: &Path, inner: &str, allowed: &Allowed) -> Result<Vec<u8>, Strin
     program_file(&beside(outer, inner, &allowed.folders, "script")?)
 }
 
-/// The bytes of a program; of a file that is too large so many that it shows.
+/// The bytes of a program; of a file that is too large, as many as show that it is.
 pub(crate) fn program_file(path: &Path) -> Result<Vec<u8>, String> {
     // A pipe would be waited for.
     if !fs::metadata(path).map_err(why)?.is_file() {

@@ -37,7 +37,7 @@ pub(crate) struct Varied {
 pub(crate) enum Values {
     /// These.
     List(Vec<f64>),
-    /// From the first to the second, both among them; so many in a grid, any in a sample.
+    /// From the first to the second, both among them; a number of them in a grid, any in a sample.
     Range {
         from: f64,
         to: f64,

@@ -390,7 +390,7 @@ impl Chain {
         }
     }
 
-    /// A position (u) up to so many ways from the origin.
+    /// A position (u), at most `ways` times `way` from the origin.
     fn position(&mut self, ways: f64) -> f64 {
         self.origin + self.way * self.random.between(-ways, ways)
     }

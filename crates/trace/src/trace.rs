@@ -161,7 +161,7 @@ impl Trace {
         self.header.cycle_ns.wrapping_mul(scan as u64)
     }
 
-    /// Makes room for so many more rows.
+    /// Makes room for `scans` more rows.
     pub fn reserve(&mut self, scans: usize) {
         self.bits.reserve(scans.saturating_mul(self.columns.len()));
     }

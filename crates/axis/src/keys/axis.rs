@@ -513,7 +513,7 @@ const COUNT: (u64, u64) = (1, u32::MAX as u64);
 const SCALING: &[Key<AxisConfig>] = &[
     Key {
         path: "scaling.increments",
-        doc: "so many increments of the drive ..",
+        doc: "this number of increments of the drive ..",
         absent: None,
         null: None,
         holds: Holds::Whole {
@@ -524,7 +524,7 @@ const SCALING: &[Key<AxisConfig>] = &[
     },
     Key {
         path: "scaling.units",
-        doc: ".. are so many user units",
+        doc: ".. is this number of user units",
         absent: None,
         null: None,
         holds: Holds::Whole {

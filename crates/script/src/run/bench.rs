@@ -298,7 +298,7 @@ impl<'a> Bench<'a> {
         (self.trace, self.shifts, self.truths)
     }
 
-    /// Makes room for so many more rows.
+    /// Makes room for `scans` more rows.
     pub(crate) fn reserve(&mut self, scans: usize) {
         self.trace.reserve(scans);
     }

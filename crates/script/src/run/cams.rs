@@ -5,7 +5,7 @@ use crate::model::Script;
 use standstill_axis::CamLaid;
 use standstill_trace::{Cam, Trace};
 
-/// A curve is told at so many places of the master and at its first.
+/// A curve is written at its first place of the master and at this number of further ones.
 const STEPS: u16 = 128;
 
 /// What of the last row is known, for each axis of the script.

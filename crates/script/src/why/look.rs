@@ -37,7 +37,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Counts so many looks.
+    /// Counts looks at the trace.
     fn spend(&self, looks: u64) {
         self.left.set(self.left.get().saturating_sub(looks));
     }

@@ -49,7 +49,7 @@ const FAVOURED: [&[&str]; 22] = [
 /// Lengths of a scan (ns).
 const CYCLES: [i64; 4] = [1_000_000, 250_000, 2_000_000, 10_000_000];
 
-/// A machine and a program, for so many scans.
+/// A machine and a program, for `scans` scans.
 pub fn scenario(random: &mut Random, scans: u64) -> Scenario {
     let cycle_ns = CYCLES[random.below(CYCLES.len() as u64) as usize];
     let count = 1 + random.below(AXES);

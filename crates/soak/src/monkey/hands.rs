@@ -11,7 +11,7 @@ use standstill_fb::{AnyInstance, Direction, Pin, PinType, Value};
 /// Longest pause between two bursts of actions (scans).
 const PAUSE: f64 = 150.0;
 
-/// One in so many numbers is none a pin should have.
+/// One in this many numbers is one that no pin should get.
 const BAD: u64 = 60;
 
 /// Numbers no pin should have.

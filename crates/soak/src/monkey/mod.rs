@@ -26,7 +26,7 @@ pub struct Episode {
     pub failure: Option<(Failure, Scenario)>,
 }
 
-/// Lets the monkey play for so many scans; everything follows from `seed` and `number`.
+/// Lets the monkey play for `scans` scans; everything follows from `seed` and `number`.
 pub fn play(seed: u64, number: u64, scans: u64) -> Episode {
     let (seen, failure, scenario) = record(seed, number, scans);
     Episode {

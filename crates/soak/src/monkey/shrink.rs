@@ -311,7 +311,7 @@ fn numbers(scenario: &mut Scenario, change: Option<(usize, f64)>) -> Vec<f64> {
     all
 }
 
-/// `number` to so many significant digits.
+/// `number` to `digits` significant digits.
 fn rounded(number: f64, digits: usize) -> f64 {
     if !number.is_finite() {
         return number;

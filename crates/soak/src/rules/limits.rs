@@ -94,7 +94,7 @@ impl Track {
         self.resting = false;
     }
 
-    /// A motion is planned that leads from one position to another in so many scans, perhaps some turns away: what it
+    /// A motion is planned that leads from one position to another in `scans` scans, perhaps some turns away: what it
     /// publishes is rounded there, and its instants are counted back from its end.
     pub fn leads(&mut self, from: f64, to: f64, scans: u32) {
         self.largest = self.largest.max(from.abs()).max(to.abs());

@@ -41,10 +41,10 @@ const CELL_BYTES: usize = 10;
 /// Most bytes of a companion beside its cells: the names of its columns, and those in them.
 const NAMES_BYTES: usize = 1 << 22;
 
-/// A companion of which nothing else is known unpacks to so many cells at least ..
+/// The cells that a companion of which nothing else is known may always unpack to ..
 const CELLS_FREE: usize = 1 << 22;
 
-/// .. and to so many per byte of the file.
+/// .. and how many more for each byte of the file.
 const CELLS_PER_BYTE: usize = 256;
 
 /// Why a companion could not be read.
@@ -130,7 +130,7 @@ pub fn decode(file: &[u8]) -> Result<Trace, ExactError> {
     decode_within(file, CELLS_FREE.max(file.len().saturating_mul(CELLS_PER_BYTE)))
 }
 
-/// Unpacks a companion of at most so many cells, that is rows times columns. Memory: at most some 30 bytes a cell that is
+/// Unpacks a companion of a limited number of cells, that is rows times columns. Memory: at most some 30 bytes a cell that is
 /// there, and 4 MiB.
 ///
 /// # Errors

@@ -18,13 +18,13 @@ const EXTRAPOLATIONS: [&[f64]; EXTRAPOLATION_ORDERS] = [
 /// Orders of extrapolation: 0 to 6.
 pub const EXTRAPOLATION_ORDERS: usize = 7;
 
-/// Up to so many scans back an earlier column may be what this one repeats (feedback of an ideal drive).
+/// How many scans back an earlier column may be what this one repeats (feedback of an ideal drive).
 const LAG_MAX: usize = 3;
 
 /// How a column of reals is predicted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Predictor {
-    /// By the polynomial through so many of its own last values.
+    /// By the polynomial through some of its own last values.
     Extrapolation(usize),
     /// By the column of reals of this number, `lag` scans ago.
     Copy { from: usize, lag: usize },

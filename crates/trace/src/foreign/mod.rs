@@ -57,7 +57,7 @@ pub enum Times {
         /// What its numbers count.
         unit: Unit,
     },
-    /// Nowhere: the rows are so many nanoseconds apart; more than 0.
+    /// Nowhere: the distance of two rows (ns), above 0.
     Every(i64),
 }
 

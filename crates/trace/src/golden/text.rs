@@ -14,7 +14,7 @@ use crate::trace::Trace;
 /// The heading above the digests.
 const DIGESTS: &str = "digests";
 
-/// A set-point table holds about so many rows at equal distances, besides those of events.
+/// About the number of rows at equal distances in a set-point table, besides those of events.
 const TABLE_ROWS: usize = 16;
 
 /// The golden text: header, events, a thin table of set-points per axis, extremes against limits, the digest of every

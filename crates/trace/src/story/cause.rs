@@ -36,7 +36,7 @@ pub enum Cause {
     Variable {
         /// What differs first.
         signal: SignalDifference,
-        /// By so many scans later the found run has the expected value, if it has it at all.
+        /// The found run has the expected value this many scans later, if it has it at all.
         later: Option<i64>,
     },
     /// An input pin is given another value.
@@ -59,7 +59,7 @@ pub enum Cause {
     },
     /// The same events in the same scans, but other set-points between them.
     Path,
-    /// The same events so many scans later (earlier if negative).
+    /// The same events, this many scans later (earlier if negative).
     Shift(i64),
     /// The same events in the same order, at distances that change: the first and the last, in scans.
     Drift(i64, i64),

@@ -48,7 +48,7 @@ const STYLE: &str = "<style>\n\
 /// Letters of a note that fit on a line.
 const NOTE: usize = 120;
 
-/// A text as lines of so many letters at most; a word that is longer is cut.
+/// A text as lines of a limited number of letters; a word that is longer is cut.
 pub fn wrapped(text: &str, letters: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -113,7 +113,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// An empty one, over so many scans.
+    /// An empty one, over a number of scans.
     pub const fn new(scans: usize) -> Self {
         Self {
             body: String::new(),

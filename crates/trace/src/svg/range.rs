@@ -7,7 +7,7 @@ use crate::panels::Curve;
 /// A point this near to the line between its neighbours is left out.
 const NEAR: f64 = 0.1;
 
-/// About so many ticks on the time axis.
+/// About the number of ticks on the time axis.
 const TICKS: f64 = 8.0;
 
 /// What a curve is drawn in: its values, with some room around them.

@@ -18,7 +18,7 @@ const SIGNALS: [&str; 5] = ["Position", "Velocity", "Acceleration", "Jerk", "Sna
 /// What the drive reported, drawn over the set-points.
 const ACTUAL: [(&str, &str); 2] = [("Position", "ActualPosition"), ("Velocity", "ActualVelocity")];
 
-/// A number that changes in more than one of so many scans is a curve, not a row of boxes.
+/// A number that changes in more than one of this many scans is a curve, not a row of boxes.
 const BUSY: usize = 8;
 
 /// Letters of a title that fit on a line.
