@@ -312,7 +312,7 @@ typedef struct standstill_axis_setup {
    */
   int32_t profile;
   /**
-   * Commands that can wait, 0 to 8.
+   * Commands that can wait, 0 to 16.
    */
   uint32_t queue;
   /**

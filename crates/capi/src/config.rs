@@ -313,7 +313,7 @@ impl DriveSetup {
                         damping: self.load_damping,
                     }),
                 };
-                simulated::DriveSetup::Plant(PlantSetup {
+                let setup = PlantSetup {
                     power_on,
                     plant,
                     stops: (self.stop_stiffness != 0.0).then_some(Stops {
@@ -321,25 +321,20 @@ impl DriveSetup {
                         stiffness: self.stop_stiffness,
                         damping: self.stop_damping,
                     }),
-                    gains: self.gains(&plant, cycle_ns),
+                    gains: Gains {
+                        position: self.gain_position,
+                        velocity: self.gain_velocity,
+                        integral: self.gain_integral,
+                        feed_velocity: self.feed_velocity,
+                        feed_acceleration: self.feed_acceleration,
+                        torque: given(self.torque_max).unwrap_or(f64::INFINITY),
+                    },
                     switches,
-                })
+                };
+                simulated::DriveSetup::Plant(setup.with_gains(cycle_ns as f64 / 1e9))
             }
             other => return Err(fault("drive.kind", other.into())),
         })
-    }
-
-    fn gains(&self, plant: &Plant, cycle_ns: i64) -> Gains {
-        let own = Gains::of(plant, cycle_ns as f64 / 1e9);
-        let or = |given: f64, own: f64| if given.is_nan() { own } else { given };
-        Gains {
-            position: or(self.gain_position, own.position),
-            velocity: or(self.gain_velocity, own.velocity),
-            integral: or(self.gain_integral, own.integral),
-            feed_velocity: self.feed_velocity,
-            feed_acceleration: self.feed_acceleration,
-            torque: given(self.torque_max).unwrap_or(own.torque),
-        }
     }
 
     fn cia402(
@@ -503,5 +498,104 @@ pub(crate) fn refused(error: &ConfigError) -> SetupFault {
     SetupFault {
         key: error.key(),
         value,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use standstill_axis::keys::AXIS;
+    use std::vec::Vec;
+
+    /// What a host does to set a key, on top of what the key needs.
+    type Set = fn(&mut AxisSetup);
+
+    /// Each key of an axis in C.
+    const KEYS: &[(&str, Set)] = &[
+        ("limits.velocity", |axis| axis.velocity = 7.0),
+        ("limits.acceleration", |axis| axis.acceleration = 70.0),
+        ("limits.deceleration", |axis| axis.deceleration = 60.0),
+        ("limits.jerk", |axis| axis.jerk = 1e3),
+        ("limits.snap", |axis| axis.snap = 1e5),
+        ("defaults.acceleration", |axis| axis.default_acceleration = 5.0),
+        ("defaults.deceleration", |axis| axis.default_deceleration = 5.0),
+        ("defaults.jerk", |axis| axis.default_jerk = 5.0),
+        ("defaults.snap", |axis| axis.default_snap = 5.0),
+        ("position", |axis| axis.position = 3.0),
+        ("state", |axis| axis.start_powered = 1),
+        ("scaling.increments", |axis| axis.scaling_increments = 1000),
+        ("scaling.units", |axis| {
+            (axis.scaling_increments, axis.scaling_units) = (1000, 3)
+        }),
+        ("scaling.invert", |axis| {
+            (axis.scaling_increments, axis.scaling_invert) = (1000, 1)
+        }),
+        ("scaling.offset", |axis| {
+            (axis.scaling_increments, axis.scaling_offset) = (1000, 0.5)
+        }),
+        ("modulo", |axis| axis.modulo = 360.0),
+        ("software_limits.min", |axis| axis.software_limit_min = -5.0),
+        ("software_limits.max", |axis| axis.software_limit_max = 5.0),
+        ("above_limit", |axis| axis.above_limit = 1),
+        ("profile", |axis| axis.profile = 3),
+        ("queue", |axis| axis.queue = 16),
+        ("stop_deceleration", |axis| axis.stop_deceleration = 50.0),
+        ("stop_jerk", |axis| axis.stop_jerk = 500.0),
+        ("on_power_off", |axis| axis.on_power_off = 2),
+        ("hardware_limits", |axis| axis.hardware_limits = 0),
+        ("homing.procedure", |axis| {
+            (axis.homing, axis.homing_velocity) = (1, 2.0)
+        }),
+        ("homing.direction", |axis| axis.homing_direction = 3),
+        ("homing.edge", |axis| axis.homing_edge = 2),
+        ("homing.velocity", |axis| axis.homing_velocity = 2.0),
+        ("homing.creep", |axis| axis.homing_creep = 1.0),
+        ("homing.pulse", |axis| axis.homing_pulse = 1),
+        ("homing.block.velocity", |axis| axis.homing_block_velocity = 1.0),
+        ("homing.block.time", |axis| {
+            (axis.homing_block_velocity, axis.homing_block_scans) = (1.0, 9);
+        }),
+        ("homing.time_limit", |axis| axis.homing_time_limit = 9),
+        ("homing.distance_limit", |axis| axis.homing_distance_limit = 9.0),
+        ("needs_homed", |axis| axis.needs_homed = 1),
+        ("override_max", |axis| axis.override_max = 1.5),
+        ("power_timeout", |axis| axis.power_timeout = 9),
+        ("in_position.window", |axis| axis.in_position_window = 0.1),
+        ("in_position.time", |axis| {
+            (axis.in_position_window, axis.in_position_scans) = (0.1, 9)
+        }),
+        ("max_following_error", |axis| axis.max_following_error = 0.5),
+        ("coupling.on_limit", |axis| axis.on_limit = 2),
+        ("coupling.max_deviation", |axis| axis.max_deviation = 0.5),
+        ("coupling.on_master_lost", |axis| axis.on_master_lost = 1),
+        ("coupling.actual_filter", |axis| axis.actual_filter = -1),
+        ("coupling.actual_lead", |axis| axis.actual_lead = 1),
+    ];
+
+    /// A host in C can set up what a script can.
+    #[test]
+    fn every_key_of_an_axis_has_its_fields() {
+        let mut plain = AxisSetup::defaults(0);
+        (plain.velocity, plain.acceleration) = (10.0, 100.0);
+        let Ok(without) = plain.config() else {
+            unreachable!()
+        };
+        let mut paths = Vec::new();
+        AXIS.each(&mut |key| paths.push(key.path));
+        let known: Vec<_> = KEYS.iter().map(|(path, _)| *path).collect();
+        for path in &paths {
+            assert!(known.contains(path), "a host in C cannot set {path}");
+        }
+        for (path, set) in KEYS {
+            let key = AXIS.find(path).expect("a key of the table");
+            let mut setup = plain;
+            set(&mut setup);
+            let Ok(with) = setup.config() else {
+                panic!("{path}")
+            };
+            assert!(!key.is_same(&without, &with), "{path} is not set");
+        }
     }
 }

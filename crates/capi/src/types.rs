@@ -118,7 +118,7 @@ pub struct AxisSetup {
     /// How moves are planned: 0 overlapped, 1 grid, 2 sequential, 3 online, 4 fastest, 5 s_curve, 6 trapezoid,
     /// 7 short_path.
     pub profile: i32,
-    /// Commands that can wait, 0 to 8.
+    /// Commands that can wait, 0 to 16.
     pub queue: u32,
     /// When it is switched off in motion: 0 ramps down, 1 coasts, 2 leaves it to the drive.
     pub on_power_off: i32,

@@ -367,3 +367,67 @@ fn a_recorder_that_cannot_be_made_changes_nothing() {
     assert_eq!(host.stop(), 0);
     host.run_down(2);
 }
+
+#[repr(C)]
+struct SetPositionIn {
+    size: u32,
+    axis: i32,
+    execute: u8,
+    reserved: [u8; 7],
+    position: f64,
+    relative: u8,
+    reserved_25: [u8; 3],
+    execution_mode: i32,
+}
+
+#[repr(C)]
+#[derive(Default)]
+struct SetPositionOut {
+    size: u32,
+    done: u8,
+    rest: [u8; 11],
+}
+
+/// The ring of records holds 64: of 70 axes that move their coordinates in one tick it has lost some.
+#[test]
+fn the_moves_of_70_axes_in_one_tick_are_told() {
+    const AXES: i32 = 70;
+    let host = Host::new(AXES as u32, AXES as u32);
+    let (mut axis, drive) = Host::setup();
+    axis.start_powered = 1;
+    for number in 1..=AXES {
+        assert_eq!(host.add(&axis, &drive), Ok(number));
+    }
+    let _memory = init(&host, &keep(10, 3), &[]).unwrap();
+    assert_eq!(host.begin(0), 0);
+    for axis in 1..=AXES {
+        let given = SetPositionIn {
+            size: size_of::<SetPositionIn>() as u32,
+            axis,
+            execute: 1,
+            reserved: [0; 7],
+            position: 3.0,
+            relative: 1,
+            reserved_25: [0; 3],
+            execution_mode: 0,
+        };
+        let mut out = SetPositionOut {
+            size: size_of::<SetPositionOut>() as u32,
+            ..SetPositionOut::default()
+        };
+        let mut key = 0;
+        // SAFETY: all lead to what they say.
+        let code = unsafe {
+            mc_set_position(
+                host.runtime,
+                &mut key,
+                std::ptr::from_ref(&given).cast(),
+                std::ptr::from_mut(&mut out).cast(),
+            )
+        };
+        assert_eq!((code, out.done), (0, 1));
+    }
+    assert_eq!(host.end(), 0);
+    let header = whole(&host, 2, 1 << 16);
+    assert_eq!(header.matches("coordinates moved by 3.0").count(), AXES as usize);
+}
