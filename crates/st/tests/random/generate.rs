@@ -4,22 +4,24 @@
 //! Whole numbers are 128 bits wide in C and cut to their type behind every operator, so nothing overflows; divisors are
 //! not 0, indices are in their bounds, and loops end.
 
+use standstill_testkit as testkit;
 use std::fmt::Write;
 
-/// Splitmix64.
-pub struct Random(pub u64);
+/// Numbers of the test kit, drawn as programs need them.
+pub struct Random(testkit::Random);
 
 impl Random {
+    /// All follows from `seed`.
+    pub const fn new(seed: u64) -> Self {
+        Self(testkit::Random(seed))
+    }
+
     pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        self.0.bits()
     }
 
     pub fn below(&mut self, count: usize) -> usize {
-        (self.next() % count as u64) as usize
+        self.0.place(count)
     }
 
     fn pick<T: Copy>(&mut self, from: &[T]) -> T {

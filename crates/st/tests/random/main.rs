@@ -85,7 +85,7 @@ fn shown(run: &Running, n: usize, program: &Generated) -> String {
 
 /// Programs of one file, from one seed.
 fn same(seed: u64, count: usize) -> bool {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let programs: Vec<Generated> = (0..count).map(|n| generate(&mut random, n)).collect();
     let Some(theirs) = in_c(&programs, seed) else {
         return false;
