@@ -93,6 +93,9 @@ fn play_with(mut random: Random, machines: u64) -> Played {
 mod tests {
     use super::*;
 
+    /// Couplings among them; other processors are held against the same line by `.ci/deep`.
+    ///
+    /// Covers: G85
     #[test]
     fn the_programs_enter_every_state() {
         let played = play();
