@@ -6,8 +6,8 @@ mod common;
 
 use common::{MS, Rig, task};
 use standstill_axis::{
-    Axis, AxisId, AxisState, Command, Direction, DriveRequest, Dynamics, ErrorId, InstanceId, Planner, Raw,
-    Request,
+    Axis, AxisId, AxisState, Command, Direction, DriveRequest, Dynamics, ErrorId, Followed, InstanceId,
+    Master, Permission, Planner, Raw, Request, ValueSource, couple,
 };
 use standstill_fb::Context;
 use standstill_scan::{Mode, NotOff, ProgramConfig, ProgramFault, ScanReport, Start};
@@ -237,4 +237,81 @@ fn a_stop_after_a_fault_keeps_the_fault() {
         .stop(&mut moving.rig.host, &mut moving.rig.machine);
     assert_eq!(moving.rig.executor.mode(), mode);
     assert_eq!(moving.rig.host.failed.len(), 1);
+}
+
+/// Y behind X, 1/1.
+fn gear<P: Planner>(context: &mut Context<'_, P>) {
+    let gear = Command::GearIn {
+        followed: Followed {
+            master: Master {
+                axis: AxisId::new(0),
+                turn: None,
+            },
+            numerator: 1,
+            denominator: 1,
+            source: Raw::from(ValueSource::Set),
+        },
+        sync: None,
+        dynamics: Dynamics::default(),
+    };
+    let request = Request::aborting(gear);
+    couple(context.axes, AxisId::new(1), &request, &mut context.scope).unwrap();
+}
+
+/// Covers: G86
+#[test]
+fn a_start_finds_no_coupling_from_before_the_stop() {
+    let mut rig = Rig::new(
+        &[task("main", 1, 0)],
+        &[ProgramConfig::with("p", "main")],
+        &["X", "Y"],
+    );
+    rig.host.act = |scan, context| {
+        match scan {
+            0 => {
+                gear(context);
+                forward(context);
+            }
+            // After the second start: power, then X alone.
+            3000..3100 => {
+                for axis in 0..2 {
+                    let (axis, scope) = context.axis(AxisId::new(axis)).unwrap();
+                    axis.set_power(true, Permission::BOTH, scope);
+                }
+            }
+            3100 => forward(context),
+            _ => {}
+        }
+        Ok(())
+    };
+    let mut scan = 0;
+    let mut scans = |rig: &mut Rig, count: i64| {
+        for _ in 0..count {
+            rig.scan_at(scan * MS as i64);
+            scan += 1;
+        }
+    };
+    scans(&mut rig, 500);
+    let [_, slave] = rig.machine.axes() else {
+        panic!("two axes")
+    };
+    assert!(slave.is_in_gear() && slave.setpoint().velocity == 20.0);
+    rig.executor.stop(&mut rig.host, &mut rig.machine);
+    scans(&mut rig, 2500);
+    for axis in rig.machine.axes() {
+        assert_eq!(axis.state(), AxisState::Disabled);
+        assert!(axis.master().is_none() && !axis.is_in_gear());
+    }
+    let rest = rig.machine.axes()[1].setpoint();
+    assert!(rest.is_at_rest());
+    rig.executor
+        .start(Start::Cold, &mut rig.host, &rig.machine)
+        .unwrap();
+    scans(&mut rig, 500);
+    let [master, slave] = rig.machine.axes() else {
+        panic!("two axes")
+    };
+    assert_eq!(master.setpoint().velocity, 20.0);
+    assert_eq!(slave.state(), AxisState::Standstill);
+    assert_eq!(slave.setpoint().position.to_bits(), rest.position.to_bits());
 }
