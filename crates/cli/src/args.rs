@@ -53,6 +53,9 @@ pub enum Command {
         /// Take the runs as they are for goldens, where all claims hold
         #[arg(long)]
         accept: bool,
+        /// Show what differs from a golden where all claims hold, and ask whether to take it; the answer comes from standard input
+        #[arg(long, conflicts_with_all = ["accept", "list", "json", "mutate", "watch", "strict", "junit", "coverage", "report", "recording", "threads"])]
+        review: bool,
         /// Fail for what tests nothing and for values that were clamped, too
         #[arg(long)]
         strict: bool,
@@ -194,8 +197,8 @@ pub enum Command {
     /// Print completions of the command line for a shell
     Completions {
         /// The shell
-        #[arg(value_enum, value_name = "SHELL")]
-        shell: clap_complete::Shell,
+        #[arg(value_name = "SHELL")]
+        shell: Shell,
     },
     /// Write manual pages
     Man {
@@ -227,6 +230,8 @@ pub enum Command {
         #[arg(long, hide = true)]
         stdio: bool,
     },
+    /// Let an agent check, run, explain and plan, over the Model Context Protocol on standard input and output
+    Mcp(McpArguments),
     /// Check, lint or compile programs in Structured Text
     St {
         /// What to do
@@ -249,6 +254,12 @@ pub enum Command {
         check: bool,
     },
 }
+
+/// The shells that complete the command line.
+#[cfg(feature = "pages")]
+pub use clap_complete::Shell;
+#[cfg(not(feature = "pages"))]
+pub type Shell = String;
 
 /// How exactly `test` holds runs against goldens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -474,6 +485,23 @@ pub struct StSources {
     /// The PROGRAM to run in every scan, if neither a CONFIGURATION says nor there is only one
     #[arg(long, value_name = "NAME")]
     pub program: Option<String>,
+}
+
+/// What `mcp` takes.
+#[derive(Args, Debug)]
+pub struct McpArguments {
+    /// The folder whose scripts and traces may be read; nothing outside it is
+    #[arg(value_name = "FOLDER", default_value = ".")]
+    pub folder: PathBuf,
+    /// Let calls write pages, pictures and traces into this folder; without it nothing is written
+    #[arg(long, value_name = "FOLDER")]
+    pub write: Option<PathBuf>,
+    /// End a call after this time
+    #[arg(long, value_name = "TIME", value_parser = period, default_value = "30s")]
+    pub call_time: u64,
+    /// Let a call have so much memory, such as 256MiB (Linux)
+    #[arg(long, value_name = "SIZE", value_parser = size, default_value = "1GiB")]
+    pub call_memory: u64,
 }
 
 /// Where `soak blocks` writes failing programs.

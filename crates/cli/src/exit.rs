@@ -1,12 +1,15 @@
 //! How a command ends: the exit statuses, and the failures that lead to them.
 
+use crate::paint;
+use crate::suggest::beside;
 use standstill_script::RunError;
-use standstill_script::suite::SuiteError;
+use standstill_script::suite::{SuiteError, shown};
 use standstill_trace::file::FileError;
 use standstill_trace::golden::GoldenError;
 use standstill_trace::printable_lines;
 use std::io::{self, ErrorKind, Write};
 use std::panic::{self, UnwindSafe};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// The exit statuses of the program. They are interface: scripts and CI jobs rely on them.
@@ -65,6 +68,8 @@ impl Failure {
         feature = "live",
         feature = "serve",
         feature = "lsp",
+        feature = "mcp",
+        feature = "pages",
         feature = "st",
         feature = "sweep",
         feature = "watch"
@@ -77,7 +82,10 @@ impl Failure {
 
     /// A file that could not be read or written; text that is no UTF-8 is a wrong file, not a bad disk.
     pub fn io(name: &str, error: &io::Error) -> Self {
-        Self::Told(io_exit(error), format!("error: {name}: {error}"))
+        Self::Told(
+            io_exit(error),
+            format!("error: {name}: {error}{}", meant(Path::new(name), error)),
+        )
     }
 
     /// Tells people on standard error; returns the status that goes with it.
@@ -97,6 +105,16 @@ impl Failure {
     }
 }
 
+/// The end of a message about a file or folder that is not there: what was probably meant.
+fn meant(path: &Path, error: &io::Error) -> String {
+    let found = (error.kind() == ErrorKind::NotFound)
+        .then(|| beside(path))
+        .flatten();
+    found.map_or_else(String::new, |found| {
+        format!("; did you mean `{}`?", shown(&found))
+    })
+}
+
 fn io_exit(error: &io::Error) -> Exit {
     match error.kind() {
         ErrorKind::InvalidData => Exit::BadInput,
@@ -114,9 +132,8 @@ impl From<io::Error> for Failure {
 impl From<SuiteError> for Failure {
     fn from(error: SuiteError) -> Self {
         let exit = match &error {
-            SuiteError::Io { source, .. } | SuiteError::Golden(GoldenError::Io { source, .. }) => {
-                io_exit(source)
-            }
+            SuiteError::Io { path, source } => return Self::io(&shown(path), source),
+            SuiteError::Golden(GoldenError::Io { source, .. }) => io_exit(source),
             SuiteError::Run {
                 source: RunError::Internal(_),
                 ..
@@ -135,7 +152,7 @@ impl From<FileError> for Failure {
     fn from(error: FileError) -> Self {
         let exit = match &error {
             FileError::Form { .. } => Exit::Usage,
-            FileError::Io { source, .. } => io_exit(source),
+            FileError::Io { path, source } => return Self::io(&shown(path), source),
             FileError::Text { .. } | FileError::Exact { .. } => Exit::BadInput,
         };
         Self::Told(exit, format!("error: {error}"))
@@ -156,7 +173,11 @@ pub fn go_on(result: Result<Exit, Failure>, out: &mut dyn Write) -> Result<Exit,
 
 /// Writes lines to standard error, on which every character can be seen. Unlike `eprintln!` it does not panic when nobody can read it.
 pub fn complain(text: &str) {
-    let _ = writeln!(io::stderr(), "{}", printable_lines(text));
+    let mut text = printable_lines(text).into_owned();
+    if paint::wanted(&io::stderr()) {
+        text = paint::lines(&text);
+    }
+    let _ = writeln!(io::stderr(), "{text}");
 }
 
 /// Runs the program; a panic becomes [`Exit::Internal`].

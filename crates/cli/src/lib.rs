@@ -24,10 +24,14 @@ mod limit;
 mod live;
 #[cfg(feature = "lsp")]
 mod lsp;
+#[cfg(feature = "mcp")]
+mod mcp;
 mod mutate;
 mod out;
 mod outcome;
+#[cfg(feature = "pages")]
 mod pages;
+mod paint;
 pub mod plan;
 mod progress;
 mod report;
@@ -116,6 +120,7 @@ fn is_data(command: &Command) -> bool {
         | Command::Watch(_)
         | Command::Serve(_)
         | Command::Lsp { .. }
+        | Command::Mcp(_)
         | Command::Report { .. }
         | Command::Compare { .. }
         | Command::Init { .. }
@@ -151,6 +156,10 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
         Command::Lsp { dialect, .. } => lsp::lsp(dialect.as_deref()),
         #[cfg(not(feature = "lsp"))]
         Command::Lsp { .. } => Err(Failure::left_out("lsp")),
+        #[cfg(feature = "mcp")]
+        Command::Mcp(arguments) => mcp::mcp(arguments),
+        #[cfg(not(feature = "mcp"))]
+        Command::Mcp(_) => Err(Failure::left_out("mcp")),
         #[cfg(not(feature = "live"))]
         Command::Live(_) => Err(Failure::left_out("live")),
         #[cfg(not(feature = "watch"))]
@@ -161,6 +170,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             list,
             watch,
             accept,
+            review,
             strict,
             json,
             mutate,
@@ -199,6 +209,9 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             };
             if *watch {
                 return test::watch(wish, out);
+            }
+            if *review {
+                return test::review(wish, &mut io::stdin().lock(), out);
             }
             test::test(wish, out)
         }
@@ -268,8 +281,12 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             names, json: true, ..
         } => blocks::json(names, out),
         Command::Blocks { names, .. } => blocks::table(names, out),
+        #[cfg(feature = "pages")]
         Command::Completions { shell } => pages::completions(*shell, out),
+        #[cfg(feature = "pages")]
         Command::Man { folder } => pages::man(folder, out),
+        #[cfg(not(feature = "pages"))]
+        Command::Completions { .. } | Command::Man { .. } => Err(Failure::left_out("pages")),
         Command::Export {
             target,
             out: folder,

@@ -1,5 +1,6 @@
 //! Standard output, and the end of it when nobody reads it any more.
 
+use crate::paint;
 use standstill_trace::printable_lines;
 use std::io::{self, BufWriter, ErrorKind, Stdout, Write};
 use std::sync::{LazyLock, Mutex, MutexGuard};
@@ -10,6 +11,8 @@ static STANDARD: LazyLock<Mutex<Standard>> = LazyLock::new(|| {
     Mutex::new(Standard {
         out: BufWriter::new(io::stdout()),
         closed: false,
+        colours: paint::wanted(&io::stdout()),
+        line: String::new(),
     })
 });
 
@@ -17,6 +20,10 @@ struct Standard {
     out: BufWriter<Stdout>,
     /// The reader has gone, as in `standstill test | head -1`.
     closed: bool,
+    /// Text gets colours.
+    colours: bool,
+    /// Text of a line that is not whole yet: colours are laid over whole lines.
+    line: String,
 }
 
 impl Standard {
@@ -34,6 +41,26 @@ impl Standard {
             other => other,
         }
     }
+
+    /// Writes text, in colours where they are wanted.
+    fn text(&mut self, text: &str) -> io::Result<()> {
+        if !self.colours {
+            return self.with(|out| out.write_all(text.as_bytes()));
+        }
+        self.line.push_str(text);
+        let whole = self.line.rfind('\n').map_or(0, |end| end + 1);
+        let lines: String = self.line.drain(..whole).collect();
+        self.with(|out| out.write_all(paint::lines(&lines).as_bytes()))
+    }
+
+    /// Sends out what is on its way.
+    fn flush(&mut self) -> io::Result<()> {
+        let rest = std::mem::take(&mut self.line);
+        self.with(|out| {
+            out.write_all(rest.as_bytes())?;
+            out.flush()
+        })
+    }
 }
 
 fn standard() -> MutexGuard<'static, Standard> {
@@ -49,7 +76,7 @@ pub fn is_closed() -> bool {
 pub fn flush_if_free() {
     if let Ok(mut standard) = STANDARD.try_lock() {
         // The program ends, whatever becomes of it.
-        let _ = standard.with(BufWriter::flush);
+        let _ = standard.flush();
     }
 }
 
@@ -73,14 +100,14 @@ impl Out {
 
 impl Write for Out {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        standard().with(|out| match str::from_utf8(bytes) {
-            Ok(text) if !self.is_data => out.write_all(printable_lines(text).as_bytes()),
-            _ => out.write_all(bytes),
-        })?;
+        match str::from_utf8(bytes) {
+            Ok(text) if !self.is_data => standard().text(&printable_lines(text)),
+            _ => standard().with(|out| out.write_all(bytes)),
+        }?;
         Ok(bytes.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        standard().with(BufWriter::flush)
+        standard().flush()
     }
 }

@@ -1,5 +1,8 @@
 //! What a misspelt name was probably meant to be.
 
+use std::fs;
+use std::path::{Path, PathBuf};
+
 /// The candidate nearest to `name` without regard to case, if one slip in three letters explains it.
 pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let wanted = name.to_ascii_lowercase();
@@ -14,6 +17,31 @@ pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
         .filter(|(distance, _)| *distance <= slips)
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate)
+}
+
+/// A file or folder that is there and that a path which is not was probably meant to be: its first part that is missing is
+/// held against what stands in that place.
+pub fn beside(path: &Path) -> Option<PathBuf> {
+    let parts: Vec<_> = path.components().collect();
+    let mut sound = PathBuf::new();
+    for (at, part) in parts.iter().enumerate() {
+        let next = sound.join(part);
+        if next.symlink_metadata().is_ok() {
+            sound = next;
+            continue;
+        }
+        let folder = if at == 0 { Path::new(".") } else { &sound };
+        let names: Vec<String> = fs::read_dir(folder)
+            .ok()?
+            .flatten()
+            .filter_map(|entry| entry.file_name().into_string().ok())
+            .collect();
+        let wanted = part.as_os_str().to_str()?;
+        let found = sound.join(nearest(wanted, names.iter().map(String::as_str))?);
+        let whole = parts[at + 1..].iter().fold(found, |path, part| path.join(part));
+        return whole.exists().then_some(whole);
+    }
+    None
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use standstill_trace::compare::{Tolerance, Yardstick};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, BufRead, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
@@ -91,6 +91,71 @@ pub fn list(paths: &[PathBuf], word: Option<&str>, out: &mut dyn Write) -> Resul
 
 /// Time between two looks for files that were saved.
 const LOOK_EVERY: Duration = Duration::from_millis(200);
+
+/// Asks of every golden that is missing or differs, where all claims hold, whether it becomes what the run is. Without an answer
+/// it stays as it is, and so do all behind it.
+pub fn review(wish: Wish<'_>, answers: &mut dyn BufRead, out: &mut dyn Write) -> Result<Exit, Failure> {
+    let Some(yardstick) = wish.yardstick else {
+        return Err(Failure::usage(
+            "--review is of goldens, and --golden none asks for none",
+        ));
+    };
+    let accept = Mode::from_environment(true).map_err(|error| Failure::usage(&error.to_string()))?;
+    let mut tally = Tally::default();
+    let scripts = found(wish.paths, wish.word)?;
+    let mut unasked = false;
+    for script in &scripts {
+        let name = suite::shown(script);
+        limit::doing(name.clone());
+        let judge = |mode| suite::judge_file(script, mode, yardstick, wish.allowed, |_| {});
+        let mut judged = judge(Mode::Check);
+        if let Ok(report) = &judged
+            && report.outcome.passed()
+            && !report.passed()
+            && !unasked
+        {
+            writeln!(out, "differs   {name}")?;
+            for line in report.to_string().lines() {
+                writeln!(out, "    {line}")?;
+            }
+            out.flush()?;
+            let answer = answer(answers);
+            unasked = answer.is_none();
+            if answer == Some(true) {
+                judged = judge(accept);
+            }
+        }
+        let (ending, text) = match judged {
+            Ok(report) => tally.judged(&name, &report, out)?,
+            Err(error) => tally.broken(&name, error.into(), out)?,
+        };
+        tally.cases.push(Case {
+            file: name,
+            ending,
+            text,
+            took: Duration::ZERO,
+        });
+    }
+    write!(out, "{tally}")?;
+    Ok(tally.exit())
+}
+
+/// Yes, no, or neither, which is the end.
+fn answer(answers: &mut dyn BufRead) -> Option<bool> {
+    loop {
+        complain("take it as the golden? yes, no, or quit");
+        let mut line = String::new();
+        if answers.read_line(&mut line).is_err() || line.is_empty() {
+            return None;
+        }
+        match line.trim().to_lowercase().as_str() {
+            "y" | "yes" => return Some(true),
+            "n" | "no" => return Some(false),
+            "q" | "quit" => return None,
+            _ => {}
+        }
+    }
+}
 
 /// Judges the scripts, and again whenever a file was saved: first those that failed. It ends where nobody can read what it prints.
 pub fn watch(wish: Wish<'_>, out: &mut dyn Write) -> Result<Exit, Failure> {

@@ -13,6 +13,8 @@ mod lookup;
 #[cfg(feature = "lsp")]
 mod lsp;
 mod machine;
+#[cfg(feature = "mcp")]
+mod mcp;
 mod plan;
 mod reports;
 mod run;

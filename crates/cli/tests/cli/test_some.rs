@@ -1,8 +1,8 @@
 //! `test` of some scripts only, of none, and again and again.
 
-use crate::support::{SCRIPT, command, standstill, with_script, write};
+use crate::support::{SCRIPT, command, ended, standstill, with_script, write};
 use std::fs;
-use std::io::{BufRead as _, BufReader};
+use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::Stdio;
 
 #[test]
@@ -88,4 +88,150 @@ fn what_was_saved_is_judged_again_failures_first() {
     assert_eq!(round().1, "2 scripts: 2 passed");
     child.kill().unwrap();
     child.wait().unwrap();
+}
+
+#[test]
+fn a_review_asks_for_each_golden_that_differs_and_takes_only_what_is_answered_yes() {
+    let folder = with_script("test_review");
+    write(&folder, "b.scan.json", SCRIPT);
+    write(&folder, "broken.scan.json", "{");
+    write(
+        &folder,
+        "c.scan.json",
+        &SCRIPT.replace("\"at\": 21", "\"at\": 19"),
+    );
+    let review = |answers: &str| {
+        let mut command = command(&["test", "--review"]);
+        let piped = command
+            .current_dir(&folder)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
+        let mut child = piped.spawn().unwrap();
+        child.stdin.take().unwrap().write_all(answers.as_bytes()).unwrap();
+        let output = child.wait_with_output().unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stdout).unwrap(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    // What is no answer is asked for again; what was not looked at stays as it is.
+    let (status, out, err) = review("perhaps\nno\nq\n");
+    assert_eq!(status, Some(3), "{out}{err}");
+    assert!(
+        out.starts_with("differs   ./b.scan.json\n    golden: there is no golden yet\n"),
+        "{out}"
+    );
+    assert_eq!(
+        err.matches("take it as the golden? yes, no, or quit").count(),
+        3,
+        "{err}"
+    );
+    assert!(out.ends_with("4 scripts: 3 failed, 1 broken\n"), "{out}");
+    let is_there = |name: &str| folder.join(name).exists();
+    assert!(!is_there("b.snap") && !is_there("move.snap") && !is_there("b.snap.new"));
+    // A script whose claims fail is not asked for.
+    let (_, out, err) = review("y\n");
+    assert!(out.contains("accepted  ./b.scan.json\n"), "{out}");
+    assert_eq!(err.matches("take it as the golden?").count(), 2, "{err}");
+    assert!(is_there("b.snap") && !is_there("move.snap") && !is_there("c.snap"));
+    let (_, out, _) = review("yes\n");
+    assert!(
+        out.contains("ok        ./b.scan.json\n") && out.contains("accepted  ./move.scan.json\n"),
+        "{out}"
+    );
+    // Nothing is taken where nobody reviews.
+    let under_ci = ended(
+        command(&["test", "--review"])
+            .current_dir(&folder)
+            .env("CI", "true"),
+    );
+    assert_eq!(under_ci.status, 2, "{}", under_ci.err);
+    for other in ["--accept", "--json", "--watch"] {
+        assert_eq!(
+            standstill(&folder, &["test", "--review", other]).status,
+            2,
+            "{other}"
+        );
+    }
+}
+
+#[test]
+fn a_terminal_has_colours_and_nothing_else_has() {
+    let folder = with_script("test_colours");
+    write(&folder, "broken.scan.json", "{\"standstill\": 1");
+    let with = |variables: &[(&str, &str)], arguments: &[&str]| {
+        let mut command = command(arguments);
+        command.current_dir(&folder).envs(variables.iter().copied());
+        ended(&mut command)
+    };
+    let test = &["test", "--golden", "none"];
+    let plain = with(&[], test);
+    assert!(
+        !plain.out.contains('\u{1b}') && !plain.err.contains('\u{1b}'),
+        "{plain:?}"
+    );
+    let forced = with(&[("CLICOLOR_FORCE", "1")], test);
+    assert!(
+        forced
+            .out
+            .contains("\u{1b}[32mok\u{1b}[0m        ./move.scan.json\n"),
+        "{}",
+        forced.out
+    );
+    assert!(
+        forced
+            .out
+            .contains("\u{1b}[31mBROKEN\u{1b}[0m    ./broken.scan.json\n"),
+        "{}",
+        forced.out
+    );
+    assert!(forced.err.contains("\u{1b}[31merror\u{1b}[0m"), "{}", forced.err);
+    let stripped = |text: &str| {
+        let mut parts = text.split('\u{1b}');
+        let first = parts.next().unwrap().to_owned();
+        parts.fold(first, |all, part| all + part.split_once('m').unwrap().1)
+    };
+    assert_eq!(
+        (stripped(&forced.out), stripped(&forced.err)),
+        (plain.out.clone(), plain.err.clone())
+    );
+    let without = with(&[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")], test);
+    assert_eq!((without.out, without.err), (plain.out, plain.err));
+    // Data has none, whoever asks.
+    let json = with(&[("CLICOLOR_FORCE", "1")], &["run", "--json", "move.scan.json"]);
+    assert!(!json.out.contains('\u{1b}'), "{}", json.out);
+}
+
+#[test]
+fn what_is_not_there_was_probably_something_that_is() {
+    let folder = with_script("test_meant");
+    fs::create_dir_all(folder.join("scan-tests/press")).unwrap();
+    write(&folder, "scan-tests/press/close.scan.json", SCRIPT);
+    for (arguments, meant) in [
+        (&["test", "scan-test"][..], "scan-tests"),
+        (&["test", "scan-tests/pres"], "scan-tests/press"),
+        (
+            &["run", "scan-tests/pres/close.scan.json"],
+            "scan-tests/press/close.scan.json",
+        ),
+        (&["run", "mov.scan.json"], "move.scan.json"),
+        (&["explain", "move.scan.jso", "move.scan.json"], ""),
+    ] {
+        let ended = standstill(&folder, arguments);
+        let told = format!("; did you mean `{meant}`?");
+        assert_eq!(
+            ended.err.contains(&told),
+            !meant.is_empty(),
+            "{arguments:?}: {}",
+            ended.err
+        );
+    }
+    let other = standstill(&folder, &["test", "elsewhere"]);
+    assert_eq!(other.status, 4);
+    assert!(!other.err.contains("did you mean"), "{}", other.err);
+    let slip = standstill(&folder, &["tset"]);
+    assert_eq!(slip.status, 2);
+    assert!(slip.err.contains("'test'"), "{}", slip.err);
 }
