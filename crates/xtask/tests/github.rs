@@ -94,6 +94,11 @@ fn the_example_workflow_is_one_and_the_guide_shows_it() {
         .filter_map(|rest| rest.split("```").next())
         .collect();
     assert_eq!(shown[0], text, "docs/how-to/ci.md does not show {name}");
+    let template = fs::read_to_string(root().join("docs/how-to/standstill.gitlab-ci.yml")).unwrap();
+    assert!(
+        shown.contains(&template.as_str()),
+        "docs/how-to/ci.md does not show the template for GitLab"
+    );
     for text in shown {
         yaml(text, "docs/how-to/ci.md");
     }
