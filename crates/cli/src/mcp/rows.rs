@@ -40,7 +40,7 @@ pub fn rows(trace: &Path, wanted: &Wanted) -> Result<Value, String> {
         if wanted.to.is_some_and(|to| scan > to) {
             break;
         }
-        if scan < wanted.from || (scan - wanted.from) % every != 0 {
+        if scan < wanted.from || !(scan - wanted.from).is_multiple_of(every) {
             continue;
         }
         let mut cells = vec![json!(scan)];
