@@ -12,7 +12,6 @@ use common::*;
 use standstill_export::Target;
 use standstill_trace::Trace;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::{env, fs};
 
 fn text(path: &Path) -> String {

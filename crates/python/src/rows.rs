@@ -42,8 +42,13 @@ pub struct Rows {
 impl Rows {
     /// Of a run that did not come to its end: its claims speak of scans that never came.
     pub fn unjudged(trace: Trace) -> Self {
+        let digest = digest::whole(&trace);
+        Self::with_digest(trace, digest)
+    }
+
+    fn with_digest(trace: Trace, digest: u64) -> Self {
         Self {
-            digest: format!("{:016x}", digest::whole(&trace)),
+            digest: format!("{digest:016x}"),
             held: Mutex::new(Held { trace, lent: None }),
             verdict: None,
             claims: Vec::new(),
@@ -54,7 +59,8 @@ impl Rows {
 
     /// Of a run with its verdict.
     pub fn judged(outcome: Outcome, warnings: &Warnings) -> Self {
-        let verdict = verdict(&outcome);
+        let digest = digest::whole(&outcome.trace);
+        let verdict = verdict(&outcome, digest);
         let claims = outcome.verdicts.iter().map(claim).collect();
         let why = outcome.why.iter().map(|reason| reason.text.clone()).collect();
         let warnings = warnings.all.iter().map(|warning| {
@@ -70,7 +76,7 @@ impl Rows {
             claims,
             why,
             warnings: warnings.collect(),
-            ..Self::unjudged(outcome.trace)
+            ..Self::with_digest(outcome.trace, digest)
         }
     }
 

@@ -1,8 +1,9 @@
 //! A script with every key of the format, looked at where the example of the format says nothing.
 
 use standstill_axis::{
-    AboveLimit, AxisId, BlockDetection, DrivePosition, EdgeWhileBusy, Following, HomeDirection, Homing, JogAtLimit,
-    Limits, ModuloTargets, MoveProfile, OnLimit, OnMasterLost, PowerOff, Procedure, Scaling, StopLimits, SwitchEdge,
+    AboveLimit, AxisId, BlockDetection, DrivePosition, EdgeWhileBusy, Following, HomeDirection, Homing,
+    JogAtLimit, Limits, ModuloTargets, MoveProfile, OnLimit, OnMasterLost, PowerOff, Procedure, Scaling,
+    StopLimits, SwitchEdge,
 };
 use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
