@@ -543,6 +543,23 @@ mod tests {
         ("queue", |axis| axis.queue = 16),
         ("stop_deceleration", |axis| axis.stop_deceleration = 50.0),
         ("stop_jerk", |axis| axis.stop_jerk = 500.0),
+        ("stop.deceleration", |axis| axis.hard_stop_deceleration = 500.0),
+        ("stop.jerk", |axis| axis.hard_stop_jerk = 5e4),
+        ("stop.snap", |axis| axis.hard_stop_snap = 5e6),
+        ("application_limits.velocity", |axis| {
+            axis.application_velocity = 7.0
+        }),
+        ("application_limits.acceleration", |axis| {
+            axis.application_acceleration = 70.0
+        }),
+        ("application_limits.deceleration", |axis| {
+            axis.application_deceleration = 60.0
+        }),
+        ("application_limits.jerk", |axis| axis.application_jerk = 1e3),
+        ("application_limits.snap", |axis| axis.application_snap = 1e5),
+        ("jog_at_limit", |axis| axis.jog_at_limit = 1),
+        ("modulo_targets", |axis| axis.modulo_targets = 1),
+        ("edge_while_busy", |axis| axis.edge_while_busy = 1),
         ("on_power_off", |axis| axis.on_power_off = 2),
         ("hardware_limits", |axis| axis.hardware_limits = 0),
         ("homing.procedure", |axis| {

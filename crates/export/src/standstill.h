@@ -419,6 +419,55 @@ typedef struct standstill_axis_setup {
    * As a master of actual values: slaves see it ahead by what the filter delays at its velocity, if not 0.
    */
   uint32_t actual_lead;
+  /**
+   * What commands get at most: velocity (u/s), at most that of the axis; 0: that of the axis, here and in the next four.
+   */
+  double application_velocity;
+  /**
+   * .. acceleration (u/s^2).
+   */
+  double application_acceleration;
+  /**
+   * .. deceleration (u/s^2); 0: the acceleration above, as far as the axis has it.
+   */
+  double application_deceleration;
+  /**
+   * .. jerk (u/s^3).
+   */
+  double application_jerk;
+  /**
+   * .. snap (u/s^4).
+   */
+  double application_snap;
+  /**
+   * Deceleration of MC_Stop and of ramps nobody commanded, which may be above the limit (u/s^2); 0: the limit, here and in the
+   * next two. With one of the three stop_deceleration and stop_jerk are 0.
+   */
+  double hard_stop_deceleration;
+  /**
+   * .. jerk (u/s^3).
+   */
+  double hard_stop_jerk;
+  /**
+   * .. snap (u/s^4).
+   */
+  double hard_stop_snap;
+  /**
+   * A held MC_Jog at a software limit: 0 error 402 before it, 1 at rest on it.
+   */
+  int32_t jog_at_limit;
+  /**
+   * Absolute targets outside the first turn: 0 error 119, 1 brought into it.
+   */
+  int32_t modulo_targets;
+  /**
+   * A rising edge of Execute while the instance is Busy: 0 starts the command anew, 1 does nothing.
+   */
+  int32_t edge_while_busy;
+  /**
+   * 0.
+   */
+  uint32_t reserved;
 } standstill_axis_setup;
 
 /**
@@ -1361,7 +1410,7 @@ int32_t standstill_instance_make(struct standstill_runtime *runtime, const char 
 
 /* The library was compiled with these sizes. */
 STANDSTILL_ASSERT(runtime_config, sizeof(standstill_runtime_config) == 24);
-STANDSTILL_ASSERT(axis_setup, sizeof(standstill_axis_setup) == 296);
+STANDSTILL_ASSERT(axis_setup, sizeof(standstill_axis_setup) == 376);
 STANDSTILL_ASSERT(drive_setup, sizeof(standstill_drive_setup) == 248);
 STANDSTILL_ASSERT(feedback, sizeof(standstill_feedback) == 136);
 STANDSTILL_ASSERT(command, sizeof(standstill_command) == 80);

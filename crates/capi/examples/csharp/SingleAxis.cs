@@ -14,7 +14,7 @@ static class SingleAxis
     }
 
     // What is not named here is filled in by standstill_axis_defaults.
-    [StructLayout(LayoutKind.Sequential, Size = 296)]
+    [StructLayout(LayoutKind.Sequential, Size = 376)]
     struct AxisSetup
     {
         public uint Size, StartPowered;

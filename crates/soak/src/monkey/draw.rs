@@ -4,8 +4,9 @@ use super::scenario::{AxisSetup, BlockSetup, Scenario, TableSetup, kind_of};
 use crate::cases::extreme;
 use crate::random::Random;
 use standstill_axis::{
-    AboveLimit, AxisConfig, BlockDetection, Defaults, Following, HomeDirection, Homing, InPosition, Limits,
-    MoveProfile, OnLimit, OnMasterLost, PowerOff, Procedure, QUEUE_MAX, Scaling, StartState, SwitchEdge,
+    AboveLimit, AxisConfig, BlockDetection, Defaults, EdgeWhileBusy, Following, HomeDirection, Homing,
+    InPosition, JogAtLimit, Limits, ModuloTargets, MoveProfile, OnLimit, OnMasterLost, PowerOff, Procedure,
+    QUEUE_MAX, Scaling, StartState, StopLimits, SwitchEdge,
 };
 use standstill_blocks::REGISTRY;
 use standstill_drives::cia402::Reaction;
@@ -185,6 +186,7 @@ fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
     let drive = drive(random, &config, cycle);
     supervise(random, &mut config, cycle);
     homing(random, &mut config, &drive, cycle);
+    choices(random, &mut config);
     AxisSetup { config, drive }
 }
 
@@ -206,6 +208,46 @@ fn supervise(random: &mut Random, config: &mut AxisConfig, cycle: f64) {
     }
     if random.one_in(10) {
         config.max_following_error = Some(way * random.log_between(1.0, 100.0));
+    }
+}
+
+/// What else a machine decides of its axes.
+fn choices(random: &mut Random, config: &mut AxisConfig) {
+    let limits = config.limits;
+    if random.one_in(5) {
+        let mut part = |limit: f64| {
+            (limit.is_finite() && random.one_in(2)).then(|| limit * random.log_between(0.2, 5.0))
+        };
+        let stop = StopLimits {
+            deceleration: part(limits.deceleration),
+            jerk: part(limits.jerk),
+            snap: part(limits.snap),
+        };
+        if stop != StopLimits::default() {
+            (config.stop_deceleration, config.stop_jerk, config.stop) = (None, None, Some(stop));
+        }
+    }
+    if random.one_in(6) {
+        let mut part = |limit: f64| {
+            let share = random.between(0.2, 1.0);
+            if limit.is_finite() { limit * share } else { limit }
+        };
+        config.application_limits = Some(Limits {
+            velocity: part(limits.velocity),
+            acceleration: part(limits.acceleration),
+            deceleration: part(limits.deceleration),
+            jerk: part(limits.jerk),
+            snap: part(limits.snap),
+        });
+    }
+    if random.one_in(2) {
+        config.jog_at_limit = JogAtLimit::Stop;
+    }
+    if random.one_in(3) {
+        config.modulo_targets = ModuloTargets::Wrap;
+    }
+    if random.one_in(6) {
+        config.edge_while_busy = EdgeWhileBusy::Ignore;
     }
 }
 

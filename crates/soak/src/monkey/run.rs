@@ -7,8 +7,8 @@ use crate::rules::law::Law;
 use crate::rules::limits::{Track, check_excess};
 use crate::rules::{Broken, Call, Held, Kind, Outputs, Shown, Truth, check_call, check_truth};
 use standstill_axis::{
-    Axis, AxisState, CommandId, ErrorId, Event, Fate, InstanceId, LOG_KEPT, Log, Plan, Record, Standard,
-    StandardPlan, WorkKind,
+    Axis, AxisState, CommandId, EdgeWhileBusy, ErrorId, Event, Fate, InstanceId, LOG_KEPT, Log, Plan, Record,
+    Standard, StandardPlan, WorkKind,
 };
 use standstill_blocks::BlockInstance;
 use standstill_drives::simulated::SimulatedDrive;
@@ -285,10 +285,17 @@ impl<H: Hands> Run<'_, H> {
         let newest = axis.newest_command();
         let due = instance.command.is_some_and(|id| axis.profile_is_due(id));
         let part = if due { Part::DueCall } else { Part::Call };
+        let ignoring = axis.config().edge_while_busy == EdgeWhileBusy::Ignore
+            && state != AxisState::Stopping
+            && instance
+                .command
+                .is_some_and(|id| ended(axis.fate(id)) == [false; 3]);
         instance.block.call(context);
         let axis = &context.axes[instance.axis];
         let (was, now) = (instance.shown, instance.outputs.read(&instance.block));
-        let (executed, execute) = (instance.was_on, instance.on);
+        // An edge that is ignored is none.
+        let ignored = ignoring && axis.newest_command() == newest;
+        let (executed, execute) = (instance.was_on || ignored, instance.on);
         instance.was_on = execute;
         instance.shown = now;
         if was != now {

@@ -7,7 +7,7 @@
 //! that a stop in the middle of a reversal turns back, and only this may be recorded ([`check_excess`]).
 
 use super::{Broken, rule};
-use standstill_axis::{Axis, Excess, Limits, Planner, Setpoint};
+use standstill_axis::{Axis, AxisConfig, Excess, Limits, Planner, Setpoint};
 
 /// By how much a limit may be exceeded, relative to it.
 const RELATIVE: f64 = 1e-9;
@@ -61,13 +61,26 @@ pub fn check_excess(excess: &Excess, limits: &Limits) -> Result<(), Broken> {
     )
 }
 
+/// What a motion of the axis keeps at most: its limits, or what its stops have where that is more.
+fn most(config: &AxisConfig) -> Limits {
+    let limits = config.limits;
+    let stop = config.stop.unwrap_or_default();
+    let larger = |limit: f64, stop: Option<f64>| stop.map_or(limit, |stop| limit.max(stop));
+    Limits {
+        deceleration: larger(limits.deceleration, stop.deceleration),
+        jerk: larger(limits.jerk, stop.jerk),
+        snap: larger(limits.snap, stop.snap),
+        ..limits
+    }
+}
+
 impl Track {
     /// An axis that stands.
     pub fn new<P: Planner>(axis: &Axis<P>, cycle: f64) -> Self {
         let position = axis.setpoint().position;
         let turn = axis.config().modulo;
         Self {
-            limits: axis.config().limits,
+            limits: most(axis.config()),
             cycle,
             turn,
             over: [
