@@ -329,22 +329,13 @@ fn a_program_that_is_no_text_runs_and_what_cannot_be_had_says_why() {
     let bytes = wat(as_bytes["files"][&name].as_str().expect("a text"));
     as_bytes["files"][&name] = json!({"base64": bytes});
     assert_eq!(ran(&as_bytes)["digest"], expected);
+    let why = |project: &Value| ran(project)["diagnostics"][0]["message"].to_string();
     as_bytes["files"][&name] = json!({"base64": "no base64"});
-    assert!(
-        ran(&as_bytes)["text"]
-            .as_str()
-            .is_some_and(|text| text.contains("it came damaged"))
-    );
+    assert!(why(&as_bytes).contains("it came damaged"), "{}", why(&as_bytes));
     as_bytes["files"]
         .as_object_mut()
         .expect("an object")
         .remove(&name);
-    let why = |project: &Value| {
-        ran(project)["text"]
-            .as_str()
-            .map(str::to_owned)
-            .unwrap_or_default()
-    };
     assert!(
         why(&as_bytes).contains("there is no such file here"),
         "{}",

@@ -362,12 +362,20 @@ const LIMITS: &[Key<AxisConfig>] = &[
             },
         },
     },
-    limit!(
-        "limits.deceleration",
-        deceleration,
-        "the acceleration",
-        "largest rate while the speed falls (u/s^2)"
-    ),
+    Key {
+        path: "limits.deceleration",
+        doc: "largest rate while the speed falls (u/s^2)",
+        absent: Some("the acceleration"),
+        null: Some(Null {
+            is: |_| false,
+            set: |_| {},
+        }),
+        holds: Holds::Number {
+            bounds: Bounds::POSITIVE,
+            get: |config| Some(config.limits.deceleration),
+            set: |config, value| config.limits.deceleration = value,
+        },
+    },
     limit!(
         "limits.jerk",
         jerk,

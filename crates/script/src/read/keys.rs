@@ -39,7 +39,7 @@ impl Reader {
         let fields = self.members(node, object.what, &known, later.map_or(&[][..], |(_, keys)| keys))?;
         if object.needs_one && names.iter().all(|name| fields.get(name).is_none()) {
             let quoted: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
-            let message = format!("{} needs {} or both", object.what, quoted.join(", "));
+            let message = format!("{} needs at least one of {}", object.what, quoted.join(", "));
             self.report(Diagnostic::new(Code::MissingKey, fields.brace(), message));
             return None;
         }

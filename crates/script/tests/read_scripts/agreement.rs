@@ -30,6 +30,7 @@ const ONLY_THE_READER: &[&str] = &[
     "but the run's last scan is",
     "the range ends with scan",
     "is no whole multiple of the cycle",
+    "half a turn or more",
     "scans: it must be from",
     "are averaged",
     "above the axis limit",

@@ -241,7 +241,7 @@ pub fn cases() -> Vec<Case> {
             Schema,
             "a stop that accelerates",
             "\"state\"",
-            "\"stop\": {\"acceleration\": 5}, \"state\"",
+            "\"stop\": {\"jerk\": 5, \"acceleration\": 5}, \"state\"",
         ),
         case(
             "bad_value",

@@ -192,7 +192,9 @@ fn cell_text(field: &Pin, cell: f64) -> String {
         PinType::Bool => (cell != 0.0).to_string(),
         PinType::Lreal => number(cell),
         PinType::Time => {
-            let (sign, ns) = (if cell < 0.0 { "-" } else { "" }, cell.abs() as u64);
+            // What is more is read as the longest TIME there is.
+            let ns = (cell.abs() as u64).min(i64::MAX as u64);
+            let sign = if cell < 0.0 { "-" } else { "" };
             format!("\"T#{sign}{}us{}ns\"", ns / 1000, ns % 1000)
         }
         _ => (cell as i64).to_string(),
