@@ -502,7 +502,9 @@ mod tests {
             let mut number = |size: i32| {
                 let bits = 1 + random.below(53) as u32;
                 let power = size - 52 + random.below(8) as i32;
-                random.sign() * (random.below(1 << bits) as f64) * 2_f64.powi(power)
+                random.sign()
+                    * (random.below(1 << bits) as f64)
+                    * f64::from_bits(((1023 + i64::from(power)) as u64) << 52)
             };
             let m0 = number(0);
             let m = match (m0.to_bits() >> 7) % 4 {
