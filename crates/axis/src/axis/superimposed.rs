@@ -449,10 +449,13 @@ impl<P: Planner> Axis<P> {
     /// The motion step with something superimposed: both motions advance, their sum is published.
     #[inline(never)]
     pub(super) fn advance_both(&mut self, scope: &mut Scope<'_>) {
+        if matches!(self.motion, Motion::Torque { .. }) {
+            return self.advance_torque_below(scope);
+        }
         let Some(layer) = &mut self.layer else { return };
         layer.base = match &mut self.motion {
             Motion::Follow => Setpoint::at_rest(self.feedback.position()),
-            // What is superimposed on a law is added in the step behind the master.
+            // What is superimposed on a law is added in the step behind the master; under a torque nothing is.
             Motion::Hold | Motion::Torque { .. } | Motion::Geared | Motion::Closing { .. } => {
                 Setpoint::at_rest(layer.base.position)
             }
@@ -486,6 +489,17 @@ impl<P: Planner> Axis<P> {
         if self.replan_due {
             self.replan_late(scope);
         }
+    }
+
+    /// Under a torque nothing is added: a command that halts what is superimposed has nothing to do, and the drive keeps its torque.
+    #[cold]
+    fn advance_torque_below(&mut self, scope: &mut Scope<'_>) {
+        self.step_torque();
+        let setpoint = self.setpoint;
+        if let Some(layer) = &mut self.layer {
+            layer.base = setpoint;
+        }
+        self.settle_superimposed(scope);
     }
 
     /// Completion of what is superimposed, and a new attempt of a command that waits or was lowered.
