@@ -221,6 +221,7 @@ def test_two_threads_on_one_runtime():
 def test_many_threads_on_one_runtime_leave_it_whole():
     runtime = standstill.Runtime(move())
     wrong, done = [], []
+    refused = threading.Event()
 
     def work():
         for _ in range(2000):
@@ -231,6 +232,9 @@ def test_many_threads_on_one_runtime_leave_it_whole():
                 return
             except RuntimeError:
                 wrong.append(1)
+                refused.set()
+            # Whoever is first gives the others the time to be refused.
+            assert len(done) != 1 or refused.wait(30)
 
     threads = [threading.Thread(target=work) for _ in range(4)]
     for thread in threads:
