@@ -21,6 +21,13 @@ impl<'py> Held<'py> {
         if let Ok(object) = value.cast::<PyDict>() {
             return Self::of_object(object);
         }
+        // Most texts; one that is no Unicode goes the way of what is rare.
+        if let Ok(text) = value.cast_exact::<PyString>()
+            && let Ok(text) = text.to_str()
+            && let Ok(json) = serde_json::to_string(text)
+        {
+            return Ok(Self::Json(json));
+        }
         // Numbers of NumPy that are no floats have a value as one, too.
         let is_number = value.is_instance_of::<PyFloat>()
             || (value.is_instance_of::<PyInt>() && !value.is_instance_of::<PyBool>());
