@@ -125,8 +125,11 @@ impl Layout {
             if !self.out.is_empty() && !self.out.ends_with(['\n', ' ']) {
                 self.out.push(' ');
             }
-            // Line ends of the system's do not come back in.
-            self.out.push_str(&comment.replace("\r\n", "\n"));
+            // Line ends are LF, however many CR stood before one.
+            for (index, line) in comment.split('\n').enumerate() {
+                self.out.push_str(if index == 0 { "" } else { "\n" });
+                self.out.push_str(line.trim_end_matches('\r'));
+            }
             forced = usize::from(comment.starts_with("//"));
             self.last = None;
         }

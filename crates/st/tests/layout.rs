@@ -19,6 +19,8 @@ const LINES: &[(&str, Option<&str>)] = &[
     ("var", Some("VAR")),
     ("  a,b : int:=-5;   m:array[-1..2] of int := [1, 2(3)]; (* two", Some("  a, b : INT := -5; m : ARRAY [-1..2] OF INT := [1, 2(3)]; (* two")),
     ("   lines *)", Some("   lines *)")),
+    ("(* a line that was ended\r\r", Some("  (* a line that was ended")),
+    ("twice *)", Some("twice *)")),
     ("end_var", Some("END_VAR")),
     ("  var_input  Go : bool ; end_var", Some("VAR_INPUT Go : BOOL; END_VAR")),
     ("{region 'x'}", Some("{region 'x'}")),
