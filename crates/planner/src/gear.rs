@@ -58,8 +58,9 @@ struct Turns {
 /// A gear between two axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gear {
-    numerator: i32,
-    denominator: u16,
+    /// Integers: of 16 bits and a sign, and of 16 bits.
+    numerator: f64,
+    denominator: f64,
     /// Length of a turn (u), of an axis that has turns.
     master_turn: Option<f64>,
     slave_turn: Option<f64>,
@@ -91,7 +92,7 @@ impl Gear {
         };
         Some(Self {
             numerator: numerator.into(),
-            denominator,
+            denominator: denominator.into(),
             master_turn,
             slave_turn,
             turns,
@@ -105,7 +106,7 @@ impl Gear {
             ..turns
         };
         Self {
-            numerator: self.numerator.wrapping_neg(),
+            numerator: -self.numerator,
             turns: self.turns.map(reversed),
             ..self
         }
@@ -113,14 +114,14 @@ impl Gear {
 
     /// Numerator and denominator.
     pub const fn ratio(&self) -> (i32, u16) {
-        (self.numerator, self.denominator)
+        (self.numerator as i32, self.denominator as u16)
     }
 
     /// The slave's derivative for one of the master: the exact quotient but for two roundings.
     #[inline]
     pub fn derivative(&self, of_master: f64) -> f64 {
         // Adding 0 takes the sign from -0.
-        f64::from(self.numerator) * of_master / f64::from(self.denominator) + 0.0
+        self.numerator * of_master / self.denominator + 0.0
     }
 
     /// Where the slave is for a `master` that is there: the exact value of the law rounded once, but where it lies so near the
@@ -129,12 +130,6 @@ impl Gear {
     /// Cost: about 60 operations, about 150 where those leave the last bit open, there is a shift or the slave has come round.
     #[inline(never)]
     pub fn slave(&self, anchor: &Anchor, master: Place) -> Place {
-        self.slave_soon(anchor, master)
-    }
-
-    /// [`Gear::slave`] in line with its caller.
-    #[inline(always)]
-    pub fn slave_soon(&self, anchor: &Anchor, master: Place) -> Place {
         let (turns, way) = self.way(&anchor.master, &master);
         if anchor.slave.phase == 0.0
             && let Some(position) = self.geared_shortly(anchor.slave.position, way)
@@ -148,13 +143,23 @@ impl Gear {
                 ..Place::default()
             };
         }
-        self.slave_at_length(anchor, turns, way)
-    }
-
-    #[inline(never)]
-    fn slave_at_length(&self, anchor: &Anchor, turns: i64, way: Double) -> Place {
         let start = two_sum(anchor.slave.position, anchor.slave.phase);
         self.placed(anchor, turns, self.geared(start, way))
+    }
+
+    /// Neither axis has turns, and neither is shifted at the anchor: a master that is not shifted has its slave where
+    /// [`Gear::slave_straight`] says.
+    pub fn is_straight(&self, anchor: &Anchor) -> bool {
+        let has_turns = self.master_turn.is_some() || self.slave_turn.is_some();
+        !has_turns && anchor.master.phase == 0.0 && anchor.slave.phase == 0.0
+    }
+
+    /// The position of [`Gear::slave`] for that of the master (u), in line with the caller; `None` where it takes more than a few
+    /// operations to tell.
+    #[inline(always)]
+    pub fn slave_straight(&self, anchor: &Anchor, master: f64) -> Option<f64> {
+        debug_assert!(self.is_straight(anchor));
+        self.geared_shortly(anchor.slave.position, two_sum(master, -anchor.master.position))
     }
 
     /// Where the slave of two masters is for masters that are there: the ways of both, each geared, added, and rounded once to less
@@ -228,31 +233,33 @@ impl Gear {
     /// numbers, or they are exact. `None` elsewhere.
     #[inline(always)]
     fn geared_shortly(&self, start: f64, (way, fine): Double) -> Option<f64> {
-        let (numerator, denominator) = (f64::from(self.numerator), f64::from(self.denominator));
+        let (numerator, denominator) = (self.numerator, self.denominator);
         let product = numerator * way;
-        let lost = lost_in_product(numerator, way, product) + numerator * fine;
+        let product_lost = lost_in_product(numerator, way, product);
+        let lost = product_lost + numerator * fine;
         let quotient = product / denominator;
         let left = -lost_in_product(denominator, quotient, product);
         let low = (left + lost) / denominator;
         let (high, below) = two_sum(start, quotient);
         let rest = below + low;
-        let position = high + rest;
         let size = start.abs() + quotient.abs();
         // Numbers in between have no product that over- or underflows.
         if !(quotient.abs() > SHORTEST && size < LARGE) {
             return None;
         }
         let off = SHORT * size;
-        let is_told = high + (rest - off) == position && high + (rest + off) == position;
+        let (least, most) = (high + (rest - off), high + (rest + off));
+        if least == most {
+            return Some(least + 0.0);
+        }
         // What lies in the middle of two numbers is told by nothing less than exact numbers.
-        let is_exact = || {
-            let product_lost = lost_in_product(numerator, way, product);
-            let sums = [(product_lost, numerator * fine), (left, lost), (below, low)];
-            let is_sum = |(a, b): &(f64, f64)| two_sum(*a, *b).1 == 0.0;
-            let is_short = cut(fine) == fine && cut(low) == low;
-            is_short && low * denominator == left + lost && sums.iter().all(is_sum)
-        };
-        (is_told || is_exact()).then_some(position + 0.0)
+        let is_exact = cut(fine) == fine
+            && cut(low) == low
+            && low * denominator == left + lost
+            && is_sum(lost, product_lost, numerator * fine)
+            && is_sum(left + lost, left, lost)
+            && is_sum(rest, below, low);
+        is_exact.then_some(high + rest + 0.0)
     }
 
     /// `start` and `way` times numerator by denominator: divided once, after what is exact has been added, so that nothing is
@@ -270,7 +277,7 @@ impl Gear {
 
     /// The same for numbers up to [`LARGE`].
     fn geared_small(&self, start: Double, way: Double) -> Double {
-        let (numerator, denominator) = (f64::from(self.numerator), f64::from(self.denominator));
+        let (numerator, denominator) = (self.numerator, self.denominator);
         let coarse = add(two_product(denominator, start.0), two_product(numerator, way.0));
         let fine = two_product(numerator, way.1);
         let fine = if start.1 == 0.0 {
@@ -285,6 +292,11 @@ impl Gear {
 /// The higher 26 bits of a number: its product with an integer of up to 27 bits is exact.
 fn cut(number: f64) -> f64 {
     f64::from_bits(number.to_bits() & !((1 << 27) - 1))
+}
+
+/// Whether `sum`, that of `a` and `b` rounded, is exact: what it exceeds the larger one by is always told exactly.
+fn is_sum(sum: f64, a: f64, b: f64) -> bool {
+    sum - a == b && sum - b == a
 }
 
 /// `integer`, of up to 17 bits, times `number` less `near`, a number next to that product: exact.
@@ -529,7 +541,11 @@ mod tests {
             let expected = gear.geared((x0, 0.0), way).0 + 0.0;
             let shortly = gear.geared_shortly(x0, way);
             told += u64::from(shortly.is_some());
-            let all = [shortly.unwrap_or(expected), gear.slave(&anchor, at(m)).position];
+            let all = [
+                shortly.unwrap_or(expected),
+                gear.slave_straight(&anchor, m).unwrap_or(expected),
+                gear.slave(&anchor, at(m)).position,
+            ];
             for position in all {
                 assert_eq!(
                     position.to_bits(),

@@ -148,6 +148,8 @@ pub(super) struct Coupling {
     told: Option<(Approach, f64)>,
     /// The limits it was last held against.
     limits: Limits,
+    /// What they leave in a scan in which nothing is new; `None` before the first of these.
+    room: Option<steady::Room>,
     /// How often the slave's own coordinates had moved.
     moves: u32,
     /// By how much the slave is off the law (u); 0 in gear, and before it was there.
@@ -235,6 +237,7 @@ impl Coupling {
             left: u64::MAX,
             told: None,
             limits,
+            room: None,
             moves,
             deviation: 0.0,
             slows: false,

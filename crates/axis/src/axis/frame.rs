@@ -56,6 +56,11 @@ impl Frame {
         if last == scan { by } else { 0.0 }
     }
 
+    /// Coordinates moved in this scan, if only by 0.
+    pub fn has_moved_in(&self, scan: u64) -> bool {
+        self.moved.0 == scan
+    }
+
     /// In `scan` coordinates moved by `by` (u), on top of what they did in it before.
     pub fn note_moved(&mut self, scan: u64, by: f64) {
         self.moved = (scan, self.moved_in(scan) + by);

@@ -698,7 +698,7 @@ impl<P: Planner> Axis<P> {
 
 /// The first derivative of a state that is beyond its limit.
 #[inline]
-pub(super) fn beyond_limits(next: &Setpoint, limits: &Limits) -> Option<Beyond> {
+fn beyond_limits(next: &Setpoint, limits: &Limits) -> Option<Beyond> {
     let rate = if next.velocity * next.acceleration < 0.0 {
         limits.deceleration
     } else {

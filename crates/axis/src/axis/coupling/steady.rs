@@ -3,12 +3,76 @@
 //! It is what [`follow`](super::follow) does in such a scan and no more: where anything is not as it was, that is left to it, and
 //! nothing has changed yet. So a slave in gear costs little more than an axis in a move, and every bit is the same.
 
+use super::super::commands::ROUNDING;
 use super::super::{Axis, Calm, Motion};
-use super::Seen;
-use super::follow::{self, LONGEST};
+use super::follow::LONGEST;
 use super::view::{Course, Kind, Source};
+use super::{Coupling, Seen};
 use crate::{AxisId, OnLimit, Scope, ValueSource};
-use standstill_planner::{Planner, Setpoint};
+use standstill_planner::{Limits, Place, Planner, Setpoint};
+
+/// What a set-point in gear may have for a scan in which nothing is new, worked out once. All of it is finite, so what is within it is
+/// a number.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Room {
+    /// Its derivatives: the limits of the slave.
+    most: Limits,
+    /// Way (u) from the set-point before it, and what velocity (u/s) and acceleration (u/s^2) change by: the limits of the axis.
+    step: [f64; 3],
+    /// The law is that of axes without turns, and neither is shifted.
+    is_straight: bool,
+}
+
+impl Room {
+    /// Of a slave in gear, on an axis of `widest` limits with this sample time (s).
+    fn new(coupling: &Coupling, widest: &Limits, cycle: f64) -> Self {
+        let (gear, limits) = (&coupling.gearing.first.gear, &coupling.limits);
+        let finite = |most: f64| most.min(f64::MAX);
+        let most = |limit: f64| finite(limit * (1.0 + ROUNDING));
+        let scan = LONGEST * cycle;
+        Self {
+            most: Limits {
+                velocity: most(limits.velocity),
+                acceleration: most(limits.acceleration),
+                deceleration: most(limits.deceleration),
+                jerk: most(limits.jerk),
+                snap: most(limits.snap),
+            },
+            step: [
+                finite(widest.velocity * scan),
+                finite(widest.acceleration.max(widest.deceleration) * scan),
+                finite(widest.jerk * scan),
+            ],
+            is_straight: coupling.anchor.is_some_and(|anchor| gear.is_straight(&anchor)),
+        }
+    }
+
+    /// The derivatives of `next` are within the limits of the slave.
+    // In line, so that the set-point stays in registers.
+    #[inline(always)]
+    fn holds(&self, next: &Setpoint) -> bool {
+        let most = &self.most;
+        let rate = if next.velocity * next.acceleration < 0.0 {
+            most.deceleration
+        } else {
+            most.acceleration
+        };
+        next.velocity.abs() <= most.velocity
+            && next.acceleration.abs() <= rate
+            && next.jerk.abs() <= most.jerk
+            && next.snap.abs() <= most.snap
+    }
+
+    /// The axis may go from `last` to `next` in a scan, whatever positions are rounded by.
+    // In line, so that the set-point stays in registers.
+    #[inline(always)]
+    fn holds_step(&self, last: &Setpoint, next: &Setpoint) -> bool {
+        let [way, velocity, acceleration] = self.step;
+        (next.position - last.position).abs() <= way
+            && (next.velocity - last.velocity).abs() <= velocity
+            && (next.acceleration - last.acceleration).abs() <= acceleration
+    }
+}
 
 impl<P: Planner> Axis<P> {
     /// Whether nothing of its own keeps the next step from being that of a scan in which nothing is new: it is in gear behind the
@@ -42,6 +106,9 @@ impl<P: Planner> Axis<P> {
     /// After a step: notes whether the next one may be that of a scan in which nothing is new.
     pub(super) fn note_steady(&mut self) {
         self.is_settled = self.may_go_on();
+        if let Some(coupling) = self.coupling.as_mut().filter(|_| self.is_settled) {
+            coupling.room = Some(Room::new(coupling, &self.config.limits, self.planner.cycle()));
+        }
     }
 
     /// Before any axis has moved in this scan: nothing is new for an axis that follows none.
@@ -75,20 +142,27 @@ impl<P: Planner> Axis<P> {
             return;
         }
         if self.modulo.is_none() {
-            self.was.place.position = self.setpoint.position;
             self.was.at = self.setpoint;
             self.was.moved = self.coordinates_moved(scan);
         } else {
-            self.was = self.seen_before(scan);
+            self.note_before_round(scan);
         }
         if !self.is_bound {
             self.note_source();
         }
     }
 
+    /// The same on an axis that comes round.
+    #[inline(never)]
+    fn note_before_round(&mut self, scan: u64) {
+        self.was = self.seen_before(scan);
+    }
+
     /// After its step: where it was before that, as noted.
     pub(crate) fn was(&self) -> Seen {
-        self.was
+        let mut was = self.was;
+        was.place.position = was.at.position;
+        was
     }
 
     /// The one master of a slave for which nothing is new.
@@ -133,30 +207,42 @@ impl<P: Planner> Axis<P> {
         let goes_on = known.root == root
             && known.elapsed.wrapping_add(1) == elapsed
             && elapsed > 1
-            && master.coordinates_moved(scope.scan) == 0.0;
-        let Some(anchor) = coupling.anchor.as_ref().filter(|_| goes_on) else {
+            && !master.frame.has_moved_in(scope.scan);
+        if !goes_on {
+            return false;
+        }
+        let (Some(anchor), Some(room)) = (&coupling.anchor, &coupling.room) else {
             return false;
         };
-        let place = gear.slave_soon(anchor, master.place());
         let at = &master.setpoint;
+        let (turns, position) = if room.is_straight
+            && let Some(position) = gear.slave_straight(anchor, at.position)
+        {
+            (0, position)
+        } else {
+            let place = gear.slave(anchor, master.place());
+            (place.turns, place.position)
+        };
         let next = Setpoint {
-            position: place.position,
+            position,
             velocity: gear.derivative(at.velocity),
             acceleration: gear.derivative(at.acceleration),
             jerk: gear.derivative(at.jerk),
             snap: gear.derivative(at.snap),
         };
-        if follow::beyond_limits(&next, &coupling.limits).is_some() {
+        if !room.holds(&next) {
             return false;
         }
         known.elapsed = elapsed;
         self.source = Source::Gear;
-        let is_usual = self.modulo.is_none() && next.is_finite() && {
-            self.steps_within(&next, &self.config.limits, LONGEST, 0.0)
-        };
-        if is_usual {
+        if room.is_straight && room.holds_step(&self.setpoint, &next) {
             self.publish(next);
         } else {
+            let place = Place {
+                turns,
+                position,
+                ..Place::default()
+            };
             self.publish_behind(place, next, scope);
         }
         true
