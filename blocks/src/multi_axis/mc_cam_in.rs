@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section of that name; V20 to V20b.
 
 use standstill_axis::{
-    AxisId, BufferMode, CamId, CamIn, Command, CommandId, ErrorId, Master, Planner, Raw, Request, StartMode,
+    AxisId, BufferMode, CamId, CamIn, Command, CommandId, ErrorId, Planner, Raw, Request, StartMode,
     ValueSource, couple, update_coupled,
 };
 use standstill_fb::{Block, Context, Group, Move, UpdateCore, Values, pins};
@@ -87,15 +87,11 @@ struct Commanded {
 
 impl Commanded {
     fn command<P: Planner>(&self, context: &Context<'_, P>) -> Command {
-        let master = context.axes.get(self.master.index());
         let [master_offset, slave_offset] = self.offsets;
         let [master_scaling, slave_scaling] = self.scalings;
         let [start_distance, sync_position] = self.sync;
         Command::CamIn(CamIn {
-            master: Master {
-                axis: self.master,
-                turn: master.and_then(|master| master.config().modulo),
-            },
+            master: context.master(self.master),
             source: self.source,
             table: CamId::from_number(self.table),
             start_mode: self.start_mode,
@@ -154,7 +150,7 @@ impl Block for McCamIn {
             execute: inputs.execute,
             continuous_update: inputs.continuous_update,
         };
-        let values = || Commanded {
+        let values = |_: &Context<'_, P>| Commanded {
             master: inputs.master,
             source: inputs.master_value_source,
             start_mode: inputs.start_mode,

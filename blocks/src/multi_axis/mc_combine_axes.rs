@@ -3,8 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
 use standstill_axis::{
-    AxisId, BufferMode, CombineMode, Command, ErrorId, Followed, Master, Planner, Raw, Request, ValueSource,
-    couple,
+    AxisId, BufferMode, CombineMode, Command, ErrorId, Followed, Planner, Raw, Request, ValueSource, couple,
 };
 use standstill_fb::{Block, Context, Group, Move, UpdateCore, pins};
 
@@ -82,28 +81,23 @@ impl Block for McCombineAxes {
             execute: inputs.execute,
             continuous_update: inputs.continuous_update,
         };
-        let turn = |axis: AxisId| context.axes.get(axis.index())?.config().modulo;
-        let first = Followed {
-            master: Master {
-                axis: inputs.master1,
-                turn: turn(inputs.master1),
-            },
-            numerator: inputs.gear_ratio_numerator_m1,
-            denominator: inputs.gear_ratio_denominator_m1.into(),
-            source: inputs.master_value_source_m1,
-        };
-        let second = Followed {
-            master: Master {
-                axis: inputs.master2,
-                turn: turn(inputs.master2),
-            },
-            numerator: inputs.gear_ratio_numerator_m2,
-            denominator: inputs.gear_ratio_denominator_m2.into(),
-            source: inputs.master_value_source_m2,
-        };
-        let values = || Command::CombineAxes {
-            masters: [first, second],
-            mode: inputs.combine_mode,
+        let values = |context: &Context<'_, P>| {
+            let first = Followed {
+                master: context.master(inputs.master1),
+                numerator: inputs.gear_ratio_numerator_m1,
+                denominator: inputs.gear_ratio_denominator_m1.into(),
+                source: inputs.master_value_source_m1,
+            };
+            let second = Followed {
+                master: context.master(inputs.master2),
+                numerator: inputs.gear_ratio_numerator_m2,
+                denominator: inputs.gear_ratio_denominator_m2.into(),
+                source: inputs.master_value_source_m2,
+            };
+            Command::CombineAxes {
+                masters: [first, second],
+                mode: inputs.combine_mode,
+            }
         };
         let phase = self
             .core

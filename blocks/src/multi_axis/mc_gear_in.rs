@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
 use standstill_axis::{
-    AxisId, BufferMode, Command, Dynamics, ErrorId, Followed, Master, Planner, Raw, Request, ValueSource,
+    Axis, AxisId, BufferMode, Command, Dynamics, ErrorId, Followed, Planner, Raw, Request, ValueSource,
     couple,
 };
 use standstill_fb::{Block, Context, Group, Move, UpdateCore, pins};
@@ -81,14 +81,9 @@ impl Block for McGearIn {
             execute: inputs.execute,
             continuous_update: inputs.continuous_update,
         };
-        let master = context.axes.get(inputs.master.index());
-        let turn = master.and_then(|master| master.config().modulo);
-        let values = || Command::GearIn {
+        let values = |context: &Context<'_, P>| Command::GearIn {
             followed: Followed {
-                master: Master {
-                    axis: inputs.master,
-                    turn,
-                },
+                master: context.master(inputs.master),
                 numerator: inputs.ratio_numerator,
                 denominator: inputs.ratio_denominator.into(),
                 source: inputs.master_value_source,
@@ -121,9 +116,16 @@ impl Block for McGearIn {
                 ..Outputs::default()
             };
         }
-        let slave = context.axes.get(inputs.slave.index());
+        self.out_of_gear(context.axes.get(inputs.slave.index()))
+    }
+}
+
+impl McGearIn {
+    /// What is to be told while the slave is not in gear, or not by this block.
+    #[inline(never)]
+    fn out_of_gear<P: Planner>(&self, slave: Option<&Axis<P>>) -> Outputs {
+        let phase = self.core.phase();
         let slave = slave.filter(|_| phase.is_active());
-        let deviation = slave.map(|slave| slave.deviation());
         Outputs {
             in_gear: false,
             busy: phase.is_busy(),
@@ -131,7 +133,7 @@ impl Block for McGearIn {
             command_aborted: phase.is_aborted(),
             error: phase.is_error(),
             error_id: phase.error_id(),
-            deviation: deviation.unwrap_or_default(),
+            deviation: slave.map_or(0.0, |slave| slave.deviation()),
             master_lost: slave.is_some_and(|slave| slave.has_lost_master()),
         }
     }

@@ -3,8 +3,8 @@
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
 use standstill_axis::{
-    AxisId, BufferMode, Command, Dynamics, ErrorId, Followed, Master, Planner, Raw, Request, SyncMode,
-    SyncPoint, ValueSource, couple,
+    AxisId, BufferMode, Command, Dynamics, ErrorId, Followed, Planner, Raw, Request, SyncMode, SyncPoint,
+    ValueSource, couple,
 };
 use standstill_fb::{Block, Context, ExecuteCore, Group, pins};
 
@@ -87,16 +87,11 @@ impl Block for McGearInPos {
     type Outputs = Outputs;
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
-        let master = context.axes.get(inputs.master.index());
-        let turn = master.and_then(|master| master.config().modulo);
         let phase = self.core.scan(inputs.execute, context, |context, replaces| {
             let request = Request {
                 command: Command::GearIn {
                     followed: Followed {
-                        master: Master {
-                            axis: inputs.master,
-                            turn,
-                        },
+                        master: context.master(inputs.master),
                         numerator: inputs.ratio_numerator,
                         denominator: inputs.ratio_denominator.into(),
                         source: inputs.master_value_source,

@@ -2,7 +2,7 @@
 
 use crate::flat::Pointer;
 use crate::{Direction, Pin, PinError, Pins, Value};
-use standstill_axis::{Axis, AxisId, ErrorId, Planner, Scope, Standard};
+use standstill_axis::{Axis, AxisId, ErrorId, Master, Planner, Scope, Standard};
 
 /// The groups of the standard's catalogue, and ours for the IEC 61131-3 blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -54,6 +54,12 @@ impl<'a, P: Planner> Context<'a, P> {
     pub fn axis(&mut self, id: AxisId) -> Result<(&mut Axis<P>, &mut Scope<'a>), ErrorId> {
         let axis = self.axes.get_mut(id.index()).ok_or(ErrorId::AxisUnknown)?;
         Ok((axis, &mut self.scope))
+    }
+
+    /// The axis at a pin as a master, with its turns if it has any.
+    pub fn master(&self, axis: AxisId) -> Master {
+        let turn = self.axes.get(axis.index()).and_then(|axis| axis.config().modulo);
+        Master { axis, turn }
     }
 }
 

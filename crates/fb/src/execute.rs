@@ -96,6 +96,11 @@ pub struct ExecuteCore {
 }
 
 impl ExecuteCore {
+    /// What was shown last.
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
     /// One call. `issue` gives the command at a rising edge (R8) and is told which command the instance
     /// held before (a retrigger replaces it silently, R32); it returns where to ask for its fate.
     #[inline]

@@ -69,6 +69,11 @@ impl<V> Default for UpdateCore<V> {
 }
 
 impl<V: Values> UpdateCore<V> {
+    /// What was shown last.
+    pub fn phase(&self) -> Phase {
+        self.execute.phase()
+    }
+
     /// One call. `values` reads the pins; `issue` gives the command at a rising edge, as for [`ExecuteCore::scan`].
     #[inline]
     pub fn scan<P: Planner>(
@@ -78,10 +83,15 @@ impl<V: Values> UpdateCore<V> {
         values: impl Fn() -> V,
         issue: impl FnOnce(&mut Axis<P>, V, Option<CommandId>, &mut Scope<'_>) -> Result<CommandId, ErrorId>,
     ) -> Phase {
-        self.scan_among(pins, context, values, |context, given, replaces| {
-            let (axis, scope) = context.axis(pins.axis)?;
-            issue(axis, given, replaces, scope)
-        })
+        self.scan_among(
+            pins,
+            context,
+            |_| values(),
+            |context, given, replaces| {
+                let (axis, scope) = context.axis(pins.axis)?;
+                issue(axis, given, replaces, scope)
+            },
+        )
     }
 
     /// The same for a command that takes a look at other axes.
@@ -90,7 +100,7 @@ impl<V: Values> UpdateCore<V> {
         &mut self,
         pins: Move,
         context: &mut Context<'_, P>,
-        values: impl Fn() -> V,
+        values: impl Fn(&Context<'_, P>) -> V,
         issue: impl FnOnce(&mut Context<'_, P>, V, Option<CommandId>) -> Result<CommandId, ErrorId>,
     ) -> Phase {
         if self.seen.is_some() {
@@ -98,7 +108,7 @@ impl<V: Values> UpdateCore<V> {
         }
         let seen = &mut self.seen;
         self.execute.scan(pins.execute, context, |context, replaces| {
-            let given = values();
+            let given = values(context);
             let id = issue(context, given, replaces)?;
             *seen = pins.continuous_update.then_some(given);
             Ok((pins.axis, id))
@@ -106,8 +116,13 @@ impl<V: Values> UpdateCore<V> {
     }
 
     /// Before the fate is asked for, so that what the new values change shows in the same call.
-    fn update<P: Planner>(&mut self, pins: Move, context: &mut Context<'_, P>, values: &impl Fn() -> V) {
-        let values = values();
+    fn update<P: Planner>(
+        &mut self,
+        pins: Move,
+        context: &mut Context<'_, P>,
+        values: &impl Fn(&Context<'_, P>) -> V,
+    ) {
+        let values = values(context);
         let running = self.execute.running(pins.execute, context);
         let (Some((axis, id)), Some(seen), true) = (running, &mut self.seen, pins.continuous_update) else {
             self.seen = None;
