@@ -32,7 +32,7 @@ fn one_operation<T>(run: impl FnOnce() -> T) {
 /// A name, and what runs the operation and gives how often it did.
 type Workload = (&'static str, fn() -> u64);
 
-const WORKLOADS: [Workload; 18] = [
+const WORKLOADS: [Workload; 19] = [
     ("trapezoid-sample", trapezoid_sample),
     ("idle-scan", idle_scan),
     ("scan-in-motion", scan_in_motion),
@@ -44,6 +44,9 @@ const WORKLOADS: [Workload; 18] = [
     }),
     ("scan-of-64-half-in-gear", || {
         scan_of_many(ManyAxes::in_chains().expect("valid"))
+    }),
+    ("scan-of-64-half-on-cams", || {
+        scan_of_many(ManyAxes::on_cams().expect("valid"))
     }),
     ("plan-sample", plan_sample),
     ("plan", plan),

@@ -2,11 +2,13 @@
 
 use crate::{CYCLE, LIMITS};
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, AxisState, BufferMode, Comms, ConfigError, DriveFeedback, DrivePosition,
-    DriveSignals, InstanceId, Log, Scaling, Scope, Standard, StartState, steps,
+    Axis, AxisConfig, AxisId, AxisState, BufferMode, CamId, CamPiece, CamRow, CamSelection, CamSlot, Cams,
+    Comms, ConfigError, DriveFeedback, DrivePosition, DriveSignals, InstanceId, Log, Scaling, Scope,
+    Standard, StartMode, StartState, steps,
 };
 use standstill_blocks::BlockInstance;
 use standstill_fb::{AnyInstance, Context, Value};
+use standstill_planner::CamShape;
 
 /// Axes of [`ManyAxes`].
 pub const AXES: u16 = 64;
@@ -29,6 +31,12 @@ pub const WAYS: [&str; 8] = [
 /// As a slave of the axis before it.
 const SLAVE: usize = WAYS.len();
 
+/// On a cam behind the axis before it.
+const ON_CAM: usize = SLAVE + 1;
+
+/// Up and back over 2 u of the master: within the limits of the slave whatever the master does.
+const CAM: [(f64, f64); 3] = [(0.0, 0.0), (1.0, 0.1), (2.0, 0.0)];
+
 /// 64 axes with MC_Power and one to three motion blocks each, and drives that follow at once: moves on the grid and
 /// from motion, endless motions on linear and modulo axes, steps of a drive that counts, a superimposed distance, a
 /// blended chain, a jog, a move under an override.
@@ -40,6 +48,7 @@ pub struct ManyAxes {
     /// Blocks in call order, those of an axis one after the other.
     blocks: Vec<BlockInstance>,
     feedback: Vec<DriveFeedback>,
+    cam: ([CamSlot; 1], [CamPiece; 2]),
     scan: u64,
 }
 
@@ -52,15 +61,18 @@ impl ManyAxes {
         Self::with_ways(|number| only.unwrap_or(usize::from(number) % WAYS.len()))
     }
 
-    /// Powered, at rest: every axis to move in the way given for its number, as a slave of the one before it in way [`SLAVE`].
+    /// Powered, at rest: every axis to move in the way given for its number, as a slave of the one before it in the ways [`SLAVE`] and
+    /// [`ON_CAM`].
     fn with_ways(way_of: impl Fn(u16) -> usize) -> Result<Self, ConfigError> {
         let mut rig = Self {
             axes: Vec::new(),
             log: Log::default(),
             blocks: Vec::new(),
             feedback: Vec::new(),
+            cam: Default::default(),
             scan: 0,
         };
+        let cam = rig.select();
         for number in 0..AXES {
             let way = way_of(number);
             let config = AxisConfig {
@@ -121,6 +133,16 @@ impl ManyAxes {
                     ];
                     rig.add(number, "MC_GearIn", &[("Master", master), ratio[0], ratio[1]]);
                 }
+                ON_CAM => {
+                    let master = Value::Axis(AxisId::new(number.saturating_sub(1)));
+                    let relative = Value::Enum(StartMode::Relative as i32);
+                    let pins = [
+                        ("Master", master),
+                        ("CamTableID", Value::Dword(cam.number())),
+                        ("StartMode", relative),
+                    ];
+                    rig.add(number, "MC_CamIn", &pins);
+                }
                 _ => {
                     let half = ("VelFactor", Value::Lreal(0.5));
                     rig.add(number, "MC_SetOverride", &[("Enable", Value::Bool(true)), half]);
@@ -130,6 +152,32 @@ impl ManyAxes {
         }
         rig.scan();
         Ok(rig)
+    }
+
+    /// The cam of all slaves: periodic, counted from where both are.
+    fn select(&mut self) -> CamId {
+        let (slots, pieces) = &mut self.cam;
+        let mut cams = Cams::new(slots, pieces);
+        let selection = CamSelection {
+            master: AxisId::NONE,
+            slave: AxisId::NONE,
+            periodic: true,
+            master_absolute: false,
+            slave_absolute: false,
+        };
+        let begun = cams.begin(CAM.len(), selection, |_| false);
+        let Ok(Ok(id)) = begun else { return CamId::NONE };
+        let row = |index: usize| {
+            let (master, slave) = *CAM.get(index)?;
+            Some(CamRow {
+                master,
+                slave,
+                shape: CamShape::Rest7,
+                ..CamRow::default()
+            })
+        };
+        while let Ok(None) = cams.go_on(id, &row) {}
+        id
     }
 
     fn add(&mut self, axis: u16, name: &str, pins: &[(&str, Value)]) {
@@ -172,6 +220,15 @@ impl ManyAxes {
         Ok(Self::chains_at_rest()?.set_off())
     }
 
+    /// All axes in motion: every second one by MC_MoveAbsolute, the others in sync on a cam behind the one before.
+    ///
+    /// # Errors
+    /// None with these constants.
+    pub fn on_cams() -> Result<Self, ConfigError> {
+        let rig = Self::with_ways(|number| if number % 2 == 0 { 0 } else { ON_CAM })?;
+        Ok(rig.set_off())
+    }
+
     /// Gives every axis its commands, and scans until all are in motion.
     #[must_use]
     pub fn set_off(self) -> Self {
@@ -201,7 +258,7 @@ impl ManyAxes {
         rig
     }
 
-    /// Axes in gear.
+    /// Axes in gear, or in sync on a cam.
     pub fn in_gear(&self) -> usize {
         self.axes.iter().filter(|axis| axis.is_in_gear()).count()
     }
@@ -220,13 +277,17 @@ impl ManyAxes {
 
     /// One scan of all axes: feedback, blocks, motion steps, drive commands.
     pub fn scan(&mut self) {
-        let Self { axes, log, .. } = self;
+        let Self { axes, log, cam, .. } = self;
+        let (slots, pieces) = cam;
         for (axis, feedback) in axes.iter_mut().zip(&self.feedback) {
             axis.follow_feedback(feedback, &mut Scope::new(self.scan, log));
         }
         let mut context = Context {
             now_ns: self.scan as i64 * 1_000_000,
-            scope: Scope::new(self.scan, log),
+            scope: Scope {
+                cams: Cams::new(slots, pieces),
+                ..Scope::new(self.scan, log)
+            },
             axes,
             tables: &[],
         };
@@ -234,7 +295,9 @@ impl ManyAxes {
             context.scope.instance = InstanceId(number);
             block.call(&mut context);
         }
-        steps::advance(&mut self.axes, &mut Scope::new(self.scan, &mut self.log));
+        let Context { axes, scope, .. } = &mut context;
+        scope.instance = InstanceId::default();
+        steps::advance(axes, scope);
         for (axis, feedback) in self.axes.iter_mut().zip(&mut self.feedback) {
             feedback.position = axis.drive_command().position;
         }
@@ -245,6 +308,15 @@ impl ManyAxes {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn half_of_them_stay_in_sync_on_a_cam() {
+        let mut rig = ManyAxes::on_cams().unwrap();
+        for scan in 0..IN_MOTION {
+            rig.scan();
+            assert_eq!(rig.in_gear(), usize::from(AXES) / 2, "scan {scan}");
+        }
+    }
 
     #[test]
     fn all_axes_move_all_the_time_and_no_block_complains() {
