@@ -144,13 +144,14 @@ impl Locked {
     }
 
     /// Holds the row of axis `index` after a scan against its law: where all axes were `before` it and are `now`. `given` are the
-    /// places of MC_GearInPos.
+    /// places of MC_GearInPos; the slave `came_into_gear` in this scan, and may have lost it again in it.
     pub fn take(
         &mut self,
         index: usize,
         axes: &[Axis],
         (before, now): (&[Where], &[Where]),
         given: Option<(f64, f64)>,
+        came_into_gear: bool,
     ) -> Result<(), String> {
         let axis = &axes[index];
         let Some((master, numerator, denominator)) = axis.gears()[0] else {
@@ -187,6 +188,10 @@ impl Locked {
         self.given = given;
         self.was_locked = is_locked;
         if !is_locked {
+            // Where it was in gear for no row, it was so where it was before, and comes back onto that law.
+            if came_into_gear && given.is_none() && self.anchors.is_empty() {
+                self.anchors.push(before);
+            }
             return Ok(());
         }
         self.rows += 1;

@@ -6,8 +6,8 @@
 use crate::judge::{Locked, Track, places};
 use crate::rig::Rig;
 use standstill_axis::{
-    AxisConfig, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorClass, ErrorId, Factors,
-    Fate, Limits, PhaseShift, Raw, Scope, StartState, Superimpose, SyncPoint,
+    AxisConfig, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorClass, ErrorId, Event,
+    Factors, Fate, Limits, PhaseShift, Raw, Scope, StartState, Superimpose, SyncPoint,
 };
 use standstill_testkit::Random;
 use std::fmt::Write as _;
@@ -359,8 +359,15 @@ impl Episode {
     fn step(&mut self) -> Result<(), String> {
         let was_in_gear: Vec<bool> = self.rig.axes.iter().map(|axis| axis.is_in_gear()).collect();
         let before = places(&self.rig.axes, &self.tracks);
+        let told = self.rig.log.total();
         self.rig.step();
         self.seen.scans += 1;
+        let came_into_gear: Vec<bool> = (self.rig.axes.iter())
+            .map(|axis| {
+                let mut records = self.rig.log.since(told);
+                records.any(|record| record.axis == axis.id() && matches!(record.event, Event::InGear))
+            })
+            .collect();
         for index in 0..self.rig.axes.len() {
             let axis = &self.rig.axes[index];
             if let Some((master, numerator, denominator)) = axis.gears()[0] {
@@ -390,7 +397,13 @@ impl Episode {
                 .find(|(id, _)| Some(*id) == owner)
                 .map(|(_, point)| *point);
             self.locked[index]
-                .take(index, &self.rig.axes, (&before, &now), point)
+                .take(
+                    index,
+                    &self.rig.axes,
+                    (&before, &now),
+                    point,
+                    came_into_gear[index],
+                )
                 .map_err(|error| format!("axis {index}: {error}"))?;
             self.seen.locks += u64::from(axis.is_in_gear() && !was_in_gear);
         }
@@ -426,6 +439,18 @@ impl Episode {
 
 fn number(name: &str) -> Option<u64> {
     std::env::var(name).ok()?.parse().ok()
+}
+
+/// Episodes that failed once, of the first 10^6: a plan onto a line far away, whose positions were coarser than those the slave
+/// publishes; and a gear that is lost in the scan in which it was reached, whose law begins there all the same.
+///
+/// Covers: G45
+#[test]
+fn slaves_near_0_move_onto_lines_far_away_within_their_limits() {
+    for episode in [47_924, 52_412, 68_061, 78_519, 206_899] {
+        let result = Episode::new(episode).run();
+        assert_eq!(result, Ok(()), "episode {episode}");
+    }
 }
 
 /// Covers: G1, G11, G25, G45, G46

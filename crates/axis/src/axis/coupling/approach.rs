@@ -397,10 +397,7 @@ impl<P: Planner> Axis<P> {
             };
             let (plan, limits) = self.beside_line(&start, stretch.velocity, room, limits, before)?;
             let rung = Rung::BesideLine {
-                start: Place {
-                    position: stretch.now,
-                    ..here
-                },
+                start: here,
                 velocity: stretch.velocity,
                 begin: stretch.begin,
             };
@@ -419,8 +416,9 @@ impl<P: Planner> Axis<P> {
         })
     }
 
-    /// A plan to 0 beside a line of this `velocity` (u/s), no faster than there is `room` beside it, and the limits it has: the command's, or higher ones where those do
-    /// not keep the axis inside its own; none where these do not either.
+    /// A plan onto a line of this `velocity` (u/s) from the state `start` beside it, no faster than there is `room`, and the
+    /// limits it has: the command's, or higher ones where those do not keep the axis inside its own; none where these do not
+    /// either. Its positions are those beside a line through the slave's place: a line far away would make them coarse.
     fn beside_line(
         &self,
         start: &Setpoint,
@@ -438,6 +436,10 @@ impl<P: Planner> Axis<P> {
                 deceleration: lower,
                 ..*limits
             }
+        };
+        let from = Setpoint {
+            position: 0.0,
+            ..*start
         };
         let axis = &self.slowed(&self.config.limits);
         let steady = Setpoint {
@@ -471,7 +473,9 @@ impl<P: Planner> Axis<P> {
                         negative,
                         limits: beside(&limits, limits.velocity),
                     };
-                    self.planner.move_by_direction(start, 0.0, &own, &wider).ok()
+                    self.planner
+                        .move_by_direction(&from, -start.position, &own, &wider)
+                        .ok()
                 };
                 let first = plan(along)?;
                 // More room against the line is of use where all of the other is.
