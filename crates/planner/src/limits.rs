@@ -215,14 +215,30 @@ impl Limits {
         }
     }
 
-    /// Each of them `factor` times as large.
+    /// Each of them `factor` times as large, and at most the largest number: one that is finite stays so.
     pub fn times(&self, factor: f64) -> Self {
+        self.map(|bound| bound * factor)
+    }
+
+    /// The `divisor`-th part of each of them, and at most the largest number: one that is finite stays so.
+    pub fn over(&self, divisor: f64) -> Self {
+        self.map(|bound| bound / divisor)
+    }
+
+    fn map(&self, change: impl Fn(f64) -> f64) -> Self {
+        let changed = |bound: f64| {
+            if bound.is_finite() {
+                change(bound).min(f64::MAX)
+            } else {
+                bound
+            }
+        };
         Self {
-            velocity: self.velocity * factor,
-            acceleration: self.acceleration * factor,
-            deceleration: self.deceleration * factor,
-            jerk: self.jerk * factor,
-            snap: self.snap * factor,
+            velocity: changed(self.velocity),
+            acceleration: changed(self.acceleration),
+            deceleration: changed(self.deceleration),
+            jerk: changed(self.jerk),
+            snap: changed(self.snap),
         }
     }
 

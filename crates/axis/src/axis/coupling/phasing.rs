@@ -433,13 +433,6 @@ impl<P: Planner> Axis<P> {
             Kind::Measured => self.room_now(view, limits)?,
             _ => self.room_beside(&coupling.leads(&view.future)?, limits)?,
         };
-        let room = self.share_of_shift(room, limits);
-        Some(Limits {
-            velocity: room.velocity / ratio,
-            acceleration: room.acceleration / ratio,
-            deceleration: room.deceleration / ratio,
-            jerk: room.jerk / ratio,
-            snap: room.snap / ratio,
-        })
+        Some(self.share_of_shift(room, limits).over(ratio))
     }
 }
