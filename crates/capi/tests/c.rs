@@ -11,13 +11,14 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 use std::{env, fs};
 
-const EXAMPLES: [&str; 6] = [
+const EXAMPLES: [&str; 7] = [
     "single_axis",
     "own_drive",
     "diagnostics",
     "home_and_latch",
     "recorder",
     "cam",
+    "gears",
 ];
 
 fn root() -> PathBuf {
@@ -298,6 +299,45 @@ fn a_cam_of_a_c_host_moves_by_the_bits_of_a_scan_script() {
             "select.MaxMasterVelocity",
         ],
         &["select.Done", "cam.InSync", "cam.EndOfProfile"],
+    );
+}
+
+/// Covers: G5, G15, G60, G65, G85
+#[test]
+fn gears_of_a_c_host_move_by_the_bits_of_a_scan_script() {
+    same_bits(
+        "gears",
+        "gears.scan.json",
+        &[
+            "M.Position",
+            "S.Position",
+            "W.Position",
+            "W.Velocity",
+            "shift.CoveredPhaseShift",
+        ],
+        &[
+            "gear.InGear",
+            "both.InSync",
+            "shift.Done",
+            "out.Done",
+            "gear.CommandAborted",
+        ],
+    );
+}
+
+/// The same axis twice, a denominator of 0, a slave and a master that are no axes, and a ring: each has its ErrorID, and that nothing moves for
+/// them is what the comparison with the script holds.
+#[test]
+fn gears_of_a_c_host_are_refused_with_their_numbers() {
+    if !has("cc") {
+        return;
+    }
+    let program = scratch("c-gears").join("gears");
+    let source = root().join("examples/gears.c");
+    compile(&C, &source, &root().join("include"), &libraries().0, &program);
+    assert_eq!(
+        text(&run(&program, &[])),
+        "self 151, zero 150, nobody 100, stranger 100, ring 151\n"
     );
 }
 
