@@ -171,6 +171,11 @@ pub trait Planner {
         None
     }
 
+    /// The same of the next scan alone, with all that begins and ends in it.
+    fn peaks_in_scan(&self, _rest: (&Self::Plan, u64)) -> Option<Setpoint> {
+        None
+    }
+
     /// The velocity (u/s) that `start` comes to once its acceleration and jerk are zero as soon as `limits` allow.
     fn coasting(&self, start: &Setpoint, _limits: &Limits) -> f64 {
         start.velocity
@@ -547,7 +552,11 @@ impl Planner for Standard {
     }
 
     fn peaks(&self, rest: (&StandardPlan, u64)) -> Option<Setpoint> {
-        sum::peaks(rest, self.cycle)
+        sum::peaks(rest, f64::INFINITY, self.cycle)
+    }
+
+    fn peaks_in_scan(&self, rest: (&StandardPlan, u64)) -> Option<Setpoint> {
+        sum::peaks(rest, self.cycle, self.cycle)
     }
 
     fn coasting(&self, start: &Setpoint, limits: &Limits) -> f64 {

@@ -409,7 +409,7 @@ fn piece_fits(state: &Setpoint, length: f64, limits: &Limits, room: Option<&mut 
 /// A motion within it keeps `limits` together with the plan whatever their times. Bounded by
 /// [`MAX_SWITCHES`] pieces.
 pub(crate) fn room(part: Part<'_>, limits: &Limits, cycle: f64) -> Limits {
-    let Some(peak) = peaks(part, cycle) else {
+    let Some(peak) = peaks(part, f64::INFINITY, cycle) else {
         return Limits {
             velocity: 0.0,
             acceleration: 0.0,
@@ -435,37 +435,42 @@ pub(crate) fn room(part: Part<'_>, limits: &Limits, cycle: f64) -> Limits {
     }
 }
 
-/// The largest magnitudes of the derivatives of the rest of a plan; `None` on a curve through points. Bounded by
-/// [`MAX_SWITCHES`] pieces.
-pub(crate) fn peaks(part: Part<'_>, cycle: f64) -> Option<Setpoint> {
+/// The largest magnitudes of the derivatives of a plan for so long a `time` (s) from now on; `None` on a curve through points. Bounded
+/// by [`MAX_SWITCHES`] pieces.
+pub(crate) fn peaks(part: Part<'_>, time: f64, cycle: f64) -> Option<Setpoint> {
     if is_curve(part) {
         return None;
     }
     let mut walk = Walk::new(part.0.segments(), part, cycle);
-    let mut peak = Setpoint {
-        velocity: walk.goal.abs(),
-        ..Setpoint::default()
+    let mut peak = Setpoint::default();
+    let mut see = |state: &Setpoint| {
+        peak.velocity = peak.velocity.max(state.velocity.abs());
+        peak.acceleration = peak.acceleration.max(state.acceleration.abs());
+        peak.jerk = peak.jerk.max(state.jerk.abs());
+        peak.snap = peak.snap.max(state.snap.abs());
     };
+    let mut left = time;
     for _ in 0..MAX_SWITCHES {
-        if !walk.left.is_finite() {
+        let length = walk.left.min(left);
+        if !length.is_finite() {
             break;
         }
-        if walk.left > GRAIN * cycle {
+        if length > GRAIN * cycle {
             let path = Path::<1>::follow(
                 Order::Four,
                 &walk.state,
                 f64::INFINITY,
-                core::iter::once((walk.left, walk.state.snap)),
+                core::iter::once((length, walk.state.snap)),
             );
-            path.extremes(f64::INFINITY, |state, _| {
-                peak.velocity = peak.velocity.max(state.velocity.abs());
-                peak.acceleration = peak.acceleration.max(state.acceleration.abs());
-                peak.jerk = peak.jerk.max(state.jerk.abs());
-                peak.snap = peak.snap.max(state.snap.abs());
-            });
+            path.extremes(f64::INFINITY, |state, _| see(state));
         }
-        walk.go(walk.left);
+        left -= length;
+        if !(left > 0.0) {
+            return Some(peak);
+        }
+        walk.go(length);
     }
+    peak.velocity = peak.velocity.max(walk.goal.abs());
     Some(peak)
 }
 

@@ -118,10 +118,16 @@ impl<P: Planner> Axis<P> {
                 if scan >= switch {
                     break;
                 }
-                // The last scan may end in the next piece, and is a part of its own.
+                // The last scan may hold several pieces, and is a part of its own.
                 let inside = switch.saturating_sub(1).max(scan.saturating_add(1));
                 let next = scan.saturating_add(step).min(inside);
-                let ((low, high), most) = part_of(&path, scan, next, cycle);
+                let ((low, high), most) = if next.saturating_sub(scan) > 1 {
+                    part_of(&path, scan, next, cycle)
+                } else {
+                    let most = self.planner.peaks_in_scan((lead.plan, scan))?.times(lead.factor);
+                    let beyond = bent(cycle) * most.acceleration.abs();
+                    (range(&path.at(scan), &path.at(next), beyond), most)
+                };
                 let per = 1.0 / curve.law.master_scaling;
                 let (low, high) = (x + low * per, x + high * per);
                 let bounds = curve.law.bounds_between(&curve.cam, low.min(high), low.max(high));
@@ -180,45 +186,37 @@ fn rough(degree: usize, limits: &Limits) -> Beyond {
     }
 }
 
-/// From where to where a part of a plan leads at most, and the largest magnitudes of its derivatives: a piece of constant snap, of
-/// which the last scan may be of the next piece.
+/// From where to where a part of a plan leads at most, and the largest magnitudes of its derivatives: a piece of constant snap.
 fn part_of<Q: Plan>(path: &Path<'_, Q>, from: u64, to: u64, cycle: f64) -> ((f64, f64), Setpoint) {
     let (first, inside, last) = (path.at(from), path.at(from.saturating_add(1)), path.at(to));
     let time = to.saturating_sub(from) as f64 * cycle;
-    // A curve is off its chord by no more than an eighth of its second derivative times the time squared.
-    let bent = 0.125 * time * time;
-    let (velocity, acceleration, jerk, snap);
-    if to.saturating_sub(from) == 1 {
-        // The plan may go on to its next piece in between: what leads from one value to another at such a rate stays below that.
-        let between = |one: f64, other: f64, rate: f64| 0.5 * (one.abs() + other.abs() + rate * time);
-        snap = larger(first.snap, last.snap);
-        let steepest = larger(first.jerk, last.jerk);
-        jerk = steepest.max(between(first.jerk, last.jerk, snap));
-        // One that begins and ends in it shows at neither end.
-        let mean = (last.velocity - first.velocity).abs() / time;
-        acceleration = between(first.acceleration, last.acceleration, jerk).max(mean);
-        velocity = between(first.velocity, last.velocity, acceleration);
-    } else {
-        // A piece of constant snap, told from its inside: on its ends what jumps there may be that of the next one.
-        let (back, on) = (-cycle, time - cycle);
-        let jerk_at = |t: f64| inside.jerk + inside.snap * t;
-        let acceleration_at = |t: f64| inside.acceleration + inside.jerk * t + 0.5 * inside.snap * t * t;
-        snap = inside.snap.abs();
-        jerk = larger(jerk_at(back), jerk_at(on));
-        acceleration = larger(acceleration_at(back), acceleration_at(on)) + bent * snap;
-        velocity = larger(first.velocity, last.velocity) + bent * jerk;
-    }
-    let way = bent * acceleration;
-    let range = (
-        first.position.min(last.position) - way,
-        first.position.max(last.position) + way,
-    );
+    let bent = bent(time);
+    // Told from its inside: on its ends what jumps there may be that of the next one.
+    let (back, on) = (-cycle, time - cycle);
+    let jerk_at = |t: f64| inside.jerk + inside.snap * t;
+    let acceleration_at = |t: f64| inside.acceleration + inside.jerk * t + 0.5 * inside.snap * t * t;
+    let snap = inside.snap.abs();
+    let jerk = larger(jerk_at(back), jerk_at(on));
+    let acceleration = larger(acceleration_at(back), acceleration_at(on)) + bent * snap;
     let most = Setpoint {
         position: 0.0,
-        velocity,
+        velocity: larger(first.velocity, last.velocity) + bent * jerk,
         acceleration,
         jerk,
         snap,
     };
-    (range, most)
+    (range(&first, &last, bent * acceleration), most)
+}
+
+/// A curve is off its chord by no more than an eighth of its second derivative times the `time` squared.
+fn bent(time: f64) -> f64 {
+    0.125 * time * time
+}
+
+/// The places between two, and so far (u) beyond them.
+fn range(first: &Setpoint, last: &Setpoint, beyond: f64) -> (f64, f64) {
+    (
+        first.position.min(last.position) - beyond,
+        first.position.max(last.position) + beyond,
+    )
 }
