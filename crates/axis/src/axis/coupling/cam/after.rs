@@ -29,7 +29,7 @@ struct Ended {
 
 impl<P: Planner> Axis<P> {
     /// The slave has moved: whether it has come to an end of its cam, and what follows then.
-    pub(super) fn end_of_cam(&mut self, scope: &mut Scope<'_>) {
+    pub(super) fn end_of_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         let is_paused = self.is_paused();
         let switch = self.switch_of_next();
         let cycle = self.planner.cycle();
@@ -39,10 +39,13 @@ impl<P: Planner> Axis<P> {
         let (Some(cam), Some(shadow)) = (scope.cams.cam(on_cam.camming.cam), on_cam.shadow) else {
             return;
         };
+        let Some(curve) = on_cam.curve(cam) else { return };
+        if !on_cam.rung.is_locked() && curve.is_ahead_past_end(shadow.place, view.now.place) {
+            return;
+        }
         let at = on_cam.at;
         let passed = on_cam.ends.note(&cam, &at);
         let is_over = on_cam.ends.is_over();
-        let Some(curve) = on_cam.curve(cam) else { return };
         let ended = match (switch, &passed) {
             (Some(place), _) if !is_over => {
                 let here = curve.unwound(shadow.place);
@@ -67,6 +70,9 @@ impl<P: Planner> Axis<P> {
                 self.record(Event::CamPassed { periods }, &mut self.owner_scope(scope));
             }
         }
+        if self.queue.is_empty() && is_over {
+            return self.stay_at_end(view, scope);
+        }
         if self.queue.is_empty() || !(ended.is_some() || is_over) {
             return;
         }
@@ -81,6 +87,20 @@ impl<P: Planner> Axis<P> {
             }
             self.go_on_behind(&ended, &shadow, scope);
         }
+    }
+
+    /// The cam is over: the slave stays there, also where its shadow went past the end on a way that leads back.
+    fn stay_at_end(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        if self.is_locked_on_cam() {
+            return;
+        }
+        if let Some(on_cam) = &mut self.on_cam {
+            on_cam.shadow = Some(Shadow {
+                place: view.now.place,
+                at: view.now.at,
+            });
+        }
+        self.lock_at_end(scope);
     }
 
     /// Where in the cam in progress the next one is to take over, if a cam waits and that is not the end.
@@ -296,6 +316,16 @@ impl Curve<'_> {
         } else {
             head.begin
         }
+    }
+
+    /// A shadow that its master braked behind went past an end of a cam without periods to which the master itself has not come: it
+    /// will go back.
+    fn is_ahead_past_end(&self, shadow: Place, master: Place) -> bool {
+        let head = self.cam.head;
+        let (shadow, master) = (self.unwound(shadow), self.unwound(master));
+        let is_behind = shadow >= head.end && master < head.end;
+        let is_before = shadow <= head.begin && master > head.begin;
+        !head.periodic && (is_behind || is_before)
     }
 
     /// Where `place` of the cam (u of the master's side) is passed on the way from `before` to `here`, neither taken back into one

@@ -49,7 +49,7 @@ impl<P: Planner> Axis<P> {
         }
         self.note_own_part();
         self.measure_on_cam(view, scope);
-        self.end_of_cam(scope);
+        self.end_of_cam(view, scope);
         self.finish_reset();
     }
 

@@ -214,8 +214,8 @@ impl<P: Planner> Axis<P> {
         let behind = apart(on_cam.was.place, shadow.place, turn);
         let period = curve.period();
         let whole = (behind / period) as i64 as f64;
-        // Ahead it lets the master come.
-        if whole * on_cam.was.at.velocity > 0.0 {
+        // Ahead of a master that moves it lets that come.
+        if whole != 0.0 && whole * on_cam.was.at.velocity >= 0.0 {
             self.move_shadow(curve, whole * period);
         }
     }
@@ -590,11 +590,12 @@ impl<P: Planner> Axis<P> {
     }
 
     /// It holds the last place of a cam that is over.
-    fn lock_at_end(&mut self, scope: &mut Scope<'_>) {
+    pub(super) fn lock_at_end(&mut self, scope: &mut Scope<'_>) {
+        if self.is_locked_on_cam() {
+            return;
+        }
         if self.setpoint.is_at_rest() {
-            if !self.is_locked_on_cam() {
-                self.lock_on_cam(scope);
-            }
+            self.lock_on_cam(scope);
         } else {
             self.fail(ErrorId::DeviationTooLarge, scope);
         }
