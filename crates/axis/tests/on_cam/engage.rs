@@ -2,8 +2,8 @@
 
 use crate::rig::{L1, MASTER, RELATIVE, Rig, SLAVE, WIDE, config, row, up_and_back};
 use standstill_axis::{
-    AxisState, BufferMode, CamIn, CamSelection, Command, Dynamics, ErrorId, Event, Fate, Limits, OnLimit,
-    Raw, Request, Scope, StartMode, ValueSource,
+    AxisState, BufferMode, CamIn, CamRow, CamSelection, Command, Dynamics, ErrorId, Event, Fate, Limits,
+    OnLimit, Raw, Request, Scope, StartMode, ValueSource,
 };
 use standstill_planner::CamShape;
 
@@ -139,7 +139,32 @@ fn just_below_the_highest_velocity_it_is_in_sync_and_just_above_it_lags() {
             row(x, table(x), CamShape::Through)
         })
         .collect();
+    let with_slopes = |shape| {
+        let with = |master, slave, slope, curvature| CamRow {
+            slope,
+            curvature,
+            ..row(master, slave, shape)
+        };
+        vec![
+            with(0.0, 0.0, 0.5, 0.0),
+            with(120.0, 90.0, 0.3, -2e-3),
+            with(360.0, 20.0, 0.5, 0.0),
+        ]
+    };
+    // What goes on straight for ever has a velocity alone.
+    let straight = vec![
+        row(0.0, 0.0, CamShape::Line),
+        row(180.0, 60.0, CamShape::Line),
+        row(360.0, 120.0, CamShape::Through),
+    ];
+    let slow = Limits {
+        velocity: 100.0,
+        ..WIDE
+    };
     for (rows, limits) in [
+        (with_slopes(CamShape::Poly7), WIDE),
+        (with_slopes(CamShape::Poly5), third),
+        (straight, slow),
         (one(CamShape::Rest7), WIDE),
         (one(CamShape::Rest5), third),
         (through, WIDE),
