@@ -132,6 +132,25 @@ impl Awaited {
         })
     }
 
+    /// Where the cam lies at its master with new values: one that is counted from where that was at the edge still is.
+    fn laid_for(&self, entry: &Entry, cams: &Cams<'_>) -> Option<(Place, f64)> {
+        let (Work::Cam(before), Work::Cam(camming)) = (self.entry.work, entry.work) else {
+            return None;
+        };
+        let (place, _) = self.laid?;
+        let is_counted_on = !before.master_absolute && !camming.master_absolute;
+        let is_same_master = (before.master, before.source) == (camming.master, camming.source);
+        if !(is_counted_on && is_same_master) {
+            return None;
+        }
+        let offset = camming.master_offset - before.master_offset;
+        let place = Place {
+            position: place.position + offset,
+            ..place
+        };
+        Some((place, cams.cam(camming.cam)?.head.begin))
+    }
+
     /// How the master came from the end of the scan before to where it is `now`, on its side of the cam for one that goes onto
     /// that; `turn` is the length of the master's turn (u).
     fn course(&mut self, now: &Seen, turn: Option<f64>, cams: &Cams<'_>) -> Option<Course> {
@@ -242,16 +261,20 @@ impl<P: Planner> Axis<P> {
         command: &Command,
         scope: &mut Scope<'_>,
     ) -> Result<(), ErrorId> {
-        let Some(Awaited { mut entry, was, .. }) = self.awaited.filter(|awaited| awaited.entry.id == id)
-        else {
+        let Some(before) = self.awaited.filter(|awaited| awaited.entry.id == id) else {
             return Ok(());
         };
+        let mut entry = before.entry;
         let Some((work, limits)) = self.check_update(&entry, command, scope)? else {
             return Ok(());
         };
         self.take_values(&mut entry, work, limits);
         // What sets off at once takes over in the next motion step as what was at its start point does.
-        self.awaited = Awaited::new(entry).map(|awaited| Awaited { was, ..awaited });
+        self.awaited = Awaited::new(entry).map(|awaited| Awaited {
+            was: before.was,
+            laid: before.laid_for(&entry, &scope.cams),
+            ..awaited
+        });
         Ok(())
     }
 
