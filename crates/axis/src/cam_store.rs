@@ -372,6 +372,60 @@ mod tests {
         }
     }
 
+    /// A table of the most rows is no spike in a scan, whatever its law: so many looks at rows in a call, and so many pieces.
+    ///
+    /// Covers: G79
+    #[test]
+    fn a_long_table_is_looked_at_in_calls_of_the_same_work() {
+        let shapes = [
+            (CamShape::Rest7, 213),
+            (CamShape::Poly7, 213),
+            (CamShape::Poly5, 213),
+            (CamShape::Line, 213),
+            (CamShape::Through, 3604),
+        ];
+        for (shape, most) in shapes {
+            let (mut slots, mut pieces) = ([CamSlot::default(); 1], [CamPiece::default(); 511]);
+            let mut cams = Cams::new(&mut slots, &mut pieces);
+            let selection = CamSelection {
+                periodic: true,
+                ..CamSelection::default()
+            };
+            let id = cams.begin(512, selection, |_| false).unwrap().unwrap();
+            let looks = core::cell::Cell::new(0);
+            let row = |index: usize| {
+                looks.set(looks.get() + 1);
+                let slave = if index == 511 { 0 } else { index & 3 };
+                Some(CamRow {
+                    master: index as f64,
+                    slave: slave as f64,
+                    shape,
+                    ..CamRow::default()
+                })
+            };
+            let mut calls = std::vec::Vec::new();
+            let is_made = |cams: &Cams<'_>| {
+                let made = cams
+                    .pieces
+                    .iter()
+                    .filter(|piece| piece.bounds() != CamPiece::default().bounds());
+                made.count()
+            };
+            loop {
+                let (before, made) = (looks.get(), is_made(&cams));
+                let found = cams.go_on(id, &row).unwrap();
+                assert!(is_made(&cams) - made <= CAM_ROWS_PER_CALL);
+                calls.push(looks.get() - before);
+                if found.is_some() {
+                    break;
+                }
+            }
+            assert_eq!(calls.len(), 16, "{shape:?}");
+            let largest = calls.iter().max().copied().unwrap_or_default();
+            assert!(largest <= most, "{shape:?}: {calls:?}");
+        }
+    }
+
     #[test]
     fn rows_that_make_no_cam_leave_the_slot_free() {
         let (mut slots, mut pieces) = ([CamSlot::default(); 1], [CamPiece::default(); 60]);
