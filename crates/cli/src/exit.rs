@@ -152,6 +152,7 @@ impl From<FileError> for Failure {
     fn from(error: FileError) -> Self {
         let exit = match &error {
             FileError::Form { .. } => Exit::Usage,
+            FileError::Partial { .. } => Exit::Io,
             FileError::Io { path, source } => return Self::io(&shown(path), source),
             FileError::Text { .. } | FileError::Exact { .. } => Exit::BadInput,
         };

@@ -48,13 +48,29 @@ pub fn write(trace: &Trace, out: &mut impl Write) -> io::Result<()> {
 /// # Errors
 /// Those of `out`.
 pub fn write_as(trace: &Trace, dialect: Dialect, out: &mut impl Write) -> io::Result<()> {
+    write_names(trace, dialect, out)?;
+    write_rows(trace, trace.first(), dialect, out)
+}
+
+/// The line of column names.
+pub(crate) fn write_names(trace: &Trace, dialect: Dialect, out: &mut impl Write) -> io::Result<()> {
     let delimiter = dialect.delimiter;
     write!(out, "scan{delimiter}time_ns")?;
     for column in trace.columns() {
         write!(out, "{delimiter}{}", quoted(&column.name, delimiter))?;
     }
-    out.write_all(b"\n")?;
-    for scan in 0..trace.scans() {
+    out.write_all(b"\n")
+}
+
+/// The rows from a scan on.
+pub(crate) fn write_rows(
+    trace: &Trace,
+    from: usize,
+    dialect: Dialect,
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let delimiter = dialect.delimiter;
+    for scan in from..trace.scans() {
         write!(out, "{scan}{delimiter}{}", trace.time_ns(scan))?;
         for cell in trace.row(scan) {
             let mut text = cell_text(cell);

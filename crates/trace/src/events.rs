@@ -6,7 +6,6 @@
 //! name is told only once it has another value than its default.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 use crate::column::{Cell, Column, Kind, Role};
 use crate::number::{cell_text, time_literal};
@@ -59,18 +58,20 @@ pub struct EventLog {
     /// Scans and notes whose events were taken.
     scans: usize,
     notes: usize,
-    /// Per column the scan whose value was told last.
-    told: Vec<Option<usize>>,
+    /// Per column the value that was told last, as the trace holds it.
+    told: Vec<Option<u64>>,
     /// The columns by subject, once the first row was looked at.
     groups: Option<Vec<Group>>,
 }
 
 impl EventLog {
-    /// The events of the rows and notes that the trace has got since the last call. Cost: proportional to these rows
+    /// The events of the rows and notes that the trace has got since the last call; of the rows before two at least are still
+    /// held. Cost: proportional to these rows
     /// times columns.
     pub fn take(&mut self, trace: &Trace) -> Vec<Event> {
         let mut events = Vec::new();
-        let mut notes = trace.notes().get(self.notes..).unwrap_or_default();
+        let taken = self.notes.saturating_sub(trace.notes_forgotten());
+        let mut notes = trace.notes().get(taken..).unwrap_or_default();
         while self.scans < trace.scans() {
             let scan = self.scans;
             // Notes come in the order of scans; one that comes late is told with the next row.
@@ -111,27 +112,43 @@ pub fn events_text(trace: &Trace) -> String {
 
 /// The lines of some events, aligned with each other.
 pub(crate) fn lines(events: &[Event]) -> String {
-    let scan_width = events
-        .iter()
-        .map(|event| event.scan.to_string().len())
-        .max()
-        .unwrap_or(0)
-        .max(5);
-    let subject_width = events
-        .iter()
-        .map(|event| event.subject.chars().count())
-        .max()
-        .unwrap_or(0);
-    events.iter().fold(String::new(), |mut text, event| {
-        let Event {
-            scan,
-            subject,
-            text: what,
-        } = event;
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{scan:>scan_width$}  {subject:<subject_width$}  {what}");
-        text
-    })
+    let mut widths = Widths { scan: 5, subject: 0 };
+    for Event { scan, subject, .. } in events {
+        widths.scan = widths.scan.max(scan.to_string().len());
+        widths.subject = widths.subject.max(subject.chars().count());
+    }
+    events.iter().map(|event| widths.line(event)).collect()
+}
+
+/// How wide the columns of lines are that tell events.
+#[derive(Clone, Copy, Debug)]
+pub struct Widths {
+    scan: usize,
+    subject: usize,
+}
+
+impl Widths {
+    /// For the events of a run of so many scans, before they are known.
+    #[must_use]
+    pub fn of_run(trace: &Trace, scans: u64) -> Self {
+        let subjects = groups(trace.columns());
+        let subjects = subjects.iter().map(|group| group.subject.chars().count());
+        Self {
+            scan: scans.saturating_sub(1).to_string().len().max(5),
+            subject: subjects.max().unwrap_or(0),
+        }
+    }
+
+    /// An event: scan, subject, what happened.
+    #[must_use]
+    pub fn line(&self, event: &Event) -> String {
+        let Self {
+            scan: scan_width,
+            subject: subject_width,
+        } = self;
+        let Event { scan, subject, text } = event;
+        format!("{scan:>scan_width$}  {subject:<subject_width$}  {text}\n")
+    }
 }
 
 fn note_event(note: &Note) -> Event {
@@ -175,9 +192,9 @@ pub(crate) fn groups(columns: &[Column]) -> Vec<Group> {
     groups.into_iter().map(|(_, group)| group).collect()
 }
 
-/// What changed in a group in a scan: Booleans first, then values in column order. `told` holds per column the scan
-/// whose value was told last.
-fn changes(trace: &Trace, group: &Group, scan: usize, told: &mut [Option<usize>]) -> String {
+/// What changed in a group in a scan: Booleans first, then values in column order. `told` holds per column the
+/// value that was told last.
+fn changes(trace: &Trace, group: &Group, scan: usize, told: &mut [Option<u64>]) -> String {
     // Most subjects do nothing in most scans.
     if !trace.moves(scan, &group.columns) {
         return String::new();
@@ -211,11 +228,11 @@ fn changes(trace: &Trace, group: &Group, scan: usize, told: &mut [Option<usize>]
         }
         let taken = takes_inputs && column.role == Role::Input;
         let known = told.get(at).copied().flatten();
-        let known = known.and_then(|scan| trace.cell(scan, at));
+        let known = known.map(|word| trace.decode(column.kind, word));
         if (taken && is_news(column, now, known)) || is_change(trace, at, column, scan) {
             words.push(assignment(column, now));
             if let Some(told) = told.get_mut(at) {
-                *told = Some(scan);
+                *told = trace.word(scan, at);
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::column::Kind;
 use crate::header::Axis;
 use crate::number::{fixed, shortest};
 use crate::trace::Trace;
@@ -26,45 +27,90 @@ pub struct Extreme {
 /// limits differ. Signals that the trace lacks are left out.
 #[must_use]
 pub fn extremes(trace: &Trace) -> Vec<Extreme> {
-    trace
-        .header()
-        .axes
-        .iter()
-        .flat_map(|axis| of_axis(trace, axis))
-        .collect()
+    let mut found = Extremes::new(trace);
+    found.look(trace);
+    found.all().collect()
 }
 
 /// The extremes as aligned lines, one block per axis.
 #[must_use]
 pub fn extremes_text(trace: &Trace) -> String {
-    let mut text = String::new();
-    for axis in &trace.header().axes {
-        let unit = if axis.unit.is_empty() {
-            String::new()
-        } else {
-            format!(" ({})", axis.unit)
-        };
-        // Writing to a String cannot fail, here and below.
-        let _ = writeln!(text, "extremes of {}{unit}", axis.name);
-        for Extreme {
-            quantity,
-            value,
-            scan,
-            limit,
-            ..
-        } in of_axis(trace, axis)
-        {
-            let bound = match limit {
-                None if quantity.ends_with("position") => String::new(),
-                None => "no limit".to_owned(),
-                Some(limit) if quantity.ends_with("position") => format!("limit {}", shortest(limit)),
-                Some(limit) => format!("{:.2} % of {}", 100.0 * value / limit, shortest(limit)),
-            };
-            let line = format!("  {quantity:<17} {:>16}  at {scan:<7} {bound}", fixed(value));
-            let _ = writeln!(text, "{}", line.trim_end());
+    let mut found = Extremes::new(trace);
+    found.look(trace);
+    found.text()
+}
+
+/// The extremes of a trace that grows, and may forget what was looked at.
+#[derive(Clone, Debug)]
+pub struct Extremes {
+    /// Scans looked at.
+    scans: usize,
+    axes: Vec<OfAxis>,
+}
+
+impl Extremes {
+    /// Those of no rows yet.
+    #[must_use]
+    pub fn new(trace: &Trace) -> Self {
+        let axes = trace.header().axes.iter();
+        Self {
+            scans: 0,
+            axes: axes.map(|axis| OfAxis::new(trace, axis)).collect(),
         }
     }
-    text
+
+    /// Looks at the rows that the trace has got since the last call.
+    pub fn look(&mut self, trace: &Trace) {
+        for (scan, row) in (self.scans..).zip(trace.words_from(self.scans)) {
+            for axis in &mut self.axes {
+                axis.look(scan, row);
+            }
+        }
+        self.scans = trace.scans();
+    }
+
+    /// What [`extremes`] gives of the rows so far.
+    pub fn all(&self) -> impl Iterator<Item = Extreme> + '_ {
+        self.axes.iter().flat_map(OfAxis::all)
+    }
+
+    /// What [`extremes_text`] gives of the rows so far.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        for of_axis in &self.axes {
+            let axis = &of_axis.axis;
+            let unit = if axis.unit.is_empty() {
+                String::new()
+            } else {
+                format!(" ({})", axis.unit)
+            };
+            // Writing to a String cannot fail, here and below.
+            let _ = writeln!(text, "extremes of {}{unit}", axis.name);
+            for extreme in of_axis.all() {
+                let _ = writeln!(text, "{}", line(&extreme));
+            }
+        }
+        text
+    }
+}
+
+fn line(extreme: &Extreme) -> String {
+    let Extreme {
+        quantity,
+        value,
+        scan,
+        limit,
+        ..
+    } = *extreme;
+    let bound = match limit {
+        None if quantity.ends_with("position") => String::new(),
+        None => "no limit".to_owned(),
+        Some(limit) if quantity.ends_with("position") => format!("limit {}", shortest(limit)),
+        Some(limit) => format!("{:.2} % of {}", 100.0 * value / limit, shortest(limit)),
+    };
+    let line = format!("  {quantity:<17} {:>16}  at {scan:<7} {bound}", fixed(value));
+    line.trim_end().to_owned()
 }
 
 /// The axis and its unit: `X (mm)`.
@@ -76,90 +122,116 @@ pub(crate) fn axis_title(axis: &Axis) -> String {
     }
 }
 
-fn of_axis(trace: &Trace, axis: &Axis) -> Vec<Extreme> {
-    let signal = |name: &str| -> Vec<f64> {
-        let column = trace.column(&format!("{}.{name}", axis.name));
-        column
-            .map(|column| trace.reals(column).collect())
-            .unwrap_or_default()
-    };
-    let limits = &axis.limits;
-    let [positions, velocities, accelerations] = ["Position", "Velocity", "Acceleration"].map(signal);
-    let magnitudes = |values: &[f64]| values.iter().map(|value| value.abs()).collect::<Vec<_>>();
-    let mut found = vec![
-        (
-            "least position",
-            greatest(positions.iter().map(|p| -p)).map(|(p, at)| (-p, at)),
-            limits.position_min,
-        ),
-        (
-            "greatest position",
-            greatest(positions.iter().copied()),
-            limits.position_max,
-        ),
-        (
-            "velocity",
-            greatest(magnitudes(&velocities).into_iter()),
-            limits.velocity,
-        ),
-    ];
-    if limits.acceleration == limits.deceleration {
-        let peak = greatest(magnitudes(&accelerations).into_iter());
-        found.push(("acceleration", peak, limits.acceleration));
-    } else {
-        let (speeding, slowing) = by_sense(&velocities, &accelerations);
-        found.push((
-            "acceleration",
-            greatest(speeding.into_iter()),
-            limits.acceleration,
-        ));
-        found.push(("deceleration", greatest(slowing.into_iter()), limits.deceleration));
+/// The extremes of one axis so far.
+#[derive(Clone, Debug)]
+struct OfAxis {
+    axis: Axis,
+    /// Columns of position, velocity, acceleration, jerk and snap, where they are numbers.
+    columns: [Option<usize>; 5],
+    least: Peak,
+    greatest: Peak,
+    velocity: Peak,
+    acceleration: Peak,
+    /// While the speed falls, where that has a limit of its own.
+    deceleration: Peak,
+    jerk: Peak,
+    snap: Peak,
+}
+
+impl OfAxis {
+    fn new(trace: &Trace, axis: &Axis) -> Self {
+        let column = |name: &str| {
+            let at = trace.column(&format!("{}.{name}", axis.name))?;
+            (trace.columns().get(at)?.kind == Kind::Real).then_some(at)
+        };
+        Self {
+            axis: axis.clone(),
+            columns: ["Position", "Velocity", "Acceleration", "Jerk", "Snap"].map(column),
+            least: Peak::default(),
+            greatest: Peak::default(),
+            velocity: Peak::default(),
+            acceleration: Peak::default(),
+            deceleration: Peak::default(),
+            jerk: Peak::default(),
+            snap: Peak::default(),
+        }
     }
-    found.push((
-        "jerk",
-        greatest(magnitudes(&signal("Jerk")).into_iter()),
-        limits.jerk,
-    ));
-    found.push((
-        "snap",
-        greatest(magnitudes(&signal("Snap")).into_iter()),
-        limits.snap,
-    ));
-    found
-        .into_iter()
-        .filter_map(|(quantity, peak, limit)| {
-            let (value, scan) = peak?;
+
+    fn has_one_limit(&self) -> bool {
+        self.axis.limits.acceleration == self.axis.limits.deceleration
+    }
+
+    fn look(&mut self, scan: usize, row: &[u64]) {
+        let value = |column: Option<usize>| Some(f64::from_bits(*row.get(column?)?));
+        let [position, velocity, acceleration, jerk, snap] = self.columns.map(value);
+        if let Some(position) = position {
+            self.least.look(scan, -position);
+            self.greatest.look(scan, position);
+        }
+        let magnitudes = [
+            (&mut self.velocity, velocity),
+            (&mut self.jerk, jerk),
+            (&mut self.snap, snap),
+        ];
+        for (peak, value) in magnitudes {
+            if let Some(value) = value {
+                peak.look(scan, value.abs());
+            }
+        }
+        match (velocity, acceleration) {
+            (_, Some(acceleration)) if self.has_one_limit() => {
+                self.acceleration.look(scan, acceleration.abs());
+            }
+            (Some(velocity), Some(acceleration)) => {
+                let [speeding, slowing] = by_sense(velocity, acceleration);
+                self.acceleration.look(scan, speeding);
+                self.deceleration.look(scan, slowing);
+            }
+            _ => {}
+        }
+    }
+
+    fn all(&self) -> impl Iterator<Item = Extreme> + '_ {
+        let limits = &self.axis.limits;
+        let least = Peak(self.least.0.map(|(value, scan)| (-value, scan)));
+        let all = [
+            ("least position", least, limits.position_min),
+            ("greatest position", self.greatest, limits.position_max),
+            ("velocity", self.velocity, limits.velocity),
+            ("acceleration", self.acceleration, limits.acceleration),
+            ("deceleration", self.deceleration, limits.deceleration),
+            ("jerk", self.jerk, limits.jerk),
+            ("snap", self.snap, limits.snap),
+        ];
+        all.into_iter().filter_map(|(quantity, peak, limit)| {
+            let (value, scan) = peak.0?;
             Some(Extreme {
-                axis: axis.name.clone(),
+                axis: self.axis.name.clone(),
                 quantity,
                 value,
                 scan,
                 limit,
             })
         })
-        .collect()
+    }
 }
 
-/// Magnitudes of the accelerations that speed up (or start from rest), and of those that slow down.
-fn by_sense(velocities: &[f64], accelerations: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let pairs = velocities.iter().zip(accelerations);
-    pairs
-        .map(|(velocity, acceleration)| {
-            let slows = (*velocity > 0.0 && *acceleration < 0.0) || (*velocity < 0.0 && *acceleration > 0.0);
-            let size = acceleration.abs();
-            if slows { (0.0, size) } else { (size, 0.0) }
-        })
-        .unzip()
+/// The magnitude of an acceleration that speeds up (or starts from rest), and of one that slows down; the other is 0.
+fn by_sense(velocity: f64, acceleration: f64) -> [f64; 2] {
+    let slows = (velocity > 0.0 && acceleration < 0.0) || (velocity < 0.0 && acceleration > 0.0);
+    let size = acceleration.abs();
+    if slows { [0.0, size] } else { [size, 0.0] }
 }
 
 /// The greatest value and where it first stands. A NaN is greater than all: it must not stay unseen.
-fn greatest(values: impl Iterator<Item = f64>) -> Option<(f64, usize)> {
-    let mut peak: Option<(f64, usize)> = None;
-    for (scan, value) in values.enumerate() {
-        let beaten = peak.is_none_or(|(peak, _)| !peak.is_nan() && (value.is_nan() || value > peak));
-        if beaten {
-            peak = Some((value, scan));
+#[derive(Clone, Copy, Debug, Default)]
+struct Peak(Option<(f64, usize)>);
+
+impl Peak {
+    fn look(&mut self, scan: usize, value: f64) {
+        let beaten = |(peak, _): (f64, usize)| !peak.is_nan() && (value.is_nan() || value > peak);
+        if self.0.is_none_or(beaten) {
+            self.0 = Some((value, scan));
         }
     }
-    peak
 }

@@ -8,10 +8,39 @@ use std::io::{self, Write};
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 
 use crate::column::Cell;
-use crate::header::{Header, VERSION_KEY};
+use crate::header::{Cam, Claim, Header, VERSION_KEY};
 use crate::number::{cell_text, shortest};
 use crate::read::{Field, Line, Loaded, ReadError, assemble};
-use crate::trace::Trace;
+use crate::trace::{Note, Trace};
+
+/// The key that marks the object behind the rows of a trace that was written while its run went on: its verdicts and notes.
+pub(crate) const END_KEY: &str = "standstill_trace_end";
+
+/// What stands behind the rows.
+#[derive(Default, serde::Deserialize)]
+struct End {
+    #[serde(default)]
+    claims: Vec<Claim>,
+    #[serde(default)]
+    cams: Vec<Cam>,
+    #[serde(default)]
+    notes: Vec<Note>,
+}
+
+impl End {
+    /// The end of a text, and what stands before it; an empty one where there is none.
+    fn split(text: &str) -> Result<(&str, Self), ReadError> {
+        let whole = text.trim_end();
+        let begin = whole.rfind('\n').map_or(0, |end| end + 1);
+        let (rows, last) = whole.split_at(begin);
+        if !last.starts_with(&format!("{{\"{END_KEY}\":")) {
+            return Ok((text, Self::default()));
+        }
+        let number = rows.lines().count() + 1;
+        let end = serde_json::from_str(last).map_err(|error| ReadError::json(&error, number))?;
+        Ok((rows, end))
+    }
+}
 
 /// Writes header and rows.
 ///
@@ -19,12 +48,17 @@ use crate::trace::Trace;
 /// Those of `out`.
 pub fn write(trace: &Trace, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "{}", trace.header_json())?;
+    write_rows(trace, trace.first(), out)
+}
+
+/// The rows from a scan on.
+pub(crate) fn write_rows(trace: &Trace, from: usize, out: &mut impl Write) -> io::Result<()> {
     let keys: Vec<String> = trace
         .columns()
         .iter()
         .map(|column| json_string(&column.name))
         .collect();
-    for scan in 0..trace.scans() {
+    for scan in from..trace.scans() {
         write!(out, "{{\"scan\":{scan},\"time_ns\":{}", trace.time_ns(scan))?;
         for (key, cell) in keys.iter().zip(trace.row(scan)) {
             write!(out, ",{key}:{}", json_cell(cell))?;
@@ -55,7 +89,7 @@ fn json_string(text: &str) -> String {
 /// short, or values that do not agree with the header; with the line, and the column where one can be
 /// named.
 pub fn read(text: &str) -> Result<Loaded, ReadError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let (text, end) = End::split(text.strip_prefix('\u{feff}').unwrap_or(text))?;
     let mut lines = text.lines().enumerate().map(|(at, line)| (at + 1, line));
     let is_header = |row: &Row| row.0.first().is_some_and(|(key, _)| key == VERSION_KEY);
     let Some((number, first)) = lines.by_ref().find(|(_, line)| !line.trim().is_empty()) else {
@@ -83,6 +117,12 @@ pub fn read(text: &str) -> Result<Loaded, ReadError> {
         (None, None) => Vec::new(),
     };
     let skip = if header.is_some() { number } else { number - 1 };
+    let header = header.map(|(mut header, mut notes)| {
+        header.claims.extend(end.claims);
+        header.cams.extend(end.cams);
+        notes.extend(end.notes);
+        (header, notes)
+    });
     assemble(&names, header, || {
         text.lines()
             .enumerate()

@@ -52,8 +52,8 @@ mod trace;
 pub mod vcd;
 
 pub use column::{Cell, Column, Kind, Role};
-pub use events::{Event, EventLog, events, events_text};
-pub use extremes::{Extreme, extremes, extremes_text};
+pub use events::{Event, EventLog, Widths, events, events_text};
+pub use extremes::{Extreme, Extremes, extremes, extremes_text};
 pub use header::{
     AXIS_SIGNALS, Axis, CAM_SIGNALS, CAMS_MAX, COMBINED_SIGNALS, Cam, Claim, ClaimFailure, ClaimVerdict,
     Direction, Header, Input, Instance, Limits, Pin, SLAVE_SIGNALS, SUPERIMPOSED_SIGNALS, Scaling, Written,

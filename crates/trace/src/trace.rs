@@ -50,15 +50,21 @@ pub enum RowError {
 
 /// A run: its header, one row a scan from scan 0 on, and its notes. Its texts are one line each and
 /// [`printable`](crate::printable), whatever they were made of.
+///
+/// A long run need not be held as a whole: [`Trace::forget`] lets go of rows that were looked at.
 #[derive(Clone, Debug)]
 pub struct Trace {
     header: Header,
     columns: Vec<Column>,
     by_name: BTreeMap<String, usize>,
+    /// The scan of the first row that is held.
+    first: usize,
     /// Row after row, one word a cell; the column's kind says what the word means.
     bits: Vec<u64>,
     names: Names,
     notes: Vec<Note>,
+    /// Notes that were forgotten.
+    notes_forgotten: usize,
 }
 
 impl Trace {
@@ -86,9 +92,11 @@ impl Trace {
             header,
             columns,
             by_name,
+            first: 0,
             bits: Vec::new(),
             names: Names::default(),
             notes: Vec::new(),
+            notes_forgotten: 0,
         }
     }
 
@@ -149,10 +157,32 @@ impl Trace {
         self.by_name.get(name).copied()
     }
 
-    /// Number of rows: scans 0 to `scans() - 1`.
+    /// Number of rows: scans 0 to `scans() - 1`, those that were forgotten included.
     #[must_use]
     pub fn scans(&self) -> usize {
-        self.bits.len().checked_div(self.columns.len()).unwrap_or(0)
+        self.first + self.bits.len().checked_div(self.columns.len()).unwrap_or(0)
+    }
+
+    /// The first scan whose row is held; others before it were forgotten.
+    #[must_use]
+    pub const fn first(&self) -> usize {
+        self.first
+    }
+
+    /// Lets go of all rows but the last `kept`, and of their notes. What has to do with all rows, such as
+    /// [`Trace::cells`], has to do with those that are held from then on.
+    pub fn forget(&mut self, kept: usize) {
+        let first = self.scans().saturating_sub(kept).max(self.first);
+        self.bits.drain(..(first - self.first) * self.columns.len());
+        self.first = first;
+        let old = self.notes.partition_point(|note| note.scan < first);
+        self.notes.drain(..old);
+        self.notes_forgotten += old;
+    }
+
+    /// How many notes were forgotten, which are those of the first scans.
+    pub(crate) const fn notes_forgotten(&self) -> usize {
+        self.notes_forgotten
     }
 
     /// Time of a scan (ns): its number times the cycle, which is the `now` its blocks saw.
@@ -238,37 +268,40 @@ impl Trace {
 
     /// Whether any of these columns has another value in a scan than in the one before; in the first one all have.
     pub(crate) fn moves(&self, scan: usize, columns: &[usize]) -> bool {
-        let width = self.columns.len();
-        let row = |scan: usize| self.bits.chunks_exact(width.max(1)).nth(scan);
-        let before = scan.checked_sub(1).and_then(row);
-        before.is_none_or(|before| {
-            columns
-                .iter()
-                .any(|&at| row(scan).is_some_and(|now| now.get(at) != before.get(at)))
-        })
+        let Some(before) = scan.checked_sub(1) else {
+            return true;
+        };
+        let (before, now) = (self.row_words(before), self.row_words(scan));
+        columns.iter().any(|&at| now.get(at) != before.get(at))
     }
 
     /// The value of a column in a scan; `None` outside the trace.
     #[must_use]
     pub fn cell(&self, scan: usize, column: usize) -> Option<Cell<'_>> {
         let kind = self.columns.get(column)?.kind;
-        let word = *self
-            .bits
-            .get(scan.checked_mul(self.columns.len())?.checked_add(column)?)?;
-        Some(self.decode(kind, word))
+        Some(self.decode(kind, self.word(scan, column)?))
+    }
+
+    /// What holds the value of a column in a scan; `None` outside the trace.
+    pub(crate) fn word(&self, scan: usize, column: usize) -> Option<u64> {
+        let row = scan.checked_sub(self.first)?;
+        self.bits
+            .get(row.checked_mul(self.columns.len())?.checked_add(column)?)
+            .copied()
     }
 
     /// The cells of a scan in column order; none outside the trace.
     pub fn row(&self, scan: usize) -> impl Iterator<Item = Cell<'_>> {
-        let words = self
-            .bits
-            .chunks_exact(self.columns.len().max(1))
-            .nth(scan)
-            .unwrap_or_default();
         self.columns
             .iter()
-            .zip(words)
+            .zip(self.row_words(scan))
             .map(|(column, &word)| self.decode(column.kind, word))
+    }
+
+    fn row_words(&self, scan: usize) -> &[u64] {
+        let mut rows = self.bits.chunks_exact(self.columns.len().max(1));
+        let row = scan.checked_sub(self.first).and_then(|row| rows.nth(row));
+        row.unwrap_or_default()
     }
 
     /// The cells of a column from scan 0 on; none if there is no such column.
@@ -338,9 +371,15 @@ impl Trace {
         Some(trace)
     }
 
-    /// The rows as they are held: a word a cell; that of a name is its place in [`Trace::texts`].
+    /// The rows from a scan on as they are held: a word a cell; that of a name is its place in [`Trace::texts`].
+    pub(crate) fn words_from(&self, scan: usize) -> impl Iterator<Item = &[u64]> {
+        let rows = self.bits.chunks_exact(self.columns.len().max(1));
+        rows.skip(scan.saturating_sub(self.first))
+    }
+
+    /// All rows that are held, as [`Trace::words_from`].
     pub(crate) fn words(&self) -> impl Iterator<Item = &[u64]> {
-        self.bits.chunks_exact(self.columns.len().max(1))
+        self.words_from(self.first)
     }
 
     /// The name that a word stands for.
@@ -368,7 +407,8 @@ impl Trace {
         &self.names.texts
     }
 
-    fn decode(&self, kind: Kind, word: u64) -> Cell<'_> {
+    /// What a word means in a column of this kind.
+    pub(crate) fn decode(&self, kind: Kind, word: u64) -> Cell<'_> {
         match kind {
             Kind::Bool => Cell::Bool(word != 0),
             Kind::Real => Cell::Real(f64::from_bits(word)),

@@ -7,8 +7,9 @@ use std::io;
 use std::path::Path;
 
 use standstill_trace::compare::compare;
-use standstill_trace::file::{FileError, Saving, can_save, load, replace, save};
-use standstill_trace::golden;
+use standstill_trace::csv::{self, Dialect};
+use standstill_trace::file::{FileError, Saving, Streaming, can_save, load, replace, save, save_as};
+use standstill_trace::{Trace, digest, golden};
 
 #[test]
 fn every_form_comes_back() {
@@ -129,4 +130,60 @@ fn a_trace_is_begun_before_there_is_one() {
         .finish(&common::run(5, None), Default::default())
         .expect("writable");
     assert_eq!(load(&folder.join("a.csv")).expect("our own").trace.scans(), 5);
+}
+
+#[test]
+fn a_trace_that_is_written_on_the_way_is_the_one_written_at_its_end() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("on_the_way");
+    fs::create_dir_all(&folder).expect("a folder for the test");
+    let whole = common::run(200, None);
+    for (name, dialect) in [
+        ("x.csv", Dialect::default()),
+        (
+            "y.csv",
+            Dialect {
+                delimiter: ';',
+                decimal_comma: true,
+            },
+        ),
+        ("x.jsonl", Dialect::default()),
+    ] {
+        let (at_end, on_the_way) = (folder.join(format!("at_end_{name}")), folder.join(name));
+        save_as(&whole, &at_end, dialect).expect("a folder to write to");
+        let mut header = whole.header().clone();
+        let claims = std::mem::take(&mut header.claims);
+        let mut trace = Trace::new(header);
+        let mut writing = Streaming::begin(&trace, &on_the_way, dialect).expect("a folder to write to");
+        let mut notes = whole.notes().iter().peekable();
+        for scan in 0..whole.scans() {
+            trace
+                .push_cells(whole.row(scan))
+                .expect("a row of the same columns");
+            while let Some(note) = notes.next_if(|note| note.scan == scan) {
+                trace.push_note(note.clone());
+            }
+            if scan % 7 == 0 {
+                writing.look(&trace).expect("room for it");
+                trace.forget(3);
+            }
+        }
+        assert!(trace.scans() == 200 && trace.first() > 180, "rows were forgotten");
+        // Those of scans that the run did not come to.
+        notes.for_each(|note| trace.push_note(note.clone()));
+        trace.set_claims(claims);
+        let kept = writing.kept().map(|(partial, rows)| (partial.to_owned(), rows));
+        assert_eq!(kept, Some((folder.join(format!("{name}.partial")), 197)));
+        writing.finish(&trace).expect("room for it");
+        let [expected, found] = [&at_end, &on_the_way].map(|path| load(path).expect("our own file").trace);
+        assert_eq!(found.header(), expected.header());
+        assert_eq!(found.notes(), expected.notes());
+        assert_eq!(digest::whole(&found), digest::whole(&expected));
+        if name.ends_with(".csv") {
+            for of in [|path: &Path| path.to_owned(), csv::meta_path] {
+                let [expected, found] =
+                    [&at_end, &on_the_way].map(|path| fs::read(of(path)).expect("a file"));
+                assert!(found == expected, "{name}");
+            }
+        }
+    }
 }

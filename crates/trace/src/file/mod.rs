@@ -1,5 +1,7 @@
 //! Traces in files, whose form follows from the name: `.csv`, `.jsonl`, and for reading `.exact`.
 
+mod streaming;
+
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -11,6 +13,7 @@ use crate::printable::printable;
 use crate::read::{Loaded, ReadError};
 use crate::trace::Trace;
 use crate::{csv, jsonl};
+pub use streaming::Streaming;
 use tempfile::NamedTempFile;
 
 /// Why a trace file could not be read or written.
@@ -27,6 +30,18 @@ pub enum FileError {
     Io {
         /// The file.
         path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The system refused while a long run was written; what there is of it was kept.
+    #[error("{}: {source}; the first {rows} rows are in {}", shown(.path), shown(.partial))]
+    Partial {
+        /// The file.
+        path: PathBuf,
+        /// Where the rows are.
+        partial: PathBuf,
+        /// How many there are, all of them whole.
+        rows: usize,
         /// What the system said.
         source: io::Error,
     },
