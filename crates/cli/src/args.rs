@@ -674,6 +674,7 @@ impl Outside {
         Allowed {
             folders,
             guest_memory: self.guest_memory,
+            ..Allowed::default()
         }
     }
 }

@@ -30,6 +30,7 @@ pub fn read(py: Python<'_>, (path, text, set, folders, memory): &Source) -> PyRe
     let allowed = Allowed {
         folders: folders.clone(),
         guest_memory: memory.unwrap_or(GUEST_MEMORY),
+        ..Allowed::default()
     };
     match text {
         Some(text) => {

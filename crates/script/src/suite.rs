@@ -140,6 +140,8 @@ pub struct Allowed {
     pub folders: Vec<PathBuf>,
     /// Memory that all guest programs of a script may have together (bytes).
     pub guest_memory: u64,
+    /// Whether runs may have more cells than fit into one trace: for a command that does not keep their rows.
+    pub long: bool,
 }
 
 impl Default for Allowed {
@@ -147,6 +149,7 @@ impl Default for Allowed {
         Self {
             folders: Vec::new(),
             guest_memory: GUEST_MEMORY,
+            long: false,
         }
     }
 }
@@ -299,6 +302,7 @@ fn read_as(
     let terms = Terms {
         guest_memory: allowed.guest_memory,
         coverage,
+        long: allowed.long,
     };
     let script = read_at(&text, path, parameters, allowed, terms)?;
     Ok((script, text))
@@ -318,6 +322,7 @@ pub fn read_given(
     let terms = Terms {
         guest_memory: allowed.guest_memory,
         coverage: false,
+        long: allowed.long,
     };
     read_at(text, path, parameters, allowed, terms)
 }

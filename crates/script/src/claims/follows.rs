@@ -10,8 +10,9 @@
 //! with turns may be any whole number of them from y; what rounds to a whole turn is 0 of the next one.
 
 use super::exact::Exact;
-use super::judge::{Listed, failure, within_run};
-use super::{Failure, describe};
+use super::judge::{Listed, failure};
+use super::place::{Stretch, within_run};
+use super::{Failure, Judge, describe};
 use crate::model::{AxisNumber, Condition, Follow, Range, Signal};
 use crate::run::Rows;
 use standstill_trace::{Cell, shortest};
@@ -34,67 +35,106 @@ struct Law {
 }
 
 /// The positions of the judged rows are the law's to the bit.
-pub(super) fn failures(
-    rows: &Rows<'_>,
-    path: &str,
-    range: Range,
-    during: &[Condition],
-    follow: &Follow,
-) -> Vec<Failure> {
-    let scans = match within_run(rows, path, range) {
-        Ok(scans) => scans,
-        Err(failure) => return vec![failure],
-    };
-    let judge = Judge { rows, follow };
-    let mut judged = judged(rows, scans.clone(), during).peekable();
-    let mut anchor = follow.anchor;
-    let mut law: Option<Law> = None;
-    let mut first = None;
-    let mut broken = Listed::default();
-    for scan in scans {
-        if judge.is_renamed(scan) {
-            law = None;
-        }
-        let [Some(master), Some(slave)] =
-            [follow.master, follow.slave].map(|axis| rows.position(axis, scan, 0))
-        else {
-            continue;
-        };
-        if let Some(law) = &mut law {
-            law.turns += judge.turns_between(law.master, master);
-            law.master = master;
-        }
-        if judged.next_if_eq(&scan).is_none() {
-            continue;
-        }
-        if !is_usual(master) || !is_usual(slave) {
-            first.get_or_insert_with(|| (scan, slave, "a number below 1e300".to_owned()));
-            broken.add(scan);
-            continue;
-        }
-        let known = law.get_or_insert_with(|| judge.begin(anchor.take(), master, slave, scan));
-        match judge.narrowed(known, slave, scan) {
-            Ok(room) => known.room = room,
-            Err(expected) => {
-                first.get_or_insert_with(|| (scan, slave, shortest(expected)));
-                broken.add(scan);
-            }
+pub(super) struct Follows<'a> {
+    during: &'a [Condition],
+    follow: &'a Follow,
+    /// The first scan that was not looked at: a row is judged once the next one is there.
+    next: u64,
+    /// The anchor, until it is used.
+    anchor: Option<[f64; 2]>,
+    law: Option<Law>,
+    /// The first wrong row, where the slave is in it, and where it should be.
+    first: Option<(u64, f64, String)>,
+    broken: Listed,
+}
+
+impl<'a> Follows<'a> {
+    pub(super) fn new(during: &'a [Condition], follow: &'a Follow) -> Self {
+        Self {
+            during,
+            follow,
+            next: 0,
+            anchor: follow.anchor,
+            law: None,
+            first: None,
+            broken: Listed::default(),
         }
     }
-    let Some((scan, slave, expected)) = first else {
-        return Vec::new();
-    };
-    let name = describe::axis_name(rows, follow.slave);
-    let text = format!(
-        "{} at scan {scan}, expected {expected}: {}; broken {broken}",
-        shortest(slave),
-        describe::law(rows, follow)
-    );
-    vec![failure(
-        &format!("{path}.follows.{name}.Position"),
-        Some(scan),
-        text,
-    )]
+
+    /// Looks at a row that has a next one.
+    fn row(&mut self, rows: &Rows<'_>, scan: u64, is_judged: bool) {
+        let rules = Rules {
+            rows,
+            follow: self.follow,
+        };
+        if rules.is_renamed(scan) {
+            self.law = None;
+        }
+        let [Some(master), Some(slave)] =
+            [self.follow.master, self.follow.slave].map(|axis| rows.position(axis, scan, 0))
+        else {
+            return;
+        };
+        if let Some(law) = &mut self.law {
+            law.turns += rules.turns_between(law.master, master);
+            law.master = master;
+        }
+        if !is_judged {
+            return;
+        }
+        if !is_usual(master) || !is_usual(slave) {
+            self.wrong(scan, slave, || "a number below 1e300".to_owned());
+            return;
+        }
+        let law = self
+            .law
+            .get_or_insert_with(|| rules.begin(self.anchor.take(), master, slave, scan));
+        match rules.narrowed(law, slave, scan) {
+            Ok(room) => law.room = room,
+            Err(expected) => self.wrong(scan, slave, || shortest(expected)),
+        }
+    }
+
+    fn wrong(&mut self, scan: u64, slave: f64, expected: impl FnOnce() -> String) {
+        self.first.get_or_insert_with(|| (scan, slave, expected()));
+        self.broken.add(scan);
+    }
+}
+
+impl Judge for Follows<'_> {
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        let Some(from) = stretch.from else { return };
+        let begin = self.next.max(from);
+        let deadline = stretch.deadline.map_or(u64::MAX, |scan| scan.saturating_add(1));
+        let end = deadline.min(stretch.next.end.saturating_sub(1));
+        let mut judged = judged(rows, begin..=end.saturating_sub(1), self.during).peekable();
+        for scan in begin..end {
+            let is_judged = judged.next_if_eq(&scan).is_some();
+            self.row(rows, scan, is_judged);
+            self.next = scan + 1;
+        }
+    }
+
+    fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure> {
+        if let Err(failure) = within_run(rows, path, range) {
+            return vec![failure];
+        }
+        let Some((scan, slave, expected)) = &self.first else {
+            return Vec::new();
+        };
+        let name = describe::axis_name(rows, self.follow.slave);
+        let text = format!(
+            "{} at scan {scan}, expected {expected}: {}; broken {}",
+            shortest(*slave),
+            describe::law(rows, self.follow),
+            self.broken
+        );
+        vec![failure(
+            &format!("{path}.follows.{name}.Position"),
+            Some(*scan),
+            text,
+        )]
+    }
 }
 
 /// The rows that are judged: `while` holds in them and in the next ones.
@@ -118,12 +158,13 @@ fn is_usual(position: f64) -> bool {
     position.abs() < 1e300
 }
 
-struct Judge<'a> {
+/// The rows, and the law that they are held against.
+struct Rules<'a> {
     rows: &'a Rows<'a>,
     follow: &'a Follow,
 }
 
-impl Judge<'_> {
+impl Rules<'_> {
     fn turn_of(&self, axis: usize) -> Option<f64> {
         self.rows.script.axes.get(axis)?.config.modulo
     }

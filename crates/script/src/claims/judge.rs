@@ -1,166 +1,372 @@
-//! The kinds of claims.
+//! Claims that speak of single rows, judged while rows come: what a judge keeps does not grow with them.
 
-use super::{Failure, describe};
+use super::place::{Stretch, within_run};
+use super::{Failure, Judge, describe};
 use crate::model::{Condition, Point, Range, Signal};
 use crate::run::Rows;
 use standstill_trace::Cell;
-use std::ops::RangeInclusive;
+use std::ops;
 
 /// So many scans are named where a claim fails in several.
 const SCANS_NAMED: usize = 5;
 
 /// All conditions hold in `scan`; each that does not is a failure of its own.
-pub(super) fn at(rows: &Rows<'_>, path: &str, scan: u64, that: &[Condition]) -> Vec<Failure> {
-    if scan >= rows.count() {
-        return vec![beyond(rows, path, scan)];
+pub(super) struct At<'a> {
+    scan: u64,
+    each: Vec<Demand<'a>>,
+}
+
+impl<'a> At<'a> {
+    pub(super) fn new(scan: u64, that: &'a [Condition]) -> Self {
+        let demand = |condition| Demand {
+            condition,
+            unmet: None,
+            nearest: Nearest::to(scan),
+        };
+        Self {
+            scan,
+            each: that.iter().map(demand).collect(),
+        }
     }
-    that.iter()
-        .filter(|condition| !rows.holds(condition, scan))
-        .map(|condition| {
-            let nearest = nearest(rows, scan, |scan| rows.holds(condition, scan));
-            unmet(rows, path, "that", condition, scan, &nearest)
-        })
-        .collect()
+}
+
+impl Judge for At<'_> {
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        for demand in &mut self.each {
+            if stretch.next.contains(&self.scan) && !rows.holds(demand.condition, self.scan) {
+                demand.unmet = Some((self.scan, demand.values(rows, self.scan)));
+            }
+            // Where it held there is nothing to tell.
+            if demand.unmet.is_some() || self.scan >= stretch.next.end {
+                demand.seek(rows, &stretch.next);
+            }
+        }
+    }
+
+    fn failures(&self, rows: &Rows<'_>, path: &str, _: Range) -> Vec<Failure> {
+        if self.scan >= rows.count() {
+            return vec![beyond(rows, path, self.scan)];
+        }
+        let unmet = self.each.iter();
+        unmet
+            .filter_map(|demand| demand.failure(rows, path, "that", ""))
+            .collect()
+    }
+
+    fn held(&self) -> Option<u64> {
+        Some(self.scan)
+    }
+}
+
+/// A condition that must hold, and the first scan in which it does not.
+struct Demand<'a> {
+    condition: &'a Condition,
+    /// The scan, and the values there.
+    unmet: Option<(u64, String)>,
+    nearest: Nearest,
+}
+
+impl Demand<'_> {
+    fn values(&self, rows: &Rows<'_>, scan: u64) -> String {
+        describe::values(rows, self.condition, scan)
+    }
+
+    fn seek(&mut self, rows: &Rows<'_>, next: &ops::Range<u64>) {
+        let condition = self.condition;
+        self.nearest.look(next, |scan| rows.holds(condition, scan));
+    }
+
+    /// `FALSE at scan 551, expected TRUE; it came at 553, 2 later`
+    fn failure(&self, rows: &Rows<'_>, path: &str, key: &str, more: &str) -> Option<Failure> {
+        let (scan, values) = self.unmet.as_ref()?;
+        let nearest = self.nearest.text(*scan);
+        Some(unmet(
+            rows,
+            (path, key),
+            self.condition,
+            (*scan, values),
+            &format!("{nearest}{more}"),
+        ))
+    }
 }
 
 /// All conditions hold together in some scan of the range.
-pub(super) fn by(rows: &Rows<'_>, path: &str, range: Range, that: &[Condition]) -> Vec<Failure> {
-    let scans = match within_run(rows, path, range) {
-        // What came before the end of the run came in time, however far the range goes.
-        Ok(scans) => scans,
-        Err(failure) if range.from < rows.count() => {
-            let held = (range.from..rows.count()).any(|scan| rows.hold(that, scan));
-            return if held { Vec::new() } else { vec![failure] };
+pub(super) struct By<'a> {
+    that: &'a [Condition],
+    held: Option<u64>,
+    /// Those that do not hold at the deadline, and their values.
+    unmet: Vec<(&'a Condition, String)>,
+    nearest: Nearest,
+}
+
+impl<'a> By<'a> {
+    pub(super) fn new(that: &'a [Condition]) -> Self {
+        Self {
+            that,
+            held: None,
+            unmet: Vec::new(),
+            nearest: Nearest::default(),
         }
-        Err(failure) => return vec![failure],
-    };
-    if scans.clone().any(|scan| rows.hold(that, scan)) {
-        return Vec::new();
     }
-    let deadline = *scans.end();
-    let nearest = nearest(rows, deadline, |scan| rows.hold(that, scan));
-    // Not all hold at the deadline, so at least one fails.
-    that.iter()
-        .filter(|condition| !rows.holds(condition, deadline))
-        .map(|condition| unmet(rows, path, "that", condition, deadline, &nearest))
-        .collect()
+
+    fn unmet(&self, rows: &Rows<'_>, scan: u64) -> Vec<(&'a Condition, String)> {
+        let unmet = self.that.iter().filter(|condition| !rows.holds(condition, scan));
+        unmet
+            .map(|condition| (condition, describe::values(rows, condition, scan)))
+            .collect()
+    }
+}
+
+impl Judge for By<'_> {
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        if self.held.is_some() {
+            return;
+        }
+        self.held = stretch.inside.clone().find(|&scan| rows.hold(self.that, scan));
+        if self.held.is_some() {
+            return;
+        }
+        self.nearest.to = stretch.deadline;
+        if let Some(deadline) = stretch.deadline.filter(|scan| stretch.next.contains(scan)) {
+            self.unmet = self.unmet(rows, deadline);
+        }
+        self.nearest
+            .look(&stretch.next, |scan| rows.hold(self.that, scan));
+    }
+
+    fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure> {
+        let deadline = match within_run(rows, path, range) {
+            Ok(scans) => *scans.end(),
+            // What came before the end of the run came in time, however far the range goes.
+            Err(_) if range.from < rows.count() && self.held.is_some() => return Vec::new(),
+            Err(failure) => return vec![failure],
+        };
+        if self.held.is_some() {
+            return Vec::new();
+        }
+        // Not all hold at the deadline, so at least one fails.
+        let at_end = || self.unmet(rows, deadline);
+        let failing = range.to.map_or_else(at_end, |_| self.unmet.clone());
+        let nearest = self.nearest.text(deadline);
+        let failing = failing.iter();
+        failing
+            .map(|(condition, values)| unmet(rows, (path, "that"), condition, (deadline, values), &nearest))
+            .collect()
+    }
+
+    fn held(&self) -> Option<u64> {
+        self.held
+    }
 }
 
 /// All conditions hold in every scan of the range in which `during` holds.
-pub(super) fn always(
-    rows: &Rows<'_>,
-    path: &str,
-    range: Range,
-    during: &[Condition],
-    that: &[Condition],
-) -> Vec<Failure> {
-    let scans = match within_run(rows, path, range) {
-        Ok(scans) => scans,
-        Err(failure) => return vec![failure],
-    };
-    that.iter()
-        .filter_map(|condition| {
-            let broken = || {
-                scans.clone().filter(|&scan| {
-                    rows.hold(during, scan)
-                        && !rows.holds(condition, scan)
-                        && !rows.too_early(&condition.signal, scan)
-                })
-            };
-            let first = broken().next()?;
-            let nearest = nearest(rows, first, |scan| rows.holds(condition, scan));
-            let text = format!("{nearest}; broken {}", listed(broken()));
-            Some(unmet(rows, path, "always", condition, first, &text))
+pub(super) struct Always<'a> {
+    during: &'a [Condition],
+    each: Vec<(Demand<'a>, Listed)>,
+}
+
+impl<'a> Always<'a> {
+    pub(super) fn new(during: &'a [Condition], that: &'a [Condition]) -> Self {
+        let demand = |condition| Demand {
+            condition,
+            unmet: None,
+            nearest: Nearest::default(),
+        };
+        let each = that
+            .iter()
+            .map(|condition| (demand(condition), Listed::default()));
+        Self {
+            during,
+            each: each.collect(),
+        }
+    }
+}
+
+impl Judge for Always<'_> {
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        for scan in stretch.inside.clone() {
+            if !rows.hold(self.during, scan) {
+                continue;
+            }
+            for (demand, broken) in &mut self.each {
+                let signal = &demand.condition.signal;
+                if rows.holds(demand.condition, scan) || rows.too_early(signal, scan) {
+                    continue;
+                }
+                if demand.unmet.is_none() {
+                    demand.unmet = Some((scan, demand.values(rows, scan)));
+                    demand.nearest.to = Some(scan);
+                }
+                broken.add(scan);
+            }
+        }
+        for (demand, _) in &mut self.each {
+            demand.seek(rows, &stretch.next);
+        }
+    }
+
+    fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure> {
+        if let Err(failure) = within_run(rows, path, range) {
+            return vec![failure];
+        }
+        let each = self.each.iter();
+        each.filter_map(|(demand, broken)| {
+            demand.failure(rows, path, "always", &format!("; broken {broken}"))
         })
         .collect()
+    }
 }
 
 /// The conditions hold together in no scan of the range in which `during` holds.
-pub(super) fn never(
-    rows: &Rows<'_>,
-    path: &str,
-    range: Range,
-    during: &[Condition],
-    that: &[Condition],
-) -> Vec<Failure> {
-    let scans = match within_run(rows, path, range) {
-        Ok(scans) => scans,
-        Err(failure) => return vec![failure],
-    };
-    let held = || {
-        scans
-            .clone()
-            .filter(|&scan| rows.hold(during, scan) && rows.hold(that, scan))
-    };
-    let Some(first) = held().next() else {
-        return Vec::new();
-    };
-    let values: Vec<_> = that
-        .iter()
-        .map(|condition| format!("{} {}", condition.text, describe::values(rows, condition, first)))
-        .collect();
-    let text = format!(
-        "{} at scan {first}, expected never; it held {}",
-        values.join(", "),
-        listed(held())
-    );
-    vec![failure(&format!("{path}.never"), Some(first), text)]
+pub(super) struct Never<'a> {
+    during: &'a [Condition],
+    that: &'a [Condition],
+    /// The first scan in which they do, and the values there.
+    first: Option<(u64, String)>,
+    held: Listed,
+}
+
+impl<'a> Never<'a> {
+    pub(super) fn new(during: &'a [Condition], that: &'a [Condition]) -> Self {
+        Self {
+            during,
+            that,
+            first: None,
+            held: Listed::default(),
+        }
+    }
+}
+
+impl Judge for Never<'_> {
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        for scan in stretch.inside.clone() {
+            if !rows.hold(self.during, scan) || !rows.hold(self.that, scan) {
+                continue;
+            }
+            self.first.get_or_insert_with(|| {
+                let value = |condition: &Condition| {
+                    format!("{} {}", condition.text, describe::values(rows, condition, scan))
+                };
+                (scan, Vec::from_iter(self.that.iter().map(value)).join(", "))
+            });
+            self.held.add(scan);
+        }
+    }
+
+    fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure> {
+        if let Err(failure) = within_run(rows, path, range) {
+            return vec![failure];
+        }
+        let Some((first, values)) = &self.first else {
+            return Vec::new();
+        };
+        let text = format!("{values} at scan {first}, expected never; it held {}", self.held);
+        vec![failure(&format!("{path}.never"), Some(*first), text)]
+    }
 }
 
 /// The conditions hold together in exactly one scan of the range.
-pub(super) fn once(rows: &Rows<'_>, path: &str, range: Range, that: &[Condition]) -> Vec<Failure> {
-    let scans = match within_run(rows, path, range) {
-        Ok(scans) => scans,
-        Err(failure) => return vec![failure],
-    };
-    let held = || scans.clone().filter(|&scan| rows.hold(that, scan));
-    let path = format!("{path}.once");
-    let mut found = held();
-    match (found.next(), found.next()) {
-        (Some(_), None) => Vec::new(),
-        (None, _) => {
-            let nearest = nearest(rows, *scans.end(), |scan| rows.hold(that, scan));
-            let text = format!(
-                "{} did not hold in scans {} to {}, expected exactly once; {nearest}",
-                describe::conditions(rows, that),
-                scans.start(),
-                scans.end()
-            );
-            vec![failure(&path, None, text)]
+pub(super) struct Once<'a> {
+    that: &'a [Condition],
+    held: Listed,
+    nearest: Nearest,
+}
+
+impl<'a> Once<'a> {
+    pub(super) fn new(that: &'a [Condition]) -> Self {
+        Self {
+            that,
+            held: Listed::default(),
+            nearest: Nearest::default(),
         }
-        (Some(_), Some(second)) => {
-            let text = format!(
-                "{} held {}, expected exactly once",
-                describe::conditions(rows, that),
-                listed(held())
-            );
-            vec![failure(&path, Some(second), text)]
+    }
+}
+
+impl Judge for Once<'_> {
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        let held = |scan: &u64| rows.hold(self.that, *scan);
+        stretch
+            .inside
+            .clone()
+            .filter(held)
+            .for_each(|scan| self.held.add(scan));
+        if self.held.first().is_none() {
+            self.nearest.to = stretch.deadline;
+            self.nearest.look(&stretch.next, |scan| held(&scan));
         }
+    }
+
+    fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure> {
+        let scans = match within_run(rows, path, range) {
+            Ok(scans) => scans,
+            Err(failure) => return vec![failure],
+        };
+        let path = format!("{path}.once");
+        let what = describe::conditions(rows, self.that);
+        match (self.held.first(), self.held.second()) {
+            (Some(_), None) => Vec::new(),
+            (None, _) => {
+                let (start, end) = scans.into_inner();
+                let nearest = self.nearest.text(end);
+                let text = format!(
+                    "{what} did not hold in scans {start} to {end}, expected exactly once; {nearest}"
+                );
+                vec![failure(&path, None, text)]
+            }
+            (Some(_), second) => {
+                let text = format!("{what} held {}, expected exactly once", self.held);
+                vec![failure(&path, second, text)]
+            }
+        }
+    }
+
+    fn held(&self) -> Option<u64> {
+        self.held.first()
     }
 }
 
 /// At most one of the points is TRUE in every scan of the range.
-pub(super) fn exclusive(
-    rows: &Rows<'_>,
-    path: &str,
-    range: Range,
-    points: &[(String, Point)],
-) -> Vec<Failure> {
-    let scans = match within_run(rows, path, range) {
-        Ok(scans) => scans,
-        Err(failure) => return vec![failure],
-    };
-    let raised = |scan| raised(rows, points, scan);
-    let broken = || scans.clone().filter(|&scan| raised(scan).len() > 1);
-    let Some(first) = broken().next() else {
-        return Vec::new();
-    };
-    let text = format!(
-        "{} are TRUE together at scan {first}; at most one may be; broken {}",
-        raised(first).join(" and "),
-        listed(broken())
-    );
-    vec![failure(&format!("{path}.exclusive"), Some(first), text)]
+pub(super) struct Exclusive<'a> {
+    points: &'a [(String, Point)],
+    /// The first scan with more, and their names.
+    first: Option<(u64, String)>,
+    broken: Listed,
+}
+
+impl<'a> Exclusive<'a> {
+    pub(super) fn new(points: &'a [(String, Point)]) -> Self {
+        Self {
+            points,
+            first: None,
+            broken: Listed::default(),
+        }
+    }
+}
+
+impl Judge for Exclusive<'_> {
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        for scan in stretch.inside.clone() {
+            let raised = raised(rows, self.points, scan);
+            if raised.len() > 1 {
+                self.first.get_or_insert_with(|| (scan, raised.join(" and ")));
+                self.broken.add(scan);
+            }
+        }
+    }
+
+    fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure> {
+        if let Err(failure) = within_run(rows, path, range) {
+            return vec![failure];
+        }
+        let Some((first, names)) = &self.first else {
+            return Vec::new();
+        };
+        let text = format!(
+            "{names} are TRUE together at scan {first}; at most one may be; broken {}",
+            self.broken
+        );
+        vec![failure(&format!("{path}.exclusive"), Some(*first), text)]
+    }
 }
 
 /// The names of those points that are TRUE in a scan.
@@ -173,22 +379,7 @@ pub(super) fn raised<'p>(rows: &Rows<'_>, points: &'p [(String, Point)], scan: u
         .collect()
 }
 
-/// The scans of a range, or the failure of a range that is not all within the run.
-pub(super) fn within_run(rows: &Rows<'_>, path: &str, range: Range) -> Result<RangeInclusive<u64>, Failure> {
-    let last = rows.count().saturating_sub(1);
-    let to = range.to.unwrap_or(last);
-    let furthest = range.from.max(to);
-    if furthest >= rows.count() {
-        Err(beyond(rows, path, furthest))
-    } else if range.from > to {
-        let text = format!("no scan lies from {} to {to}", range.from);
-        Err(failure(path, None, text))
-    } else {
-        Ok(range.from..=to)
-    }
-}
-
-fn beyond(rows: &Rows<'_>, path: &str, scan: u64) -> Failure {
+pub(super) fn beyond(rows: &Rows<'_>, path: &str, scan: u64) -> Failure {
     let end = match rows.count().checked_sub(1) {
         Some(last) => format!("the run ended with scan {last}"),
         None => "the run has no scans".to_owned(),
@@ -196,37 +387,70 @@ fn beyond(rows: &Rows<'_>, path: &str, scan: u64) -> Failure {
     failure(path, None, format!("it speaks of scan {scan}, but {end}"))
 }
 
-/// `FALSE at scan 551, expected TRUE; it came at 553, 2 later`
-fn unmet(rows: &Rows<'_>, path: &str, key: &str, condition: &Condition, scan: u64, nearest: &str) -> Failure {
+fn unmet(
+    rows: &Rows<'_>,
+    (path, key): (&str, &str),
+    condition: &Condition,
+    (scan, values): (u64, &str),
+    nearest: &str,
+) -> Failure {
     let text = format!(
-        "{} at scan {scan}, expected {}; {nearest}",
-        describe::values(rows, condition, scan),
+        "{values} at scan {scan}, expected {}; {nearest}",
         describe::test(rows, &condition.signal, &condition.test)
     );
     failure(&format!("{path}.{key}.{}", condition.text), Some(scan), text)
 }
 
-/// Where something holds nearest to `scan`; of two equally near scans the later one.
-pub(super) fn nearest(rows: &Rows<'_>, scan: u64, holds: impl Fn(u64) -> bool) -> String {
-    for away in 1..rows.count() {
-        let later = scan + away;
-        if later < rows.count() && holds(later) {
-            return format!("it came at {later}, {away} later");
-        }
-        if let Some(earlier) = scan.checked_sub(away)
-            && holds(earlier)
-        {
-            return format!("it was so at {earlier}, {away} earlier");
+/// Where something holds nearest to a scan, as far as rows have come.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Nearest {
+    /// The scan; while there is none, it is one that is still to come.
+    pub(super) to: Option<u64>,
+    /// The last one before it.
+    earlier: Option<u64>,
+    /// The first one after it.
+    later: Option<u64>,
+}
+
+impl Nearest {
+    pub(super) fn to(scan: u64) -> Self {
+        Self {
+            to: Some(scan),
+            ..Self::default()
         }
     }
-    "it was so in no scan".to_owned()
+
+    /// Looks at the next rows. Cost: what lies between the scan and the nearest ones.
+    pub(super) fn look(&mut self, next: &ops::Range<u64>, holds: impl Fn(u64) -> bool) {
+        let to = self.to.unwrap_or(u64::MAX);
+        let mut before = next.start..next.end.min(to);
+        self.earlier = before.rfind(|&scan| holds(scan)).or(self.earlier);
+        if self.later.is_none() {
+            let mut after = next.start.max(to.saturating_add(1))..next.end;
+            self.later = after.find(|&scan| holds(scan));
+        }
+    }
+
+    /// Of two equally near scans the later one.
+    pub(super) fn text(&self, scan: u64) -> String {
+        let later = self.later.map(|later| (later, later - scan));
+        let earlier = self.earlier.map(|earlier| (earlier, scan - earlier));
+        match (earlier, later) {
+            (Some((earlier, away)), None) => format!("it was so at {earlier}, {away} earlier"),
+            (Some((earlier, back)), Some((_, on))) if back < on => {
+                format!("it was so at {earlier}, {back} earlier")
+            }
+            (_, Some((later, away))) => format!("it came at {later}, {away} later"),
+            (None, None) => "it was so in no scan".to_owned(),
+        }
+    }
 }
 
 /// Scans in which a claim fails: how many, the first few and the last.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Listed {
     count: u64,
-    first: [u64; SCANS_NAMED],
+    named: [u64; SCANS_NAMED],
     last: u64,
 }
 
@@ -234,20 +458,50 @@ impl Listed {
     /// The next scan.
     pub(super) fn add(&mut self, scan: u64) {
         let place = usize::try_from(self.count).unwrap_or(usize::MAX);
-        if let Some(place) = self.first.get_mut(place) {
+        if let Some(place) = self.named.get_mut(place) {
             *place = scan;
         }
         self.count += 1;
         self.last = scan;
+    }
+
+    /// Those of both, which have none in common.
+    pub(super) fn with(&self, other: &Self) -> Self {
+        let mut named: Vec<u64> = self.named().chain(other.named()).collect();
+        named.sort_unstable();
+        let mut both = Self::default();
+        named.into_iter().for_each(|scan| both.add(scan));
+        both.count = self.count + other.count;
+        both.last = self.last.max(other.last);
+        both
+    }
+
+    pub(super) fn count(&self) -> u64 {
+        self.count
+    }
+
+    pub(super) fn first(&self) -> Option<u64> {
+        self.named().next()
+    }
+
+    fn second(&self) -> Option<u64> {
+        self.named().nth(1)
+    }
+
+    pub(super) fn last(&self) -> Option<u64> {
+        (self.count > 0).then_some(self.last)
+    }
+
+    fn named(&self) -> impl Iterator<Item = u64> {
+        self.named.into_iter().zip(0..self.count).map(|(scan, _)| scan)
     }
 }
 
 /// `in 3 scans: 7, 8, 9`
 impl std::fmt::Display for Listed {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { count, first, last } = self;
-        let named = first.iter().zip(0..*count);
-        let named: Vec<_> = named.map(|(scan, _)| scan.to_string()).collect();
+        let Self { count, last, .. } = self;
+        let named: Vec<_> = self.named().map(|scan| scan.to_string()).collect();
         let named = named.join(", ");
         if *count == 1 {
             write!(out, "in scan {named}")
@@ -257,21 +511,6 @@ impl std::fmt::Display for Listed {
             write!(out, "in {count} scans: {named}")
         }
     }
-}
-
-/// The scans in which something rose, in a few words.
-pub(super) fn risen(scans: &[u64]) -> String {
-    match scans {
-        [] => "it never did".to_owned(),
-        scans => format!("it did {}", listed(scans.iter().copied())),
-    }
-}
-
-/// The scans in which a claim fails, in a few words.
-fn listed(scans: impl Iterator<Item = u64>) -> Listed {
-    let mut listed = Listed::default();
-    scans.for_each(|scan| listed.add(scan));
-    listed
 }
 
 pub(super) fn failure(path: &str, scan: Option<u64>, text: String) -> Failure {

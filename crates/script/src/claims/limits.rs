@@ -12,54 +12,122 @@
 //!
 //! The 1e-9 is the accuracy the planner states for its limits.
 
-use super::Failure;
-use super::judge::{Listed, failure, within_run};
+use super::judge::{Listed, failure};
+use super::place::{Stretch, within_run};
+use super::{Failure, Judge, describe};
 use crate::model::Range;
 use crate::run::{Derivatives, Rows};
 use standstill_trace::shortest;
+use std::collections::BTreeMap;
+use std::ops;
 
 /// Relative accuracy of limits.
 const RELATIVE: f64 = 1e-9;
 
 /// d1 to d4 of the axis stay within its limits times `factor`, and what positions resolve.
-pub(super) fn within(rows: &Rows<'_>, path: &str, range: Range, axis: usize, factor: f64) -> Vec<Failure> {
-    let scans = match within_run(rows, path, range) {
-        Ok(scans) => scans,
-        Err(failure) => return vec![failure],
-    };
-    let slack = resolved(rows, axis);
-    let mut first: [Option<(u64, f64, f64)>; 4] = [None; 4];
-    let mut broken = [Listed::default(); 4];
-    for scan in scans {
-        let Some(derivatives) = rows.derivatives(axis, scan) else {
-            continue;
-        };
-        let limits = limits(rows, axis, &derivatives);
-        for order in 0..4 {
-            let value = derivatives.orders[order];
-            let bound = limits[order] * factor;
-            // Written so that a NaN breaks the limit.
-            if !(value.abs() <= bound * (1.0 + RELATIVE) + slack[order]) {
-                first[order].get_or_insert((scan, value, bound));
-                broken[order].add(scan);
+pub(super) struct WithinLimits {
+    axis: usize,
+    factor: f64,
+    reach: Reach,
+    /// By order, and by the least unit in the last place at which a scan would keep the limit: that of the run is only known at its
+    /// end. None does where there is a NaN.
+    broken: [BTreeMap<Unit, Broken>; 4],
+}
+
+/// A power of two, or infinity; its bits, which are in the same order. Greater than all is [`NEVER`].
+type Unit = u64;
+
+const NEVER: Unit = u64::MAX;
+
+/// Scans outside the limit.
+#[derive(Clone, Copy, Debug)]
+struct Broken {
+    /// The first of them, its value and the limit.
+    first: (u64, f64, f64),
+    scans: Listed,
+}
+
+impl WithinLimits {
+    pub(super) fn new(axis: usize, factor: f64) -> Self {
+        Self {
+            axis,
+            factor,
+            reach: Reach::default(),
+            broken: Default::default(),
+        }
+    }
+
+    /// Those of an order that are outside at this unit.
+    fn outside(&self, order: usize, unit: f64) -> Option<Broken> {
+        let above = self.broken.get(order)?.range(unit.to_bits() + 1..);
+        above.map(|(_, broken)| *broken).reduce(|one, other| Broken {
+            first: if one.first.0 < other.first.0 {
+                one.first
+            } else {
+                other.first
+            },
+            scans: one.scans.with(&other.scans),
+        })
+    }
+}
+
+impl Judge for WithinLimits {
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        let axis = self.axis;
+        self.reach.look(rows, axis, &stretch.next);
+        let cycle = rows.script.cycle_ns as f64 / 1e9;
+        let unit = self.reach.unit();
+        let slack = resolved(unit, cycle);
+        for scan in stretch.inside.clone() {
+            let Some(derivatives) = rows.derivatives(axis, scan) else {
+                continue;
+            };
+            let limits = limits(rows, axis, &derivatives);
+            for order in 0..4 {
+                let value = derivatives.orders[order];
+                let bound = limits[order] * self.factor;
+                // Written so that a NaN breaks the limit.
+                let keeps = |slack: f64| value.abs() <= bound * (1.0 + RELATIVE) + slack;
+                if keeps(slack[order]) {
+                    continue;
+                }
+                // At most 2098 of them.
+                let mut greater =
+                    std::iter::successors(Some(unit), |unit| (*unit < f64::INFINITY).then_some(unit * 2.0));
+                let least = greater.find(|unit| keeps(resolved(*unit, cycle)[order]));
+                let new = Broken {
+                    first: (scan, value, bound),
+                    scans: Listed::default(),
+                };
+                let broken = self.broken[order]
+                    .entry(least.map_or(NEVER, f64::to_bits))
+                    .or_insert(new);
+                broken.scans.add(scan);
             }
         }
     }
-    let name = rows.script.axes.get(axis).map_or("", |axis| axis.name.as_str());
-    let mut failures = Vec::new();
-    for (order, (first, broken)) in first.into_iter().zip(broken).enumerate() {
-        if let Some((scan, value, bound)) = first {
-            let text = format!(
-                "{} at scan {scan}, expected of magnitude <= {}; broken {}",
-                shortest(value),
-                shortest(bound),
-                broken
-            );
-            let path = format!("{path}.within_limits.{name}.Position.d{}", order + 1);
-            failures.push(failure(&path, Some(scan), text));
+
+    fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure> {
+        if let Err(failure) = within_run(rows, path, range) {
+            return vec![failure];
         }
+        let name = describe::axis_name(rows, self.axis);
+        let unit = self.reach.unit();
+        let orders = (0..4).filter_map(|order| Some((order + 1, self.outside(order, unit)?)));
+        orders
+            .map(|(order, broken)| {
+                let (scan, value, bound) = broken.first;
+                let text = format!(
+                    "{} at scan {scan}, expected of magnitude <= {}; broken {}",
+                    shortest(value),
+                    shortest(bound),
+                    broken.scans
+                );
+                let path = format!("{path}.within_limits.{name}.Position.d{order}");
+                failure(&path, Some(scan), text)
+            })
+            .collect()
     }
-    failures
 }
 
 /// The limits of d1 to d4 in a scan. Where the speed falls the deceleration limit holds; where the velocity
@@ -83,29 +151,51 @@ fn limits(rows: &Rows<'_>, axis: usize, derivatives: &Derivatives) -> [f64; 4] {
     [limits.velocity, acceleration, limits.jerk, limits.snap]
 }
 
-/// What positions resolve in d1 to d4: 2^k units in the last place of the run's largest position, over
-/// cycle^k. On a modulo axis it is the largest one of the unwrapped positions, and no less than a turn: from
-/// there and back to the first turn a plan may lead.
-fn resolved(rows: &Rows<'_>, axis: usize) -> [f64; 4] {
-    let turn = rows.script.axes.get(axis).and_then(|axis| axis.config.modulo);
-    let first = rows.position(axis, 0, 1).or_else(|| rows.position(axis, 0, 0));
-    let mut position = first.unwrap_or(0.0);
-    let mut largest = position.abs().max(turn.unwrap_or(0.0));
-    for scan in 0..rows.count() {
-        let Some(now) = rows.position(axis, scan, 0) else {
-            break;
+/// The largest position of the run so far. On a modulo axis it is the largest one of the unwrapped positions, and no less than a
+/// turn: from there and back to the first turn a plan may lead.
+#[derive(Clone, Copy, Debug, Default)]
+struct Reach {
+    /// Unwrapped.
+    position: Option<f64>,
+    largest: f64,
+}
+
+impl Reach {
+    fn look(&mut self, rows: &Rows<'_>, axis: usize, next: &ops::Range<u64>) {
+        let turn = rows.script.axes.get(axis).and_then(|axis| axis.config.modulo);
+        let mut position = match self.position {
+            Some(position) => position,
+            None => {
+                let first = rows.position(axis, 0, 1).or_else(|| rows.position(axis, 0, 0));
+                let first = first.unwrap_or(0.0);
+                self.largest = first.abs().max(turn.unwrap_or(0.0));
+                first
+            }
         };
-        let before = rows.position(axis, scan, 1).unwrap_or(now);
-        position = match turn {
-            Some(_) => position + rows.way(axis, scan, 0, now - before),
-            None => now,
-        };
-        if position.is_finite() {
-            largest = largest.max(position.abs());
+        for scan in next.clone() {
+            let Some(now) = rows.position(axis, scan, 0) else {
+                break;
+            };
+            let before = rows.position(axis, scan, 1).unwrap_or(now);
+            position = match turn {
+                Some(_) => position + rows.way(axis, scan, 0, now - before),
+                None => now,
+            };
+            if position.is_finite() {
+                self.largest = self.largest.max(position.abs());
+            }
         }
+        self.position = Some(position);
     }
-    let unit = largest.next_up() - largest;
-    let cycle = rows.script.cycle_ns as f64 / 1e9;
+
+    /// Its unit in the last place.
+    fn unit(&self) -> f64 {
+        self.largest.next_up() - self.largest
+    }
+}
+
+/// What positions resolve in d1 to d4 at this unit in the last place: 2^k of them over cycle^k.
+fn resolved(unit: f64, cycle: f64) -> [f64; 4] {
     let mut slack = [0.0; 4];
     let mut scale = unit;
     for order in &mut slack {

@@ -6,13 +6,16 @@ mod follows;
 mod judge;
 mod limits;
 mod live;
+mod place;
 pub(crate) mod relative;
 
 pub use live::Standing;
 pub(crate) use live::Standings;
 
-use crate::model::{ClaimKind, Condition, Range, Span};
+use crate::model::{Claim, ClaimKind, Condition, Formula, Range, Script, Span};
 use crate::run::Rows;
+use place::{Place, Stretch};
+use std::ops;
 
 /// A claim, judged.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,79 +58,180 @@ impl std::fmt::Display for Failure {
     }
 }
 
-/// Judges every claim of a script on the rows of its run, in file order.
+/// Judges every claim of a script on all rows of its run, in file order.
 ///
 /// Cost: a claim looks at each scan a constant number of times.
 pub(crate) fn judge(rows: &Rows<'_>) -> Vec<Verdict> {
-    let mut verdicts: Vec<Verdict> = rows
-        .script
-        .claims
-        .iter()
-        .map(|claim| {
-            let kind = relative::placed(rows, claim);
-            let mut failures = match &kind {
-                Some(kind) => failures(rows, &claim.path, kind),
-                None => relative::without_scans(rows, claim),
-            };
-            if let Some(reason) = fault_reason(rows, &claim.path) {
-                failures
-                    .iter_mut()
-                    .for_each(|failure| failure.text.push_str(&reason));
-            }
-            let scans = kind.as_deref().and_then(|kind| scans(rows, kind));
-            Verdict {
-                path: claim.path.clone(),
-                span: claim.span,
-                says: describe::claim(rows, &claim.kind),
-                scans,
-                held: scans
-                    .filter(|_| failures.is_empty())
-                    .and_then(|scans| held(rows, &claim.kind, scans)),
-                failures,
-            }
-        })
-        .collect();
-    expression_faults(rows, &mut verdicts);
-    verdicts
+    let mut judges = Judges::new(rows.script);
+    judges.look(rows);
+    judges.verdicts(rows)
 }
 
-/// An expression without a value is a failure of the claim it stands in; of a step or a wire it is one by itself.
-fn expression_faults(rows: &Rows<'_>, verdicts: &mut Vec<Verdict>) {
-    for (index, formula) in rows.script.formulas.iter().enumerate() {
-        let (from, to) = (formula.span.start, formula.span.end);
-        let claim = verdicts
-            .iter()
-            .position(|verdict| verdict.span.start <= from && to <= verdict.span.end && formula.in_rows);
-        let asked = |scan: u64| match claim.and_then(|place| verdicts.get(place)?.scans) {
-            Some([first, last]) => (first..=last).contains(&scan),
-            None => true,
-        };
-        let Some((scan, why)) = rows.truths.faults(index).find(|(scan, _)| asked(*scan)) else {
-            continue;
-        };
-        let text = format!("{} has no value at scan {scan}: {why}", formula.text);
-        let failure = |path: String| Failure {
-            path,
-            scan: Some(scan),
-            text,
-        };
-        match claim.and_then(|place| verdicts.get_mut(place)) {
-            Some(verdict) => {
-                verdict.held = None;
-                verdict.failures.push(failure(verdict.path.clone()));
+/// What judges a kind of claim. It is shown every row once, in order, and keeps what does not grow with their number.
+trait Judge {
+    /// Looks at the next rows; a few before them are still there, enough for every condition.
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch);
+
+    /// What speaks against the claim, after the last row, which is still there; `range` are the scans that it speaks of.
+    fn failures(&self, rows: &Rows<'_>, path: &str, range: Range) -> Vec<Failure>;
+
+    /// The scan in which a claim that needs only one came true.
+    fn held(&self) -> Option<u64> {
+        None
+    }
+}
+
+/// The claims of a script, judged while the rows of its run come.
+pub(crate) struct Judges<'a> {
+    /// Scans looked at.
+    scans: u64,
+    /// In file order.
+    claims: Vec<Judged<'a>>,
+    /// Of each expression the first scan in which it had no value.
+    faults: Vec<Faults<'a>>,
+}
+
+/// A claim, and what its rows told so far.
+struct Judged<'a> {
+    claim: &'a Claim,
+    place: Place,
+    judge: Box<dyn Judge + Send + Sync + 'a>,
+    /// Why the program faulted that the claim is about.
+    reason: Option<String>,
+}
+
+/// When an expression had no value first, and why.
+struct Faults<'a> {
+    formula: &'a Formula,
+    /// The claim it stands in, by its place.
+    claim: Option<usize>,
+    first: Option<(u64, String)>,
+    /// In the scans that the claim speaks of.
+    asked: Option<(u64, String)>,
+}
+
+impl<'a> Judges<'a> {
+    pub(crate) fn new(script: &'a Script) -> Self {
+        let claims = script.claims.iter().map(|claim| Judged {
+            claim,
+            place: Place::new(claim),
+            judge: judge_of(&claim.kind),
+            reason: None,
+        });
+        let faults = script.formulas.iter().map(|formula| {
+            let (from, to) = (formula.span.start, formula.span.end);
+            let around = |claim: &Claim| claim.span.start <= from && to <= claim.span.end;
+            let claim = script.claims.iter().position(around);
+            Faults {
+                formula,
+                claim: claim.filter(|_| formula.in_rows),
+                first: None,
+                asked: None,
             }
-            None => {
-                let path = if formula.in_rows { "steps" } else { "blocks" };
-                verdicts.push(Verdict {
-                    path: path.to_owned(),
-                    span: formula.span,
-                    says: format!("{} has a value", formula.text),
-                    scans: rows.count().checked_sub(1).map(|last| [0, last]),
-                    held: None,
-                    failures: vec![failure(path.to_owned())],
-                });
+        });
+        Self {
+            scans: 0,
+            claims: claims.collect(),
+            faults: faults.collect(),
+        }
+    }
+
+    /// Looks at the rows that have come since the last call.
+    pub(crate) fn look(&mut self, rows: &Rows<'_>) {
+        let next = self.scans..rows.count();
+        self.scans = next.end;
+        for judged in &mut self.claims {
+            judged.place.look(rows, judged.claim, &next);
+            judged.judge.look(rows, &judged.place.stretch(next.clone()));
+            if judged.reason.is_none() {
+                judged.reason = fault_reason(rows, &judged.claim.path);
             }
         }
+        for (index, known) in self.faults.iter_mut().enumerate() {
+            let claim = known.claim.and_then(|claim| self.claims.get(claim));
+            let asked = claim.map(|judged| judged.place.stretch(next.clone()).inside);
+            known.look(rows, index, &next, asked);
+        }
+    }
+
+    /// The verdicts, after the last row.
+    pub(crate) fn verdicts(&self, rows: &Rows<'_>) -> Vec<Verdict> {
+        let mut verdicts: Vec<Verdict> = self.claims.iter().map(|judged| judged.verdict(rows)).collect();
+        for faults in &self.faults {
+            faults.tell(rows, &mut verdicts);
+        }
+        verdicts
+    }
+}
+
+impl Judged<'_> {
+    fn verdict(&self, rows: &Rows<'_>) -> Verdict {
+        let (claim, range) = (self.claim, self.place.range(self.claim));
+        let mut failures = match range {
+            Some(range) => self.judge.failures(rows, &claim.path, range),
+            None => relative::without_scans(rows, claim, &self.place),
+        };
+        for failure in failures.iter_mut() {
+            failure.text.extend(self.reason.as_deref());
+        }
+        let scans = range.and_then(|range| place::of_run(range, rows.count()));
+        Verdict {
+            path: claim.path.clone(),
+            span: claim.span,
+            says: describe::claim(rows, &claim.kind),
+            scans,
+            held: scans
+                .filter(|_| failures.is_empty())
+                .and_then(|_| self.judge.held()),
+            failures,
+        }
+    }
+}
+
+impl Faults<'_> {
+    fn look(
+        &mut self,
+        rows: &Rows<'_>,
+        index: usize,
+        next: &ops::Range<u64>,
+        asked: Option<ops::Range<u64>>,
+    ) {
+        if self.first.is_some() && (self.asked.is_some() || asked.is_none()) {
+            return;
+        }
+        let of = |scans: &ops::Range<u64>| {
+            let mut faults = rows.truths.faults(index);
+            let fault = faults.find(|(scan, _)| scans.contains(scan))?;
+            Some((fault.0, fault.1.to_owned()))
+        };
+        self.first = self.first.take().or_else(|| of(next));
+        self.asked = self.asked.take().or_else(|| of(&asked?));
+    }
+
+    /// An expression without a value is a failure of the claim it stands in; of a step or a wire it is one by itself.
+    fn tell(&self, rows: &Rows<'_>, verdicts: &mut Vec<Verdict>) {
+        let formula = self.formula;
+        let verdict = self.claim.and_then(|claim| verdicts.get_mut(claim));
+        let has_scans = verdict.as_ref().is_some_and(|verdict| verdict.scans.is_some());
+        let Some((scan, why)) = (if has_scans { &self.asked } else { &self.first }) else {
+            return;
+        };
+        let text = format!("{} has no value at scan {scan}: {why}", formula.text);
+        if let Some(verdict) = verdict {
+            verdict.held = None;
+            let failure = judge::failure(&verdict.path, Some(*scan), text);
+            verdict.failures.push(failure);
+            return;
+        }
+        let path = if formula.in_rows { "steps" } else { "blocks" };
+        verdicts.push(Verdict {
+            path: path.to_owned(),
+            span: formula.span,
+            says: format!("{} has a value", formula.text),
+            scans: rows.count().checked_sub(1).map(|last| [0, last]),
+            held: None,
+            failures: vec![judge::failure(path, Some(*scan), text)],
+        });
     }
 }
 
@@ -157,61 +261,36 @@ pub(crate) fn judges_a_row(rows: &Rows<'_>, range: &Range, during: &[Condition])
     follows::judged(rows, range.from..=last, during).next().is_some()
 }
 
-/// The scans of the run that a claim speaks of.
-fn scans(rows: &Rows<'_>, kind: &ClaimKind) -> Option<[u64; 2]> {
-    let last = rows.count().checked_sub(1)?;
-    let (from, to) = match kind {
-        ClaimKind::At(scan, _) => (*scan, *scan),
-        ClaimKind::By(range, _)
-        | ClaimKind::Once(range, _)
-        | ClaimKind::Exclusive(range, _)
-        | ClaimKind::Always { range, .. }
-        | ClaimKind::Never { range, .. }
-        | ClaimKind::WithinLimits { range, .. }
-        | ClaimKind::Follows { range, .. }
-        | ClaimKind::Answered { range, .. }
-        | ClaimKind::NeverFor { range, .. }
-        | ClaimKind::Duration { range, .. }
-        | ClaimKind::Count { range, .. } => (range.from, range.to.unwrap_or(last).min(last)),
-    };
-    (from <= to && to <= last).then_some([from, to])
-}
-
-/// The scan in which a claim that needs only one came true.
-fn held(rows: &Rows<'_>, kind: &ClaimKind, [from, to]: [u64; 2]) -> Option<u64> {
+fn judge_of(kind: &ClaimKind) -> Box<dyn Judge + Send + Sync + '_> {
     match kind {
-        ClaimKind::At(_, that) | ClaimKind::By(_, that) | ClaimKind::Once(_, that) => {
-            (from..=to).find(|&scan| rows.hold(that, scan))
-        }
-        ClaimKind::Exclusive(..)
-        | ClaimKind::Always { .. }
-        | ClaimKind::Never { .. }
-        | ClaimKind::Answered { .. }
-        | ClaimKind::NeverFor { .. }
-        | ClaimKind::Duration { .. }
-        | ClaimKind::Count { .. }
-        | ClaimKind::WithinLimits { .. }
-        | ClaimKind::Follows { .. } => None,
-    }
-}
-
-fn failures(rows: &Rows<'_>, path: &str, kind: &ClaimKind) -> Vec<Failure> {
-    match kind {
-        ClaimKind::At(scan, that) => judge::at(rows, path, *scan, that),
-        ClaimKind::By(range, that) => judge::by(rows, path, *range, that),
-        ClaimKind::Always { range, during, that } => judge::always(rows, path, *range, during, that),
-        ClaimKind::Never { range, during, that } => judge::never(rows, path, *range, during, that),
-        ClaimKind::Once(range, that) => judge::once(rows, path, *range, that),
-        ClaimKind::Exclusive(range, points) => judge::exclusive(rows, path, *range, points),
-        ClaimKind::WithinLimits { range, axis, factor } => limits::within(rows, path, *range, *axis, *factor),
-        ClaimKind::Follows {
-            range,
+        ClaimKind::At(scan, that) => Box::new(judge::At::new(*scan, that)),
+        ClaimKind::By(_, that) => Box::new(judge::By::new(that)),
+        ClaimKind::Always { during, that, .. } => Box::new(judge::Always::new(during, that)),
+        ClaimKind::Never { during, that, .. } => Box::new(judge::Never::new(during, that)),
+        ClaimKind::Once(_, that) => Box::new(judge::Once::new(that)),
+        ClaimKind::Exclusive(_, points) => Box::new(judge::Exclusive::new(points)),
+        ClaimKind::WithinLimits { axis, factor, .. } => Box::new(limits::WithinLimits::new(*axis, *factor)),
+        ClaimKind::Follows { during, follow, .. } => Box::new(follows::Follows::new(during, follow)),
+        ClaimKind::Answered {
             during,
-            follow,
-        } => follows::failures(rows, path, *range, during, follow),
-        ClaimKind::Answered { .. }
-        | ClaimKind::NeverFor { .. }
-        | ClaimKind::Duration { .. }
-        | ClaimKind::Count { .. } => relative::failures(rows, path, kind),
+            when,
+            within,
+            that,
+            first,
+            ..
+        } => Box::new(relative::Answered::new((during, when), *within, that, *first)),
+        ClaimKind::NeverFor {
+            during, that, scans, ..
+        } => Box::new(relative::NeverFor::new(during, that, *scans)),
+        ClaimKind::Duration {
+            during,
+            ends,
+            bounds,
+            each,
+            ..
+        } => Box::new(relative::Duration::new(during, ends, *bounds, *each)),
+        ClaimKind::Count {
+            during, that, bounds, ..
+        } => Box::new(relative::Count::new(during, that, *bounds)),
     }
 }

@@ -1,42 +1,15 @@
 //! Claims that speak of events. Their semantics, with examples, stand in `docs/claims.md`.
 
-use super::judge::{failure, nearest};
-use super::{Failure, describe};
-use crate::model::{Bounds, Claim, ClaimKind, Condition, Range, Window};
+use super::judge::{Listed, Nearest, failure};
+use super::place::{Place, Stretch};
+use super::{Failure, Judge, describe};
+use crate::model::{Bounds, Claim, ClaimKind, Condition, Range};
 use crate::run::Rows;
-use std::borrow::Cow;
+use std::collections::VecDeque;
 use std::ops::RangeInclusive;
 
-/// The claim with the scans that its window gives it; `None` if the window never begins.
-pub(super) fn placed<'c>(rows: &Rows<'_>, claim: &'c Claim) -> Option<Cow<'c, ClaimKind>> {
-    if claim.window == Window::default() {
-        return Some(Cow::Borrowed(&claim.kind));
-    }
-    let mut kind = claim.kind.clone();
-    if let Some(range) = kind.range_mut() {
-        *range = opened(rows, &claim.window, *range)?;
-    }
-    Some(Cow::Owned(kind))
-}
-
-/// The scans of a window by conditions; where none says so, as in `range`.
-fn opened(rows: &Rows<'_>, window: &Window, range: Range) -> Option<Range> {
-    let first =
-        |conditions: &[Condition], from: u64| (from..rows.count()).find(|&scan| rows.hold(conditions, scan));
-    let from = match &window.from {
-        Some(conditions) => first(conditions, 0)?,
-        None => range.from,
-    };
-    let to = match &window.to {
-        Some(conditions) => first(conditions, from),
-        None => range.to,
-    };
-    // An end that is a scan may lie before a begin that is a condition: then there is no scan between them.
-    (to.is_none_or(|to| from <= to)).then_some(Range { from, to })
-}
-
 /// What speaks against a claim whose window never begins: those fail that ask for something to happen.
-pub(super) fn without_scans(rows: &Rows<'_>, claim: &Claim) -> Vec<Failure> {
+pub(super) fn without_scans(rows: &Rows<'_>, claim: &Claim, place: &Place) -> Vec<Failure> {
     let wants = match &claim.kind {
         ClaimKind::By(..) | ClaimKind::Once(..) => true,
         ClaimKind::Count { bounds, .. } => !bounds.admit(0),
@@ -45,8 +18,7 @@ pub(super) fn without_scans(rows: &Rows<'_>, claim: &Claim) -> Vec<Failure> {
     if !wants {
         return Vec::new();
     }
-    let came = |from: &&Vec<Condition>| (0..rows.count()).any(|scan| rows.hold(from, scan));
-    let text = match claim.window.from.as_ref().filter(|from| !came(from)) {
+    let text = match claim.window.from.as_ref().filter(|_| !place.has_begun()) {
         Some(from) => format!(
             "its window never begins: {} held in no scan",
             describe::conditions(rows, from)
@@ -58,7 +30,9 @@ pub(super) fn without_scans(rows: &Rows<'_>, claim: &Claim) -> Vec<Failure> {
 
 /// Why a claim asks for nothing in the run: its window never begins, or nothing rises in it.
 pub(crate) fn asks_nothing(rows: &Rows<'_>, claim: &Claim) -> Option<String> {
-    let Some(kind) = placed(rows, claim) else {
+    let mut place = Place::new(claim);
+    place.look(rows, claim, &(0..rows.count()));
+    let Some(range) = place.range(claim) else {
         return Some("the claim asks for nothing: its window never begins".to_owned());
     };
     if let Some(to) = &claim.window.to
@@ -66,25 +40,18 @@ pub(crate) fn asks_nothing(rows: &Rows<'_>, claim: &Claim) -> Option<String> {
     {
         return Some("the `when` of its `to` held in no scan".to_owned());
     }
-    let nothing = |range: &Range, during: &[Condition], what: &[Condition]| {
-        risings(rows, scans_of(rows, *range), during, what)
-            .next()
-            .is_none()
+    let nothing = |during: &[Condition], what: &[Condition]| {
+        !scans_of(rows, range).any(|scan| rises(rows, what, scan) && rows.hold(during, scan))
     };
-    match kind.as_ref() {
-        ClaimKind::Answered {
-            range, during, when, ..
-        } => nothing(range, during, when),
+    match &claim.kind {
+        ClaimKind::Answered { during, when, .. } => nothing(during, when),
         ClaimKind::Duration {
-            range,
             during,
             ends: [begin, _],
             ..
-        } => nothing(range, during, begin),
-        ClaimKind::NeverFor {
-            range, during, scans, ..
-        } => {
-            let longest = longest_run(scans_of(rows, *range), |scan| rows.hold(during, scan));
+        } => nothing(during, begin),
+        ClaimKind::NeverFor { during, scans, .. } => {
+            let longest = longest_run(scans_of(rows, range), |scan| rows.hold(during, scan));
             return (longest < *scans).then(|| {
                 format!("the claim asks for nothing: it is judged in {longest} rows on end at most, fewer than `for`")
             });
@@ -118,161 +85,283 @@ fn rises(rows: &Rows<'_>, conditions: &[Condition], scan: u64) -> bool {
             .is_none_or(|before| !rows.hold(conditions, before))
 }
 
-/// The risings of a range that count.
-fn risings<'r>(
-    rows: &'r Rows<'_>,
-    mut scans: RangeInclusive<u64>,
-    during: &'r [Condition],
-    what: &'r [Condition],
-) -> impl Iterator<Item = u64> + 'r {
-    std::iter::from_fn(move || scans.find(|&scan| rises(rows, what, scan) && rows.hold(during, scan)))
+/// After each rising, or the first, there is an answer in time.
+pub(super) struct Answered<'a> {
+    during: &'a [Condition],
+    when: &'a [Condition],
+    within: u64,
+    that: &'a [Condition],
+    only_first: bool,
+    rose: bool,
+    /// Risings that wait for their answer and may still have it in time: of the last `within` scans.
+    waiting: VecDeque<u64>,
+    /// The first rising without an answer, and how many more there are.
+    unanswered: Option<(u64, u64)>,
+    nearest: Nearest,
 }
 
-/// Tells the first of `count` scans from a given one on in which `holds`. Asked for scans that do not go back, it looks at
-/// each scan once, however often it is asked.
-fn next_scan(count: u64, holds: impl Fn(u64) -> bool) -> impl FnMut(u64) -> Option<u64> {
-    let mut next = 0;
-    move |from| {
-        next = (next.max(from)..count).find(|&scan| holds(scan)).unwrap_or(count);
-        (next < count).then_some(next)
-    }
-}
-
-/// What speaks against a claim that is placed.
-pub(super) fn failures(rows: &Rows<'_>, path: &str, kind: &ClaimKind) -> Vec<Failure> {
-    match kind {
-        ClaimKind::Answered {
-            range,
+impl<'a> Answered<'a> {
+    pub(super) fn new(
+        (during, when): (&'a [Condition], &'a [Condition]),
+        within: u64,
+        that: &'a [Condition],
+        only_first: bool,
+    ) -> Self {
+        Self {
             during,
             when,
             within,
             that,
-            first,
-        } => {
-            let all = risings(rows, scans_of(rows, *range), during, when);
-            let most = if *first { 1 } else { usize::MAX };
-            let mut answer = next_scan(rows.count(), |scan| rows.hold(that, scan));
-            let mut unanswered = all
-                .take(most)
-                .filter(|rose| answer(*rose).is_none_or(|scan| scan > rose.saturating_add(*within)));
-            let Some(rose) = unanswered.next() else {
-                return Vec::new();
-            };
-            let more = unanswered.count();
-            vec![unanswered_text(rows, path, when, that, (rose, *within), more)]
+            only_first,
+            rose: false,
+            waiting: VecDeque::new(),
+            unanswered: None,
+            nearest: Nearest::default(),
         }
-        ClaimKind::NeverFor {
-            range,
+    }
+
+    fn end(&self, rose: u64) -> u64 {
+        rose.saturating_add(self.within)
+    }
+
+    fn give_up(&mut self, rose: u64) {
+        match &mut self.unanswered {
+            Some((_, more)) => *more += 1,
+            None => {
+                self.unanswered = Some((rose, 0));
+                self.nearest.to = Some(self.end(rose));
+            }
+        }
+    }
+}
+
+impl Judge for Answered<'_> {
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        for scan in stretch.next.clone() {
+            while let Some(rose) = self
+                .waiting
+                .front()
+                .copied()
+                .filter(|rose| self.end(*rose) < scan)
+            {
+                self.waiting.pop_front();
+                self.give_up(rose);
+            }
+            let counts = stretch.inside.contains(&scan) && !(self.only_first && self.rose);
+            if counts && rises(rows, self.when, scan) && rows.hold(self.during, scan) {
+                self.rose = true;
+                self.waiting.push_back(scan);
+            }
+            if !self.waiting.is_empty() && rows.hold(self.that, scan) {
+                self.waiting.clear();
+            }
+        }
+        self.nearest
+            .look(&stretch.next, |scan| rows.hold(self.that, scan));
+    }
+
+    fn failures(&self, rows: &Rows<'_>, path: &str, _: Range) -> Vec<Failure> {
+        // What still waits has no answer before the end of the run.
+        let waiting = self.waiting.len() as u64;
+        let (rose, more) = match (self.unanswered, self.waiting.front()) {
+            (Some((rose, more)), _) => (rose, more + waiting),
+            (None, Some(&rose)) => (rose, waiting - 1),
+            (None, None) => return Vec::new(),
+        };
+        let (end, last) = (self.end(rose), rows.count().saturating_sub(1));
+        let when = describe::conditions(rows, self.when);
+        let wanted = describe::conditions(rows, self.that);
+        let mut text = format!("{when} rose in scan {rose}, and {wanted} did not come by scan {end}");
+        if end > last {
+            text.push_str(&format!("; the run ended with scan {last}, before that"));
+        } else {
+            text.push_str(&format!("; {}", self.nearest.text(end)));
+        }
+        if more > 0 {
+            text.push_str(&format!("; {more} more without an answer"));
+        }
+        vec![failure(&format!("{path}.that"), Some(end.min(last)), text)]
+    }
+}
+
+/// The conditions do not hold in so many rows on end.
+pub(super) struct NeverFor<'a> {
+    during: &'a [Condition],
+    that: &'a [Condition],
+    most: u64,
+    on_end: u64,
+    /// First and last scan of the first run of rows that is too long.
+    too_long: Option<[u64; 2]>,
+}
+
+impl<'a> NeverFor<'a> {
+    pub(super) fn new(during: &'a [Condition], that: &'a [Condition], most: u64) -> Self {
+        Self {
             during,
             that,
-            scans,
-        } => never_for(rows, path, scans_of(rows, *range), (during, that), *scans),
-        ClaimKind::Duration {
-            range,
+            most,
+            on_end: 0,
+            too_long: None,
+        }
+    }
+}
+
+impl Judge for NeverFor<'_> {
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        for scan in stretch.inside.clone() {
+            if self.too_long.is_some() {
+                return;
+            }
+            let holds = rows.hold(self.during, scan) && rows.hold(self.that, scan);
+            self.on_end = if holds { self.on_end + 1 } else { 0 };
+            if self.on_end >= self.most {
+                self.too_long = Some([scan + 1 - self.on_end, scan]);
+            }
+        }
+    }
+
+    fn failures(&self, rows: &Rows<'_>, path: &str, _: Range) -> Vec<Failure> {
+        let Some([first, scan]) = self.too_long else {
+            return Vec::new();
+        };
+        let text = format!(
+            "{} held in scans {first} to {scan}, expected never for {} scans on end",
+            describe::conditions(rows, self.that),
+            self.most
+        );
+        vec![failure(&format!("{path}.never"), Some(scan), text)]
+    }
+}
+
+/// From each rising of one thing, or the first, to the next of another it takes so long.
+pub(super) struct Duration<'a> {
+    during: &'a [Condition],
+    ends: &'a [Vec<Condition>; 2],
+    bounds: Bounds,
+    each: bool,
+    rose: bool,
+    /// Risings that wait for the end: the first one, and those of the last `ge` scans.
+    waiting: VecDeque<u64>,
+    /// The first rising whose time is wrong, and its end.
+    wrong: Option<[u64; 2]>,
+}
+
+impl<'a> Duration<'a> {
+    pub(super) fn new(
+        during: &'a [Condition],
+        ends: &'a [Vec<Condition>; 2],
+        bounds: Bounds,
+        each: bool,
+    ) -> Self {
+        Self {
             during,
             ends,
             bounds,
             each,
-        } => {
-            let [begin, _] = ends;
-            let all = risings(rows, scans_of(rows, *range), during, begin);
-            let most = if *each { usize::MAX } else { 1 };
-            let mut end = next_scan(rows.count(), |scan| rises(rows, &ends[1], scan));
-            let mut wrong = all
-                .take(most)
-                .filter_map(|rose| wrong_duration(rows, path, ends, *bounds, (rose, end(rose))));
-            wrong.next().into_iter().collect()
+            rose: false,
+            waiting: VecDeque::new(),
+            wrong: None,
         }
-        ClaimKind::Count {
-            range,
+    }
+
+    /// Forgets those behind the first one that will not be too short whenever the end comes: if one of them is too long, the
+    /// first one is, too.
+    fn forget(&mut self, scan: u64) {
+        let least = self.bounds.ge.unwrap_or(0);
+        while self
+            .waiting
+            .get(1)
+            .is_some_and(|rose| rose.saturating_add(least) <= scan)
+        {
+            self.waiting.remove(1);
+        }
+    }
+}
+
+impl Judge for Duration<'_> {
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        let [begin, end] = self.ends;
+        for scan in stretch.next.clone() {
+            if self.wrong.is_some() {
+                return;
+            }
+            let counts = stretch.inside.contains(&scan) && (self.each || !self.rose);
+            if counts && rises(rows, begin, scan) && rows.hold(self.during, scan) {
+                self.rose = true;
+                self.waiting.push_back(scan);
+                self.forget(scan);
+            }
+            if !self.waiting.is_empty() && rises(rows, end, scan) {
+                let wrong = self
+                    .waiting
+                    .drain(..)
+                    .find(|rose| !self.bounds.admit(scan - rose));
+                self.wrong = wrong.map(|rose| [rose, scan]);
+            }
+        }
+    }
+
+    fn failures(&self, rows: &Rows<'_>, path: &str, _: Range) -> Vec<Failure> {
+        let path = format!("{path}.duration");
+        let [began, ended] = self.ends.each_ref().map(|end| describe::conditions(rows, end));
+        if let Some([rose, came]) = self.wrong {
+            let text = format!(
+                "from {began} in scan {rose} to {ended} in scan {came} are {} scans, expected {}",
+                came - rose,
+                describe::bounded(self.bounds)
+            );
+            return vec![failure(&path, Some(came), text)];
+        }
+        let Some(rose) = self.waiting.front() else {
+            return Vec::new();
+        };
+        let text = format!("{began} rose in scan {rose}, and {ended} never rose from there on");
+        vec![failure(&path, Some(rows.count().saturating_sub(1)), text)]
+    }
+}
+
+/// It becomes true so many times.
+pub(super) struct Count<'a> {
+    during: &'a [Condition],
+    that: &'a [Condition],
+    bounds: Bounds,
+    found: Listed,
+}
+
+impl<'a> Count<'a> {
+    pub(super) fn new(during: &'a [Condition], that: &'a [Condition], bounds: Bounds) -> Self {
+        Self {
             during,
             that,
             bounds,
-        } => {
-            let found: Vec<u64> = risings(rows, scans_of(rows, *range), during, that).collect();
-            if bounds.admit(found.len() as u64) {
-                return Vec::new();
+            found: Listed::default(),
+        }
+    }
+}
+
+impl Judge for Count<'_> {
+    fn look(&mut self, rows: &Rows<'_>, stretch: &Stretch) {
+        for scan in stretch.inside.clone() {
+            if rises(rows, self.that, scan) && rows.hold(self.during, scan) {
+                self.found.add(scan);
             }
-            let text = format!(
-                "{} rose {} times, expected {}; {}",
-                describe::conditions(rows, that),
-                found.len(),
-                describe::bounded(*bounds),
-                super::judge::risen(&found)
-            );
-            let scan = found.last().copied();
-            vec![failure(&format!("{path}.count"), scan, text)]
-        }
-        _ => Vec::new(),
-    }
-}
-
-fn unanswered_text(
-    rows: &Rows<'_>,
-    path: &str,
-    when: &[Condition],
-    that: &[Condition],
-    (rose, within): (u64, u64),
-    more: usize,
-) -> Failure {
-    let (end, last) = (rose.saturating_add(within), rows.count().saturating_sub(1));
-    let (when, wanted) = (describe::conditions(rows, when), describe::conditions(rows, that));
-    let mut text = format!("{when} rose in scan {rose}, and {wanted} did not come by scan {end}");
-    if end > last {
-        text.push_str(&format!("; the run ended with scan {last}, before that"));
-    } else {
-        text.push_str(&format!("; {}", nearest(rows, end, |scan| rows.hold(that, scan))));
-    }
-    if more > 0 {
-        text.push_str(&format!("; {more} more without an answer"));
-    }
-    failure(&format!("{path}.that"), Some(end.min(last)), text)
-}
-
-/// The first run of rows on end that is too long.
-fn never_for(
-    rows: &Rows<'_>,
-    path: &str,
-    scans: RangeInclusive<u64>,
-    (during, that): (&[Condition], &[Condition]),
-    most: u64,
-) -> Vec<Failure> {
-    let mut on_end = 0;
-    for scan in scans {
-        let holds = rows.hold(during, scan) && rows.hold(that, scan);
-        on_end = if holds { on_end + 1 } else { 0 };
-        if on_end >= most {
-            let text = format!(
-                "{} held in scans {} to {scan}, expected never for {most} scans on end",
-                describe::conditions(rows, that),
-                scan + 1 - on_end
-            );
-            return vec![failure(&format!("{path}.never"), Some(scan), text)];
         }
     }
-    Vec::new()
-}
 
-fn wrong_duration(
-    rows: &Rows<'_>,
-    path: &str,
-    [begin, end]: &[Vec<Condition>; 2],
-    bounds: Bounds,
-    (rose, came): (u64, Option<u64>),
-) -> Option<Failure> {
-    if came.is_some_and(|came| bounds.admit(came - rose)) {
-        return None;
+    fn failures(&self, rows: &Rows<'_>, path: &str, _: Range) -> Vec<Failure> {
+        if self.bounds.admit(self.found.count()) {
+            return Vec::new();
+        }
+        let risen = match self.found.count() {
+            0 => "it never did".to_owned(),
+            _ => format!("it did {}", self.found),
+        };
+        let text = format!(
+            "{} rose {} times, expected {}; {risen}",
+            describe::conditions(rows, self.that),
+            self.found.count(),
+            describe::bounded(self.bounds),
+        );
+        vec![failure(&format!("{path}.count"), self.found.last(), text)]
     }
-    let path = format!("{path}.duration");
-    let (began, ended) = (describe::conditions(rows, begin), describe::conditions(rows, end));
-    let Some(came) = came else {
-        let text = format!("{began} rose in scan {rose}, and {ended} never rose from there on");
-        return Some(failure(&path, Some(rows.count().saturating_sub(1)), text));
-    };
-    let scans = came - rose;
-    let text = format!(
-        "from {began} in scan {rose} to {ended} in scan {came} are {scans} scans, expected {}",
-        describe::bounded(bounds)
-    );
-    Some(failure(&path, Some(came), text))
 }

@@ -8,7 +8,7 @@ use super::formulas::{self, Formulas, Reading, Truths};
 use super::guests::Guests;
 use super::layout::Layout;
 use super::notes::Notes;
-use super::rows::{Rows, Shift};
+use super::rows::{ROWS_KEPT, Rows, Shift};
 use super::schedule::Schedule;
 use super::values::Values;
 use crate::model::{Action, FaultKind, FormulaInput, Point, Script, Signal, Variable, Wire};
@@ -296,6 +296,15 @@ impl<'a> Bench<'a> {
     /// What claims are judged on.
     pub(crate) fn into_rows(self) -> (Trace, Vec<Shift>, Truths) {
         (self.trace, self.shifts, self.truths)
+    }
+
+    /// Lets go of all rows but the last few, and of what belongs to them.
+    pub(crate) fn forget(&mut self) {
+        self.trace.forget(ROWS_KEPT);
+        let first = self.trace.first() as u64;
+        self.truths.forget(first);
+        let old = self.shifts.partition_point(|shift| shift.scan < first);
+        self.shifts.drain(..old);
     }
 
     /// Makes room for `scans` more rows.

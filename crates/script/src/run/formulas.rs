@@ -27,6 +27,8 @@ pub(crate) struct Reading {
 /// What the expressions of conditions were on each row; of the others nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Truths {
+    /// The scan of the first row that is known.
+    first: u64,
     /// By expression, then by scan.
     all: Vec<Vec<bool>>,
     /// The expression, the scan, and why it has no value.
@@ -36,6 +38,7 @@ pub(crate) struct Truths {
 impl Truths {
     pub(crate) fn new(script: &Script) -> Self {
         Self {
+            first: 0,
             all: vec![Vec::new(); script.formulas.len()],
             faults: Vec::new(),
         }
@@ -43,7 +46,18 @@ impl Truths {
 
     /// Whether an expression is TRUE on the row of a scan; one that faulted is not.
     pub(crate) fn get(&self, formula: usize, scan: u64) -> Option<bool> {
-        self.all.get(formula)?.get(usize::try_from(scan).ok()?).copied()
+        let row = usize::try_from(scan.checked_sub(self.first)?).ok()?;
+        self.all.get(formula)?.get(row).copied()
+    }
+
+    /// Lets go of the rows before a scan.
+    pub(crate) fn forget(&mut self, scan: u64) {
+        let rows = usize::try_from(scan - self.first).unwrap_or(usize::MAX);
+        for own in &mut self.all {
+            own.drain(..rows.min(own.len()));
+        }
+        self.faults.retain(|(_, fault, _)| *fault >= scan);
+        self.first = scan;
     }
 
     /// The faults of an expression, in the order of scans.

@@ -31,13 +31,16 @@ use crate::why::Reason;
 use standstill_scan::{Executor, ProgramConfig, TaskConfig, Watchdog};
 use standstill_trace::{Claim, ClaimFailure, ClaimVerdict, Trace};
 
+/// Rows that a run may have which keeps them to be drawn.
+pub const ROWS_MAX: u64 = 1_000_000;
+
 /// Scans between two reports of progress.
 const PROGRESS_EVERY: u64 = 1 << 14;
 
 /// What a run left.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// One row a scan; its header holds the verdicts.
+    /// One row a scan; its header holds the verdicts. Of a run whose rows were given up on the way it has the last ones.
     pub trace: Trace,
     /// The script's claims in file order, judged.
     pub verdicts: Vec<Verdict>,
@@ -141,6 +144,13 @@ pub fn run_with(script: &Script, mut progress: impl FnMut(u64)) -> Result<Outcom
         }
     }
     Ok(session.finish())
+}
+
+/// Whether the rows of a script's run fit into memory, and a person can look at them: at most [`ROWS_MAX`] of them with at most
+/// [`CELLS_MAX`] cells.
+pub fn keeps_rows(script: &Script) -> bool {
+    let columns = layout::header(script).columns().len() as u64;
+    script.scans <= ROWS_MAX && script.scans.saturating_mul(columns) <= CELLS_MAX
 }
 
 /// Calls `look` with the rows of a script's own run.

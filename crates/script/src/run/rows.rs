@@ -8,6 +8,10 @@ use standstill_fb::{PinType, Value};
 use standstill_record::told::enum_number;
 use standstill_trace::{Cell, Trace};
 
+/// Rows before the next ones that conditions, claims and events may look back at: a difference of order 4, and that of the scan
+/// before, take six.
+pub(super) const ROWS_KEPT: usize = 8;
+
 /// The rows of a run so far, reached by a script's signals.
 #[derive(Clone, Copy)]
 pub(crate) struct Rows<'a> {

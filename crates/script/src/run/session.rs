@@ -6,7 +6,7 @@ use super::drive::Ordered;
 use super::layout::{self, Layout};
 use super::{Outcome, RunError, executor, told};
 use crate::CELLS_MAX;
-use crate::claims::{self, Standing, Standings};
+use crate::claims::{self, Judges, Standing, Standings};
 use crate::model::{FaultKind, Point, Script, Variable};
 use crate::read::time;
 use crate::why;
@@ -27,6 +27,7 @@ pub struct Session<'a> {
     stopping: bool,
     changes: Vec<Change>,
     standings: Standings,
+    judges: Judges<'a>,
 }
 
 /// A value that was written from outside, as a step of the script would.
@@ -46,17 +47,27 @@ impl<'a> Session<'a> {
     /// A run before its first scan.
     ///
     /// # Errors
-    /// [`RunError`]: what the script asks for cannot be set up.
+    /// [`RunError`]: what the script asks for cannot be set up, or its rows are more than fit into one trace.
     pub fn new(script: &'a Script) -> Result<Self, RunError> {
-        let layout = Layout::new(script);
-        let header = layout::header(script);
-        let columns = header.columns().len();
+        let session = Self::long(script)?;
+        let columns = session.trace().columns().len();
         if script.scans.saturating_mul(columns as u64) > CELLS_MAX {
             return Err(RunError::TooLarge {
                 scans: script.scans,
                 columns,
             });
         }
+        Ok(session)
+    }
+
+    /// As [`Session::new`], for a run of any length, whose rows are looked at on the way and then given up by
+    /// [`Session::forget`].
+    ///
+    /// # Errors
+    /// [`RunError`]: what the script asks for cannot be set up.
+    pub fn long(script: &'a Script) -> Result<Self, RunError> {
+        let layout = Layout::new(script);
+        let header = layout::header(script);
         Ok(Self {
             script,
             machine: bench::machine(script)?,
@@ -67,7 +78,15 @@ impl<'a> Session<'a> {
             stopping: false,
             changes: Vec::new(),
             standings: Standings::new(script),
+            judges: Judges::new(script),
         })
+    }
+
+    /// Judges the claims on the rows that have come, then lets go of all but the last few. How claims stand on the way
+    /// ([`Session::standings`]) is not known from then on; their verdicts at the end are.
+    pub fn forget(&mut self) {
+        self.judges.look(&self.bench.rows());
+        self.bench.forget();
     }
 
     /// Does the next scan; FALSE if the run was over before.
@@ -463,12 +482,16 @@ impl<'a> Session<'a> {
         &self.changes
     }
 
-    /// Judges the claims on the rows so far.
+    /// Judges the claims on the rows so far. Why claims fail is only looked for where all rows are still there.
     #[must_use]
-    pub fn finish(self) -> Outcome {
+    pub fn finish(mut self) -> Outcome {
         let rows = self.bench.rows();
-        let verdicts = claims::judge(&rows);
-        let why = why::why(&rows, &verdicts);
+        self.judges.look(&rows);
+        let verdicts = self.judges.verdicts(&rows);
+        let why = match rows.trace.first() {
+            0 => why::why(&rows, &verdicts),
+            _ => Vec::new(),
+        };
         let (mut trace, shifts, truths) = self.bench.into_rows();
         trace.set_claims(verdicts.iter().map(told).collect());
         Outcome {

@@ -715,9 +715,9 @@ pub fn cases() -> Vec<Case> {
         case(
             "too_large",
             Schema,
-            "10^9 scans",
+            "more than 10^9 scans",
             "\"scans\": 100",
-            "\"scans\": 1000000000",
+            "\"scans\": 1000000001",
         ),
         case(
             "too_large",

@@ -132,7 +132,8 @@ fn codes_of_size(cycle: &str, scans: u64, inputs: usize) -> Vec<&'static str> {
 
 #[test]
 fn sizes_are_allowed_up_to_the_named_limits_and_not_beyond() {
-    assert!(codes_of_size("T#1ms", SCANS_MAX, 8).is_empty());
+    assert!(codes_of_size("T#1ms", CELLS_MAX / 2, 0).is_empty());
+    assert_eq!(codes_of_size("T#1ms", SCANS_MAX, 0), ["too_large"]);
     assert_eq!(codes_of_size("T#1ms", SCANS_MAX + 1, 0), ["too_large"]);
     // Scan, time and 98 inputs are 100 columns.
     assert!(codes_of_size("T#1ms", CELLS_MAX / 100, 98).is_empty());
