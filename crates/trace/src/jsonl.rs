@@ -17,7 +17,7 @@ use crate::trace::{Note, Trace};
 pub(crate) const END_KEY: &str = "standstill_trace_end";
 
 /// What stands behind the rows.
-#[derive(Default, serde::Deserialize)]
+#[derive(serde::Deserialize)]
 struct End {
     #[serde(default)]
     claims: Vec<Claim>,
@@ -29,16 +29,16 @@ struct End {
 
 impl End {
     /// The end of a text, and what stands before it; an empty one where there is none.
-    fn split(text: &str) -> Result<(&str, Self), ReadError> {
+    fn split(text: &str) -> Result<(&str, Option<Self>), ReadError> {
         let whole = text.trim_end();
         let begin = whole.rfind('\n').map_or(0, |end| end + 1);
         let (rows, last) = whole.split_at(begin);
         if !last.starts_with(&format!("{{\"{END_KEY}\":")) {
-            return Ok((text, Self::default()));
+            return Ok((text, None));
         }
         let number = rows.lines().count() + 1;
         let end = serde_json::from_str(last).map_err(|error| ReadError::json(&error, number))?;
-        Ok((rows, end))
+        Ok((rows, Some(end)))
     }
 }
 
@@ -118,9 +118,11 @@ pub fn read(text: &str) -> Result<Loaded, ReadError> {
     };
     let skip = if header.is_some() { number } else { number - 1 };
     let header = header.map(|(mut header, mut notes)| {
-        header.claims.extend(end.claims);
-        header.cams.extend(end.cams);
-        notes.extend(end.notes);
+        if let Some(end) = end {
+            header.claims = end.claims;
+            header.cams = end.cams;
+            notes = end.notes;
+        }
         (header, notes)
     });
     assemble(&names, header, || {
