@@ -22,6 +22,7 @@ mod junit;
 mod limit;
 #[cfg(feature = "live")]
 mod live;
+mod long;
 #[cfg(feature = "lsp")]
 mod lsp;
 #[cfg(feature = "mcp")]

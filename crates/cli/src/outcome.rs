@@ -101,9 +101,9 @@ pub fn whole(command: &str, exit: Exit, counts: &[(&str, usize)], scripts: &[Obj
 }
 
 /// A script that was run.
-pub fn run(name: &str, outcome: &Outcome, warnings: &Warnings) -> Object {
+pub fn run(name: &str, outcome: &Outcome, digest: u64, warnings: &Warnings) -> Object {
     let verdict = if outcome.passed() { "passed" } else { "failed" };
-    ran(name, verdict, outcome, &outcome.why, warnings)
+    ran(name, verdict, (outcome, digest), &outcome.why, warnings)
 }
 
 /// A script that was judged; `word` is that of the text.
@@ -113,7 +113,14 @@ pub fn judged(name: &str, word: &str, report: &Report) -> Object {
         "accepted" => "accepted",
         _ => "failed",
     };
-    let mut object = ran(name, verdict, &report.outcome, &report.why, &report.warnings);
+    let digest = digest::whole(&report.outcome.trace);
+    let mut object = ran(
+        name,
+        verdict,
+        (&report.outcome, digest),
+        &report.why,
+        &report.warnings,
+    );
     let (golden, text) = match &report.golden {
         Standing::Same => ("same", None),
         Standing::Close(how) => ("close", how.as_ref().map(ToString::to_string)),
@@ -151,14 +158,17 @@ pub fn named(name: &str, verdict: &str) -> Object {
     object
 }
 
-fn ran(name: &str, verdict: &str, outcome: &Outcome, why: &[Reason], warnings: &Warnings) -> Object {
+fn ran(
+    name: &str,
+    verdict: &str,
+    (outcome, digest): (&Outcome, u64),
+    why: &[Reason],
+    warnings: &Warnings,
+) -> Object {
     let mut object = named(name, verdict);
     object = object.with("title", string(&outcome.trace.header().title));
     object = object.with("scans", outcome.trace.scans().to_string());
-    object = object.with(
-        "digest",
-        string(&format!("{:016x}", digest::whole(&outcome.trace))),
-    );
+    object = object.with("digest", string(&format!("{digest:016x}")));
     object = object.with("claims", list(outcome.verdicts.iter().map(claim)));
     object = object.with("why", list(why.iter().map(reason)));
     object = object.with("warnings", list(told(warnings)));

@@ -5,16 +5,17 @@ use crate::exit::{Exit, Failure, complain, go_on};
 use crate::failing;
 use crate::json::Object;
 use crate::limit;
+use crate::long;
 use crate::outcome;
 use crate::progress::Progress;
 use crate::report::{self, Targets};
 use standstill_report::Source;
 use standstill_script::bare::{Bare, run_bare};
 use standstill_script::model::Script;
-use standstill_script::suite::{self, Reasons, SuiteError};
-use standstill_script::{Code, Outcome, ScriptError, warnings};
+use standstill_script::suite::{self, Allowed, Reasons, SuiteError};
+use standstill_script::{Code, Outcome, ScriptError, keeps_rows, run_with, warnings};
 use standstill_trace::csv::Dialect;
-use standstill_trace::{Header, digest, events_text, extremes_text, file, plot};
+use standstill_trace::{Header, Trace, digest, events_text, extremes_text, file, plot};
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -177,16 +178,29 @@ fn run_one(
     told: &mut Vec<Object>,
     out: &mut dyn Write,
 ) -> Result<Exit, Failure> {
-    let name = suite::shown(script);
+    let (path, name) = (script, suite::shown(script));
+    limit::doing(name.clone());
+    let allowed = Allowed {
+        long: true,
+        ..arguments.outside.allowed()
+    };
+    let (script, _) = suite::read_file(path, &arguments.set, &allowed).map_err(failure)?;
+    if !keeps_rows(&script) {
+        return long::run(path, (&name, &script), arguments, dialect, told, out);
+    }
     let run = {
         let mut progress = Progress::new(!arguments.quiet);
-        limit::doing(name.clone());
-        suite::run_script(script, &arguments.set, &arguments.outside.allowed(), |scans| {
+        run_with(&script, |scans| {
             limit::doing(format!("{name}: {scans} scans"));
             progress.show(|| format!("{name}: {scans} scans"))
         })
     };
-    let (script, outcome) = run.map_err(failure)?;
+    let outcome = run.map_err(|source| {
+        failure(SuiteError::Run {
+            path: path.to_owned(),
+            source,
+        })
+    })?;
     tell(&name, (&script, &outcome), arguments, dialect, told, out)
 }
 
@@ -201,15 +215,16 @@ fn tell(
 ) -> Result<Exit, Failure> {
     // The golden is not looked at here, but the script has one.
     let warnings = warnings(script, outcome, script.golden);
+    let digest = digest::whole(&outcome.trace);
     if arguments.json {
-        told.push(outcome::run(name, outcome, &warnings));
+        told.push(outcome::run(name, outcome, digest, &warnings));
     }
     if arguments.quiet {
         write!(out, "{}", failing_claims(outcome))?;
     } else {
         show(name, outcome, out)?;
     }
-    writeln!(out, "{name}: {}", verdict(outcome, digest::whole(&outcome.trace)))?;
+    writeln!(out, "{name}: {}", verdict(outcome, digest))?;
     if !warnings.all.is_empty() {
         out.flush()?;
         complain(warnings.to_string().trim_end());
@@ -247,6 +262,19 @@ pub fn failure(error: SuiteError) -> Failure {
 /// Header, events, drawing, extremes, failing claims.
 fn show(name: &str, outcome: &Outcome, out: &mut dyn Write) -> Result<(), Failure> {
     let trace = &outcome.trace;
+    title(name, trace, out)?;
+    writeln!(out, "\nevents\n{}", events_text(trace))?;
+    writeln!(out, "{}", plot::plot(trace, WIDTH))?;
+    writeln!(out, "{}", extremes_text(trace))?;
+    let failing = failing_claims(outcome);
+    if !failing.is_empty() {
+        writeln!(out, "failing claims\n{failing}")?;
+    }
+    Ok(())
+}
+
+/// What the run is called, and its axes.
+pub fn title(name: &str, trace: &Trace, out: &mut dyn Write) -> Result<(), Failure> {
     let Header { title, axes, .. } = trace.header();
     writeln!(out, "{}", if title.is_empty() { name } else { title })?;
     for axis in axes {
@@ -256,13 +284,6 @@ fn show(name: &str, outcome: &Outcome, out: &mut dyn Write) -> Result<(), Failur
             format!(" ({})", axis.unit)
         };
         writeln!(out, "axis {}{unit}: order {}", axis.name, axis.order)?;
-    }
-    writeln!(out, "\nevents\n{}", events_text(trace))?;
-    writeln!(out, "{}", plot::plot(trace, WIDTH))?;
-    writeln!(out, "{}", extremes_text(trace))?;
-    let failing = failing_claims(outcome);
-    if !failing.is_empty() {
-        writeln!(out, "failing claims\n{failing}")?;
     }
     Ok(())
 }

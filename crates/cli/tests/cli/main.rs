@@ -9,6 +9,7 @@ mod export;
 mod fmt;
 mod init;
 mod live;
+mod long;
 mod lookup;
 #[cfg(feature = "lsp")]
 mod lsp;
