@@ -1,9 +1,11 @@
 //! A sweep that is ready to run, and what comes of one of its cases.
 
+use crate::figure::Figure;
+use standstill_script::model::Script;
 use standstill_script::suite::{self, Allowed, SuiteError, Texts};
-use standstill_script::sweep::{Measure, Sweep, Take};
-use standstill_script::{Outcome, RunError, ScriptError, read_sweep, run};
-use standstill_trace::{Cell, Trace, cell_text, digest, extremes, shortest};
+use standstill_script::sweep::Sweep;
+use standstill_script::{Outcome, RunError, ScriptError, Session, Verdict, read_sweep, run};
+use standstill_trace::{Extreme, Extremes, digest, shortest};
 use std::path::{Path, PathBuf};
 
 /// What is told of every axis: the magnitudes of [`extremes`] and how far they stay from their limits.
@@ -38,6 +40,19 @@ impl From<ScriptError> for SweepError {
     fn from(error: ScriptError) -> Self {
         Self::Suite(error.into())
     }
+}
+
+/// Rows of a case that are held before they are looked at and given up: few enough to stay in a processor's cache.
+const ROWS_HELD: u64 = 256;
+
+/// What the run of a case left.
+struct Ran {
+    scans: usize,
+    verdicts: Vec<Verdict>,
+    extremes: Vec<Extreme>,
+    /// Of the measures, as they stand in the table.
+    figures: Vec<String>,
+    digest: u64,
 }
 
 /// A sweep with its script, both read.
@@ -154,30 +169,54 @@ impl Job {
             Ok(script) => script,
             Err(error) => return Ok(refused(first_of(&error))),
         };
-        let outcome = match run(&script) {
-            Ok(outcome) => outcome,
+        let ran = match self.ran(&script) {
+            Ok(ran) => ran,
             Err(source @ RunError::Internal(_)) => {
                 let path = self.script.clone();
                 return Err(SuiteError::Run { path, source }.into());
             }
             Err(error) => return Ok(refused(error.to_string())),
         };
-        let judged = if outcome.passed() {
-            Judged::Passed
-        } else {
-            Judged::Failed
+        let mut failures = ran.verdicts.iter().flat_map(|verdict| &verdict.failures);
+        let failure = failures.next();
+        let judged = match failure {
+            None => Judged::Passed,
+            Some(_) => Judged::Failed,
         };
-        let failure = outcome
-            .verdicts
-            .iter()
-            .flat_map(|verdict| &verdict.failures)
-            .next();
         let why = failure.map(ToString::to_string).unwrap_or_default();
         Ok(Row {
             case,
-            fields: self.fields(case, &parameters, judged, Some(&outcome), why),
+            fields: self.fields(case, &parameters, judged, Some(&ran), why),
             judged,
-            axis_scans: outcome.trace.scans() as u64 * self.axes.len() as u64,
+            axis_scans: ran.scans as u64 * self.axes.len() as u64,
+        })
+    }
+
+    /// Runs a script and takes what stands in a table; its rows are given up on the way.
+    fn ran(&self, script: &Script) -> Result<Ran, RunError> {
+        let mut session = Session::new(script)?;
+        let mut digest = digest::Whole::default();
+        let mut extremes = Extremes::new(session.trace());
+        let measures = self.sweep.measures().iter();
+        let mut figures: Vec<Figure> = measures
+            .map(|measure| Figure::new(measure, session.trace()))
+            .collect();
+        while session.advance()? {
+            if session.scans() % ROWS_HELD == 0 || session.is_over() {
+                let trace = session.trace();
+                digest.look(trace);
+                extremes.look(trace);
+                figures.iter_mut().for_each(|figure| figure.look(trace));
+                session.forget();
+            }
+        }
+        let Outcome { trace, verdicts, .. } = session.finish();
+        Ok(Ran {
+            scans: trace.scans(),
+            verdicts,
+            extremes: extremes.all().collect(),
+            figures: figures.iter().map(Figure::text).collect(),
+            digest: digest.finish(),
         })
     }
 
@@ -200,22 +239,22 @@ impl Job {
         case: u64,
         parameters: &[(String, f64)],
         judged: Judged,
-        outcome: Option<&Outcome>,
+        ran: Option<&Ran>,
         why: String,
     ) -> Vec<String> {
         let mut fields = vec![case.to_string()];
         fields.extend(parameters.iter().map(|(_, value)| shortest(*value)));
         fields.push(judged.word().to_owned());
-        if let Some(Outcome { trace, verdicts, .. }) = outcome {
-            let held = verdicts.iter().filter(|verdict| verdict.passed()).count();
-            fields.extend([trace.scans(), verdicts.len(), held].map(|count| count.to_string()));
-            let extremes = extremes(trace);
+        if let Some(ran) = ran {
+            let held = ran.verdicts.iter().filter(|verdict| verdict.passed()).count();
+            fields.extend([ran.scans, ran.verdicts.len(), held].map(|count| count.to_string()));
             for (axis, quantity) in self
                 .axes
                 .iter()
                 .flat_map(|axis| QUANTITIES.map(|quantity| (axis, quantity)))
             {
-                let found = extremes
+                let found = ran
+                    .extremes
                     .iter()
                     .find(|extreme| extreme.axis == *axis && extreme.quantity == quantity);
                 let peak = found.map(|extreme| shortest(extreme.value));
@@ -223,8 +262,8 @@ impl Job {
                 fields.push(peak.unwrap_or_default());
                 fields.push(margin.map(shortest).unwrap_or_default());
             }
-            fields.extend(self.sweep.measures().iter().map(|measure| taken(measure, trace)));
-            fields.push(format!("{:016x}", digest::whole(trace)));
+            fields.extend(ran.figures.iter().cloned());
+            fields.push(format!("{:016x}", ran.digest));
         }
         // A case that did not run has nothing to tell between its verdict and the reason.
         fields.resize(self.columns.len() - 1, String::new());
@@ -266,49 +305,5 @@ fn first_of(error: &ScriptError) -> String {
             let (line, column) = error.line_column(span);
             format!("{}:{line}:{column}: {}", error.file_of(span), diagnostic.message)
         }
-    }
-}
-
-/// The figure as it stands in a table; empty where a signal never was TRUE.
-fn taken(measure: &Measure, trace: &Trace) -> String {
-    let Some(column) = trace.column(&measure.signal) else {
-        return String::new();
-    };
-    let cells = || trace.cells(column);
-    let is_true = |cell: &Cell<'_>| matches!(cell, Cell::Bool(true));
-    match measure.take {
-        Take::Last => cells().last().map(cell_text).unwrap_or_default(),
-        Take::Max => foremost(cells(), |value| value),
-        Take::Min => foremost(cells(), |value| -value),
-        Take::AbsMax => foremost(cells().map(magnitude), |value| value),
-        Take::First => {
-            let first = cells().position(|cell| is_true(&cell));
-            first.map(|scan| scan.to_string()).unwrap_or_default()
-        }
-        Take::Count => cells().filter(is_true).count().to_string(),
-    }
-}
-
-/// The cell whose number ranks first, as text. A NaN ranks before all: it must not stay unseen.
-fn foremost<'t>(cells: impl Iterator<Item = Cell<'t>>, rank: impl Fn(f64) -> f64) -> String {
-    let mut best: Option<(f64, Cell<'_>)> = None;
-    for cell in cells {
-        let value = match cell {
-            Cell::Real(value) => rank(value),
-            Cell::Integer(value) => rank(value as f64),
-            Cell::Bool(_) | Cell::Name(_) => continue,
-        };
-        if best.is_none_or(|(best, _)| !best.is_nan() && (value.is_nan() || value > best)) {
-            best = Some((value, cell));
-        }
-    }
-    best.map(|(_, cell)| cell_text(cell)).unwrap_or_default()
-}
-
-fn magnitude(cell: Cell<'_>) -> Cell<'_> {
-    match cell {
-        Cell::Real(value) => Cell::Real(value.abs()),
-        Cell::Integer(value) => Cell::Integer(value.saturating_abs()),
-        other => other,
     }
 }

@@ -8,6 +8,7 @@
 //! interruptions leave no trace in a table.
 #![forbid(unsafe_code)]
 
+mod figure;
 mod job;
 mod part;
 mod run;
