@@ -273,7 +273,7 @@ fn a_time_limit_ends_any_command_with_what_it_was_at() {
     write(&folder, "long.scan.json", script);
     for (arguments, at) in [
         (
-            &["--time-limit", "300ms", "run", "long.scan.json"][..],
+            &["--time-limit", "300ms", "run", "-q", "long.scan.json"][..],
             "long.scan.json",
         ),
         (

@@ -32,9 +32,13 @@ fn with_scripts(name: &str) -> PathBuf {
 
 /// The paragraphs of a text, without the drawing or what stands in its place.
 fn without_drawing(text: &str) -> String {
-    let paragraphs = text
-        .split("\n\n")
-        .filter(|part| !part.contains("no drawing: ") && !part.contains("scan 0 "));
+    let is_drawn = |part: &str| {
+        let curve = ["X.Position (", "X.Velocity ("]
+            .iter()
+            .any(|name| part.starts_with(name));
+        curve || part.contains("no drawing: ") || part.contains("scan 0 ")
+    };
+    let paragraphs = text.split("\n\n").filter(|part| !is_drawn(part));
     paragraphs.collect::<Vec<_>>().join("\n\n")
 }
 
