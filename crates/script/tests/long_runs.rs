@@ -85,20 +85,20 @@ fn claims_are_judged_the_same_with_few_rows_at_a_time() {
     for (seed, path) in (1..).zip(&scripts) {
         let text = read_text(path).unwrap_or_else(|error| panic!("{error}"));
         let mut random = Random(seed);
-        let mut json: Value = serde_json::from_str(text.trim_start_matches('\u{feff}'))
+        let json: Value = serde_json::from_str(text.trim_start_matches('\u{feff}'))
             .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        if let Some(expect) = json.get_mut("expect") {
-            breaks(expect, &mut random);
-        }
-        let broken = read_given(&json.to_string(), path, &[], &Allowed::default());
-        let script = match broken {
-            Ok(script) => script,
-            // A range that ends before it begins, for example.
-            Err(_) => {
-                unreadable += 1;
-                read_given(&text, path, &[], &Allowed::default()).unwrap_or_else(|error| panic!("{error}"))
+        // A range that ends before it begins, for example, is not readable: other breaks may be.
+        let broken = (0..4).find_map(|_| {
+            let mut json = json.clone();
+            if let Some(expect) = json.get_mut("expect") {
+                breaks(expect, &mut random);
             }
-        };
+            read_given(&json.to_string(), path, &[], &Allowed::default()).ok()
+        });
+        let script = broken.unwrap_or_else(|| {
+            unreadable += 1;
+            read_given(&text, path, &[], &Allowed::default()).unwrap_or_else(|error| panic!("{error}"))
+        });
         let every = 1 + random.bits() % 50;
         let expected = whole(&script);
         assert_eq!(
