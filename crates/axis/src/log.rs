@@ -173,6 +173,13 @@ pub enum Event {
         /// The limit.
         limit: f64,
     },
+    /// The masters of a slave in gear are commanded to where it must not go.
+    LeadsOutside {
+        /// Where the slave would come to rest (u).
+        position: f64,
+        /// Its software limit on that side (u).
+        limit: f64,
+    },
     /// A cam was selected: the highest constant velocity of its master with which the slave can follow it.
     CamSelected {
         /// That (u/s of the master).

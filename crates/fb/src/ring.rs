@@ -28,7 +28,8 @@ pub const FIELDS: [(&str, &str, &str, usize); 11] = [
         "1 refused, 2 point refused, 3 clamped, 4 raised, 5 unavoidable, 6 shifted, 7 planned to a position, 8 planned \
          to a velocity, 9 planned past a position, 10 superimposed, 11 room awaited, 12 paused, 13 fault, 14 orphaned, 15 coupled, 16 approaching \
          the law of a gear, 17 in gear, 18 no longer in gear, 19 in sync late, 20 phase shift planned, 21 lowered to what a slave can follow, 22 cam \
-         selected, 23 onto a cam, 24 plan onto a cam, 25 in sync, 26 no longer in sync, 27 more than one end of a cam passed in a scan.",
+         selected, 23 onto a cam, 24 plan onto a cam, 25 in sync, 26 no longer in sync, 27 more than one end of a cam passed in a scan, 28 a \
+         master leads out of a software limit.",
         24,
     ),
     ("error_id", "u32", "ErrorID, 0 without one.", 28),
@@ -212,6 +213,10 @@ impl FlatRecord {
             Event::CamPassed { periods } => {
                 record.event = 27;
                 record.count = periods.into();
+            }
+            Event::LeadsOutside { position, limit } => {
+                record.event = 28;
+                (record.value, record.limit) = (position, limit);
             }
             Event::SyncLate { by } => {
                 record.event = 19;

@@ -194,6 +194,7 @@ const ON_THE_SLAVE: &[Row] = &[
         "software limits",
         &[
             "software_limit_of_the_slave",
+            "a_master_commanded_beyond_the_slaves_limit",
             "superimposed_within_software_limits",
         ],
     ),

@@ -26,6 +26,7 @@ mod bound;
 mod cam;
 mod follow;
 mod needs;
+mod outside;
 mod phasing;
 mod steady;
 mod sync;
@@ -146,6 +147,8 @@ pub(super) struct Coupling {
     left: u64,
     /// The way recorded last, and its velocity (u/s).
     told: Option<(Approach, f64)>,
+    /// Where the masters lead it (u), if that is outside its software limits.
+    leads_outside: Option<f64>,
     /// The limits it was last held against.
     limits: Limits,
     /// What they leave in a scan in which nothing is new; `None` before the first of these.
@@ -236,6 +239,7 @@ impl Coupling {
             known: view::Known::default(),
             left: u64::MAX,
             told: None,
+            leads_outside: None,
             limits,
             room: None,
             moves,

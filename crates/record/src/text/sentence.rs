@@ -37,6 +37,7 @@ pub fn subject<'n>(names: &'n impl Called, record: &Record) -> &'n str {
         | Event::GearLost { .. }
         | Event::SyncLate { .. }
         | Event::Phasing { .. }
+        | Event::LeadsOutside { .. }
         | Event::OnCam { .. }
         | Event::OntoCam { .. }
         | Event::InSync
@@ -196,6 +197,12 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
             in_scans(out, scans)
         }
         Event::InGear => out.write_str("in gear"),
+        Event::LeadsOutside { position, limit } => {
+            out.write_str("leads to ")?;
+            real(out, position)?;
+            out.write_str(", outside the software limit ")?;
+            real(out, limit)
+        }
         Event::CamSelected { velocity, limit } if velocity < limit => {
             out.write_str("cam limits the master to ")?;
             real(out, velocity)?;

@@ -559,6 +559,7 @@ impl<H: Hands> Run<'_, H> {
                 | Event::GearLost { .. }
                 | Event::SyncLate { .. }
                 | Event::Phasing { .. }
+                | Event::LeadsOutside { .. }
                 | Event::CamSelected { .. }
                 | Event::OnCam { .. }
                 | Event::OntoCam { .. }

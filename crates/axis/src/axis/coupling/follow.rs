@@ -78,6 +78,7 @@ impl<P: Planner> Axis<P> {
             if let Some(coupling) = &mut self.coupling {
                 coupling.is_kept = false;
             }
+            self.tell_outside(view, scope);
             // The last step of a shift is one of its own.
             if !shifts {
                 self.note_source();

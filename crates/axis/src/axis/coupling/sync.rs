@@ -216,6 +216,7 @@ impl<P: Planner> Axis<P> {
                 return Err(self.refuse(pin, value, limit, ErrorId::SyncPositionInvalid, scope));
             }
         }
+        self.inside("SlaveSyncPosition", point.slave, scope)?;
         let distance = point.start_distance;
         if !(distance.abs() <= FURTHEST && turn.is_none_or(|length| distance.abs() < length)) {
             let limit = turn.unwrap_or(FURTHEST);
