@@ -2611,7 +2611,7 @@ typedef struct standstill_record {
      *  fault, 14 orphaned, 15 coupled, 16 approaching the law of a gear, 17 in gear, 18 no longer in gear,
      *  19 in sync late, 20 phase shift planned, 21 lowered to what a slave can follow, 22 cam selected, 23
      *  onto a cam, 24 plan onto a cam, 25 in sync, 26 no longer in sync, 27 more than one end of a cam
-     *  passed in a scan. */
+     *  passed in a scan, 28 a master leads out of a software limit. */
     int32_t event;
     /** ErrorID, 0 without one. */
     uint32_t error_id;
