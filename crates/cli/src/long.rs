@@ -170,12 +170,12 @@ fn go(session: &mut Session<'_>, telling: &mut Telling<'_>, name: &str, watched:
 
 /// The signals that ask for an end.
 struct Stop {
-    #[cfg(unix)]
+    #[cfg(all(unix, feature = "signals"))]
     signal: std::sync::Arc<std::sync::atomic::AtomicUsize>,
 }
 
 impl Stop {
-    #[cfg(unix)]
+    #[cfg(all(unix, feature = "signals"))]
     fn new() -> std::io::Result<Self> {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
         let signal = std::sync::Arc::default();
@@ -186,13 +186,13 @@ impl Stop {
         Ok(Self { signal })
     }
 
-    #[cfg(not(unix))]
+    #[cfg(not(all(unix, feature = "signals")))]
     fn new() -> std::io::Result<Self> {
         Ok(Self {})
     }
 
     /// Says what there is of the file, and ends as the signal would have, if one has come.
-    #[cfg(unix)]
+    #[cfg(all(unix, feature = "signals"))]
     fn heed(&self, file: &Streaming, out: &mut dyn Write) {
         let signal = self.signal.load(std::sync::atomic::Ordering::Relaxed);
         if signal == 0 {
@@ -207,7 +207,7 @@ impl Stop {
         let _ = signal_hook::low_level::emulate_default_handler(signal);
     }
 
-    #[cfg(not(unix))]
+    #[cfg(not(all(unix, feature = "signals")))]
     fn heed(&self, _: &Streaming, _: &mut dyn Write) {}
 }
 
