@@ -13,7 +13,7 @@ use standstill_script::suite::SuiteError;
 use standstill_script::{CELLS_MAX, Outcome, ROWS_MAX, RunError, Session, warnings};
 use standstill_trace::csv::Dialect;
 use standstill_trace::digest::Whole;
-use standstill_trace::file::Streaming;
+use standstill_trace::file::{FileError, Streaming};
 use standstill_trace::{EventLog, Extremes, Trace, Widths};
 use std::io::Write;
 use std::path::Path;
@@ -33,16 +33,17 @@ struct Telling<'a> {
 
 impl Telling<'_> {
     /// Tells the rows that have come since the last call.
-    fn look(&mut self, trace: &Trace) -> Result<(), Failure> {
+    fn look(&mut self, trace: &Trace) -> Result<(), Ended> {
         if let Some((log, widths)) = &mut self.events {
             for event in log.take(trace) {
-                self.out.write_all(widths.line(&event).as_bytes())?;
+                let written = self.out.write_all(widths.line(&event).as_bytes());
+                written.map_err(|error| Ended::Told(error.into()))?;
             }
             self.extremes.look(trace);
         }
         self.digest.look(trace);
         if let Some(file) = &mut self.file {
-            file.look(trace)?;
+            file.look(trace).map_err(Ended::File)?;
         }
         Ok(())
     }
@@ -90,11 +91,10 @@ pub fn run(
         let failure = match error {
             Ended::Run(error) => wrong(error),
             Ended::Told(failure) => failure,
+            // It says itself what is kept.
+            Ended::File(error) => return Err(error.into()),
         };
-        // A file that could not be written has said so itself.
-        if let Some((partial, rows)) = file.as_ref().and_then(Streaming::kept)
-            && !matches!(&failure, Failure::Told(_, text) if text.contains(".partial"))
-        {
+        if let Some((partial, rows)) = file.as_ref().and_then(Streaming::kept) {
             out.flush()?;
             complain(&kept(partial, rows));
         }
@@ -140,6 +140,8 @@ pub fn run(
 enum Ended {
     Run(RunError),
     Told(Failure),
+    /// The trace could not be written.
+    File(FileError),
 }
 
 fn go(session: &mut Session<'_>, telling: &mut Telling<'_>, name: &str, watched: bool) -> Result<(), Ended> {
@@ -155,7 +157,7 @@ fn go(session: &mut Session<'_>, telling: &mut Telling<'_>, name: &str, watched:
             if telling.events.is_some() {
                 progress.clear();
             }
-            telling.look(session.trace()).map_err(Ended::Told)?;
+            telling.look(session.trace())?;
             session.forget();
             progress.show(|| format!("{name}: {scans} of {} scans", session.script().scans));
             if let (Some(stop), Some(file)) = (&stop, &telling.file) {

@@ -2,7 +2,7 @@
 
 use super::super::Axis;
 use super::Coupling;
-use super::view::View;
+use super::view::{View, way_to_rest};
 use crate::{Event, Scope};
 use standstill_planner::{Plan, Planner};
 
@@ -13,15 +13,8 @@ impl Coupling {
         let (now, _) = self.law(&anchor, &view.seen());
         // At the end of this scan a plan that is not late is one scan further than at its beginning.
         let scan = u64::from(!view.future.is_late());
-        let mut rest = now.position;
-        for lead in self.leads(&view.future)?.into_iter().flatten() {
-            let end = lead.plan.at(u64::from(lead.plan.scans()));
-            if end.velocity != 0.0 {
-                return None;
-            }
-            rest += lead.factor * (end.position - lead.plan.at(lead.elapsed.saturating_add(scan)).position);
-        }
-        Some(rest)
+        let way = way_to_rest(&self.leads(&view.future)?, scan)?;
+        Some(now.position + way)
     }
 }
 

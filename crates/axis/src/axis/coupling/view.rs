@@ -160,6 +160,21 @@ impl<'a, P: Plan> Part<'a, P> {
     }
 }
 
+/// Where the plan of a master ends.
+pub(in crate::axis) fn end_of<Q: Plan>(lead: &Lead<'_, Q>) -> Setpoint {
+    lead.plan.at(u64::from(lead.plan.scans()))
+}
+
+/// The way (u of the slave) on which the masters still lead it, so many `scans` after where the leads begin; `None` where one of them does not
+/// come to rest.
+pub(in crate::axis) fn way_to_rest<Q: Plan>(leads: &Leads<'_, Q>, scans: u64) -> Option<f64> {
+    leads.iter().flatten().try_fold(0.0, |way, lead| {
+        let end = end_of(lead);
+        let here = lead.plan.at(lead.elapsed.saturating_add(scans)).position;
+        (end.velocity == 0.0).then_some(way + lead.factor * (end.position - here))
+    })
+}
+
 impl<'a, P: Plan> Future<'a, P> {
     /// What is known of it now, and whether it goes on from what was `known` in the scan before.
     fn compare(&self, known: &Known) -> (Known, bool) {

@@ -9,15 +9,10 @@
 
 use super::plan::{Proposal, Room};
 use super::{Added, Adds, Layer, Progress};
-use crate::axis::coupling::{Kind, View};
+use crate::axis::coupling::{Kind, View, end_of, way_to_rest};
 use crate::axis::{Axis, Motion};
 use crate::{Cams, ErrorId, Event, Fate, Scope};
 use standstill_planner::{CamBounds, Lead, Limits, Plan, Planner, Setpoint};
-
-/// Where the plan of a master ends.
-fn end_of<Q: Plan>(lead: &Lead<'_, Q>) -> Setpoint {
-    lead.plan.at(u64::from(lead.plan.scans()))
-}
 
 impl<P: Planner> Axis<P> {
     /// `command` waits on `layer` for the next motion step.
@@ -324,14 +319,8 @@ impl<P: Planner> Axis<P> {
             let stands = self.law_stands(view);
             return stands.then(|| self.setpoint.position + layer.left());
         }
-        let mut way = 0.0;
-        for lead in self.leads_of_law(view).iter().flatten().flatten() {
-            let end = end_of(lead);
-            if end.velocity != 0.0 {
-                return None;
-            }
-            way += lead.factor * (end.position - lead.plan.at(lead.elapsed).position);
-        }
+        let leads = self.leads_of_law(view);
+        let way = leads.map_or(Some(0.0), |leads| way_to_rest(&leads, 0))?;
         Some(self.setpoint.position + way + layer.left())
     }
 
