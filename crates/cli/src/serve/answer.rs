@@ -1,26 +1,26 @@
 //! What is sent back.
 
+use http_body_util::Full;
+use hyper::body::Bytes;
+use hyper::header::{HeaderName, HeaderValue};
+use hyper::{Response, StatusCode};
 use serde_json::Value;
 use standstill_trace::printable;
-use std::fs::File;
-use std::io::{Cursor, Read};
-use tiny_http::{Header, Response, StatusCode};
 
 /// What holds for every answer: it is what it says it is, no other page may read or frame it, and the next time it is asked for anew.
 const ALWAYS: [(&str, &str); 5] = [
-    ("X-Content-Type-Options", "nosniff"),
-    ("Cross-Origin-Resource-Policy", "same-origin"),
-    ("Content-Security-Policy", "frame-ancestors 'none'"),
-    ("Referrer-Policy", "no-referrer"),
-    ("Cache-Control", "no-cache"),
+    ("x-content-type-options", "nosniff"),
+    ("cross-origin-resource-policy", "same-origin"),
+    ("content-security-policy", "frame-ancestors 'none'"),
+    ("referrer-policy", "no-referrer"),
+    ("cache-control", "no-cache"),
 ];
 
 /// An answer to a request.
 pub struct Answer {
     status: u16,
     headers: Vec<(&'static str, String)>,
-    body: Box<dyn Read + Send>,
-    length: usize,
+    body: Vec<u8>,
 }
 
 impl Answer {
@@ -28,19 +28,8 @@ impl Answer {
     pub fn bytes(kind: &str, bytes: Vec<u8>) -> Self {
         Self {
             status: 200,
-            headers: vec![("Content-Type", kind.to_owned())],
-            length: bytes.len(),
-            body: Box::new(Cursor::new(bytes)),
-        }
-    }
-
-    /// An open file of this type and length.
-    pub fn file(kind: &str, file: File, length: usize) -> Self {
-        Self {
-            length,
-            // A file that grows on the way is cut: its length was promised.
-            body: Box::new(file.take(length as u64)),
-            ..Self::bytes(kind, Vec::new())
+            headers: vec![("content-type", kind.to_owned())],
+            body: bytes,
         }
     }
 
@@ -55,7 +44,7 @@ impl Answer {
             status: 302,
             ..plain(302, path)
         }
-        .with("Location", path.to_owned())
+        .with("location", path.to_owned())
     }
 
     /// What was asked for is as it was.
@@ -64,25 +53,30 @@ impl Answer {
             status: 304,
             ..Self::bytes("application/json", Vec::new())
         }
-        .with("ETag", tag.to_owned())
+        .with("etag", tag.to_owned())
     }
 
-    /// With one more header.
+    /// With one more header, its name in small letters.
     pub fn with(mut self, name: &'static str, value: String) -> Self {
         self.headers.push((name, value));
         self
     }
 
-    /// As the server sends it.
-    pub fn response(self) -> Response<Box<dyn Read + Send>> {
+    /// As it is sent.
+    pub fn response(self) -> Response<Full<Bytes>> {
+        let mut response = Response::new(Full::from(self.body));
+        *response.status_mut() =
+            StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR);
         let fixed = ALWAYS.iter().map(|(name, value)| (*name, (*value).to_owned()));
-        let headers = fixed.chain(self.headers).filter_map(|(name, value)| {
+        for (name, value) in fixed.chain(self.headers) {
             // A value that no header may have is left out; of ours none is.
-            Header::from_bytes(name, value).ok()
-        });
-        let status = StatusCode(self.status);
-        Response::new(status, headers.collect(), self.body, Some(self.length), None)
-            .with_chunked_threshold(usize::MAX)
+            if let Ok(value) = HeaderValue::try_from(value) {
+                response
+                    .headers_mut()
+                    .append(HeaderName::from_static(name), value);
+            }
+        }
+        response
     }
 }
 

@@ -144,7 +144,7 @@ impl Folder {
         if tag == Some(last.tag.as_str()) {
             return Ok(Answer::unchanged(&last.tag));
         }
-        Ok(Answer::json(&last.body).with("ETag", last.tag.clone()))
+        Ok(Answer::json(&last.body).with("etag", last.tag.clone()))
     }
 
     fn read(&self, path: &str, inner: &Path) -> Result<Known, Answer> {

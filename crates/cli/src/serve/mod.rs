@@ -31,15 +31,24 @@ mod desk {
     use crate::exit::{Exit, Failure, complain};
     use crate::limit;
     use crate::test::where_scripts_are;
+    use hyper::header::{HOST, IF_NONE_MATCH};
+    use hyper::server::conn::http1;
+    use hyper::service::service_fn;
+    use hyper::{Method, Request};
+    use hyper_util::rt::{TokioIo, TokioTimer};
     use percent_encoding::percent_decode_str;
     use standstill_script::suite::shown;
+    use std::convert::Infallible;
+    use std::future::ready;
     use std::io;
-    use std::net::{Ipv4Addr, TcpListener};
-    use std::thread;
-    use tiny_http::{Method, Request, Server};
+    use std::net::Ipv4Addr;
+    use std::sync::Arc;
+    use std::time::Duration;
+    use tokio::net::TcpListener;
+    use tokio::runtime;
 
-    /// Answers that may be on their way at the same time: a page asks for several files at once.
-    const THREADS: usize = 4;
+    /// Connections that cannot be taken, one after the other, before it gives up: there may be too many for a moment.
+    const FAILED_MAX: u32 = 100;
 
     /// Where the scripts of the folder are, beside the pages.
     const SCRIPTS: &str = "/folder/";
@@ -60,34 +69,7 @@ mod desk {
         let mut folders = where_scripts_are(&folders);
         let folder = Folder::new(folders.remove(0), &arguments.include_from)?;
         let site = Site::find(arguments.site.as_deref())?;
-        let (server, port) = listen(arguments.port)?;
-        let desk = Desk { site, folder, port };
-        let name = desk.folder.name();
-        limit::doing(format!("serving {name}"));
-        complain(&format!(
-            "{name} in the playground: http://127.0.0.1:{port}/ (this machine only; Ctrl and C end it)"
-        ));
-        thread::scope(|scope| {
-            let work = || {
-                while let Ok(request) = server.recv() {
-                    desk.answer(request);
-                }
-                // Nobody waits for connections any more: no other thread gets one either.
-                server.unblock();
-            };
-            for _ in 1..THREADS {
-                scope.spawn(work);
-            }
-            work();
-        });
-        Err(Failure::Told(
-            Exit::Io,
-            format!("error: port {port}: no more connections can be taken; start it again"),
-        ))
-    }
-
-    fn listen(port: u16) -> Result<(Server, u16), Failure> {
-        let failed = |error: &io::Error| {
+        let failed = |port: u16, error: &io::Error| {
             let why = match error.kind() {
                 io::ErrorKind::AddrInUse => "another program has it".to_owned(),
                 _ => error.to_string(),
@@ -95,43 +77,81 @@ mod desk {
             let remedy = "`--port N` takes another one, `--port 0` one that is free";
             Failure::Told(Exit::Io, format!("error: port {port}: {why}; {remedy}"))
         };
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| failed(&error))?;
-        let port = listener.local_addr().map_err(|error| failed(&error))?.port();
-        let server = Server::from_listener(listener, None).map_err(|error| {
-            Failure::Told(
-                Exit::Io,
-                format!("error: port {port}: the server could not be started: {error}"),
-            )
-        })?;
-        Ok((server, port))
+        let asked = arguments.port;
+        // One thread answers all: what it waits for is the network.
+        let runtime = runtime::Builder::new_current_thread().enable_all().build();
+        let runtime = runtime.map_err(|error| failed(asked, &error))?;
+        let listener = runtime.block_on(TcpListener::bind((Ipv4Addr::LOCALHOST, asked)));
+        let listener = listener.map_err(|error| failed(asked, &error))?;
+        let port = listener
+            .local_addr()
+            .map_err(|error| failed(asked, &error))?
+            .port();
+        let desk = Desk { site, folder, port };
+        let name = desk.folder.name();
+        limit::doing(format!("serving {name}"));
+        complain(&format!(
+            "{name} in the playground: http://127.0.0.1:{port}/ (this machine only; Ctrl and C end it)"
+        ));
+        let error = runtime.block_on(desk.answer_all(&listener));
+        Err(Failure::Told(
+            Exit::Io,
+            format!("error: port {port}: no more connections can be taken ({error}); start it again"),
+        ))
     }
 
     impl Desk {
-        fn answer(&self, request: Request) {
-            let answer = self.found(&request).unwrap_or_else(|refusal| refusal);
-            // Who asked may have gone.
-            let _ = request.respond(answer.response());
+        /// Answers every connection, however long others say nothing; what ended it.
+        async fn answer_all(self, listener: &TcpListener) -> io::Error {
+            let desk = Arc::new(self);
+            let mut failed = 0;
+            loop {
+                let stream = match listener.accept().await {
+                    Ok((stream, _)) => stream,
+                    Err(error) if failed == FAILED_MAX => return error,
+                    Err(_) => {
+                        failed += 1;
+                        tokio::time::sleep(Duration::from_millis(50)).await;
+                        continue;
+                    }
+                };
+                failed = 0;
+                let desk = Arc::clone(&desk);
+                let answer = service_fn(move |request| {
+                    let answer = desk.found(&request).unwrap_or_else(|refusal| refusal);
+                    ready(Ok::<_, Infallible>(answer.response()))
+                });
+                // Who asked may have gone.
+                tokio::spawn(
+                    http1::Builder::new()
+                        .timer(TokioTimer::new())
+                        .serve_connection(TokioIo::new(stream), answer),
+                );
+            }
         }
 
         /// The answer, or one that says what is wrong.
-        fn found(&self, request: &Request) -> Result<Answer, Answer> {
-            let header = |name: &'static str| {
-                let all = request.headers().iter().filter(move |one| one.field.equiv(name));
-                all.map(|one| one.value.as_str())
+        fn found<B>(&self, request: &Request<B>) -> Result<Answer, Answer> {
+            // A value that is no ASCII is none of ours.
+            let header = |name| {
+                request
+                    .headers()
+                    .get_all(name)
+                    .iter()
+                    .map(|value| value.to_str().unwrap_or_default())
             };
-            if header("Host").count() != 1 || !header("Host").all(|host| is_ours(host, self.port)) {
+            if header(HOST).count() != 1 || !header(HOST).all(|host| is_ours(host, self.port)) {
                 let port = self.port;
                 let why = format!("this is answered under http://127.0.0.1:{port}/ and no other name");
                 return Err(plain(421, &why));
             }
-            if !matches!(request.method(), Method::Get | Method::Head) {
+            if !matches!(*request.method(), Method::GET | Method::HEAD) {
                 return Err(plain(
                     405,
                     "only GET and HEAD are answered: nothing is written here",
                 ));
             }
-            let path = request.url().split(['?', '#']).next().unwrap_or_default();
-            let Ok(path) = percent_decode_str(path).decode_utf8() else {
+            let Ok(path) = percent_decode_str(request.uri().path()).decode_utf8() else {
                 return Err(plain(400, "the path is no UTF-8"));
             };
             if path == "/" {
@@ -142,7 +162,7 @@ mod desk {
                 return Ok(Answer::json(&self.folder.listed(list)?));
             }
             if let Some(script) = path.strip_prefix(SCRIPTS) {
-                return self.folder.script(script, header("If-None-Match").next());
+                return self.folder.script(script, header(IF_NONE_MATCH).next());
             }
             self.site.file(&path)
         }

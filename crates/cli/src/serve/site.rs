@@ -5,11 +5,14 @@ use crate::exit::{Exit, Failure};
 use serde_json::Value;
 use standstill_script::suite::shown;
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Read as _};
 use std::path::{Component, Path, PathBuf};
 
 /// What a folder must have to be taken for the page.
 const FIRST: &str = "playground/index.html";
+
+/// Bytes of a file that is given out, at most: one is read as a whole.
+const BYTES_MAX: usize = 256 << 20;
 
 /// Types by the endings of names; a browser must be told of some.
 const KINDS: [(&str, &str); 10] = [
@@ -61,10 +64,21 @@ impl Site {
             return Ok(Answer::elsewhere(&format!("{path}/")));
         }
         let (file, length) = open(&self.root, &inner)?;
+        if length > BYTES_MAX {
+            let why = format!(
+                "{}: it has more than the {BYTES_MAX} bytes that are given out",
+                shown(&inner)
+            );
+            return Err(plain(413, &why));
+        }
         let ending = inner.extension().and_then(|ending| ending.to_str());
         let kind = KINDS.iter().find(|(known, _)| Some(*known) == ending);
         let kind = kind.map_or("application/octet-stream", |(_, kind)| *kind);
-        Ok(Answer::file(kind, file, length))
+        let mut bytes = Vec::new();
+        // A file that grows meanwhile is cut where it ended.
+        let read = file.take(length as u64).read_to_end(&mut bytes);
+        read.map_err(|error| failed(&shown(&inner), &error))?;
+        Ok(Answer::bytes(kind, bytes))
     }
 
     /// What the page lists of the repository's scripts.
