@@ -156,13 +156,15 @@ impl<'a> Fields<'a> {
         known: impl Iterator<Item = &'static str> + Clone,
     ) -> Result<(), Refusal> {
         for (index, (key, _)) in members.0.iter().enumerate() {
-            let field = format!("{path}{key}");
+            let field = || format!("{path}{key}");
             if !known.clone().any(|name| name == key) {
+                let field = field();
                 let hint = nearest(key, known)
                     .map_or(String::new(), |name| format!("; did you mean `{path}{name}`?"));
                 return Err(self.invalid(&field, format!("there is no field `{field}`{hint}")));
             }
             if members.0.iter().skip(index + 1).any(|(later, _)| later == key) {
+                let field = field();
                 return Err(self.invalid(&field, format!("`{field}` is given twice")));
             }
         }
@@ -266,6 +268,9 @@ impl<'a> Fields<'a> {
 
     /// The limits the motion so far kept; those that are not given are as in `limits`.
     pub fn limits_before(&self, limits: &Limits) -> Result<Limits, Refusal> {
+        if self.limits_before.0.is_empty() {
+            return Ok(*limits);
+        }
         for name in LIMITS {
             let field = format!("limits_before.{name}");
             if !(self.limit(&field, f64::INFINITY)? > 0.0) {
@@ -287,6 +292,9 @@ impl<'a> Fields<'a> {
             let nearest = (bound < 0.0).then(|| crate::json::number(-bound));
             Err(self.invalid(&field, message).nearest(nearest))
         };
+        if self.velocity_limits.0.is_empty() {
+            return Ok(DirectedLimits::from(*limits));
+        }
         Ok(DirectedLimits {
             positive: side("positive")?,
             negative: side("negative")?,
