@@ -1,6 +1,6 @@
 //! Random bytes as hostile guests: a bounded run of what `crates/soak/fuzz` does for as long as one likes.
 
-mod hostile;
+use crate::hostile;
 
 use standstill_testkit::Random;
 

@@ -2,9 +2,7 @@
 //!
 //! The nominal count is computed from the digits, in whole numbers.
 
-mod grid_support;
-
-use grid_support::{Move, limits};
+use crate::grid_support::{Move, limits};
 use standstill_planner::Method;
 
 const NONE: f64 = f64::INFINITY;

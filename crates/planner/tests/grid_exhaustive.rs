@@ -3,9 +3,7 @@
 //! Lengthening the last box breaks no condition, so it is enough that no boxes sum to N - 1. The thresholds
 //! and the conditions are written down here again, without the planner's code.
 
-mod grid_support;
-
-use grid_support::{Move, Random, limits, power};
+use crate::grid_support::{Move, Random, limits, power};
 use standstill_planner::{GridPlan, Method};
 
 const ABSENT: f64 = f64::INFINITY;

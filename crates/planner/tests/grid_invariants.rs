@@ -1,8 +1,6 @@
 //! The invariants of grid plans, over the reference vectors and seeded random moves.
 
-mod grid_support;
-
-use grid_support::{Digest, Move, Random, limits, power, servo, vector_move, vectors};
+use crate::grid_support::{Digest, Move, Random, limits, power, servo, vector_move, vectors};
 use standstill_planner::grid::Euler;
 use standstill_planner::{GridPlan, Limits, Method, Order, Setpoint};
 

@@ -1,8 +1,6 @@
 //! What a grid plan refuses, with the field it names, and the odd inputs it accepts.
 
-mod grid_support;
-
-use grid_support::{Move, limits};
+use crate::grid_support::{Move, limits};
 use standstill_planner::{Field, Limits, Method, PlanError};
 
 const METHODS: [Method; 3] = [Method::Sequential, Method::Grid, Method::Overlapped];

@@ -1,9 +1,7 @@
 //! Many random moves. 10,000 in a plain test run; `STANDSTILL_SOAK=1000000` asks for more and prints the
 //! most work any of them took.
 
-mod grid_support;
-
-use grid_support::{Move, Random, limits, servo};
+use crate::grid_support::{Move, Random, limits, servo};
 use standstill_planner::grid::Work;
 use standstill_planner::{GridPlan, Limits, Method};
 

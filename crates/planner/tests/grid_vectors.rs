@@ -1,8 +1,6 @@
 //! The reference vectors: counts, minima, amplitudes, checkpoints and refusals.
 
-mod grid_support;
-
-use grid_support::{number, vector_move, vectors};
+use crate::grid_support::{number, vector_move, vectors};
 use serde_json::Value;
 use standstill_planner::grid::Counts;
 use standstill_planner::{GridPlan, Method, PlanError};

@@ -261,7 +261,7 @@ fn a_zero_needs_no_cap() {
     assert!(most <= 114, "{most}");
 }
 
-/// `cargo test --release -p standstill-planner --features std --test ramp_kernel -- --ignored --nocapture`
+/// `cargo test --release -p standstill-planner --features std --test all ramp_kernel -- --ignored --nocapture`
 #[test]
 #[ignore = "timing"]
 fn nanoseconds() {

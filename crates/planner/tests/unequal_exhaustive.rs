@@ -3,9 +3,7 @@
 //! Whatever fits into N scans fits into N + 1 with a longer cruise, so it is enough that nothing fits into
 //! N - 1. The thresholds and the conditions are written down here again, without the planner's code.
 
-mod grid_support;
-
-use grid_support::{Move, Random, limits, power};
+use crate::grid_support::{Move, Random, limits, power};
 use standstill_planner::UnequalPlan;
 use standstill_planner::grid::Family;
 

@@ -1,8 +1,6 @@
 //! The invariants of plans whose acceleration and deceleration differ, over seeded random moves.
 
-mod grid_support;
-
-use grid_support::{Digest, Move, Random, power, servo};
+use crate::grid_support::{Digest, Move, Random, power, servo};
 use standstill_planner::grid::Family;
 use standstill_planner::{Field, Limits, Method, OnlinePlan, Order, PlanError, Setpoint, UnequalPlan};
 

@@ -2,9 +2,7 @@
 //! changes no count of scans. Here for the grid and the papers' systems; `online_plans` and `ramp_plans` have
 //! theirs.
 
-mod grid_support;
-
-use grid_support::{Move, Random, limits, servo};
+use crate::grid_support::{Move, Random, limits, servo};
 use standstill_planner::papers::{Profile, SCurve, ShortPath, ShortPathPolicy, Timed, Tracking, Trapezoid};
 use standstill_planner::{Limits, Method, Setpoint};
 

@@ -2,9 +2,7 @@
 //!
 //! Ids: TM time, SC scan cycle, OV overrun and faults, ST starts.
 
-mod common;
-
-use common::{MS, Rig, task};
+use crate::common::{MS, Rig, task};
 use standstill_scan::{
     Fault, Mode, ProgramConfig, ProgramFault, ScanTime, Start, TaskConfig, TaskId, TimeRanBackwards, Watchdog,
 };

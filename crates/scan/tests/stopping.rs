@@ -2,9 +2,7 @@
 //!
 //! Ids: OV faults, ST starts, TM-6 nominal tick, SC-6 axes in a scan.
 
-mod common;
-
-use common::{MS, Rig, task};
+use crate::common::{MS, Rig, task};
 use standstill_axis::{
     Axis, AxisId, AxisState, Command, Direction, DriveRequest, Dynamics, ErrorId, Followed, InstanceId,
     Master, Permission, Planner, Raw, Request, ValueSource, couple,

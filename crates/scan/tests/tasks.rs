@@ -2,9 +2,7 @@
 //!
 //! Ids: CF configuration, TK tasks, OV overrun.
 
-mod common;
-
-use common::{MS, Rig, task};
+use crate::common::{MS, Rig, task};
 use standstill_scan::{
     ConfigError, Executor, ProgramConfig, TaskConfig, TaskCounts, TaskId, Watchdog, common_tick_ns,
 };

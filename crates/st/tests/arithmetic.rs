@@ -1,8 +1,8 @@
 //! What expressions are worth. Each is also worked out at work: operands are variables where it matters.
 
-mod common;
+use crate::common;
 
-use common::{ran, real, worth, wrong};
+use crate::common::{ran, real, worth, wrong};
 
 /// Covers: ST3, ST4
 #[test]

@@ -1,6 +1,6 @@
 //! Names and numbers of other systems.
 
-mod common;
+use crate::common;
 
 use standstill_st::{Compiled, Dialect, Options, Report, Source, compile};
 

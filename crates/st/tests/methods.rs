@@ -1,8 +1,6 @@
 //! Methods of function blocks.
 
-mod common;
-
-use common::{Running, wrong};
+use crate::common::{Running, wrong};
 
 fn run(text: &str) -> Running {
     let mut running = Running::new(text);

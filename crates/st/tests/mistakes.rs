@@ -1,8 +1,8 @@
 //! Mistakes: each is told at its place, with its reason, and never ends in a panic or takes long.
 
-mod common;
+use crate::common;
 
-use common::wrong;
+use crate::common::wrong;
 use standstill_st::{Code, Options, Severity, Source};
 use standstill_testkit::Random;
 use std::time::Instant;

@@ -1,8 +1,8 @@
 //! Types, units, statements and faults of whole programs.
 
-mod common;
+use crate::common;
 
-use common::{Running, compile, ran, wrong};
+use crate::common::{Running, compile, ran, wrong};
 use standstill_st::{FaultKind, Options, Source};
 
 fn run(text: &str) -> Running {

@@ -1,8 +1,8 @@
 //! Strings: what they hold, how they are compared, and their functions.
 
-mod common;
+use crate::common;
 
-use common::{Running, ran};
+use crate::common::{Running, ran};
 use standstill_st::FaultKind;
 
 /// Whether each of these is TRUE in a program with some variables.

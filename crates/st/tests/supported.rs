@@ -2,9 +2,7 @@
 //! scan, and worth what it should be; the tables must be those that this file writes. With `STANDSTILL_DOCS=update` they
 //! are written.
 
-mod common;
-
-use common::{Running, compile, wrong};
+use crate::common::{Running, compile, wrong};
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! A comparison must name the first scan and signal that differ, and by how much, and see every way in which
 //! two traces can differ.
 
-mod common;
+use crate::common;
 
 use standstill_trace::compare::compare;
 use standstill_trace::{Cell, Header, Input, Trace, csv};

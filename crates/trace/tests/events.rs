@@ -1,8 +1,6 @@
 //! Events must tell what changed, when, in the order of cause and effect, and stay silent where values
 //! merely run along.
 
-mod common;
-
 use standstill_trace::{
     Axis, Cell, Direction, Header, Input, Instance, Limits, Note, Pin, Trace, events_text, extremes,
     extremes_text,

@@ -1,7 +1,7 @@
 //! The companion of a golden must hold every bit, be the same for the same trace, be small, and notice
 //! damage.
 
-mod common;
+use crate::common;
 
 use standstill_trace::exact::{ExactError, decode, decode_within, digest_of, encode};
 use standstill_trace::{Trace, digest, subjects};

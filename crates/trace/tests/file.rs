@@ -1,6 +1,6 @@
 //! Traces in files: the name decides the form, the header goes along, and errors name the file.
 
-mod common;
+use crate::common;
 
 use std::fs;
 use std::io;

@@ -1,7 +1,7 @@
 //! CSV and JSON Lines must carry every bit there and back, and say clearly what is wrong with a file that
 //! is not ours, or not all there.
 
-mod common;
+use crate::common;
 
 use standstill_trace::{Cell, Header, Trace, cell_text, csv, digest, jsonl};
 

@@ -1,7 +1,7 @@
 //! Goldens on disk: what is accepted is judged the same, every difference is seen and named, and insta
 //! reads the very files.
 
-mod common;
+use crate::common;
 
 use std::fs;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! The golden text must tell what happened, stay short, and change where behaviour changes and only there.
 
-mod common;
+use crate::common;
 
 use standstill_trace::{Axis, Cell, Claim, ClaimVerdict, Header, Limits, Trace, golden, subjects};
 

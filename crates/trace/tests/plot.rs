@@ -1,6 +1,6 @@
 //! The terminal plot must show curves that fit their labels and lose no edge.
 
-mod common;
+use crate::common;
 
 use standstill_trace::plot::plot;
 use standstill_trace::{Cell, Header, Input, Trace};

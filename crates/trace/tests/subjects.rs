@@ -1,7 +1,7 @@
 //! Digests by subject: every bit that counts changes the digest of its subject and no other; what keeps its default, and the
 //! order of columns, change nothing: no digest, no event, no golden.
 
-mod common;
+use crate::common;
 
 use std::fs;
 

@@ -1,6 +1,6 @@
 //! Waveforms, read back with the library under Surfer: every value of every scan must be there.
 
-mod common;
+use crate::common;
 
 use std::collections::BTreeMap;
 use std::io::Cursor;

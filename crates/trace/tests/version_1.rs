@@ -1,7 +1,7 @@
 //! Goldens of version 1, which had one digest over all columns there were: they are judged by the columns they know, whatever
 //! columns came since.
 
-mod common;
+use crate::common;
 
 use std::fs;
 use std::path::{Path, PathBuf};

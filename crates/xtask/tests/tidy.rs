@@ -35,6 +35,34 @@ fn the_command_line_is_the_only_program() {
     assert_eq!(programs, ["crates/cli"]);
 }
 
+/// Where Cargo is not to look for tests itself, one that is not named would not run.
+#[test]
+fn every_file_of_tests_is_part_of_a_program() {
+    let crates = fs::read_dir(root().join("crates"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    for folder in crates {
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        if !manifest.contains("autotests = false") {
+            continue;
+        }
+        let main = fs::read_to_string(folder.join("tests/main.rs")).unwrap();
+        for entry in fs::read_dir(folder.join("tests")).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_stem().unwrap().to_str().unwrap();
+            let is_module = is(&path, "rs") || path.join("mod.rs").exists();
+            let is_named = name == "main"
+                || main.contains(&format!("\nmod {name};\n"))
+                || manifest.contains(&format!("\nname = \"{name}\"\n"));
+            assert!(
+                !is_module || is_named,
+                "{}: tests/main.rs does not name it",
+                path.display()
+            );
+        }
+    }
+}
+
 #[test]
 fn every_block_has_a_timing_picture() {
     let files = generated();

@@ -1,7 +1,7 @@
 //! Drives that tell what is no number, or far too large a one, in any scan of any motion.
 
-use crate::rig::{Random, Rig, STEP, Told, Upset};
-use crate::{MOTIONS, begin};
+use super::rig::{Random, Rig, STEP, Told, Upset};
+use super::{MOTIONS, begin};
 use standstill_axis::{
     AxisState, Command, Direction, DriveHoming, DrivePosition, DriveReport, Dynamics, ErrorClass, ErrorId,
     Permission, Request, TorqueReport,

@@ -1,6 +1,4 @@
 //! What the grid tests share: the reference vectors, seeded random moves and a digest.
-#![allow(dead_code)] // Each test binary uses a part of it.
-
 use serde_json::Value;
 use standstill_planner::{GridPlan, Limits, Method, PlanError, Setpoint};
 pub use standstill_testkit::Random;

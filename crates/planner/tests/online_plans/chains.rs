@@ -208,7 +208,7 @@ fn chains_with_changing_limits_meet_every_target() {
     println!("{worst:?}");
 }
 
-/// `cargo test --release -p standstill-planner --features std --test online_plans -- --ignored --nocapture`
+/// `cargo test --release -p standstill-planner --features std --test all online_plans -- --ignored --nocapture`
 #[test]
 #[ignore = "some minutes in release"]
 fn millions_of_replans_of_each_kind() {

@@ -76,7 +76,7 @@ fn no_cap_is_reached_from_outside_the_limits() {
     );
 }
 
-/// `cargo test --release -p standstill-planner --features std --test online_plans -- --ignored --nocapture`
+/// `cargo test --release -p standstill-planner --features std --test all online_plans -- --ignored --nocapture`
 #[test]
 #[ignore = "a minute in release"]
 fn millions_of_plans_reach_no_cap() {

@@ -1,8 +1,8 @@
 //! The tables of docs/papers.md: published against ours, written from the code.
 
-use crate::generator::{first_difference, sequential};
-use crate::published::static_formula;
-use crate::support::{bounds, case, case_bounds, cases, integrated, number, numbers};
+use super::generator::{first_difference, sequential};
+use super::published::static_formula;
+use super::support::{bounds, case, case_bounds, cases, integrated, number, numbers};
 use serde_json::Value;
 use standstill_planner::papers::{SCurve, ShortPath, ShortPathPolicy, Stepper, Timed, Tracking, Trapezoid};
 use standstill_planner::{Limits, Setpoint};

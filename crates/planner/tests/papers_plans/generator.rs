@@ -5,7 +5,7 @@
 //! the switching instants are sixteen. With them the generator gives the plan's forward-Euler chain sample by
 //! sample, two samples after the start edge.
 
-use crate::support::Random;
+use super::support::Random;
 use standstill_planner::grid::Euler;
 use standstill_planner::{GridPlan, Limits, Method};
 

@@ -1,6 +1,6 @@
 //! Every case of tests/data/planner3-published.json.
 
-use crate::support::{
+use super::support::{
     Random, bounds, case, case_bounds, cases, close, cube_root, integrated_until, number, numbers,
     random_bounds, same_profile,
 };

@@ -1,6 +1,6 @@
 //! Rest to rest: limits, landing, least time, symmetry, scaling, and the second view.
 
-use crate::support::{
+use super::support::{
     Random, bounds, case, case_bounds, cube_root, integrated, keeps_its_word, number, numbers, random_bounds,
     rounds,
 };

@@ -1,6 +1,6 @@
 //! Between two velocities: limits, landing, reversal in time, the policies, and least time.
 
-use crate::support::{Random, bounds, keeps_its_word, random_bounds, rounds};
+use super::support::{Random, bounds, keeps_its_word, random_bounds, rounds};
 use standstill_planner::kernel::MAX_STEPS;
 use standstill_planner::papers::{SCurve, ShortPath, ShortPathPolicy, ShortPathType};
 use standstill_planner::{Field, Limits, PlanError};

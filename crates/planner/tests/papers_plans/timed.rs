@@ -1,6 +1,6 @@
 //! Moves in a given time: limits, landing, the least duration, and the bridge to the least-time profile.
 
-use crate::support::{Random, bounds, keeps_its_word, random_bounds, rounds};
+use super::support::{Random, bounds, keeps_its_word, random_bounds, rounds};
 use standstill_planner::papers::{SCurve, Timed, Trapezoid};
 use standstill_planner::{Field, Limits, Order, PlanError};
 

@@ -1,6 +1,6 @@
 //! Targets that move: nothing jumps, limits are kept, and the end is exactly the last target.
 
-use crate::support::{Random, bounds, rounds};
+use super::support::{Random, bounds, rounds};
 use standstill_planner::papers::{Tracking, peaks};
 use standstill_planner::{Limits, Order, Setpoint};
 

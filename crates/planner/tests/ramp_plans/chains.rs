@@ -1,6 +1,6 @@
 //! Long chains of ramps, each starting in the middle of the one before.
 
-use crate::support::{self, ORDERS, Random, integrate};
+use super::support::{self, ORDERS, Random, integrate};
 use standstill_planner::{Limits, Order, RampPlan, Setpoint};
 use std::hint::black_box;
 use std::time::Instant;
@@ -88,7 +88,7 @@ fn forward_chains_keep_every_limit_and_never_reverse() {
     assert!(worst.steps < 40, "{worst:?}");
 }
 
-/// `cargo test --release -p standstill-planner --test ramp_plans -- --ignored --nocapture`
+/// `cargo test --release -p standstill-planner --test all ramp_plans -- --ignored --nocapture`
 #[test]
 #[ignore = "some seconds in release"]
 fn a_million_chained_ramps() {

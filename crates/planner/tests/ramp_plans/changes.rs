@@ -1,6 +1,6 @@
 //! Reversals, limits that change on the way, and starts outside them.
 
-use crate::support::{self, ORDERS, Random, integrate};
+use super::support::{self, ORDERS, Random, integrate};
 use standstill_planner::kernel::MAX_STEPS;
 use standstill_planner::{Excess, Limits, OnlinePlan, Order, RampPlan, Setpoint};
 use std::vec::Vec;
@@ -113,7 +113,7 @@ fn chains_with_changing_limits_arrive_and_tell_their_excess() {
     );
 }
 
-/// `cargo test --release -p standstill-planner --test ramp_plans -- --ignored --nocapture`
+/// `cargo test --release -p standstill-planner --test all ramp_plans -- --ignored --nocapture`
 #[test]
 #[ignore = "some seconds in release"]
 fn a_million_ramps_with_changing_limits() {

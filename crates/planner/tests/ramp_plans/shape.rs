@@ -1,6 +1,6 @@
 //! Least time, symmetry, continuity: what a ramp is, rather than what it keeps.
 
-use crate::support::{self, ORDERS, Random};
+use super::support::{self, ORDERS, Random};
 use standstill_planner::{Limits, Order, PlanError, RampPlan, Setpoint};
 use std::vec::Vec;
 

@@ -1,7 +1,7 @@
 //! Ramps to the other sign with a deceleration of its own, begun where it is hardest: late in a stop that
 //! brakes harder than the motion that follows may speed up, or the other way round.
 
-use crate::support::{self, ORDERS, Random, integrate};
+use super::support::{self, ORDERS, Random, integrate};
 use standstill_planner::{Limits, Order, RampPlan, Setpoint};
 
 /// Limits whose acceleration and deceleration are up to twenty times apart, either way.
@@ -67,7 +67,7 @@ fn a_turn_begun_late_in_a_stop_keeps_every_limit() {
     println!("{:?}", late_turns(81, 30_000));
 }
 
-/// `cargo test --release -p standstill-planner --test ramp_plans -- --ignored --nocapture`
+/// `cargo test --release -p standstill-planner --test all ramp_plans -- --ignored --nocapture`
 #[test]
 #[ignore = "some seconds in release"]
 fn millions_of_late_turns() {

@@ -1,8 +1,8 @@
 //! What the schema accepts the reader accepts, and the other way round: every value of three scripts is exchanged for others,
 //! every key left out, and every object given one that it does not have.
 
-use crate::cases::GOOD;
-use crate::schema::Validator;
+use super::cases::GOOD;
+use super::schema::Validator;
 use serde_json::{Value, json};
 use standstill_script::read;
 use std::collections::BTreeMap;

@@ -1,7 +1,7 @@
 //! Bad scripts by hand: each has exactly one error, of the code written beside it, and the messages together
 //! are a snapshot to be read.
 
-use crate::cases::{GOOD, cases};
+use super::cases::{GOOD, cases};
 use standstill_script::{CELLS_MAX, Code, ENTITIES_MAX, SCANS_MAX, ScriptError, read};
 use std::collections::BTreeSet;
 use std::fmt::Write;

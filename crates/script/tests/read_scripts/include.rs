@@ -1,6 +1,6 @@
 //! Scripts that include machine files: what comes of them, and messages that name the right file.
 
-use crate::cases::GOOD;
+use super::cases::GOOD;
 use standstill_axis::StartState;
 use standstill_script::{ScriptError, read_with};
 use std::fmt::Write;

@@ -1,7 +1,7 @@
 //! Whatever is done to a script, reading it ends in a script or in at least one message with a place in the
 //! text, never in a panic. Seeded, so a failure comes back.
 
-use crate::cases::GOOD;
+use super::cases::GOOD;
 use standstill_script::{format, read};
 use standstill_testkit::Random;
 

@@ -1,6 +1,6 @@
 //! Scripts with programs: what is read of them, and a message for everything that can be wrong with one.
 
-use crate::cases::GOOD;
+use super::cases::GOOD;
 use standstill_fb::PinType;
 use standstill_script::{ScriptError, model::Script, read_with_programs};
 use std::fmt::Write;

@@ -1,6 +1,6 @@
 //! The JSON Schema against an independent validator, the committed file, and the reader.
 
-use crate::cases::{By, GOOD, cases};
+use super::cases::{By, GOOD, cases};
 use boon::{Compiler, SchemaIndex, Schemas};
 use standstill_script::{machine_schema, map_schema, read, schema, sweep_schema};
 use std::path::{Path, PathBuf};

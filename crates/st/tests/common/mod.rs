@@ -1,6 +1,4 @@
 //! Programs in Structured Text, compiled, checked by a validator of others, and run.
-#![allow(dead_code)]
-
 use standstill_axis::{IdealDrive, Standard};
 use standstill_fb::Value;
 use standstill_guest::{Fault, Guest, Program, Settings, SymbolType};

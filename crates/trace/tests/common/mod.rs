@@ -3,8 +3,6 @@
 //! The positions are those of a snap-limited profile, summed up from polynomial segments, so files and
 //! predictors meet the kind of numbers they are made for.
 
-#![allow(dead_code, reason = "each test target takes what it needs")]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -7,5 +7,4 @@ mod ends;
 mod last;
 mod scans;
 mod shape;
-#[path = "../ramp_plans/support.rs"]
-mod support;
+use crate::ramp_plans::support;

@@ -2,11 +2,9 @@
 //!
 //! matiec is in no package registry, so this says SKIP where there is none. What else is accepted here and not there stands in `docs/structured-text.md`.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod matiec;
 
-use common::{Running, compiled};
+use crate::common::{Running, compiled};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -4,5 +4,5 @@ mod chains;
 mod changes;
 mod excess;
 mod shape;
-mod support;
+pub mod support;
 mod turns;

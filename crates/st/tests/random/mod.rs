@@ -3,11 +3,9 @@
 //! Without clang it says SKIP; with `CI` in the environment that is a failure. `STANDSTILL_ST_PROGRAMS=100000` runs as many,
 //! `STANDSTILL_ST_SEED` others.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod generate;
 
-use common::{Running, compile, valid};
+use crate::common::{Running, compile, valid};
 use generate::{Generated, Random, generate};
 use standstill_guest::Settings;
 use std::path::PathBuf;

@@ -1,0 +1,7 @@
+//! The tests of this crate, in one program: linking one costs more than running most of them.
+
+mod common;
+mod long_gear;
+mod scan_order;
+mod stopping;
+mod tasks;
