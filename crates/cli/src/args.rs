@@ -134,6 +134,8 @@ pub enum Command {
         #[arg(long, value_name = "MAP.json")]
         map: PathBuf,
     },
+    /// Find the frequency and the damping with which a machine swings, from a trace or a recording
+    Identify(IdentifyArguments),
     /// Plan moves: one JSON object a line in, one a line out
     Plan {
         /// The lines; standard input if absent or `-`
@@ -687,5 +689,68 @@ mod tests {
     #[test]
     fn the_arguments_are_consistent() {
         Arguments::command().debug_assert();
+    }
+}
+
+/// What is looked at for a swing.
+#[derive(Debug, clap::Args)]
+pub struct IdentifyArguments {
+    /// The trace (.csv, .jsonl, .exact), or with --time the recording of a machine (CSV)
+    pub trace: PathBuf,
+    /// The column that swings [default: of each axis ActualPosition - Position, in the longest rest of the set-point after a
+    /// motion]
+    #[arg(long, value_name = "NAME")]
+    pub signal: Option<String>,
+    /// Look at nothing before this time
+    #[arg(long, value_name = "TIME", value_parser = period)]
+    pub from: Option<u64>,
+    /// Look at nothing after this time
+    #[arg(long, value_name = "TIME", value_parser = period)]
+    pub to: Option<u64>,
+    /// It is a recording, whose times stand in this column
+    #[arg(long, value_name = "NAME", requires = "signal")]
+    pub time: Option<String>,
+    /// What these times count
+    #[arg(long, value_enum, default_value_t = TimeUnit::Seconds, requires = "time")]
+    pub unit: TimeUnit,
+    /// As one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl IdentifyArguments {
+    /// The times (ns) that are looked at, first and last.
+    pub fn window(&self) -> (i64, i64) {
+        let ns =
+            |time: Option<u64>, absent| time.map_or(absent, |time| i64::try_from(time).unwrap_or(i64::MAX));
+        (ns(self.from, 0), ns(self.to, i64::MAX))
+    }
+}
+
+/// What the times of a recording count.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum TimeUnit {
+    /// Seconds
+    #[value(name = "s")]
+    Seconds,
+    /// Milliseconds
+    #[value(name = "ms")]
+    Milliseconds,
+    /// Microseconds
+    #[value(name = "us")]
+    Microseconds,
+    /// Nanoseconds
+    #[value(name = "ns")]
+    Nanoseconds,
+}
+
+impl From<TimeUnit> for standstill_trace::foreign::Unit {
+    fn from(unit: TimeUnit) -> Self {
+        match unit {
+            TimeUnit::Seconds => Self::Seconds,
+            TimeUnit::Milliseconds => Self::Milliseconds,
+            TimeUnit::Microseconds => Self::Microseconds,
+            TimeUnit::Nanoseconds => Self::Nanoseconds,
+        }
     }
 }

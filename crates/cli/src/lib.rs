@@ -16,6 +16,7 @@ mod explain;
 mod export;
 mod failing;
 mod fmt;
+mod identify;
 mod init;
 mod json;
 mod junit;
@@ -117,6 +118,7 @@ fn is_data(command: &Command) -> bool {
         },
         Command::Run(arguments) => arguments.json,
         Command::Test { json, .. } | Command::Explain { json, .. } => *json,
+        Command::Identify(arguments) => arguments.json,
         Command::Live(_)
         | Command::Watch(_)
         | Command::Serve(_)
@@ -239,6 +241,7 @@ fn dispatch(command: &Command, out: &mut dyn Write) -> Result<Exit, Failure> {
             trace,
             map,
         } => compare::compare(recording, trace, map, out),
+        Command::Identify(arguments) => identify::identify(arguments, out),
         Command::Plan {
             file,
             samples,

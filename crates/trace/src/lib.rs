@@ -45,6 +45,7 @@ mod panels;
 pub mod plot;
 mod printable;
 mod read;
+pub mod ring_down;
 pub mod story;
 pub mod subjects;
 pub mod svg;

@@ -9,6 +9,7 @@ mod files;
 mod golden_files;
 mod golden_text;
 mod plot;
+mod ring_down;
 mod subjects;
 mod vcd;
 mod version_1;

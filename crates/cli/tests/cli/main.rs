@@ -7,6 +7,7 @@ mod compare;
 mod ends;
 mod export;
 mod fmt;
+mod identify;
 mod init;
 mod live;
 mod long;
