@@ -321,6 +321,8 @@ pub struct Axis<P: Planner = Standard> {
     was: Seen,
     /// Nothing is new where some axis may follow another; never stale where it is TRUE.
     is_settled: bool,
+    /// In its last step nothing was new, nor for its masters.
+    has_gone_on: bool,
     /// Reached in the search for a ring that is under way.
     is_above: bool,
     /// The owner is MC_Stop, stands, and is held by its Execute.
@@ -401,6 +403,7 @@ impl<P: Planner> Axis<P> {
             is_followed: false,
             was: Seen::default(),
             is_settled: false,
+            has_gone_on: false,
             is_above: false,
             stop_held: false,
             queue: Queue::default(),

@@ -442,12 +442,13 @@ fn number(name: &str) -> Option<u64> {
 }
 
 /// Episodes that failed once, of the first 10^6: a plan onto a line far away, whose positions were coarser than those the slave
-/// publishes; and a gear that is lost in the scan in which it was reached, whose law begins there all the same.
+/// publishes; a gear that is lost in the scan in which it was reached, whose law begins there all the same; and a slave of a slave
+/// whose master came to another ratio within one scan.
 ///
 /// Covers: G45
 #[test]
-fn slaves_near_0_move_onto_lines_far_away_within_their_limits() {
-    for episode in [47_924, 52_412, 68_061, 78_519, 206_899] {
+fn slaves_of_episodes_that_failed_once_keep_their_limits() {
+    for episode in [47_924, 52_412, 68_061, 78_519, 206_899, 623_206] {
         let result = Episode::new(episode).run();
         assert_eq!(result, Ok(()), "episode {episode}");
     }

@@ -132,6 +132,7 @@ impl<P: Planner> Axis<P> {
     /// Before a step in which something may be new.
     pub(crate) fn begin_anew(&mut self) {
         self.unsettle();
+        self.has_gone_on = false;
         self.note_source();
     }
 
@@ -176,7 +177,8 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     fn went_on(&self) -> Option<(usize, u64)> {
         match &self.motion {
-            Motion::Geared => {
+            // Where something was new for it, or for a master of it, its slaves look at the step as it did.
+            Motion::Geared if self.has_gone_on => {
                 let coupling = self.coupling.as_ref().filter(|_| self.is_settled)?;
                 let known = &coupling.known[0];
                 Some((known.root, known.elapsed))
@@ -235,6 +237,7 @@ impl<P: Planner> Axis<P> {
         }
         known.elapsed = elapsed;
         self.source = Source::Gear;
+        self.has_gone_on = true;
         if room.is_straight && room.holds_step(&self.setpoint, &next) {
             self.publish(next);
         } else {
