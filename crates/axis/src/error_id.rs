@@ -158,7 +158,7 @@ error_ids! {
     CamScalingInvalid = 157, "MasterScaling or SlaveScaling is 0, NaN or infinite, or an offset is NaN or beyond 1e15.",
         "Give finite numbers, and scalings other than 0; a negative SlaveScaling mirrors the cam.";
     CouplingRatioTooFine = 158, "Master and slave both have turns, and a turn of the one is no ratio of integers below 2^63 turns of the other.",
-        "Give lengths of turns that have a common measure, such as 360 and 400, or a simpler ratio.";
+        "Give lengths of turns that have a common measure, such as 360 and 400, or a ratio within the limit that the record in the log names.";
     MasterSourceInvalid = 159, "MasterValueSource is mcCommandedValue, which is no motion that could be followed, or mcActualValue of a master that counts no increments, which the filter of actual values needs.",
         "Use mcSetValue (1); for actual values give the master a scaling, or 0 as its coupling.actual_filter.";
     ProfileTableInvalid = 160, "A profile's table has no point after the start, more than 40, a DeltaTime that is not above 0 (the first may be 0) or that TimeScale makes less than 1e-9 of a cycle, or a value that is NaN or infinite.",

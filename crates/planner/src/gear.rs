@@ -99,6 +99,17 @@ impl Gear {
         })
     }
 
+    /// The largest numerator, without its sign, and denominator that [`Gear::new`] takes whatever the other one is, where both axes
+    /// have these turns (u); 0 where it takes none.
+    pub fn largest_ratio(master_turn: f64, slave_turn: f64) -> [f64; 2] {
+        let Some([up, down]) = common_measures(master_turn, slave_turn) else {
+            return [0.0; 2];
+        };
+        let divisor = common_divisor(up, down);
+        let most = |turn: u128| (WHOLE_MOST - 1).checked_div(turn / divisor);
+        [up, down].map(|turn| most(turn).map_or(0.0, |most| most as f64))
+    }
+
     /// The same gear the other way round: where the slave went up it goes down.
     pub fn reversed(self) -> Self {
         let reversed = |turns: Turns| Turns {
@@ -351,14 +362,9 @@ pub(crate) fn in_first_turn(position: Double, length: f64) -> (i64, f64) {
 
 /// `numerator` / `denominator` times the quotient of two lengths above 0, in lowest terms.
 fn ratio_of_turns(numerator: i16, denominator: u16, master: f64, slave: f64) -> Option<Turns> {
-    let (master, master_power) = odd(master)?;
-    let (slave, slave_power) = odd(slave)?;
-    let shift = master_power - slave_power;
-    let up = u128::from(numerator.unsigned_abs()) * u128::from(master);
-    let down = u128::from(denominator) * u128::from(slave);
-    // 69 bits at most; more than 58 of shift do not fit, whatever divides both.
-    let shifted = |value: u128, by: i32| (by <= 58).then(|| value << by.max(0));
-    let (up, down) = (shifted(up, shift)?, shifted(down, -shift)?);
+    let [master, slave] = common_measures(master, slave)?;
+    let up = u128::from(numerator.unsigned_abs()) * master;
+    let down = u128::from(denominator) * slave;
     let divisor = common_divisor(up, down);
     let (up, down) = (up / divisor, down / divisor);
     if up >= WHOLE_MOST || down >= WHOLE_MOST {
@@ -369,6 +375,16 @@ fn ratio_of_turns(numerator: i16, denominator: u16, master: f64, slave: f64) -> 
         slave: if numerator < 0 { -up } else { up },
         master: down as i64,
     })
+}
+
+/// Two lengths above 0 as integers of at most 111 bits of one measure.
+fn common_measures(master: f64, slave: f64) -> Option<[u128; 2]> {
+    let (master, master_power) = odd(master)?;
+    let (slave, slave_power) = odd(slave)?;
+    let shift = master_power - slave_power;
+    // With 16 bits of a ratio 127; more than 58 of shift do not fit, whatever divides both.
+    let shifted = |value: u64, by: i32| (by <= 58).then(|| u128::from(value) << by.max(0));
+    Some([shifted(master, shift)?, shifted(slave, -shift)?])
 }
 
 /// A number above 0 as an odd integer times a power of two.
@@ -749,6 +765,21 @@ mod tests {
         );
         assert_eq!(Gear::new(1, 1, Some(1e300), Some(1e-300)), None);
         assert!(Gear::new(0, 5, Some(360.0), Some(100.0)).is_some());
+    }
+
+    #[test]
+    fn the_largest_ratio_is_taken_and_one_above_it_is_not() {
+        // 2 pi is 884279719003555 / 2^47, and 0.45 is 8106479329266893 / 2^54.
+        let turns = [core::f64::consts::TAU, 0.45];
+        let [numerator, denominator] = Gear::largest_ratio(turns[0], turns[1]);
+        assert_eq!([numerator, denominator], [81.0, 1137.0]);
+        let takes = |up, down| Gear::new(up, down, Some(turns[0]), Some(turns[1])).is_some();
+        assert!(takes(81, 1137) && takes(-81, 1137));
+        // An even denominator goes into the even numerator.
+        assert!(takes(1, 1138) && !takes(1, 1139) && !takes(82, 1) && !takes(-82, 1));
+        assert_eq!(Gear::largest_ratio(1e300, 1e-300), [0.0; 2]);
+        let [numerator, denominator] = Gear::largest_ratio(360.0, 400.0);
+        assert!(numerator > 1e17 && denominator > 1e17);
     }
 
     #[test]

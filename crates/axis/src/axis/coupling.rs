@@ -411,8 +411,14 @@ impl<P: Planner> Axis<P> {
         };
         let turn = self.modulo.as_ref().map(|modulo| modulo.length);
         let Some(gear) = Gear::new(numerator, positive, master.turn, turn) else {
-            let numerator = f64::from(numerator);
-            return refuse(pins.numerator, numerator, f64::NAN, ErrorId::CouplingRatioTooFine);
+            let [up, down] = Gear::largest_ratio(master.turn.unwrap_or_default(), turn.unwrap_or_default());
+            let (numerator, denominator) = (f64::from(numerator), f64::from(positive));
+            let (pin, value, limit) = if numerator.abs() > up {
+                (pins.numerator, numerator, up)
+            } else {
+                (pins.denominator, denominator, down)
+            };
+            return refuse(pin, value, limit, ErrorId::CouplingRatioTooFine);
         };
         Ok(Leg {
             master: master.axis,
