@@ -44,7 +44,7 @@ impl Block for McCamOut {
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self.core.scan(inputs.execute, context, |context, replaces| {
-            let (axis, scope) = context.axis(inputs.slave)?;
+            let (axis, scope) = context.slave(inputs.slave)?;
             let request = Request {
                 replaces,
                 ..Request::aborting(Command::CamOut)

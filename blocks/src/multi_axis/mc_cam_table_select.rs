@@ -181,8 +181,11 @@ impl McCamTableSelect {
 
     fn admit<P: Planner>(&self, inputs: &Inputs, context: &mut Context<'_, P>) -> Result<(), ErrorId> {
         let CamSelection { master, slave, .. } = self.selection;
-        if context.axes.get(master.index()).is_none() {
-            return Err(ErrorId::AxisUnknown);
+        let count = context.axes.len();
+        for (pin, axis) in [("Slave", slave), ("Master", master)] {
+            if axis.index() >= count {
+                return Err(context.scope.refuse_axis(pin, axis, count));
+            }
         }
         let (axis, scope) = context.axis(slave)?;
         if inputs.execution_mode.get().is_none() {

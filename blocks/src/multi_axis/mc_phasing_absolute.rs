@@ -71,7 +71,7 @@ impl Block for McPhasingAbsolute {
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let (slave, scope) = context.axis(inputs.slave)?;
+            let (slave, scope) = context.slave(inputs.slave)?;
             let request = PhaseShift {
                 master: inputs.master,
                 shift: inputs.phase_shift,

@@ -73,7 +73,7 @@ impl Block for McPhasingRelative {
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let start = &mut self.start;
         let phase = self.core.scan(inputs.execute, context, |context, _| {
-            let (slave, scope) = context.axis(inputs.slave)?;
+            let (slave, scope) = context.slave(inputs.slave)?;
             *start = slave.phase_of(inputs.master);
             let request = PhaseShift {
                 master: inputs.master,

@@ -2,9 +2,9 @@
 
 use crate::bench::{AXIS, Bench};
 use crate::{refers_to_axis, same_motion, trigger};
-use standstill_axis::{AxisId, ErrorId};
+use standstill_axis::{AxisId, ErrorId, Event};
 use standstill_blocks::REGISTRY;
-use standstill_fb::Value;
+use standstill_fb::{AnyInstance, Value};
 
 /// Covers: R38, R55, R57, T39f
 #[test]
@@ -22,6 +22,7 @@ fn an_axis_that_does_not_exist_is_an_error_until_the_next_edge() {
                 "{}: not asked for anything",
                 info.name
             );
+            let told = bench.log.total();
             bench.set(&mut block, trigger, Value::Bool(true));
             for _ in 0..3 {
                 bench.scan(&mut [&mut block]);
@@ -35,6 +36,17 @@ fn an_axis_that_does_not_exist_is_an_error_until_the_next_edge() {
                 for pin in ["Busy", "Valid", "Active", "Done", "Status"] {
                     assert!(!bench.flag(&block, pin), "{}.{pin}", info.name);
                 }
+            }
+            // No axis could tell of a slave that is none.
+            if block.info().pin("Slave").is_some() {
+                let records: Vec<_> = bench.log.since(told).map(|record| record.event).collect();
+                let refused = Event::Refused {
+                    pin: "Slave",
+                    value: f64::from(nowhere.number()),
+                    limit: 2.0,
+                    error: ErrorId::AxisUnknown,
+                };
+                assert_eq!(records, [refused], "{}", info.name);
             }
             for _ in 0..4 {
                 without.scan(&mut []);

@@ -83,13 +83,15 @@ fn check<'a, P: Planner>(
         ),
         _ => None,
     };
-    let count = axes.len() as f64;
-    let axis = axes.get_mut(slave.index()).ok_or(ErrorId::AxisUnknown)?;
+    let count = axes.len();
+    let Some(axis) = axes.get_mut(slave.index()) else {
+        return Err(scope.refuse_axis("Slave", slave, count));
+    };
     let obstacle = obstacle.filter(|(error, ..)| takes || *error != ErrorId::MasterLost);
     if let Some((error, [master_pin, source_pin], (master, source))) = obstacle {
         let (pin, value, limit) = match error {
             ErrorId::MasterSourceInvalid => (source_pin, f64::from(source as i32), 1.0),
-            ErrorId::AxisUnknown => (master_pin, f64::from(master.number()), count),
+            ErrorId::AxisUnknown => (master_pin, f64::from(master.number()), count as f64),
             _ => (master_pin, f64::from(master.number()), f64::NAN),
         };
         axis.note_refusal(pin, value, limit, error, scope);

@@ -1,6 +1,6 @@
 //! What every call of an axis is made in: the scan, who speaks, the ring that records go to, and the cams.
 
-use crate::{Cams, InstanceId, Log};
+use crate::{AxisId, Cams, ErrorId, Event, InstanceId, Log, Record};
 
 /// The scan a call belongs to, the block instance that makes it, the ring its records go to, and the store of cams.
 #[derive(Debug)]
@@ -35,5 +35,23 @@ impl<'a> Scope<'a> {
             log: self.log,
             cams: self.cams.lend(),
         }
+    }
+
+    /// Records that `axis` at `pin` is none of the `count` axes there are, which no axis could tell.
+    #[cold]
+    pub fn refuse_axis(&mut self, pin: &'static str, axis: AxisId, count: usize) -> ErrorId {
+        let error = ErrorId::AxisUnknown;
+        self.log.push(Record {
+            scan: self.scan,
+            axis,
+            instance: self.instance,
+            event: Event::Refused {
+                pin,
+                value: f64::from(axis.number()),
+                limit: count as f64,
+                error,
+            },
+        });
+        error
     }
 }

@@ -56,6 +56,18 @@ impl<'a, P: Planner> Context<'a, P> {
         Ok((axis, &mut self.scope))
     }
 
+    /// The axis at the pin Slave, and what it is called in.
+    ///
+    /// # Errors
+    /// [`ErrorId::AxisUnknown`] if there is no such axis. It is recorded.
+    pub fn slave(&mut self, id: AxisId) -> Result<(&mut Axis<P>, &mut Scope<'a>), ErrorId> {
+        let count = self.axes.len();
+        match self.axes.get_mut(id.index()) {
+            Some(axis) => Ok((axis, &mut self.scope)),
+            None => Err(self.scope.refuse_axis("Slave", id, count)),
+        }
+    }
+
     /// The axis at a pin as a master, with its turns if it has any.
     pub fn master(&self, axis: AxisId) -> Master {
         let turn = self.axes.get(axis.index()).and_then(|axis| axis.config().modulo);

@@ -93,7 +93,7 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
                     | "MasterValueSourceM2" => {
                         integer(out, value as i64)?;
                     }
-                    "Master" | "Master1" | "Master2" => match value as usize {
+                    "Master" | "Master1" | "Master2" | "Slave" => match value as usize {
                         0 => out.write_str("no axis")?,
                         number => match names.axis(number - 1) {
                             "" => whole(out, number as u64)?,
