@@ -62,7 +62,10 @@ impl<P: Planner> Axis<P> {
         if let Some(layer) = &mut self.layer {
             layer.try_soon();
         }
-        self.resume(scope);
+        // A slave that still goes the barred way would be stopped once more.
+        if !self.follows() || self.way_barred(self.setpoint.velocity).is_none() {
+            self.resume(scope);
+        }
     }
 
     /// Whether the owner has been stopped by MC_Power and waits to go on.
