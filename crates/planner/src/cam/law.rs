@@ -4,7 +4,7 @@
 //! brings the slave back to the same bits.
 
 use super::{Cam, CamBounds};
-use crate::gear::{Double, add, divided, in_first_turn};
+use crate::gear::{Double, add, divided, in_first_turn, plus};
 use crate::turns::{two_product, two_sum};
 use crate::{Anchor, Place, Setpoint};
 
@@ -51,15 +51,17 @@ impl CamLaw {
         };
         let phase = two_sum(master.phase, -from.phase);
         let way = if phase.0 == 0.0 { way } else { add(way, phase) };
-        add(
-            divided(way, self.master_scaling),
-            two_sum(self.origin, -cam.head.begin),
-        )
+        let way = if self.master_scaling == 1.0 {
+            way
+        } else {
+            divided(way, self.master_scaling)
+        };
+        add(way, two_sum(self.origin, -cam.head.begin))
     }
 
     /// The master's place on its side of the cam (u), not taken back into one period.
     pub fn unwound(&self, cam: &Cam<'_>, anchor: &Anchor, master: Place) -> f64 {
-        add(self.way(cam, anchor, master), (cam.head.begin, 0.0)).0
+        plus(self.way(cam, anchor, master), cam.head.begin).0
     }
 
     /// Where the slave is for a `master` that is there and moves as `moving` says; `near` is the piece to look at first.
@@ -73,12 +75,12 @@ impl CamLaw {
             whole_and_rest(way, length)
         } else if way.0 < 0.0 {
             (-1, (0.0, 0.0))
-        } else if add(way, (-length.0, -length.1)).0 >= 0.0 {
+        } else if way >= length {
             (1, length)
         } else {
             (0, way)
         };
-        let x = add(left, (head.begin, 0.0));
+        let x = plus(left, head.begin);
         let piece = cam.find(x.0, near);
         let rests = !head.periodic && periods != 0;
         let (from, curve) = if rests {
@@ -98,7 +100,11 @@ impl CamLaw {
             let (coarse, error) = two_product(self.slave_scaling, risen.0);
             position = add(position, (coarse, error + self.slave_scaling * risen.1));
         }
-        let position = add(position, two_sum(anchor.slave.position, anchor.slave.phase));
+        let position = if anchor.slave.phase == 0.0 {
+            plus(position, anchor.slave.position)
+        } else {
+            add(position, two_sum(anchor.slave.position, anchor.slave.phase))
+        };
         let place = self.placed(anchor, position);
         CamAt {
             place,
@@ -178,7 +184,7 @@ fn whole_and_rest(way: Double, length: Double) -> (i64, Double) {
         if left.0 < 0.0 {
             whole = whole.wrapping_sub(1);
             left = rest(whole);
-        } else if add(left, (-length.0, -length.1)).0 >= 0.0 {
+        } else if left >= length {
             whole = whole.wrapping_add(1);
             left = rest(whole);
         }
