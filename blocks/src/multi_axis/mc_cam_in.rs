@@ -175,9 +175,19 @@ impl Block for McCamIn {
         // Also in the call in which what waited has taken over at the end.
         let end_of_profile = self.ends.is_some() && self.ends != ends;
         self.ends = ends.filter(|_| phase.is_active());
+        if phase.is_reached() {
+            // Nothing else is to be told.
+            return Outputs {
+                in_sync: true,
+                busy: true,
+                active: true,
+                end_of_profile,
+                ..Outputs::default()
+            };
+        }
         let slave = slave.filter(|_| phase.is_active());
         Outputs {
-            in_sync: phase.is_reached(),
+            in_sync: false,
             busy: phase.is_busy(),
             active: phase.is_active(),
             command_aborted: phase.is_aborted(),

@@ -43,6 +43,7 @@ pub(super) use cam::OnCam;
 pub use cam::{CamFit, CamLaid};
 pub(super) use phasing::Phasing;
 use standstill_planner::{Anchor, Gear, Limits, Place, Planner, Setpoint};
+pub(super) use steady::Room;
 pub(super) use sync::Awaited;
 pub(super) use view::Kind;
 use view::SeenBoth;
@@ -152,8 +153,6 @@ pub(super) struct Coupling {
     leads_outside: Option<f64>,
     /// The limits it was last held against.
     limits: Limits,
-    /// What they leave in a scan in which nothing is new; `None` before the first of these.
-    room: Option<steady::Room>,
     /// How often the slave's own coordinates had moved.
     moves: u32,
     /// By how much the slave is off the law (u); 0 in gear, and before it was there.
@@ -242,7 +241,6 @@ impl Coupling {
             told: None,
             leads_outside: None,
             limits,
-            room: None,
             moves,
             deviation: 0.0,
             slows: false,

@@ -323,6 +323,8 @@ pub struct Axis<P: Planner = Standard> {
     is_settled: bool,
     /// In its last step nothing was new, nor for its masters.
     has_gone_on: bool,
+    /// What its limits leave in a scan in which nothing is new; `None` before the first of these behind a master.
+    room: Option<coupling::Room>,
     /// Reached in the search for a ring that is under way.
     is_above: bool,
     /// The owner is MC_Stop, stands, and is held by its Execute.
@@ -404,6 +406,7 @@ impl<P: Planner> Axis<P> {
             was: Seen::default(),
             is_settled: false,
             has_gone_on: false,
+            room: None,
             is_above: false,
             stop_held: false,
             queue: Queue::default(),

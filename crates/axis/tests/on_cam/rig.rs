@@ -2,8 +2,9 @@
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, BufferMode, CamId, CamIn, CamPiece, CamRow, CamSelection, CamSlot, Cams,
-    Command, CommandId, Direction, Dynamics, ErrorId, Event, Limits, Log, Master, Raw, Request, Scope,
-    Setpoint, Standard, StartMode, StartState, ValueSource, couple, steps,
+    Command, CommandId, Comms, Direction, DriveFeedback, DriveRequest, DriveSignals, Dynamics, ErrorId,
+    Event, Limits, Log, Master, Raw, Request, Scope, Setpoint, Standard, StartMode, StartState, ValueSource,
+    couple, steps,
 };
 use standstill_planner::CamShape;
 
@@ -40,6 +41,10 @@ pub struct Rig {
     pub peaks: [f64; 4],
     /// The largest number its positions were made of.
     pub largest: f64,
+    /// Drives tell that nothing is pending; else every motion step takes the long way.
+    pub drives_tell: bool,
+    /// Of all bits that the slave showed so far.
+    pub digest: u64,
     told: u64,
 }
 
@@ -98,6 +103,8 @@ impl Rig {
             positions: [slave.position; 5],
             peaks: [0.0; 4],
             largest: 0.0,
+            drives_tell: true,
+            digest: 0,
             told: 0,
         }
     }
@@ -183,7 +190,23 @@ impl Rig {
         );
     }
 
-    /// The motion step of a scan.
+    /// What drives that follow at once tell at the begin of a scan.
+    fn follow_drives(&mut self) {
+        for axis in &mut self.axes {
+            let command = axis.drive_command();
+            let feedback = DriveFeedback {
+                enabled: command.request == DriveRequest::Enable,
+                voltage: true,
+                fault: None,
+                position: command.position,
+                comms: Comms::Ok,
+                signals: DriveSignals::default(),
+            };
+            axis.follow_feedback(&feedback, &mut Scope::new(self.scan, &mut self.log));
+        }
+    }
+
+    /// The motion step of a scan, and the begin of the next one.
     pub fn step(&mut self) {
         let scope = &mut Scope {
             cams: Cams::new(&mut self.slots, &mut self.pieces),
@@ -191,6 +214,10 @@ impl Rig {
         };
         steps::advance(&mut self.axes, scope);
         self.scan += 1;
+        if self.drives_tell {
+            self.follow_drives();
+        }
+        self.note_bits();
         let now = self.at();
         let turn = self.slave().config().modulo;
         self.positions.rotate_right(1);
@@ -214,6 +241,28 @@ impl Rig {
         for (peak, difference) in self.peaks.iter_mut().zip(differences) {
             per /= self.cycle;
             *peak = peak.max((difference * per).abs());
+        }
+    }
+
+    fn note_bits(&mut self) {
+        let slave = &self.axes[SLAVE];
+        let state = slave.setpoint();
+        let coupled = slave.coupled();
+        let shadow = coupled.and_then(|coupled| coupled.shadow).unwrap_or(f64::NAN);
+        let numbers = [
+            state.position,
+            state.velocity,
+            state.acceleration,
+            state.jerk,
+            state.snap,
+            slave.deviation(),
+            shadow,
+            f64::from(slave.cam_ends()),
+            f64::from(u8::from(slave.is_in_gear())),
+        ];
+        for number in numbers {
+            let mixed = (self.digest ^ number.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+            self.digest = mixed.rotate_left(29);
         }
     }
 

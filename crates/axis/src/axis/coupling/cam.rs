@@ -13,6 +13,7 @@
 //! | [`shadow`] | its shadow in step with the master |
 //! | [`ahead`] | whether it keeps its limits along what the master does next |
 //! | [`beside`] | what it leaves to a shift, and to its master |
+//! | [`steady`] | the motion step in a scan in which nothing is new |
 //! | [`ends`], [`after`] | ends of periods, and what follows then |
 //! | [`laid`] | how the cam lies, for who draws it |
 //!
@@ -28,6 +29,7 @@ mod laid;
 mod onto;
 mod shadow;
 mod start;
+mod steady;
 
 use super::super::Axis;
 use super::super::commands::{Camming, Entry};

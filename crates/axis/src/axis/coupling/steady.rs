@@ -1,32 +1,32 @@
-//! A scan in which nothing is new: the slave is in gear, its master goes on as it did, and the set-point is the law.
+//! A scan in which nothing is new: the slave is in gear or in sync on a cam, its master goes on as it did, and the set-point is the
+//! law.
 //!
 //! It is what [`follow`](super::follow) does in such a scan and no more: where anything is not as it was, that is left to it, and
-//! nothing has changed yet. So a slave in gear costs little more than an axis in a move, and every bit is the same.
+//! nothing has changed yet. So such a slave costs little more than an axis in a move, and every bit is the same.
 
 use super::super::commands::ROUNDING;
 use super::super::{Axis, Calm, Motion};
 use super::follow::LONGEST;
-use super::view::{Course, Kind, Source};
+use super::view::{Course, Kind, KnownPart, Source};
 use super::{Coupling, Seen};
 use crate::{AxisId, OnLimit, Scope, ValueSource};
 use standstill_planner::{Limits, Place, Planner, Setpoint};
 
-/// What a set-point in gear may have for a scan in which nothing is new, worked out once. All of it is finite, so what is within it is
-/// a number.
+/// What the set-point of a slave may have for a scan in which nothing is new, worked out once. All of it is finite, so what is within it
+/// is a number.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Room {
+pub(in crate::axis) struct Room {
     /// Its derivatives: the limits of the slave.
     most: Limits,
     /// Way (u) from the set-point before it, and what velocity (u/s) and acceleration (u/s^2) change by: the limits of the axis.
     step: [f64; 3],
-    /// The law is that of axes without turns, and neither is shifted.
+    /// A gear: the law is that of axes without turns, and neither is shifted. A cam: the slave has no turns.
     is_straight: bool,
 }
 
 impl Room {
-    /// Of a slave in gear, on an axis of `widest` limits with this sample time (s).
-    fn new(coupling: &Coupling, widest: &Limits, cycle: f64) -> Self {
-        let (gear, limits) = (&coupling.gearing.first.gear, &coupling.limits);
+    /// Of a slave with these limits, on an axis of `widest` limits with this sample time (s).
+    fn new(limits: &Limits, widest: &Limits, cycle: f64, is_straight: bool) -> Self {
         let finite = |most: f64| most.min(f64::MAX);
         let most = |limit: f64| finite(limit * (1.0 + ROUNDING));
         let scan = LONGEST * cycle;
@@ -43,14 +43,14 @@ impl Room {
                 finite(widest.acceleration.max(widest.deceleration) * scan),
                 finite(widest.jerk * scan),
             ],
-            is_straight: coupling.anchor.is_some_and(|anchor| gear.is_straight(&anchor)),
+            is_straight,
         }
     }
 
     /// The derivatives of `next` are within the limits of the slave.
     // In line, so that the set-point stays in registers.
     #[inline(always)]
-    fn holds(&self, next: &Setpoint) -> bool {
+    pub(super) fn holds(&self, next: &Setpoint) -> bool {
         let most = &self.most;
         let rate = if next.velocity * next.acceleration < 0.0 {
             most.deceleration
@@ -74,22 +74,46 @@ impl Room {
     }
 }
 
+impl KnownPart {
+    /// What was known of the master before a scan goes on in it: it follows the plan of that axis, so many scans after its start.
+    #[inline(always)]
+    pub(super) fn goes_on(&self, (root, elapsed): (usize, u64)) -> bool {
+        // The first scan of a plan is told by where that ends.
+        self.root == root && self.elapsed.wrapping_add(1) == elapsed && elapsed > 1
+    }
+}
+
+impl Coupling {
+    /// Nothing of the coupling keeps the next step from being that of a scan in which nothing is new: it is in gear behind the set-point
+    /// of one master. The limits of the slave are these, and its coordinates have moved so often.
+    fn may_go_on(&self, limits: &Limits, moves: u32) -> bool {
+        self.rung.is_locked()
+            && self.gearing.second.is_none()
+            && self.gearing.first.source == ValueSource::Set
+            && self.anchor.is_some()
+            && self.known[0].kind == Kind::Plan
+            && self.moves == moves
+            && self.limits == *limits
+            && self.left == u64::MAX
+    }
+
+    /// The law is that of axes without turns, and neither is shifted.
+    fn is_straight(&self) -> bool {
+        let gear = &self.gearing.first.gear;
+        self.anchor.is_some_and(|anchor| gear.is_straight(&anchor))
+    }
+}
+
 impl<P: Planner> Axis<P> {
-    /// Whether nothing of its own keeps the next step from being that of a scan in which nothing is new: it is in gear behind the
-    /// set-point of one master, and neither moves beside the law nor waits for anything, nor looks at each of its steps.
+    /// Whether nothing of its own keeps the next step from being that of a scan in which nothing is new: it is in gear or in sync on a
+    /// cam, and neither moves beside the law nor waits for anything, nor looks at each of its steps.
     fn may_go_on(&self) -> bool {
-        let limits = self.slowed(&self.parameters.limits);
-        let in_gear = self.coupling.as_ref().filter(|coupling| {
-            coupling.rung.is_locked()
-                && coupling.gearing.second.is_none()
-                && coupling.gearing.first.source == ValueSource::Set
-                && coupling.anchor.is_some()
-                && coupling.known[0].kind == Kind::Plan
-                && coupling.moves == self.frame.moves()
-                && coupling.limits == limits
-                && coupling.left == u64::MAX
-        });
-        in_gear.is_some()
+        let (limits, moves) = (self.slowed(&self.parameters.limits), self.frame.moves());
+        let in_gear = self.coupling.as_ref();
+        let on_cam = self.on_cam.as_ref();
+        let is_locked = in_gear.is_some_and(|coupling| coupling.may_go_on(&limits, moves))
+            || on_cam.is_some_and(|on_cam| on_cam.may_go_on(&limits, moves));
+        is_locked
             && self.calm == Calm::Alone
             && matches!(self.motion, Motion::Geared)
             && self.in_force == limits
@@ -106,8 +130,11 @@ impl<P: Planner> Axis<P> {
     /// After a step: notes whether the next one may be that of a scan in which nothing is new.
     pub(super) fn note_steady(&mut self) {
         self.is_settled = self.may_go_on();
-        if let Some(coupling) = self.coupling.as_mut().filter(|_| self.is_settled) {
-            coupling.room = Some(Room::new(coupling, &self.config.limits, self.planner.cycle()));
+        if self.is_settled {
+            let coupling = self.coupling.as_ref();
+            let is_straight = coupling.map_or(self.modulo.is_none(), Coupling::is_straight);
+            let (limits, widest) = (&self.in_force, &self.config.limits);
+            self.room = Some(Room::new(limits, widest, self.planner.cycle(), is_straight));
         }
     }
 
@@ -169,8 +196,14 @@ impl<P: Planner> Axis<P> {
     /// The one master of a slave for which nothing is new.
     #[inline(always)]
     pub(crate) fn steady_master(&self) -> Option<AxisId> {
-        let coupling = self.coupling.as_ref().filter(|_| self.is_settled)?;
-        Some(coupling.gearing.first.master)
+        if !self.is_settled {
+            return None;
+        }
+        let coupling = self.coupling.as_ref();
+        coupling.map_or_else(
+            || self.master_on_cam(),
+            |coupling| Some(coupling.gearing.first.master),
+        )
     }
 
     /// After its step, if it went on as its slaves know it: the axis whose plan it follows, and the scans after the start of that.
@@ -198,24 +231,22 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     pub(crate) fn follow_steadily(&mut self, master: &Self, scope: &mut Scope<'_>) -> bool {
         debug_assert!(self.may_go_on());
-        let Some((root, elapsed)) = master.went_on() else {
+        let Some(plan) = master
+            .went_on()
+            .filter(|_| !master.frame.has_moved_in(scope.scan))
+        else {
             return false;
         };
         let Some(coupling) = &mut self.coupling else {
-            return false;
+            return self.follow_cam_steadily(master, plan, scope);
         };
         let (known, gear) = (&mut coupling.known[0], &coupling.gearing.first.gear);
-        // The first scan of a plan is told by where that ends.
-        let goes_on = known.root == root
-            && known.elapsed.wrapping_add(1) == elapsed
-            && elapsed > 1
-            && !master.frame.has_moved_in(scope.scan);
-        if !goes_on {
-            return false;
-        }
-        let (Some(anchor), Some(room)) = (&coupling.anchor, &coupling.room) else {
+        let (Some(anchor), Some(room)) = (&coupling.anchor, &self.room) else {
             return false;
         };
+        if !known.goes_on(plan) {
+            return false;
+        }
         let at = &master.setpoint;
         let (turns, position) = if room.is_straight
             && let Some(position) = gear.slave_straight(anchor, at.position)
@@ -235,19 +266,29 @@ impl<P: Planner> Axis<P> {
         if !room.holds(&next) {
             return false;
         }
-        known.elapsed = elapsed;
+        (_, known.elapsed) = plan;
         self.source = Source::Gear;
+        let place = Place {
+            turns,
+            position,
+            ..Place::default()
+        };
+        self.publish_steadily(place, next, scope);
+        true
+    }
+
+    /// Publishes the set-point of a scan in which nothing is new; its whole turns are those of `place`.
+    // In line, so that the set-point stays in registers.
+    #[inline(always)]
+    pub(super) fn publish_steadily(&mut self, place: Place, next: Setpoint, scope: &mut Scope<'_>) {
         self.has_gone_on = true;
-        if room.is_straight && room.holds_step(&self.setpoint, &next) {
+        if let Some(room) = &self.room
+            && room.is_straight
+            && room.holds_step(&self.setpoint, &next)
+        {
             self.publish(next);
         } else {
-            let place = Place {
-                turns,
-                position,
-                ..Place::default()
-            };
             self.publish_behind(place, next, scope);
         }
-        true
     }
 }

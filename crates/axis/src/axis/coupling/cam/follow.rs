@@ -51,6 +51,7 @@ impl<P: Planner> Axis<P> {
         self.measure_on_cam(view, scope);
         self.end_of_cam(view, scope);
         self.finish_reset();
+        self.note_steady();
     }
 
     pub(in crate::axis::coupling) fn is_locked_on_cam(&self) -> bool {

@@ -1,0 +1,63 @@
+//! A scan in which nothing is new for a slave in sync: what [`steady`](super::super::steady) is for one in gear.
+
+use super::super::super::Axis;
+use super::super::view::{Kind, Source};
+use super::{OnCam, Shadow};
+use crate::{Scope, ValueSource};
+use standstill_planner::{Limits, Planner, Setpoint};
+
+impl OnCam {
+    /// Nothing of the cam keeps the next step from being that of a scan in which nothing is new: the slave is in sync behind the
+    /// set-point of its master, and the cam is not over. The limits of the slave are these, and its coordinates have moved so often.
+    pub(in crate::axis::coupling) fn may_go_on(&self, limits: &Limits, moves: u32) -> bool {
+        self.rung.is_locked()
+            && self.camming.source == ValueSource::Set
+            && self.anchor.is_some()
+            && !self.ends.is_over()
+            && self.known[0].kind == Kind::Plan
+            && self.moves == moves
+            && self.limits == *limits
+            && self.left == u64::MAX
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// [`Axis::follow_steadily`] on a cam, behind a master that follows this `plan`: its axis, and the scans after its start. Also where
+    /// an end of the cam is reached something is new.
+    ///
+    /// Cost: one evaluation of the cam.
+    pub(in crate::axis::coupling) fn follow_cam_steadily(
+        &mut self,
+        master: &Self,
+        plan: (usize, u64),
+        scope: &mut Scope<'_>,
+    ) -> bool {
+        let (Some(on_cam), Some(room)) = (&mut self.on_cam, &self.room) else {
+            return false;
+        };
+        let (Some(anchor), Some(cam)) = (&on_cam.anchor, scope.cams.cam(on_cam.camming.cam)) else {
+            return false;
+        };
+        if !on_cam.known[0].goes_on(plan) {
+            return false;
+        }
+        let place = master.place();
+        let moving = Setpoint {
+            position: place.position,
+            ..master.setpoint
+        };
+        let law = &on_cam.camming.law;
+        let at = law.at(&cam, anchor, place, &moving, on_cam.at.piece);
+        let mut ends = on_cam.ends;
+        if ends.note(&cam, &at).is_some() || !room.holds(&at.state) {
+            return false;
+        }
+        (_, on_cam.known[0].elapsed) = plan;
+        on_cam.ends = ends;
+        on_cam.at = at;
+        on_cam.shadow = Some(Shadow { place, at: moving });
+        self.source = Source::Other;
+        self.publish_steadily(at.place, at.state, scope);
+        true
+    }
+}
