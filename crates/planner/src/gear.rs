@@ -343,6 +343,9 @@ pub(crate) fn divided(value: Double, by: f64) -> Double {
 
 /// Whole turns, and the rest in [0, `length`).
 pub(crate) fn in_first_turn(position: Double, length: f64) -> (i64, f64) {
+    if position.0 > 0.0 && position.0 < length {
+        return (0, position.0);
+    }
     let rest = |turns: i64| {
         let (whole, error) = two_product(turns as f64, length);
         add(position, (-whole, -error))

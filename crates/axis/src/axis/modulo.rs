@@ -59,6 +59,15 @@ impl Modulo {
         self.stood = None;
     }
 
+    /// In this turn the axis may go from one position to the other, and both are called what they are.
+    #[inline]
+    pub fn stays_in(&self, turns: i64, positions: [f64; 2]) -> bool {
+        let turn = 0.0..self.length;
+        turns == self.turns
+            && self.stood.is_none()
+            && positions.iter().all(|position| turn.contains(position))
+    }
+
     /// As programs see it.
     #[inline(never)]
     pub fn shown(&self, setpoint: &Setpoint) -> Setpoint {

@@ -5,6 +5,7 @@
 //! nothing has changed yet. So such a slave costs little more than an axis in a move, and every bit is the same.
 
 use super::super::commands::ROUNDING;
+use super::super::modulo::Modulo;
 use super::super::{Axis, Calm, Motion};
 use super::follow::LONGEST;
 use super::view::{Course, Kind, KnownPart, Source};
@@ -20,7 +21,7 @@ pub(in crate::axis) struct Room {
     most: Limits,
     /// Way (u) from the set-point before it, and what velocity (u/s) and acceleration (u/s^2) change by: the limits of the axis.
     step: [f64; 3],
-    /// A gear: the law is that of axes without turns, and neither is shifted. A cam: the slave has no turns.
+    /// It is in gear by a law of axes without turns, and neither is shifted.
     is_straight: bool,
 }
 
@@ -131,8 +132,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn note_steady(&mut self) {
         self.is_settled = self.may_go_on();
         if self.is_settled {
-            let coupling = self.coupling.as_ref();
-            let is_straight = coupling.map_or(self.modulo.is_none(), Coupling::is_straight);
+            let is_straight = self.coupling.as_ref().is_some_and(Coupling::is_straight);
             let (limits, widest) = (&self.in_force, &self.config.limits);
             self.room = Some(Room::new(limits, widest, self.planner.cycle(), is_straight));
         }
@@ -282,8 +282,10 @@ impl<P: Planner> Axis<P> {
     #[inline(always)]
     pub(super) fn publish_steadily(&mut self, place: Place, next: Setpoint, scope: &mut Scope<'_>) {
         self.has_gone_on = true;
+        let positions = [self.setpoint.position, next.position];
+        let stays = |modulo: &Modulo| modulo.stays_in(place.turns, positions);
         if let Some(room) = &self.room
-            && room.is_straight
+            && self.modulo.as_ref().is_none_or(stays)
             && room.holds_step(&self.setpoint, &next)
         {
             self.publish(next);
