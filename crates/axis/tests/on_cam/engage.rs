@@ -477,3 +477,36 @@ fn a_stop_from_speed_is_followed() {
     }
     rig.keeps_limits().unwrap();
 }
+
+/// A line of its master far away makes the places of a shadow no coarser than they are.
+///
+/// Covers: G45
+#[test]
+fn a_slave_near_0_keeps_its_limits_behind_a_master_far_away() {
+    let fast = Limits {
+        velocity: 1e5,
+        acceleration: 1e6,
+        deceleration: 1e6,
+        jerk: 1e8,
+        snap: 1e10,
+    };
+    let slow = Limits {
+        velocity: 50.0,
+        acceleration: 500.0,
+        deceleration: 500.0,
+        jerk: 5e3,
+        snap: 1e5,
+    };
+    let mut rig = Rig::new(config(fast, 0.0, None), config(slow, 0.0, None));
+    // As steep everywhere, so that its shadow takes all of a limit.
+    let rows = [row(0.0, 0.0, CamShape::Line), row(360.0, 100.0, CamShape::Line)];
+    let cam = rig.select(&rows, RELATIVE);
+    let cam_in = rig.cam_in(cam);
+    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.run(1e5);
+    rig.steps(1000);
+    rig.run(5.0);
+    rig.steps(1500);
+    assert!(rig.slave().deviation() < -1e4 && rig.at().abs() < 200.0);
+    assert_eq!(rig.keeps_limits(), Ok(()));
+}

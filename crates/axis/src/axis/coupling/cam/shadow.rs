@@ -9,7 +9,7 @@ use super::super::view::{UNKNOWN, View};
 use super::onto::{Choice, LEAST, Stretch, Way};
 use super::{Curve, Rung, Shadow};
 use crate::Approach;
-use standstill_planner::{DirectedLimits, Excess, Lead, Limits, MoveProfile, Plan, Planner, Setpoint};
+use standstill_planner::{DirectedLimits, Excess, Lead, Limits, MoveProfile, Place, Plan, Planner, Setpoint};
 
 /// Velocities of a shadow that are tried.
 const SPEEDS: usize = 4;
@@ -283,11 +283,13 @@ impl<P: Planner> Axis<P> {
         let speed = stretch.velocity.abs();
         let along = limits.velocity - speed;
         let turn = curve.law.master_turn.unwrap_or(0.0);
+        // Beside a line through the shadow: places beside one far away would be as coarse as that is far.
         let start = Setpoint {
-            position: apart(shadow.place, stretch.now, turn) + laps,
+            position: 0.0,
             velocity: shadow.at.velocity - stretch.velocity,
             ..shadow.at
         };
+        let way = -(apart(shadow.place, stretch.now, turn) + laps);
         if !(along > LEAST * limits.velocity) {
             return None;
         }
@@ -310,7 +312,7 @@ impl<P: Planner> Axis<P> {
             .planner
             .move_by_direction(
                 &start,
-                0.0,
+                way,
                 &own(limits, along, against),
                 &own(limits, wider, wider),
             )
@@ -322,7 +324,10 @@ impl<P: Planner> Axis<P> {
             exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
             motion: Motion::closing(plan),
             rung: Rung::BesideLine {
-                start: stretch.now,
+                start: Place {
+                    position: shadow.place.position + laps,
+                    ..shadow.place
+                },
                 velocity: stretch.velocity,
                 begin: stretch.begin,
             },
