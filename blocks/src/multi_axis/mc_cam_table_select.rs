@@ -273,7 +273,7 @@ impl McCamTableSelect {
         let selection = self.selection;
         let (axis, scope) = context.axis(selection.slave)?;
         self.highest = axis.check_cam(head, &selection, velocity, scope)?;
-        self.continuity = head.continuity;
+        self.continuity = head.smooth.continuity;
         Ok(())
     }
 }

@@ -105,10 +105,17 @@ pub struct Following {
     pub actual_filter: u32,
     /// As a master of actual values: its slaves see it ahead by what the filter delays at its present velocity.
     pub actual_lead: bool,
+    /// How many derivatives of a cam must go on without a jump, at most [`CAM_CONTINUITY_MAX`]; `None` for as many as its order
+    /// asks for: 3 with a snap limit, 2 with a jerk limit, 1 without. Where that is more, it comes to rest at the rows at which one
+    /// jumps.
+    pub cam_continuity: Option<u8>,
 }
 
 /// Longest average of the filter of actual values (scans). Its ring takes 16 bytes of every axis for each.
 pub const ACTUAL_FILTER_MAX: u32 = 64;
+
+/// Most derivatives of a cam that can be asked to go on.
+pub const CAM_CONTINUITY_MAX: u8 = 3;
 
 impl Default for Following {
     fn default() -> Self {
@@ -117,13 +124,14 @@ impl Default for Following {
 }
 
 impl Following {
-    /// It lags as far as it must; a lost master is an error; averages of 16 scans, without a lead.
+    /// It lags as far as it must; a lost master is an error; averages of 16 scans, without a lead; cams as smooth as its order.
     pub const DEFAULT: Self = Self {
         on_limit: OnLimit::Lag,
         max_deviation: None,
         on_master_lost: OnMasterLost::Error,
         actual_filter: 16,
         actual_lead: false,
+        cam_continuity: None,
     };
 }
 
@@ -358,6 +366,11 @@ impl AxisConfig {
                 snap: self.limits.snap,
             });
         }
+        if let Some(value) = self.following.cam_continuity
+            && value > CAM_CONTINUITY_MAX
+        {
+            return Err(ConfigError::CamContinuity { value });
+        }
         if self.queue > QUEUE_MAX {
             return Err(ConfigError::Queue { value: self.queue });
         }
@@ -489,6 +502,11 @@ pub enum ConfigError {
         /// Length (u).
         value: f64,
     },
+    /// More derivatives of a cam are to go on than are looked at.
+    CamContinuity {
+        /// So many.
+        value: u8,
+    },
     /// An average of actual values is longer than [`ACTUAL_FILTER_MAX`].
     ActualFilter {
         /// Scans asked for.
@@ -568,6 +586,7 @@ impl ConfigError {
             Self::PositionOutsideModulo { .. } => "position",
             Self::ModuloWithSoftwareLimits => "software_limits",
             Self::ActualFilter { .. } | Self::ActualFilterOff { .. } => "coupling.actual_filter",
+            Self::CamContinuity { .. } => "coupling.cam_continuity",
             Self::Queue { .. } => "queue",
             Self::OverrideMax { .. } => "override_max",
             Self::Profile { .. } => "profile",
@@ -617,6 +636,10 @@ impl fmt::Display for ConfigError {
             Self::ModuloNotRational { value } => write!(
                 f,
                 "modulo is {value:?}: with this scaling a turn is no fraction of increments with parts below 2^63; choose a unit of which a turn is a whole number"
+            ),
+            Self::CamContinuity { value } => write!(
+                f,
+                "coupling.cam_continuity is {value}: at most {CAM_CONTINUITY_MAX} derivatives are looked at"
             ),
             Self::ActualFilter { value } => write!(
                 f,

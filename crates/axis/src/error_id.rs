@@ -149,8 +149,8 @@ error_ids! {
         "Use mcShortest (0), mcCatchUp (1) or mcSlowDown (2).";
     CamTableInvalid = 153, "The rows of a cam are no cam: fewer than 2 or more than 512, a Master that is not above the one before, a number that is NaN or infinite, or a Law that is not defined; or the store of cams has no room for it.",
         "The record in the log names the row and the field, or what the store lacks; the size of the store is set up with the machine (cams).";
-    CamNotSmooth = 154, "A derivative of the cam jumps that the slave can't let jump: its order asks for as many continuous ones.",
-        "The record in the log names the row, the derivative and the jump. Use mcCamRest7 or mcCamThrough for slaves with a snap limit, mcCamRest5 for those with a jerk limit; without periods begin and end at rest.";
+    CamNotSmooth = 154, "A derivative of the cam jumps that the slave can't let jump: its limits, or its cam_continuity, ask for as many continuous ones.",
+        "The record in the log names the row, the derivative and the jump. Use mcCamRest7 or mcCamThrough for slaves with a snap limit, mcCamRest5 for those with a jerk limit; without periods begin and end at rest. With a lower coupling.cam_continuity the slave stops at such rows.";
     CamUnknown = 155, "CamTableID is no cam: it was never selected, is not complete yet, or was selected anew since.",
         "Wire CamTableID of MC_CamTableSelect and wait for its Done.";
     SyncPositionInvalid = 156, "MasterSyncPosition, SlaveSyncPosition, MasterStartDistance or SwitchAt is NaN or further from 0 than 1e15, on a modulo axis not in its first turn, or not in the cam.",

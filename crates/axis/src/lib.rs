@@ -41,8 +41,9 @@ pub use command::{
     Trigger, ValueSource,
 };
 pub use config::{
-    ACTUAL_FILTER_MAX, AboveLimit, AxisConfig, ConfigError, Defaults, EdgeWhileBusy, Following, InPosition,
-    JogAtLimit, MODULO_MAX, ModuloTargets, OnLimit, OnMasterLost, PowerOff, StartState, StopLimits,
+    ACTUAL_FILTER_MAX, AboveLimit, AxisConfig, CAM_CONTINUITY_MAX, ConfigError, Defaults, EdgeWhileBusy,
+    Following, InPosition, JogAtLimit, MODULO_MAX, ModuloTargets, OnLimit, OnMasterLost, PowerOff,
+    StartState, StopLimits,
 };
 pub use couple::{couple, update_coupled};
 pub use drive::{

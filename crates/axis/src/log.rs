@@ -33,6 +33,8 @@ pub enum Approach {
     Pace,
     /// On a cam: a move in its own coordinates to a place of the curve.
     Move,
+    /// On a cam: along it to rest at a row at which a derivative jumps.
+    Corner,
 }
 
 impl Approach {
@@ -43,6 +45,7 @@ impl Approach {
             Self::Stretch => "stretch",
             Self::Pace => "pace",
             Self::Move => "move",
+            Self::Corner => "corner",
         }
     }
 }
@@ -186,6 +189,15 @@ pub enum Event {
         velocity: f64,
         /// The velocity limit of the master.
         limit: f64,
+    },
+    /// A cam was selected at a row of which the slave comes to rest, as its limits do not let a derivative jump.
+    CamStops {
+        /// The row with the largest jump, from 1.
+        row: u16,
+        /// Which derivative, as a table calls it.
+        what: &'static str,
+        /// By how much.
+        jump: f64,
     },
     /// The axis goes onto a cam.
     OnCam {

@@ -79,7 +79,7 @@ impl AxisSetup {
             jog_at_limit: 0,
             modulo_targets: 0,
             edge_while_busy: 0,
-            reserved: 0,
+            cam_continuity: 0,
         }
     }
 
@@ -160,6 +160,10 @@ impl AxisSetup {
                     scans => u32::try_from(scans).unwrap_or(0),
                 },
                 actual_lead: self.actual_lead != 0,
+                cam_continuity: match self.cam_continuity {
+                    0 => None,
+                    given => Some(u8::try_from(given.max(0)).unwrap_or(u8::MAX)),
+                },
             },
             application_limits: self.application_limits(&limits),
             stop: self.stop(),
@@ -589,6 +593,7 @@ mod tests {
         ("coupling.on_master_lost", |axis| axis.on_master_lost = 1),
         ("coupling.actual_filter", |axis| axis.actual_filter = -1),
         ("coupling.actual_lead", |axis| axis.actual_lead = 1),
+        ("coupling.cam_continuity", |axis| axis.cam_continuity = -1),
     ];
 
     /// A host in C can set up what a script can.

@@ -197,8 +197,9 @@ pub struct AxisSetup {
     pub modulo_targets: i32,
     /// A rising edge of Execute while the instance is Busy: 0 starts the command anew, 1 does nothing.
     pub edge_while_busy: i32,
-    /// 0.
-    pub reserved: u32,
+    /// How many derivatives of a cam must go on without a jump for a slave, 1 to 3; below 0: none; 0: 3 with a snap limit, 2 with
+    /// a jerk limit, 1 without. Where its limits ask for more, it stops at the rows at which one jumps.
+    pub cam_continuity: i32,
 }
 
 /// The drive under an axis. drive_defaults gives an ideal one.

@@ -143,12 +143,14 @@ fn as_text(table: &CamTable, asked: Asked<'_>, fit: &Fit) -> String {
         ("software limits", limits),
         (
             "continuity",
-            format!("{}, {slave} needs {}", head.continuity, fit.needed),
+            format!("{}, {slave} needs {}", fit.continuity, fit.needed),
         ),
         ("MaxMasterVelocity", format!("{}{master}", figure(fit.highest))),
     ];
+    let stops: Vec<_> = fit.stops_at.iter().map(usize::to_string).collect();
+    let stops = (!stops.is_empty()).then(|| ("rests at", format!("rows {}", stops.join(", "))));
     let mut text = format!("{} on {slave}\n", table.name);
-    for (what, fact) in facts {
+    for (what, fact) in facts.into_iter().chain(stops) {
         text.push_str(&format!("  {what:<17}  {fact}\n"));
     }
     let heads = [
@@ -273,10 +275,13 @@ fn as_json(table: &CamTable, asked: Asked<'_>, fit: &Fit, exit: Exit) -> String 
         object = object.with("software_limits", part.text());
     }
     let continuity = Object::new()
-        .with("found", head.continuity.to_string())
+        .with("found", fit.continuity.to_string())
         .with("needed", fit.needed.to_string());
+    object = object.with("continuity", continuity.text());
+    if !fit.stops_at.is_empty() {
+        object = object.with("stops_at", list(fit.stops_at.iter().map(usize::to_string)));
+    }
     object = object
-        .with("continuity", continuity.text())
         .with("bounds", bounds(&head.bounds))
         .with("max_master_velocity", number(fit.highest));
     if let Some(master) = asked.master {

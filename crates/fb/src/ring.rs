@@ -193,6 +193,12 @@ impl FlatRecord {
                 record.event = 22;
                 (record.value, record.limit) = (velocity, limit);
             }
+            Event::CamStops { row, what, jump } => {
+                record.event = 29;
+                record.count = row.into();
+                record.value = jump;
+                record.name = what;
+            }
             Event::OnCam { master, cam } => {
                 record.event = 23;
                 record.count = master.number().into();

@@ -32,6 +32,7 @@ pub mod turns;
 
 pub use cam::{
     Cam, CamAt, CamBounds, CamBuild, CamCause, CamFault, CamHead, CamLaw, CamPiece, CamRow, CamShape,
+    CamSmooth,
 };
 pub use error::{Field, PlanError};
 pub use gear::{Anchor, Gear, Place};

@@ -178,7 +178,7 @@ fn points_of_a_polynomial_give_it_back() {
         let x = f64::from(step) / 1000.0;
         assert!((made.at(x)[0] - value(x)).abs() < 1e-13, "{x}");
     }
-    assert_eq!(made.head.continuity, 3);
+    assert_eq!(made.head.smooth.continuity, 3);
 }
 
 /// Where another law, or the end of a cam without periods, knows the derivatives, points take them.
@@ -195,7 +195,10 @@ fn estimated_points_join_their_neighbours() {
     ];
     let made = made(&rows, false).unwrap();
     // Only the straight line begins with a corner.
-    assert_eq!((made.head.continuity, made.head.jump), (0, (1, 2.0)));
+    assert_eq!(
+        (made.head.smooth.continuity, made.head.smooth.jump),
+        (0, (1, 2.0))
+    );
     let near = |x: f64| made.at(x);
     for (join, expected) in [(10.0, 2.0), (30.0, 0.0), (50.0, 0.0), (60.0, 0.0)] {
         let [_, slope, curvature, ..] = near(join - 1e-9);
@@ -218,20 +221,20 @@ fn continuity_is_told_with_the_row_and_the_jump() {
         .head
     };
     let rest = CamShape::Rest7;
-    assert_eq!(triple(rest, rest, rest).continuity, 3);
+    assert_eq!(triple(rest, rest, rest).smooth.continuity, 3);
     let fives = triple(CamShape::Rest5, CamShape::Rest5, rest);
-    assert_eq!(fives.continuity, 2);
+    assert_eq!(fives.smooth.continuity, 2);
     // -60/8 after 60: at row 2 by 67.5, at row 1 by as much.
-    assert_eq!(fives.jump, (2, 67.5));
+    assert_eq!(fives.smooth.jump, (2, 67.5));
     let lines = triple(CamShape::Line, CamShape::Line, rest);
-    assert_eq!((lines.continuity, lines.jump), (0, (2, 1.5)));
+    assert_eq!((lines.smooth.continuity, lines.smooth.jump), (0, (2, 1.5)));
     let mixed = triple(rest, CamShape::Line, rest);
-    assert_eq!((mixed.continuity, mixed.jump), (0, (2, 0.5)));
+    assert_eq!((mixed.smooth.continuity, mixed.smooth.jump), (0, (2, 0.5)));
     // One straight line around the period has no corner; without periods it has two.
     let line = [row(0.1, 0.0, CamShape::Line), row(0.8, 2.1, CamShape::Line)];
-    assert_eq!(made(&line, true).unwrap().head.continuity, 3);
+    assert_eq!(made(&line, true).unwrap().head.smooth.continuity, 3);
     let slope = 2.1 / (0.8 - 0.1);
-    assert_eq!(made(&line, false).unwrap().head.jump, (1, slope));
+    assert_eq!(made(&line, false).unwrap().head.smooth.jump, (1, slope));
 }
 
 /// Covers: G80

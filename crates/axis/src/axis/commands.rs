@@ -122,6 +122,8 @@ pub(super) struct Camming {
     /// Which values of it are followed: set or actual ones.
     pub source: ValueSource,
     pub cam: CamId,
+    /// So many of its derivatives go on without a jump.
+    pub continuity: u8,
     /// Scalings and turns; where the cam begins is found when it is laid.
     pub law: CamLaw,
     /// The places of the table are those of the axes.

@@ -2,9 +2,9 @@
 
 use super::{Bounds, Holds, Key, Null, Object};
 use crate::{
-    ACTUAL_FILTER_MAX, AboveLimit, AxisConfig, BlockDetection, EdgeWhileBusy, HomeDirection, InPosition,
-    JogAtLimit, MODULO_MAX, ModuloTargets, OnLimit, OnMasterLost, PowerOff, Procedure, QUEUE_MAX, Scaling,
-    StartState, SwitchEdge,
+    ACTUAL_FILTER_MAX, AboveLimit, AxisConfig, BlockDetection, CAM_CONTINUITY_MAX, EdgeWhileBusy,
+    HomeDirection, InPosition, JogAtLimit, MODULO_MAX, ModuloTargets, OnLimit, OnMasterLost, PowerOff,
+    Procedure, QUEUE_MAX, Scaling, StartState, SwitchEdge,
 };
 use standstill_planner::{Limits, MoveProfile};
 
@@ -675,6 +675,19 @@ const COUPLING: &[Key<AxisConfig>] = &[
         "false",
         "slaves of its actual values see it ahead by the delay of the averages"
     ),
+    Key {
+        path: "coupling.cam_continuity",
+        doc: "how many derivatives of a cam must go on without a jump (0 to 3); where its limits ask for more, it stops at the rows at which one jumps",
+        absent: Some("3 with a snap limit, 2 with a jerk limit, 1 without"),
+        null: None,
+        holds: Holds::Whole {
+            range: (0, CAM_CONTINUITY_MAX as u64),
+            get: |config| config.following.cam_continuity.map(Into::into),
+            set: |config, value| {
+                config.following.cam_continuity = Some(u8::try_from(value).unwrap_or(CAM_CONTINUITY_MAX));
+            },
+        },
+    },
 ];
 
 const PROCEDURES: [&str; Procedure::ALL.len()] = {

@@ -49,6 +49,7 @@ impl Judge {
         let u = (x - from.master) / width;
         let (u2, u4) = (u * u, u * u * u * u);
         let shape = match from.shape {
+            CamShape::Line => u,
             CamShape::Rest7 => u4 * (35.0 + u * (-84.0 + u * (70.0 - 20.0 * u))),
             CamShape::Rest5 => u2 * u * (10.0 + u * (-15.0 + 6.0 * u)),
             shape => panic!("{shape:?} is not drawn"),
@@ -65,9 +66,18 @@ fn limits(random: &mut Random, velocity: f64, order: u64) -> Limits {
         velocity,
         acceleration,
         deceleration: acceleration,
-        jerk,
-        snap: if order == 3 { f64::INFINITY } else { snap },
+        jerk: if order == 2 { f64::INFINITY } else { jerk },
+        snap: if order < 4 { f64::INFINITY } else { snap },
     }
+}
+
+/// As of [`rows`], with straight pieces and jerks that step.
+fn rows_with_corners(random: &mut Random, order: u64) -> Vec<CamRow> {
+    let mut rows = rows(random, order);
+    for row in &mut rows {
+        row.shape = random.one_of(&[CamShape::Line, CamShape::Line, CamShape::Rest5, CamShape::Rest7]);
+    }
+    rows
 }
 
 fn rows(random: &mut Random, order: u64) -> Vec<CamRow> {
@@ -185,9 +195,19 @@ fn adds(rig: &mut Rig, random: &mut Random, velocity: f64) {
 /// An episode; with `more` something is added, the start waits or the master is slowed down. Where drives do not tell, every motion step
 /// takes the long way. Returns the digest of all that the slave showed.
 fn play(seed: u64, master_order: u64, more: bool, drives_tell: bool, tally: &mut Tally) -> u64 {
+    play_on(seed, master_order, (more, drives_tell, false), tally)
+}
+
+/// The same, with `corners` on cams that stop their slaves.
+fn play_on(
+    seed: u64,
+    master_order: u64,
+    (more, drives_tell, corners): (bool, bool, bool),
+    tally: &mut Tally,
+) -> u64 {
     let random = &mut Random(seed);
     let other = &mut Random(seed ^ 0x5EED);
-    let order = random.one_of(&[3, 4, 4]);
+    let order = random.one_of(if corners { &[2, 3, 4] } else { &[3, 4, 4] });
     let velocity = random.log(20.0, 500.0);
     let master = limits(random, velocity, 4);
     let master = Limits {
@@ -203,7 +223,11 @@ fn play(seed: u64, master_order: u64, more: bool, drives_tell: bool, tally: &mut
         },
         ..master
     };
-    let rows = rows(random, order);
+    let rows = if corners {
+        rows_with_corners(random, order)
+    } else {
+        rows(random, order)
+    };
     let periodic = random.below(4) > 0;
     let steepest = rows.windows(2).map(|pair| {
         let [from, to] = pair else { unreachable!("a pair") };
@@ -217,6 +241,9 @@ fn play(seed: u64, master_order: u64, more: bool, drives_tell: bool, tally: &mut
     let mut slave_config = config(slave, at, None);
     if more && other.below(4) == 0 {
         slave_config.following.on_limit = standstill_axis::OnLimit::SlowMaster;
+    }
+    if corners {
+        slave_config.following.cam_continuity = Some(0);
     }
     let mut rig = Rig::new(config(master, start, None), slave_config);
     rig.drives_tell = drives_tell;
@@ -286,6 +313,12 @@ fn play(seed: u64, master_order: u64, more: bool, drives_tell: bool, tally: &mut
         return episode.rig.digest;
     }
     tally.episodes += 1;
+    if std::env::var("CAM_LOOK").is_ok() {
+        println!(
+            "{:?} periodic {periodic} {scalings:?} {offsets:?} {slave:?}",
+            episode.judge.rows
+        );
+    }
     let mut gave_up = false;
     for scan in 0..3000 {
         if scan % 500 == 499 || (scan == 0 && random.below(3) == 0) {
@@ -300,7 +333,12 @@ fn play(seed: u64, master_order: u64, more: bool, drives_tell: bool, tally: &mut
             let over = rig.peaks[3] > slave.snap * (1.0 + 1e-6);
             let events = rig.events();
             if !events.is_empty() {
-                println!("{} {events:?}", rig.scan);
+                println!(
+                    "{} {events:?} {:?} {:?}",
+                    rig.scan,
+                    rig.axes[MASTER].setpoint(),
+                    rig.state()
+                );
             }
             assert!(!over, "{:?} {:?}", rig.slave().coupled(), rig.slave().outlook());
         }
@@ -411,6 +449,25 @@ fn random_episodes_keep_limits_and_curve() {
     println!("{tally:?}");
     assert!(tally.waited > 0 && tally.shifted > 0 && tally.moved_on > 0);
     assert!(tally.in_sync > 0 && tally.lagging > 0 && tally.off_curve > 0 && tally.ends > 0);
+}
+
+/// Limits and curve hold on cams with corners, too: a slave that may not jump there comes to rest at each of them.
+///
+/// Covers: G71
+#[test]
+fn random_cams_with_corners_keep_limits_and_curve() {
+    let mut tally = Tally::default();
+    let number = |name: &str| std::env::var(name).ok().and_then(|number| number.parse().ok());
+    let first = number("CAM_FIRST").unwrap_or(0);
+    for seed in first..first + number("CAM_EPISODES").unwrap_or(120) {
+        play_on(seed, 4, (false, true, true), &mut tally);
+        play_on(seed, 4, (true, true, true), &mut tally);
+        if seed % 4 == 0 {
+            play_on(seed, 2 + (seed / 4) % 2, (seed % 8 == 0, true, true), &mut tally);
+        }
+    }
+    println!("{tally:?}");
+    assert!(tally.in_sync > 0 && tally.lagging > 0 && tally.ends > 0);
 }
 
 /// Found among 60,000: sync lost in states that need care, and cams that begin on an end.

@@ -610,6 +610,136 @@ fn a_table_of_a_script_is_named_where_there_are_several() {
     );
 }
 
+/// Covers: G80
+#[test]
+fn a_bad_file_of_a_script_is_told_with_its_own_line_and_column_and_nothing_runs() {
+    let place = scratch("cam_file_of_script");
+    let script = "{\"standstill\": 1, \"cycle\": \"T#1ms\", \"scans\": 1, \"axes\": {\"S\": {\"limits\": {\"velocity\": 1, \"acceleration\": 1}}},\n\
+        \"tables\": {\"knife\": {\"type\": \"MC_CAM_POINT\", \"csv\": \"knife.csv\"}}, \"blocks\": []}\n";
+    write(&place, "knife.scan.json", script);
+    let cases: [(&[u8], &str, &str); 6] = [
+        (
+            b"Master\n0\n1\n",
+            "knife.csv:1:1: the column `Slave` is missing",
+            "name it",
+        ),
+        (
+            b"Master;Slave\n0;0\n90;1,5\n",
+            "knife.csv:3:4: `1,5` is no number for `Slave` (LREAL)",
+            "write a decimal point, 1.5 for 1,5",
+        ),
+        (
+            b"Master,Slave\n0,0\n90,\xFC\n",
+            "knife.csv:3:4: the byte 16#FC is no UTF-8",
+            "save the file as UTF-8",
+        ),
+        (
+            b"Master,Slave\n0,0\n90,1\n80,2\n",
+            "knife.csv:4:1: `Master` (column 1) is 80.0 after 90.0 in the row before",
+            "places of the master rise",
+        ),
+        (
+            b"Master,Slave\n0,0\n90,\x1b[31m\n",
+            "knife.csv:3:4: `[31m` is no number for `Slave` (LREAL)",
+            "write a finite number",
+        ),
+        (
+            b"Master,Slave\n0,0\n",
+            "knife.csv:2:1: 1 row is no cam",
+            "give 2 rows at least",
+        ),
+    ];
+    for (bytes, expected, remedy) in cases {
+        std::fs::write(place.join("knife.csv"), bytes).unwrap();
+        let ended = standstill(&place, &["run", "knife.scan.json", "--trace", "out.csv"]);
+        assert_eq!((ended.status, ended.out.as_str()), (3, ""), "{}", ended.err);
+        assert!(ended.err.contains(expected), "{expected}: {}", ended.err);
+        assert!(ended.err.contains("knife.scan.json:2:"), "{}", ended.err);
+        assert!(ended.err.contains(remedy), "{remedy}: {}", ended.err);
+        assert!(!ended.err.contains('\x1b'), "{}", ended.err);
+        assert!(!place.join("out.csv").exists());
+    }
+}
+
+/// Covers: G71
+#[test]
+fn a_slave_that_takes_corners_is_told_where_it_rests() {
+    let place = scratch("cam_corners");
+    let machine = |continuity: &str| {
+        format!(
+            "{{\"standstill\": 1, \"axes\": {{\"S\": {{\"limits\": {{\"velocity\": 400, \"acceleration\": 5000, \"jerk\": 100000}}{continuity}}},\n\
+             \"T\": {{\"limits\": {{\"velocity\": 400, \"acceleration\": 5000}}}}}}}}\n"
+        )
+    };
+    write(
+        &place,
+        "knife.csv",
+        "Master,Slave,Law\n0,0,3\n90,50,3\n180,100,3\n270,0,4\n360,0,4\n",
+    );
+    let check = |continuity: &str, more: &[&str]| {
+        write(&place, "cell.machine.json", &machine(continuity));
+        let asked = ["cam", "check", "knife.csv", "--axis"];
+        standstill(&place, &[&asked[..], more].concat())
+    };
+    let takes = ", \"coupling\": {\"cam_continuity\": 0}";
+    // At row 2 the straight lines go on as one.
+    let ended = check(takes, &["cell.machine.json#S", "--periodic"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    assert!(
+        ended.out.contains("  continuity         0, S needs 0\n"),
+        "{}",
+        ended.out
+    );
+    assert!(
+        ended.out.contains("  rests at           rows 1, 3, 4\n"),
+        "{}",
+        ended.out
+    );
+    let ended = check(takes, &["cell.machine.json#S", "--periodic", "--json"]);
+    let found: Value = serde_json::from_str(&ended.out).unwrap();
+    is_an_outcome(&found);
+    assert_eq!(found["stops_at"], serde_json::json!([1, 3, 4]));
+    assert_eq!(found["continuity"]["needed"], 0);
+    for (continuity, more, part) in [
+        ("", "cell.machine.json#S", "S has a jerk limit"),
+        (
+            ", \"coupling\": {\"cam_continuity\": 1}",
+            "cell.machine.json#S",
+            "S has a cam_continuity",
+        ),
+        (
+            "",
+            "cell.machine.json#T",
+            "corners would take T an endless acceleration",
+        ),
+    ] {
+        let ended = check(continuity, &[more, "--periodic"]);
+        assert_eq!(ended.status, 1, "{}", ended.out);
+        assert!(
+            ended.out.contains("error 154 CamNotSmooth") && ended.out.contains(part),
+            "{}",
+            ended.out
+        );
+        assert!(!ended.out.contains("rests at"), "{}", ended.out);
+    }
+    // Without a jerk limit a slope at the ends is taken.
+    write(&place, "knife.csv", "Master,Slave,Law\n0,0,3\n90,50,3\n");
+    let ended = check("", &["cell.machine.json#T"]);
+    assert_eq!(ended.status, 0, "{}", ended.out);
+    assert!(
+        ended
+            .out
+            .contains("  continuity         3, T needs 1\n  MaxMasterVelocity"),
+        "{}",
+        ended.out
+    );
+    assert!(
+        ended.out.contains("  rests at           rows 1, 2\n"),
+        "{}",
+        ended.out
+    );
+}
+
 #[test]
 fn a_picture_has_a_panel_for_each_derivative() {
     let place = scratch("cam_plot");

@@ -3,6 +3,7 @@
 use super::{Cam, CamPiece};
 use crate::math::{cbrt, floor, sqrt};
 use crate::profile::check::{cut, halved, hull};
+use crate::profile::curve::Slopes;
 use crate::{Limits, Setpoint};
 
 /// Halvings of a piece on the way to its bounds.
@@ -234,6 +235,11 @@ impl CamBounds {
             sqrt(sqrt(limits.snap / self.fourth)),
         ];
         by_velocity.min(by_acceleration).min(by_jerk).min(by_snap)
+    }
+
+    /// Those of the first three derivatives.
+    pub(super) const fn of_slopes(&self) -> Slopes {
+        [self.first, self.second, self.third]
     }
 
     /// The slave rests, however its master moves.

@@ -1,12 +1,10 @@
 //! Rows into pieces, some in each call, so that no scan has all the work of a long table.
 
 use super::bounds::CamBounds;
+use super::corners::{CamSmooth, is_jump};
 use super::rows::{LEVEL, Rows};
 use super::{CAM_ROWS, CamCause, CamFault, CamHead, CamPiece, CamRow};
 use crate::profile::curve::{Curve, Slopes};
-
-/// How much of the largest value of a derivative in the cam is no jump of it.
-const SAME: f64 = 1e-9;
 
 /// The largest jump of each derivative: the row, from 1, and the size.
 type Jumps = [(usize, f64); 3];
@@ -172,24 +170,28 @@ impl CamBuild {
         let (first, last) = (self.first, self.last);
         if self.head.periodic {
             self.note_jumps(1, last, first);
-        } else {
+        }
+        self.head.smooth_inside = self.smooth();
+        if !self.head.periodic {
             // Before its first row and behind its last the slave rests.
             self.note_jumps(1, LEVEL, first);
             self.note_jumps(self.count, last, LEVEL);
         }
+        self.head.smooth = self.smooth();
         let end = row(self.count.saturating_sub(1)).unwrap_or_default();
         (self.head.end, self.head.to) = (end.master, end.slave);
-        let bounds = &self.head.bounds;
-        let largest = [bounds.first, bounds.second, bounds.third];
-        self.head.continuity = 0;
-        for (jump, largest) in self.jumps.into_iter().zip(largest) {
-            if !(jump.1 <= SAME * largest) {
-                self.head.jump = jump;
-                break;
-            }
-            self.head.continuity += 1;
-        }
         self.head
+    }
+
+    fn smooth(&self) -> CamSmooth {
+        let jumps = self.jumps.into_iter().zip(self.head.bounds.of_slopes());
+        let first = jumps
+            .enumerate()
+            .find(|(_, (jump, largest))| is_jump(jump.1, *largest));
+        first.map_or(CamSmooth::DEFAULT, |(order, (jump, _))| CamSmooth {
+            continuity: u8::try_from(order).unwrap_or_default(),
+            jump,
+        })
     }
 }
 

@@ -9,12 +9,14 @@
 //! | `build` | rows into pieces, some in each call |
 //! | `rows` | the derivatives that a row leaves open |
 //! | `bounds` | what a piece is bounded by, and what that leaves to the master |
+//! | `corners` | where a derivative jumps |
 //! | `law` | the place of the slave for a place of the master: periods, scalings, the chain rule |
 //!
 //! All lengths on the master's side are in units of the master (u), those of the slave in units of the slave (y).
 
 mod bounds;
 mod build;
+mod corners;
 mod law;
 mod rows;
 
@@ -22,6 +24,7 @@ use crate::Setpoint;
 use crate::profile::curve::Curve;
 pub use bounds::CamBounds;
 pub use build::CamBuild;
+pub use corners::CamSmooth;
 pub use law::{CamAt, CamLaw};
 
 /// Most rows of a cam.
@@ -109,10 +112,10 @@ pub struct CamHead {
     pub periodic: bool,
     /// What its derivatives are bounded by.
     pub bounds: CamBounds,
-    /// The highest order up to which all derivatives go on without a jump: 0 for corners, at most 3.
-    pub continuity: u8,
-    /// The largest jump of the derivative that is the first to jump: at which row, from 1, and by how much.
-    pub jump: (usize, f64),
+    /// How smooth it is, with the rest before its first row and behind its last where it has no periods.
+    pub smooth: CamSmooth,
+    /// The same without that rest: from its first row to its last.
+    pub smooth_inside: CamSmooth,
 }
 
 impl Default for CamHead {
@@ -125,8 +128,8 @@ impl Default for CamHead {
             range: (0.0, 0.0),
             periodic: false,
             bounds: CamBounds::default(),
-            continuity: 3,
-            jump: (0, 0.0),
+            smooth: CamSmooth::DEFAULT,
+            smooth_inside: CamSmooth::DEFAULT,
         }
     }
 }

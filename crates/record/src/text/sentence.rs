@@ -26,6 +26,7 @@ pub fn subject<'n>(names: &'n impl Called, record: &Record) -> &'n str {
         | Event::Superimposed { .. }
         | Event::RoomAwaited
         | Event::CamSelected { .. }
+        | Event::CamStops { .. }
         | Event::Orphaned => names.instance(record.instance.0).unwrap_or(axis),
         Event::Unavoidable(_)
         | Event::Planned { .. }
@@ -213,6 +214,10 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
             out.write_str("cam fast enough: the master may go up to ")?;
             real(out, velocity)
         }
+        Event::CamStops { row, what, jump } => {
+            write!(out, "cam stops its slave: row {row}, {what} jumps by ")?;
+            real(out, jump)
+        }
         Event::OnCam { master, .. } => {
             out.write_str("onto a cam behind ")?;
             out.write_str(names.axis(master.index()))
@@ -226,7 +231,8 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
             out.write_str(": ")?;
             out.write_str(way.name())?;
             if way != Approach::Difference {
-                out.write_str(if way == Approach::Move { " to " } else { " at " })?;
+                let leads = matches!(way, Approach::Move | Approach::Corner);
+                out.write_str(if leads { " to " } else { " at " })?;
                 real(out, value)?;
             }
             in_scans(out, scans)

@@ -64,6 +64,14 @@ impl Curve {
         &self.pieces
     }
 
+    /// The rows, from 1, at which one of the first `order` derivatives jumps. The last row of a cam with periods is its first.
+    #[must_use]
+    pub fn corners(&self, order: usize) -> Vec<usize> {
+        let rows = self.pieces.len() + usize::from(!self.head.periodic);
+        let jumps = |row: &usize| self.cam().jumps_at(row - 1, order).is_some();
+        (1..=rows).filter(jumps).collect()
+    }
+
     fn cam(&self) -> Cam<'_> {
         Cam {
             head: &self.head,

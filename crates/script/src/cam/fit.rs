@@ -127,6 +127,10 @@ pub struct Fit {
     pub curve: Curve,
     /// How many derivatives the slave needs to go on.
     pub needed: usize,
+    /// How many do, where it needs them to.
+    pub continuity: usize,
+    /// The rows, from 1, at which it comes to rest: a derivative jumps that its limits do not let jump.
+    pub stops_at: Vec<usize>,
     /// Whether all places are inside its software limits, if it has some.
     pub inside: bool,
     /// The highest constant velocity of the master (u/s): MaxMasterVelocity.
@@ -175,6 +179,12 @@ pub fn fit(table: &CamTable, asked: Asked<'_>) -> Result<Fit, CamError> {
         .collect();
     Ok(Fit {
         needed: fits.needed,
+        continuity: fits.smooth.continuity.into(),
+        stops_at: if refused == Some(ErrorId::CamNotSmooth) {
+            Vec::new()
+        } else {
+            curve.corners(fits.limits_need)
+        },
         inside: fits.outside.is_none(),
         highest: fits.highest,
         stretches,
@@ -187,17 +197,18 @@ pub fn fit(table: &CamTable, asked: Asked<'_>) -> Result<Fit, CamError> {
 /// A derivative jumps that must not.
 fn rough(table: &CamTable, curve: &Curve, fits: &CamFit, asked: Asked<'_>) -> Option<Finding> {
     let head = &curve.head;
-    let continuity = usize::from(head.continuity);
+    let continuity = usize::from(fits.smooth.continuity);
     if continuity >= fits.needed {
         return None;
     }
-    let (row, jump) = head.jump;
+    let (row, jump) = fits.smooth.jump;
     let what = CamFit::DERIVATIVES.get(continuity)?;
     let name = &asked.slave.name;
-    let why = match fits.needed {
-        3 => format!("{name} has a snap limit"),
-        2 => format!("{name} has a jerk limit"),
-        _ => format!("corners would take {name} an endless acceleration"),
+    let why = match (asked.slave.config.following.cam_continuity, fits.needed) {
+        (Some(_), _) => format!("{name} has a cam_continuity"),
+        (None, 3) => format!("{name} has a snap limit"),
+        (None, 2) => format!("{name} has a jerk limit"),
+        (None, _) => format!("corners would take {name} an endless acceleration"),
     };
     let is_end = !head.periodic && (row == 1 || row == table.rows.len());
     let remedy = if is_end {

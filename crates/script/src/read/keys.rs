@@ -7,9 +7,6 @@ use crate::error::{Code, Diagnostic};
 use crate::format::number_text;
 use standstill_axis::keys::{Bounds, Holds, Key, Object};
 
-/// Keys of the format whose feature does not exist yet, by their object.
-const LATER: [(&str, &[&str]); 1] = [("`coupling`", &["cam_continuity"])];
-
 /// What a key is called in messages: with the object it stands in.
 fn called<T>(key: &Key<T>) -> String {
     match key.path.rsplit_once('.') {
@@ -35,8 +32,7 @@ impl Reader {
             .chain(others.iter().copied())
             .collect();
         let known: Vec<_> = names.iter().copied().chain(["note"]).collect();
-        let later = LATER.iter().find(|(what, _)| *what == object.what);
-        let fields = self.members(node, object.what, &known, later.map_or(&[][..], |(_, keys)| keys))?;
+        let fields = self.members(node, object.what, &known)?;
         if object.needs_one && names.iter().all(|name| fields.get(name).is_none()) {
             let quoted: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
             let message = format!("{} needs at least one of {}", object.what, quoted.join(", "));

@@ -99,27 +99,15 @@ impl Reader {
 
     /// The members of `node`, every key of which `shape` must have.
     pub(super) fn fields<'n>(&mut self, node: &'n Node, shape: &Shape) -> Option<Fields<'n>> {
-        self.members(node, shape.what, &shape.names().collect::<Vec<_>>(), &[])
+        self.members(node, shape.what, &shape.names().collect::<Vec<_>>())
     }
 
-    /// The members of an object, each of which must be one of `keys`; those of `later` are none yet.
-    pub(super) fn members<'n>(
-        &mut self,
-        node: &'n Node,
-        what: &str,
-        keys: &[&str],
-        later: &[&str],
-    ) -> Option<Fields<'n>> {
+    /// The members of an object, each of which must be one of `keys`.
+    pub(super) fn members<'n>(&mut self, node: &'n Node, what: &str, keys: &[&str]) -> Option<Fields<'n>> {
         let fields = self.map(node, what)?;
         for (key, value) in fields.iter() {
             if key.text == "note" && keys.contains(&"note") {
                 let _ = self.text(value, "`note`");
-            } else if later.contains(&key.text.as_str()) {
-                self.report(Diagnostic::new(
-                    Code::Unsupported,
-                    key.span,
-                    format!("{} in {what} is not supported yet", quoted(&key.text)),
-                ));
             } else if !keys.contains(&key.text.as_str()) {
                 self.report(
                     Diagnostic::new(

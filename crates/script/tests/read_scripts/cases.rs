@@ -272,11 +272,11 @@ pub fn cases() -> Vec<Case> {
             "\"coupling\": {\"on_limit\": \"stop_master\"}, \"state\"",
         ),
         case(
-            "unsupported",
+            "bad_value",
             Schema,
-            "how smooth a cam must be",
+            "more derivatives of a cam than are looked at",
             "\"state\"",
-            "\"coupling\": {\"cam_continuity\": 3}, \"state\"",
+            "\"coupling\": {\"cam_continuity\": 4}, \"state\"",
         ),
         case(
             "bad_value",

@@ -53,6 +53,7 @@ fn axes_take_their_configuration() {
         on_master_lost: OnMasterLost::Hold,
         actual_filter: 8,
         actual_lead: true,
+        cam_continuity: Some(1),
     };
     assert_eq!(x.config.following, following);
     assert!(x.config.needs_homed);

@@ -171,6 +171,8 @@ fn axis(random: &mut Random, cycle: f64) -> AxisSetup {
             on_master_lost: one_of(random, &[OnMasterLost::Error, OnMasterLost::Hold]),
             actual_filter: one_of(random, &[0, 1, 4, 16, 64]),
             actual_lead: random.one_in(4),
+            // Not a draw of its own: seeds that found something keep what they stand for.
+            cam_continuity: (limits.velocity.to_bits() & 1 == 0).then_some(0),
         };
     }
     // What the configuration says no to goes.

@@ -561,6 +561,7 @@ impl<H: Hands> Run<'_, H> {
                 | Event::Phasing { .. }
                 | Event::LeadsOutside { .. }
                 | Event::CamSelected { .. }
+                | Event::CamStops { .. }
                 | Event::OnCam { .. }
                 | Event::OntoCam { .. }
                 | Event::InSync

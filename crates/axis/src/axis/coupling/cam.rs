@@ -11,6 +11,7 @@
 //! | [`onto`] | how it comes onto the curve |
 //! | [`start`] | a start that waits for a place of the master |
 //! | [`shadow`] | its shadow in step with the master |
+//! | [`corners`] | its rests where a derivative of the cam jumps |
 //! | [`ahead`] | whether it keeps its limits along what the master does next |
 //! | [`beside`] | what it leaves to a shift, and to its master |
 //! | [`steady`] | the motion step in a scan in which nothing is new |
@@ -23,6 +24,7 @@
 mod after;
 mod ahead;
 mod beside;
+mod corners;
 mod ends;
 mod follow;
 mod laid;
@@ -38,13 +40,19 @@ use super::{Coupled, FURTHEST, Values};
 use crate::{AxisId, CamId, CamIn, CamSelection, ErrorId, Event, OnLimit, Scope, StartMode, ValueSource};
 use ends::Ends;
 pub use laid::CamLaid;
-use standstill_planner::{Anchor, Cam, CamAt, CamBounds, CamHead, CamLaw, Limits, Place, Planner, Setpoint};
+use standstill_planner::{
+    Anchor, Cam, CamAt, CamBounds, CamHead, CamLaw, CamSmooth, Limits, Place, Planner, Setpoint,
+};
 
 /// How an axis can go along a cam, without scalings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CamFit {
-    /// How many derivatives must go on: 3 with a snap limit, 2 with a jerk limit, 1 without.
+    /// How many derivatives must go on: its cam_continuity, or 3 with a snap limit, 2 with a jerk limit, 1 without.
     pub needed: usize,
+    /// How many do: without a jerk limit from its first row to its last.
+    pub smooth: CamSmooth,
+    /// How many its limits ask for; at a row at which one of these jumps it comes to rest.
+    pub limits_need: usize,
     /// The highest or the lowest place of the cam, if it is outside the software limits, the limit, and the error of a cam whose
     /// places are those of the axis.
     pub outside: Option<(f64, f64, ErrorId)>,
@@ -57,6 +65,11 @@ pub struct CamFit {
 impl CamFit {
     /// The derivatives of the slave by its master, as a table calls them.
     pub const DERIVATIVES: [&'static str; 3] = ["Slope", "Curvature", "Third"];
+
+    /// That of this order, less 1.
+    fn derivative(order: usize) -> &'static str {
+        Self::DERIVATIVES.get(order).copied().unwrap_or_default()
+    }
 }
 
 /// Where the slave is, and what moves it.
@@ -71,6 +84,8 @@ enum Rung {
     BesideLine { start: Place, velocity: f64, begin: u64 },
     /// The same beside the master itself.
     BesideMaster,
+    /// On the curve, at a place of its own: to rest at a corner, or before it, by a plan from `start`.
+    Corner { start: Place },
     /// A move in the slave's own coordinates, in its turn of this number, to where the curve is when the master is at this place; to
     /// rest without one.
     Moving { turns: i64, to: Option<Place> },
@@ -111,6 +126,8 @@ pub(in crate::axis) struct OnCam {
     /// The limits of the shadow in motion; where it `slows` down, they are those of its way.
     shadow_limits: Limits,
     slows: bool,
+    /// Limits within which its shadow can come to rest before the next corner of the cam, and those of the slave at that time.
+    brakes: Option<(Limits, Limits)>,
     /// The place on the cam at the end of the scan before.
     at: CamAt,
     ends: Ends,
@@ -193,6 +210,7 @@ impl OnCam {
             shadow: None,
             shadow_limits: Limits::NONE,
             slows: false,
+            brakes: None,
             at: CamAt::default(),
             ends: Ends::default(),
             was: Seen::default(),
@@ -255,6 +273,8 @@ impl<P: Planner> Axis<P> {
         };
         CamFit {
             needed: self.needed_of_cam(),
+            smooth: self.smooth_of_cam(head),
+            limits_need: self.corner_order(),
             outside: if self.modulo.is_some() {
                 None
             } else {
@@ -265,10 +285,19 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// How many derivatives of a cam must go on without a jump.
+    /// How many derivatives of a cam must go on without a jump for this axis to take it.
     fn needed_of_cam(&self) -> usize {
-        let limits = self.slowed(&self.parameters.limits);
-        limits.order().degree().saturating_sub(1)
+        let configured = self.config.following.cam_continuity;
+        configured.map_or_else(|| self.corner_order(), usize::from)
+    }
+
+    /// How smooth a cam is where this axis needs it to be: without a jerk limit it may begin and end with a slope.
+    fn smooth_of_cam(&self, head: &CamHead) -> CamSmooth {
+        if self.corner_order() > 1 {
+            head.smooth
+        } else {
+            head.smooth_inside
+        }
     }
 
     /// What MC_CamTableSelect tells of a complete cam: the highest constant velocity of `master` (u/s) with which this axis can
@@ -285,7 +314,7 @@ impl<P: Planner> Axis<P> {
         scope: &mut Scope<'_>,
     ) -> Result<f64, ErrorId> {
         let fit = self.fit_of_cam(head);
-        self.check_smooth(head, fit.needed, scope)?;
+        self.check_smooth(head, scope)?;
         if selection.slave_absolute
             && let Some((place, limit, error)) = fit.outside
         {
@@ -302,20 +331,28 @@ impl<P: Planner> Axis<P> {
             limit: master_velocity,
         };
         self.record(event, scope);
+        let CamSmooth { continuity, jump } = head.smooth;
+        if usize::from(continuity) < fit.limits_need {
+            let (row, jump) = jump;
+            let event = Event::CamStops {
+                row: u16::try_from(row).unwrap_or(u16::MAX),
+                what: CamFit::derivative(continuity.into()),
+                jump,
+            };
+            self.record(event, scope);
+        }
         Ok(highest)
     }
 
     /// # Errors
     /// [`ErrorId::CamNotSmooth`].
-    fn check_smooth(&self, head: &CamHead, needed: usize, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
-        if usize::from(head.continuity) >= needed {
+    fn check_smooth(&self, head: &CamHead, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
+        let CamSmooth { continuity, jump } = self.smooth_of_cam(head);
+        if usize::from(continuity) >= self.needed_of_cam() {
             return Ok(());
         }
-        let what = CamFit::DERIVATIVES
-            .get(usize::from(head.continuity))
-            .copied()
-            .unwrap_or_default();
-        let (row, jump) = head.jump;
+        let what = CamFit::derivative(continuity.into());
+        let (row, jump) = jump;
         Err(self.refuse_row(row, what, jump, 0.0, ErrorId::CamNotSmooth, scope))
     }
 
@@ -458,9 +495,10 @@ impl<P: Planner> Axis<P> {
             let number = f64::from(cam.table.number());
             return Err(self.refuse("CamTableID", number, f64::NAN, ErrorId::CamUnknown, scope));
         };
-        if let Some(head) = scope.cams.cam(cam.table).map(|cam| *cam.head) {
+        let head = scope.cams.cam(cam.table).map(|cam| *cam.head);
+        if let Some(head) = head {
             // It may have been selected for another slave.
-            self.check_smooth(&head, self.needed_of_cam(), scope)?;
+            self.check_smooth(&head, scope)?;
             let period = head.end - head.begin;
             if head.periodic && !(cam.start_distance.abs() < period) {
                 let error = ErrorId::SyncPositionInvalid;
@@ -482,6 +520,7 @@ impl<P: Planner> Axis<P> {
             master: cam.master.axis,
             source,
             cam: cam.table,
+            continuity: head.map_or(0, |head| head.smooth.continuity),
             law: CamLaw {
                 master_scaling: cam.master_scaling,
                 slave_scaling: cam.slave_scaling,

@@ -98,7 +98,7 @@ impl<P: Planner> Axis<P> {
         }
         on_cam.at.place.position += own;
         match &mut on_cam.rung {
-            Rung::BesideLine { start, .. } => start.position += by,
+            Rung::BesideLine { start, .. } | Rung::Corner { start } => start.position += by,
             Rung::Moving { to: Some(to), .. } => to.position += by,
             Rung::Due
             | Rung::Locked
@@ -144,6 +144,9 @@ impl<P: Planner> Axis<P> {
         let Some(on_cam) = &self.on_cam else { return Ok(()) };
         let is_late = view.future.is_late();
         let found = match self.lead_of_master(view) {
+            Some(lead) if self.is_too_fast_for_corners(curve, &lead) => {
+                Some(curve.corner().asks(&on_cam.limits))
+            }
             Some(mut lead) => {
                 // A step that was not of this plan was never looked at.
                 let now = is_late.then(|| self.beyond_on_cam_now(curve, view)).flatten();
@@ -178,15 +181,16 @@ impl<P: Planner> Axis<P> {
         view.degree() < degree && accelerates && at.state.velocity != 0.0
     }
 
-    fn step_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+    pub(super) fn step_on_cam(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         match (&self.motion, self.cam_rung()) {
             (Motion::Geared, Some(Rung::Locked)) => self.step_in_sync(view, scope),
             (Motion::Closing { .. }, Some(Rung::Moving { turns, to })) => {
                 self.step_to_cam(turns, to, view, scope);
             }
-            (Motion::Closing { .. }, Some(Rung::BesideLine { .. } | Rung::BesideMaster)) => {
-                self.step_along_cam(view, scope);
-            }
+            (
+                Motion::Closing { .. },
+                Some(Rung::BesideLine { .. } | Rung::BesideMaster | Rung::Corner { .. }),
+            ) => self.step_along_cam(view, scope),
             _ => self.advance(scope),
         }
     }
@@ -232,13 +236,19 @@ impl<P: Planner> Axis<P> {
                 ..at.state.plus(added)
             };
         }
-        if let Some(reason) = self.beyond(Some(at.place), &at.state, &limits, rough) {
+        let corner = self.corner_in_sync(view, scope).filter(|_| held.is_none());
+        let reason = corner.map(|corner| corner.asks(&limits));
+        let reason = reason.or_else(|| self.beyond(Some(at.place), &at.state, &limits, rough));
+        if let Some(reason) = reason {
             if let Some(on_cam) = &mut self.on_cam {
                 on_cam.anchor = before;
             }
             self.lose_sync(reason, scope);
             if self.config.following.on_limit == OnLimit::Error {
                 return self.fail(ErrorId::DeviationTooLarge, scope);
+            }
+            if let Some(corner) = corner {
+                return self.brake_for_corner(corner, view, scope);
             }
             self.decide_on_cam(view, false, scope);
             if self.is_on_cam() {
@@ -290,6 +300,7 @@ impl<P: Planner> Axis<P> {
                 let is_even = now.at.acceleration == 0.0 && now.at.jerk == 0.0;
                 (start, line, is_over && is_even && elapsed >= begin)
             }
+            Some(Rung::Corner { start }) => (start, Setpoint::at_rest(start.position), false),
             _ => (now.place, now.at, is_over),
         };
         let next = frame.plus(&beside);
@@ -300,6 +311,9 @@ impl<P: Planner> Axis<P> {
             },
             at: next,
         };
+        if let Some(corner) = self.corner_on_way(&shadow, scope) {
+            return self.brake_for_corner(corner, view, scope);
+        }
         if arrives && self.arrive_on_cam(&shadow, view, scope) {
             return;
         }

@@ -519,7 +519,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// From now on along `way`.
-    fn take_way_on_cam(&mut self, way: Way<P::Plan>, scope: &mut Scope<'_>) {
+    pub(super) fn take_way_on_cam(&mut self, way: Way<P::Plan>, scope: &mut Scope<'_>) {
         let limits = self.slowed(&self.parameters.limits);
         self.before = self.limits_before(&limits);
         self.in_force = limits;
@@ -575,7 +575,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// There is no way now: it stays where it is, or comes to rest.
-    fn wait_on_cam(&mut self, left: u64, scope: &mut Scope<'_>) {
+    pub(super) fn wait_on_cam(&mut self, left: u64, scope: &mut Scope<'_>) {
         if !self.setpoint.is_at_rest() {
             return match self.braking(left) {
                 Some(way) => self.take_way_on_cam(way, scope),

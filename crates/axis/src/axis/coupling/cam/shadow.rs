@@ -199,10 +199,12 @@ impl<P: Planner> Axis<P> {
     }
 
     /// The limits of the shadow in motion, inside which it is.
-    fn shadow_limits_now(&self) -> Option<Limits> {
+    pub(super) fn shadow_limits_now(&self) -> Option<Limits> {
         let on_cam = self.on_cam.as_ref()?;
         match on_cam.rung {
-            Rung::BesideLine { .. } | Rung::BesideMaster if !on_cam.slows => Some(on_cam.shadow_limits),
+            Rung::BesideLine { .. } | Rung::BesideMaster | Rung::Corner { .. } if !on_cam.slows => {
+                Some(on_cam.shadow_limits)
+            }
             _ => None,
         }
     }
@@ -395,7 +397,7 @@ fn bounded(limits: &Limits) -> Limits {
 }
 
 /// Whether an excess is more than rounding of `limits`.
-fn leaves(excess: &Excess, limits: &Limits) -> bool {
+pub(super) fn leaves(excess: &Excess, limits: &Limits) -> bool {
     let parts = [
         (excess.velocity, limits.velocity),
         (excess.acceleration, limits.acceleration),

@@ -1,0 +1,289 @@
+//! Rests of a slave at the rows of its cam at which a derivative jumps that its limits do not let jump: the corners.
+//!
+//! On the curve a slave is within its limits there only at rest. It is in sync up to where its shadow has to brake for the next corner,
+//! comes to rest exactly on it, and goes after its master from then on. A slave that must not lag is in sync until its master is past
+//! a corner.
+
+use super::super::super::commands::ROUNDING;
+use super::super::super::{Axis, Motion};
+use super::super::follow::Beyond;
+use super::super::needs::RESOLVED;
+use super::super::view::{UNKNOWN, View};
+use super::onto::Way;
+use super::shadow::{FASTEST, leaves};
+use super::{Curve, Rung, Shadow};
+use crate::{Approach, OnLimit, Scope};
+use standstill_planner::{DirectedLimits, Lead, Limits, Plan, Planner, Setpoint};
+
+/// Velocities of a shadow whose limits are tried on the way to a corner, as shares of what is left of the highest one: the higher, the
+/// less acceleration is left.
+const SHARES: [f64; 4] = [0.01, 0.1, 0.3, 1.0];
+
+/// A corner on the way of a shadow.
+#[derive(Clone, Copy)]
+pub(super) struct Corner {
+    /// Place of the cam's master side (u), not taken back into one period.
+    x: f64,
+    /// Order of the derivative that jumps, less 1.
+    derivative: usize,
+}
+
+impl Corner {
+    /// What the cam asks for there.
+    pub fn asks(&self, limits: &Limits) -> Beyond {
+        match self.derivative {
+            0 => ("acceleration", f64::INFINITY, limits.lower_acceleration()),
+            1 => ("jerk", f64::INFINITY, limits.jerk),
+            _ => ("snap", f64::INFINITY, limits.snap),
+        }
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// So many derivatives of a cam the limits of the slave do not let jump.
+    pub(super) fn corner_order(&self) -> usize {
+        let limits = self.slowed(&self.parameters.limits);
+        limits.order().degree().saturating_sub(1)
+    }
+
+    /// The cam as it lies, if it has corners for this slave, and is not over.
+    fn curve_with_corners<'a>(&self, scope: &'a Scope<'_>) -> Option<Curve<'a>> {
+        let on_cam = self.on_cam.as_ref()?;
+        let order = on_cam.limits.order().degree().saturating_sub(1);
+        let has_none = usize::from(on_cam.camming.continuity) >= order;
+        if has_none || on_cam.ends.is_over() {
+            return None;
+        }
+        on_cam.curve(scope.cams.cam(on_cam.camming.cam)?)
+    }
+
+    /// In sync with its master at the end of this scan the slave could not come to rest at the next corner any more; one that must not lag
+    /// would be past it.
+    pub(super) fn corner_in_sync(&mut self, view: &View<'_, P::Plan>, scope: &Scope<'_>) -> Option<Corner> {
+        let curve = self.curve_with_corners(scope)?;
+        let now = Shadow {
+            place: view.now.place,
+            at: view.now.at,
+        };
+        if self.config.following.on_limit == OnLimit::Error {
+            return self.corner_passed(&curve, &now);
+        }
+        let found = self.stops_in_time(&curve, &now);
+        self.note_brakes(found)
+    }
+
+    /// The same of a shadow on its own way.
+    pub(super) fn corner_on_way(&mut self, next: &Shadow, scope: &Scope<'_>) -> Option<Corner> {
+        let is_due = matches!(self.cam_rung(), Some(Rung::Corner { .. }));
+        let curve = self.curve_with_corners(scope).filter(|_| !is_due)?;
+        let found = self.stops_in_time(&curve, next);
+        self.note_brakes(found)
+    }
+
+    /// Within which limits the slave can still stop, or the corner before which it can't.
+    fn note_brakes(&mut self, found: Result<Option<Limits>, Corner>) -> Option<Corner> {
+        let on_cam = self.on_cam.as_mut()?;
+        match found {
+            Ok(limits) => {
+                on_cam.brakes = limits.map(|limits| (limits, on_cam.limits));
+                None
+            }
+            Err(corner) => Some(corner),
+        }
+    }
+
+    /// The corner that the master is past at `now`, or moves over.
+    fn corner_passed(&self, curve: &Curve<'_>, now: &Shadow) -> Option<Corner> {
+        let on_cam = self.on_cam.as_ref()?;
+        let (was, here) = (curve.unwound(on_cam.was.place), curve.unwound(now.place));
+        let resolved = RESOLVED * (was.abs() + here.abs());
+        let corner = self.corner_from(curve, was, here > was, (here - was).abs() + resolved)?;
+        let is_past = (here - was).abs() > (corner.x - was).abs() + resolved;
+        (is_past || !now.at.is_at_rest()).then_some(corner)
+    }
+
+    /// Limits within which a shadow that is at `next` at the end of this scan comes to rest before the next corner; none where that is
+    /// far away. The corner, if there are no such limits.
+    ///
+    /// Cost: a look at each row on that way, and at most six ramps where a corner is near.
+    fn stops_in_time(&self, curve: &Curve<'_>, next: &Shadow) -> Result<Option<Limits>, Corner> {
+        let at = &next.at;
+        let x = curve.unwound(next.place);
+        // The step of this scan may lead over a corner, too.
+        let was = self.on_cam.as_ref().and_then(|on_cam| on_cam.shadow);
+        let from = was.map_or(x, |was| curve.unwound(was.place));
+        let ahead = heading(at).unwrap_or_default() * curve.law.master_scaling;
+        let forwards = if ahead == 0.0 { x > from } else { ahead > 0.0 };
+        let step = if forwards { x - from } else { from - x };
+        let (from, step) = if step > 0.0 { (from, step) } else { (x, 0.0) };
+        let per = 1.0 / curve.law.master_scaling.abs();
+        let found = |way: f64| self.corner_from(curve, from, forwards, step + way * per);
+        let Some(near) = found(self.longest_braking(curve, at)) else {
+            return Ok(None);
+        };
+        let mut within = self.limits_to_corner(curve, at);
+        let stops = within.find(|limits| {
+            self.stopping(at, limits)
+                .is_some_and(|(way, _)| found(way.abs()).is_none())
+        });
+        stops.map(Some).ok_or(near)
+    }
+
+    fn corner_from(&self, curve: &Curve<'_>, x: f64, forwards: bool, reach: f64) -> Option<Corner> {
+        let order = self.corner_order();
+        let (x, derivative) = curve.cam.next_corner(x, forwards, reach, order)?;
+        Some(Corner { x, derivative })
+    }
+
+    /// A way (u of the master) that a shadow surely comes to rest on.
+    fn longest_braking(&self, curve: &Curve<'_>, at: &Setpoint) -> f64 {
+        let Some(limits) = self.limits_to_corner(curve, at).next() else {
+            return f64::INFINITY;
+        };
+        let speed = at.velocity.abs();
+        let (rise, fade) = (limits.acceleration / limits.jerk, limits.jerk / limits.snap);
+        let time = 2.0
+            * (speed / limits.acceleration
+                + rise
+                + fade
+                + at.acceleration.abs() / limits.acceleration * rise);
+        2.0 * (speed + at.acceleration.abs() * time) * time
+    }
+
+    /// Limits of the shadow on the way to a corner: those with which it was known to stop in time, those it has, and those of other
+    /// velocities.
+    fn limits_to_corner(&self, curve: &Curve<'_>, at: &Setpoint) -> impl Iterator<Item = Limits> {
+        let limits = self.slowed(&self.parameters.limits);
+        let highest = FASTEST * curve.bounds().highest_velocity(&limits).min(1e12);
+        let speed = at.velocity.abs();
+        let left = (highest - speed).max(0.0);
+        let others = SHARES.map(|share| self.limits_of_shadow(curve, at, speed + share * left));
+        let known = self.on_cam.as_ref().and_then(|on_cam| on_cam.brakes);
+        let known = known.filter(|(_, own)| *own == limits).map(|(known, _)| known);
+        let all = [known, self.shadow_limits_now()].into_iter().chain(others);
+        all.flatten()
+    }
+
+    /// The way (u of the master) on which a shadow in this state comes to rest, and that as a plan; none where it is outside these limits
+    /// on it.
+    fn stopping(&self, at: &Setpoint, limits: &Limits) -> Option<(f64, P::Plan)> {
+        let start = Setpoint { position: 0.0, ..*at };
+        let plan = self.planner.ramp_to(&start, 0.0, limits, limits).ok()?;
+        let way = plan.at(u64::from(plan.scans())).position;
+        let stays = !plan.excess().is_some_and(|excess| leaves(&excess, limits));
+        stays.then_some((way, plan))
+    }
+
+    /// From this scan on the slave goes along the curve to rest at the corner; off the curve to rest, where its limits leave it no such
+    /// way.
+    pub(super) fn brake_for_corner(
+        &mut self,
+        corner: Corner,
+        view: &View<'_, P::Plan>,
+        scope: &mut Scope<'_>,
+    ) {
+        let way = {
+            let shadow = self.on_cam.as_ref().and_then(|on_cam| on_cam.shadow);
+            let curve = self.curve_with_corners(scope);
+            curve
+                .zip(shadow)
+                .and_then(|(curve, shadow)| self.way_to_corner(&curve, &shadow, corner))
+        };
+        match way {
+            Some(way) => {
+                let limits = way.shadow;
+                self.take_way_on_cam(way, scope);
+                let _ahead = self.note_brakes(Ok(Some(limits)));
+            }
+            None => self.wait_on_cam(UNKNOWN, scope),
+        }
+        if self.is_on_cam() {
+            self.step_on_cam(view, scope);
+        }
+    }
+
+    fn way_to_corner(&self, curve: &Curve<'_>, shadow: &Shadow, corner: Corner) -> Option<Way<P::Plan>> {
+        let start = Setpoint {
+            position: 0.0,
+            ..shadow.at
+        };
+        let distance = curve.place_of(corner.x, shadow.place).position - shadow.place.position;
+        let resolved = RESOLVED * 4.0 * (distance.abs() + shadow.place.position.abs());
+        let most = distance.abs() + resolved;
+        let mut within = self.limits_to_corner(curve, &shadow.at);
+        let (limits, ramp) = within.find_map(|limits| {
+            let (way, ramp) = self.stopping(&shadow.at, &limits)?;
+            (way.abs() <= most).then_some((limits, ramp))
+        })?;
+        let move_there = |velocity: f64| {
+            let both = DirectedLimits {
+                positive: velocity,
+                negative: velocity,
+                limits,
+            };
+            self.planner
+                .move_by_direction(&start, distance, &both, &both)
+                .ok()
+        };
+        let goes_straight = |plan: &P::Plan| {
+            let (up, down) = self.planner.ways((plan, 0));
+            let (on, back) = if distance < 0.0 { (down, up) } else { (up, down) };
+            let stays = !plan.excess().is_some_and(|excess| leaves(&excess, &limits));
+            on <= most && back <= resolved && stays
+        };
+        // No faster than it is where that goes, so that it does not get ahead of its master. Where no move ends there, to rest first.
+        let speeds = [shadow.at.velocity.abs(), limits.velocity];
+        let there = speeds.into_iter().filter_map(move_there).find(goes_straight);
+        let plan = there.unwrap_or(ramp);
+        let scans = u64::from(plan.scans());
+        Some(Way {
+            exceeds: false,
+            motion: Motion::closing(plan),
+            rung: Rung::Corner { start: shadow.place },
+            lock: u64::MAX,
+            left: scans.saturating_sub(1),
+            name: Approach::Corner,
+            velocity: corner.x,
+            shadow: limits,
+            slows: false,
+            laps: 0.0,
+        })
+    }
+
+    /// Behind the rest of this plan of its master a slave in sync could not brake for a corner whenever it has to.
+    pub(super) fn is_too_fast_for_corners(&self, curve: &Curve<'_>, lead: &Lead<'_, P::Plan>) -> bool {
+        let has_corners = usize::from(curve.cam.head.smooth.continuity) < self.corner_order();
+        if !has_corners || self.config.following.on_limit == OnLimit::Error {
+            return false;
+        }
+        let Some(peaks) = self.planner.peaks((lead.plan, lead.elapsed)) else {
+            return false;
+        };
+        let peaks = peaks.times(lead.factor);
+        let fits = |limits: Limits| {
+            let (rate, up) = (limits.lower_acceleration(), 1.0 + ROUNDING);
+            peaks.velocity.abs() <= limits.velocity * up
+                && peaks.acceleration.abs() <= rate * up
+                && peaks.jerk.abs() <= limits.jerk * up
+                && peaks.snap.abs() <= limits.snap * up
+        };
+        !self.limits_to_corner(curve, &peaks).any(fits)
+    }
+}
+
+impl Curve<'_> {
+    /// One of its corners, wherever it is.
+    pub(super) fn corner(&self) -> Corner {
+        Corner {
+            x: 0.0,
+            derivative: usize::from(self.cam.head.smooth.continuity),
+        }
+    }
+}
+
+/// Which way a shadow goes, or is about to; none at rest.
+fn heading(at: &Setpoint) -> Option<f64> {
+    [at.velocity, at.acceleration, at.jerk]
+        .into_iter()
+        .find(|part| *part != 0.0)
+}
