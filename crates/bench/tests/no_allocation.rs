@@ -5,9 +5,11 @@ mod counting;
 use counting::allocations;
 use standstill::prelude::{BlockId, Blocks, Builder, Setup};
 use standstill_axis::{
-    AxisConfig, AxisId, AxisState, DrivePosition, IdealDrive, InstanceId, Scaling, Standard, StartState,
+    AxisConfig, AxisId, AxisState, BufferMode, CamCurve, DrivePosition, Following, IdealDrive, InstanceId,
+    Scaling, Standard, StartMode, StartState,
 };
 use standstill_bench::{CYCLE, IN_MOTION, LIMITS, ManyAxes, Random};
+use standstill_blocks::multi_axis::mc_cam_table_select::CamPoint;
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_fb::{AnyInstance, Context, Direction, PinType, Value};
 use standstill_scan::{
@@ -195,6 +197,202 @@ fn the_count_sees_an_allocation() {
     let before = allocations();
     drop(std::hint::black_box(Vec::<u8>::with_capacity(1)));
     assert_eq!(allocations() - before, 1);
+}
+
+/// What a program does with cams, scan by scan.
+struct CamShow {
+    blocks: Vec<BlockId>,
+}
+
+impl standstill::runtime::Program for CamShow {
+    fn run(
+        &mut self,
+        _: ProgramId,
+        blocks: &mut Blocks,
+        context: &mut Context<'_>,
+    ) -> Result<u64, ProgramFault> {
+        for block in &self.blocks {
+            blocks.call(*block, context);
+        }
+        Ok(0)
+    }
+}
+
+/// Selected, selected anew while it runs, engaged, switched over, shifted, refused, stopped at corners, let go: no call of it uses the
+/// heap, a table of 512 rows included.
+///
+/// Covers: G79, G84
+#[test]
+fn no_call_and_no_scan_with_cams_uses_the_heap() {
+    let row = |master: f64, slave: f64, law: CamCurve| CamPoint {
+        master,
+        slave,
+        law: law.into(),
+        ..CamPoint::default()
+    };
+    let lift = |height: f64, law: CamCurve| [row(0.0, 0.0, law), row(18.0, height, law), row(36.0, 0.0, law)];
+    let long: Vec<_> = (0..512_u16)
+        .map(|index| {
+            row(
+                f64::from(index),
+                0.01 * f64::from(index % 511 % 7),
+                CamCurve::Through,
+            )
+        })
+        .collect();
+    let bad = [row(0.0, 0.0, CamCurve::Line), row(0.0, 1.0, CamCurve::Line)];
+
+    let mut builder = Builder::new(1_000_000);
+    let mut axis = |name: &str, cam_continuity: Option<u8>| {
+        let following = Following {
+            cam_continuity,
+            ..Following::DEFAULT
+        };
+        let config = AxisConfig {
+            start: StartState::Standstill,
+            following,
+            ..AxisConfig::new(LIMITS)
+        };
+        let drive = IdealDrive::new(DrivePosition::Units(0.0), 0, Some(0), true);
+        builder.axis(name, "mm", config, drive).expect("a good axis")
+    };
+    let (master, slave, rough) = (axis("M", None), axis("S", None), axis("Rough", Some(0)));
+    let tables = [
+        builder.table(&lift(2.0, CamCurve::Rest7)),
+        builder.table(&lift(3.0, CamCurve::Rest7)),
+        builder.table(&lift(2.0, CamCurve::Line)),
+        builder.table(&long),
+        builder.table(&bad),
+    ];
+    let [low, high, corners, long, bad] = tables.map(|table| Value::Table(table.expect("not too long")));
+    let kinds = [
+        ("select", "MC_CamTableSelect"),
+        ("selectLong", "MC_CamTableSelect"),
+        ("selectCorners", "MC_CamTableSelect"),
+        ("selectBad", "MC_CamTableSelect"),
+        ("cam", "MC_CamIn"),
+        ("next", "MC_CamIn"),
+        ("onCorners", "MC_CamIn"),
+        ("shift", "MC_PhasingRelative"),
+        ("out", "MC_CamOut"),
+        ("run", "MC_MoveVelocity"),
+    ];
+    let ids = kinds.map(|(name, kind)| builder.block(name, kind).expect("registered"));
+    let [
+        select,
+        select_long,
+        select_corners,
+        select_bad,
+        cam,
+        next,
+        on_corners,
+        shift,
+        out,
+        run,
+    ] = ids;
+    let program = CamShow { blocks: ids.to_vec() };
+    let mut runtime = builder.ready().expect("it fits").start(program);
+    runtime.machine_mut().set_usual_cam_store();
+    let blocks = runtime.blocks_mut();
+    for id in ids {
+        let of = if [select_corners, on_corners].contains(&id) {
+            rough
+        } else {
+            slave
+        };
+        for (pin, axis) in [("Master", master), ("Slave", of), ("Axis", master)] {
+            // A block has some of these pins.
+            let _none = blocks.set(id, pin, Value::Axis(axis));
+        }
+        let _none = blocks.set(id, "Periodic", Value::Bool(true));
+    }
+    let set_table = [
+        (select, low),
+        (select_long, long),
+        (select_corners, corners),
+        (select_bad, bad),
+    ];
+    for (id, table) in set_table {
+        blocks.set(id, "CamTable", table).expect("a table");
+    }
+    let relative = Value::Enum(StartMode::Relative as i32);
+    for (id, pin, value) in [
+        (cam, "StartMode", relative),
+        (next, "StartMode", relative),
+        (on_corners, "StartMode", relative),
+        (shift, "PhaseShift", Value::Lreal(2.0)),
+        (shift, "Velocity", Value::Lreal(1.0)),
+        (run, "Velocity", Value::Lreal(8.0)),
+    ] {
+        blocks.set(id, pin, value).expect("a pin");
+    }
+
+    let edge = |blocks: &mut Blocks, id: BlockId, level: bool| {
+        blocks.set(id, "Execute", Value::Bool(level)).expect("a pin");
+    };
+    let wire = |blocks: &mut Blocks, from: BlockId, to: BlockId| {
+        let number = blocks.value(from, "CamTableID").expect("an output");
+        blocks.set(to, "CamTableID", number).expect("a pin");
+    };
+    let (mut in_sync, mut lags, mut most_busy) = (0, 0, 0);
+    let before = allocations();
+    for scan in 0..40_000_i64 {
+        let blocks = runtime.blocks_mut();
+        match scan {
+            1 => [select, select_long, select_corners, select_bad]
+                .into_iter()
+                .for_each(|id| edge(blocks, id, true)),
+            30 => {
+                wire(blocks, select, cam);
+                wire(blocks, select_corners, on_corners);
+                [cam, on_corners, run]
+                    .into_iter()
+                    .for_each(|id| edge(blocks, id, true));
+            }
+            // Selected anew while it runs, with another table, and switched over to at the end of the period.
+            3000 => {
+                edge(blocks, select, false);
+                blocks.set(select, "CamTable", high).expect("a table");
+            }
+            3001 => edge(blocks, select, true),
+            3100 => {
+                wire(blocks, select, next);
+                let buffered = Value::Enum(BufferMode::Buffered as i32);
+                blocks.set(next, "BufferMode", buffered).expect("a pin");
+                edge(blocks, next, true);
+            }
+            12_000 => edge(blocks, shift, true),
+            18_000 => {
+                // Onto the long one at once.
+                wire(blocks, select_long, cam);
+                edge(blocks, cam, false);
+            }
+            18_001 => edge(blocks, cam, true),
+            25_000 => edge(blocks, out, true),
+            27_000 => edge(blocks, cam, false),
+            27_001 => edge(blocks, cam, true),
+            _ => {}
+        }
+        runtime.scan(scan * 1_000_000).expect("time goes on");
+        let blocks = runtime.blocks();
+        most_busy += u32::from(blocks.is(select_long, "Busy"));
+        in_sync += u32::from(blocks.is(cam, "InSync")) + u32::from(blocks.is(next, "InSync"));
+        lags += u32::from(!blocks.is(on_corners, "InSync"));
+    }
+    assert_eq!(
+        allocations() - before,
+        0,
+        "a call or a scan with cams used the heap"
+    );
+    // What was counted was worth counting.
+    let blocks = runtime.blocks();
+    assert_eq!(most_busy, 16);
+    assert!(blocks.is(select_bad, "Error"));
+    assert!(blocks.is(next, "CommandAborted") && blocks.is(shift, "Done") && blocks.is(out, "Done"));
+    assert!(
+        in_sync > 20_000 && lags > 100,
+        "{in_sync} in sync, {lags} lagging"
+    );
 }
 
 /// A runtime that records: built with the heap, then scanned, tripped and armed again without it.
