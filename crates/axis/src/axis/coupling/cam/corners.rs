@@ -141,7 +141,13 @@ impl<P: Planner> Axis<P> {
             return f64::INFINITY;
         };
         let speed = at.velocity.abs();
-        let (rise, fade) = (limits.acceleration / limits.jerk, limits.jerk / limits.snap);
+        let rise = limits.acceleration / limits.jerk;
+        // At order 2 both are infinite.
+        let fade = if limits.snap.is_finite() {
+            limits.jerk / limits.snap
+        } else {
+            0.0
+        };
         let time = 2.0
             * (speed / limits.acceleration
                 + rise
