@@ -465,9 +465,10 @@ typedef struct standstill_axis_setup {
    */
   int32_t edge_while_busy;
   /**
-   * 0.
+   * How many derivatives of a cam must go on without a jump for a slave, 1 to 3; below 0: none; 0: 3 with a snap limit, 2 with
+   * a jerk limit, 1 without. Where its limits ask for more, it stops at the rows at which one jumps.
    */
-  uint32_t reserved;
+  int32_t cam_continuity;
 } standstill_axis_setup;
 
 /**
