@@ -127,6 +127,10 @@ impl AnyInstance for BlockInstance {
         self.any().get(index)
     }
 
+    fn put_words(&self, words: &mut [u64]) {
+        self.any().put_words(words);
+    }
+
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError> {
         self.any_mut().set(index, value)
     }

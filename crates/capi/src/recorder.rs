@@ -10,7 +10,7 @@ use core::str;
 use standstill_axis::{self as axis, Axis, AxisConfig, AxisState, Log};
 use standstill_fb::{AnyInstance, BlockInfo, axis_number};
 use standstill_record::text::{Called, Form, integer, line};
-use standstill_record::{AXIS_WORDS, Ring, Setup, State, Trigger, write_axis, write_pins};
+use standstill_record::{AXIS_WORDS, Ring, Setup, State, Trigger, write_axis};
 
 /// Most scans and records of a recorder.
 const MOST: u32 = 1 << 24;
@@ -326,7 +326,7 @@ impl Recorder {
                 return;
             };
             match instance(slots, recording.key) {
-                Some(instance) => write_pins(words, instance),
+                Some(instance) => instance.put_words(words),
                 // It was released.
                 None => words.fill(0),
             }

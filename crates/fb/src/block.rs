@@ -126,6 +126,9 @@ pub trait AnyInstance {
     /// The value at pin `index`.
     fn get(&self, index: usize) -> Option<Value>;
 
+    /// Writes the words ([`Value::word`]) of all pins, in table order, as far as there is room.
+    fn put_words(&self, words: &mut [u64]);
+
     /// Writes in_out or input `index`.
     ///
     /// # Errors
@@ -150,6 +153,13 @@ impl<B: Block + Described> AnyInstance for Instance<B> {
             self.inputs.get(index)
         } else {
             self.outputs.get(index - inputs)
+        }
+    }
+
+    fn put_words(&self, words: &mut [u64]) {
+        self.inputs.put_words(words);
+        if let Some(outputs) = words.get_mut(B::Inputs::PINS.len()..) {
+            self.outputs.put_words(outputs);
         }
     }
 

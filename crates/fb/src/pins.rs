@@ -84,6 +84,24 @@ impl PinType {
             Self::Table(info) => info.name,
         }
     }
+
+    /// The value of this type behind a word that [`Value::word`] made.
+    pub const fn value(self, word: u64) -> Value {
+        match self {
+            Self::Bool => Value::Bool(word != 0),
+            Self::Int => Value::Int(word as i16),
+            Self::Lreal => Value::Lreal(f64::from_bits(word)),
+            Self::Uint | Self::Word => Value::Word(word as u16),
+            Self::Dword => Value::Dword(word as u32),
+            Self::Time => Value::Time(word.cast_signed()),
+            Self::Axis(_) => Value::Axis(AxisId::new(word as u16)),
+            Self::Enum(_) => Value::Enum(word as i32),
+            Self::Table(_) => Value::Table(TableRef {
+                first: (word >> 16) as u32,
+                records: word as u16,
+            }),
+        }
+    }
 }
 
 /// The value at a pin.
@@ -107,6 +125,23 @@ pub enum Value {
     Enum(i32),
     /// Where a table stands.
     Table(TableRef),
+}
+
+impl Value {
+    /// The value as a word; its type stands elsewhere. Numbers are their bits, whatever is signed is extended with its sign.
+    pub const fn word(self) -> u64 {
+        match self {
+            Self::Bool(value) => value as u64,
+            Self::Int(value) => value as i64 as u64,
+            Self::Lreal(value) => value.to_bits(),
+            Self::Word(value) => value as u64,
+            Self::Dword(value) => value as u64,
+            Self::Time(ns) => ns.cast_unsigned(),
+            Self::Axis(id) => id.index() as u64,
+            Self::Enum(number) => number as i64 as u64,
+            Self::Table(table) => (table.first as u64) << 16 | table.records as u64,
+        }
+    }
 }
 
 /// INT as a pin's Rust type.
@@ -371,6 +406,9 @@ pub trait Pins: Copy + Default {
     /// The value at pin `index`, if there is one.
     fn get(&self, index: usize) -> Option<Value>;
 
+    /// Writes the words ([`Value::word`]) of all pins, in declaration order, as far as there is room.
+    fn put_words(&self, words: &mut [u64]);
+
     /// Writes pin `index`.
     ///
     /// # Errors
@@ -462,8 +500,23 @@ macro_rules! pins {
             }),*];
 
             fn get(&self, index: usize) -> Option<$crate::Value> {
-                let values = [$(<$ty as $crate::PinValue>::into_value(self.$field)),*];
-                values.get(index).copied()
+                let mut place = 0_usize;
+                $(
+                    if place == index {
+                        return Some(<$ty as $crate::PinValue>::into_value(self.$field));
+                    }
+                    place += 1;
+                )*
+                let _ = place;
+                None
+            }
+
+            #[inline]
+            fn put_words(&self, words: &mut [u64]) {
+                let all = [$(<$ty as $crate::PinValue>::into_value(self.$field).word()),*];
+                for (word, value) in words.iter_mut().zip(all) {
+                    *word = value;
+                }
             }
 
             fn set(&mut self, index: usize, value: $crate::Value) -> Result<(), $crate::PinError> {
@@ -515,4 +568,45 @@ macro_rules! pins {
             }
         }
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_comes_back_as_it_was() {
+        for (ty, values) in [
+            (PinType::Bool, &[Value::Bool(true), Value::Bool(false)][..]),
+            (PinType::Int, &[Value::Int(i16::MIN), Value::Int(7)]),
+            (
+                PinType::Lreal,
+                &[Value::Lreal(-0.0), Value::Lreal(f64::INFINITY), Value::Lreal(0.1)],
+            ),
+            (PinType::Word, &[Value::Word(u16::MAX)]),
+            (PinType::Uint, &[Value::Word(7)]),
+            (PinType::Dword, &[Value::Dword(u32::MAX)]),
+            (PinType::Time, &[Value::Time(-1), Value::Time(i64::MAX)]),
+            (
+                PinType::Axis("AXIS_REF"),
+                &[Value::Axis(AxisId::NONE), Value::Axis(AxisId::new(3))],
+            ),
+        ] {
+            for there in values {
+                let back = ty.value(there.word());
+                assert_eq!(back.word(), there.word());
+                assert_eq!(back, *there);
+            }
+        }
+        let table = Value::Table(TableRef {
+            first: u32::MAX,
+            records: u16::MAX,
+        });
+        let Value::Table(TableRef { first, records }) = table else {
+            unreachable!()
+        };
+        let word = table.word();
+        assert_eq!(((word >> 16) as u32, word as u16), (first, records));
+        assert_eq!(Value::Enum(-3).word() as i32, -3);
+    }
 }

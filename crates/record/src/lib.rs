@@ -21,8 +21,7 @@ mod ring;
 pub mod text;
 #[cfg(feature = "std")]
 pub mod told;
-mod word;
 
 #[cfg(feature = "alloc")]
 pub use recorder::{Pins, Recorder, Signals};
-pub use ring::{AXIS_WORDS, Ring, Setup, State, Trigger, moved, write_axis, write_pins};
+pub use ring::{AXIS_WORDS, Ring, Setup, State, Trigger, moved, write_axis};

@@ -1,6 +1,6 @@
 //! The recorder of hosts with a heap.
 
-use crate::ring::{AXIS_WORDS, Ring, Setup, State, write_axis, write_pins};
+use crate::ring::{AXIS_WORDS, Ring, Setup, State, write_axis};
 use alloc::string::String;
 use alloc::vec::Vec;
 use standstill_axis::{Axis, AxisConfig, AxisState, Log, Planner, Record};
@@ -67,7 +67,7 @@ impl Pins<'_> {
         let Some((own, rest)) = core::mem::take(&mut self.row).split_at_mut_checked(count) else {
             return;
         };
-        write_pins(own, instance);
+        instance.put_words(own);
         self.row = rest;
     }
 }

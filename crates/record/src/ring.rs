@@ -1,8 +1,6 @@
 //! Where the last scans stand in memory of whatever kind, and the trigger that freezes them.
 
-use crate::word;
 use standstill_axis::{Axis, AxisState, Log, Planner};
-use standstill_fb::AnyInstance;
 
 /// Words of an axis in a row: its state, the numbers of a trace, and by how much its coordinates moved.
 ///
@@ -241,12 +239,5 @@ pub fn write_axis<P: Planner>(words: &mut [u64], scan: u64, state: AxisState, ax
     let all = core::iter::once(state as u64).chain(numbers.map(f64::to_bits));
     for (word, value) in words.iter_mut().zip(all) {
         *word = value;
-    }
-}
-
-/// Writes the pins of an instance into its words of a row.
-pub fn write_pins(words: &mut [u64], instance: &dyn AnyInstance) {
-    for (place, word) in words.iter_mut().enumerate() {
-        *word = instance.get(place).map_or(0, word::of);
     }
 }

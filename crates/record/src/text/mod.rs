@@ -10,7 +10,6 @@ pub use number::{integer, real, whole};
 pub use sentence::{Called, happened, shift, shifted, standing, subject};
 
 use crate::ring::{AXIS_WORDS, Ring, moved};
-use crate::word;
 use core::fmt::{self, Write};
 use standstill_axis::{AxisConfig, AxisState, Event, Order, Record};
 use standstill_fb::{BlockInfo, Direction, PinType, TableRef, Value};
@@ -156,7 +155,7 @@ fn row(out: &mut impl Write, form: Form, scan: u64, recorded: &impl Recorded, cy
     }
     for (instance, block) in instances(recorded) {
         for pin in block.pins() {
-            let value = word::value(pin.ty, words.next().unwrap_or_default());
+            let value = pin.ty.value(words.next().unwrap_or_default());
             cell(instance, pin.name, Cell::of(pin.ty, value, recorded))?;
         }
     }

@@ -4,7 +4,6 @@ use crate::recorder::Recorder;
 use crate::ring::{AXIS_WORDS, moved};
 use crate::text::{shifted, standing};
 use crate::told::{self, Cells, Names, note};
-use crate::word;
 use standstill_axis::{AxisState, Event, Record};
 use standstill_fb::PinType;
 use standstill_trace::{Cell, Header, Note, RowError, Trace};
@@ -47,7 +46,7 @@ impl Recorder {
             let pins: Vec<_> = types
                 .iter()
                 .zip(pins)
-                .map(|(ty, word)| (*ty, word::value(*ty, *word)))
+                .map(|(ty, word)| (*ty, ty.value(*word)))
                 .collect();
             for (ty, value) in &pins {
                 cells.prepare(*ty, *value);
