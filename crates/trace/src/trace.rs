@@ -75,6 +75,15 @@ impl Trace {
         Self::with_columns(header, columns)
     }
 
+    /// An empty trace with those columns of the header, by their places there, that are kept.
+    #[must_use]
+    pub fn with_some(header: Header, kept: impl Fn(usize) -> bool) -> Self {
+        let columns = (0..).zip(header.columns());
+        let columns = columns.filter(|(place, _)| kept(*place));
+        let columns = columns.map(|(_, column)| column).collect();
+        Self::with_columns(header, columns)
+    }
+
     /// An empty trace with columns of its own: for traces that were read without their header, or with
     /// columns that this version does not know.
     pub(crate) fn with_columns(mut header: Header, mut columns: Vec<Column>) -> Self {
@@ -228,26 +237,13 @@ impl Trace {
             let Some(column) = self.columns.get(found - 1) else {
                 continue;
             };
-            if cell.kind() != column.kind {
-                return Err(RowError::Kind {
-                    column: column.name.clone(),
-                    expected: column.kind,
-                    found: cell.kind(),
-                });
-            }
-            let word = match cell {
-                Cell::Bool(value) => u64::from(value),
-                Cell::Real(value) => canonical_bits(value),
-                Cell::Integer(value) => value.cast_unsigned(),
-                Cell::Name(text) => match self.above().filter(|&above| self.names.is(above, text)) {
-                    Some(above) => above,
-                    None if text.chars().any(char::is_control) => {
-                        return Err(RowError::ControlCharacter {
-                            column: column.name.clone(),
-                        });
-                    }
-                    None => self.names.index(text),
-                },
+            let above = match cell {
+                Cell::Name(text) => self.above().filter(|&above| self.names.is(above, text)),
+                _ => None,
+            };
+            let word = match above {
+                Some(above) if column.kind == Kind::Name => above,
+                _ => word_of(&mut self.names, column, cell)?,
             };
             self.bits.push(word);
         }
@@ -258,6 +254,36 @@ impl Trace {
             expected: self.columns.len(),
             found,
         })
+    }
+
+    /// The word under which a row holds a cell of the column at this place; see [`Trace::push_words`].
+    ///
+    /// # Errors
+    /// Those of [`Trace::push_row`]; of a place without a column, [`RowError::Length`].
+    pub fn word_of(&mut self, place: usize, cell: Cell<'_>) -> Result<u64, RowError> {
+        let Some(column) = self.columns.get(place) else {
+            return Err(RowError::Length {
+                expected: self.columns.len(),
+                found: place + 1,
+            });
+        };
+        word_of(&mut self.names, column, cell)
+    }
+
+    /// As [`Trace::push_row`], of words that [`Trace::word_of`] gave for the columns in their order: for rows of which most cells
+    /// stay as they are.
+    ///
+    /// # Errors
+    /// A row of wrong length; the trace is then as it was before.
+    pub fn push_words(&mut self, words: &[u64]) -> Result<(), RowError> {
+        if words.len() != self.columns.len() {
+            return Err(RowError::Length {
+                expected: self.columns.len(),
+                found: words.len(),
+            });
+        }
+        self.bits.extend_from_slice(words);
+        Ok(())
     }
 
     /// The word above the next one, in the row before.
@@ -415,6 +441,26 @@ impl Trace {
             Kind::Integer => Cell::Integer(word.cast_signed()),
             Kind::Name => Cell::Name(self.names.text(word)),
         }
+    }
+}
+
+/// The word under which a row holds a cell of this column.
+fn word_of(names: &mut Names, column: &Column, cell: Cell<'_>) -> Result<u64, RowError> {
+    if cell.kind() != column.kind {
+        return Err(RowError::Kind {
+            column: column.name.clone(),
+            expected: column.kind,
+            found: cell.kind(),
+        });
+    }
+    match cell {
+        Cell::Bool(value) => Ok(u64::from(value)),
+        Cell::Real(value) => Ok(canonical_bits(value)),
+        Cell::Integer(value) => Ok(value.cast_unsigned()),
+        Cell::Name(text) if text.chars().any(char::is_control) => Err(RowError::ControlCharacter {
+            column: column.name.clone(),
+        }),
+        Cell::Name(text) => Ok(names.index(text)),
     }
 }
 

@@ -8,15 +8,15 @@ use super::formulas::{self, Formulas, Reading, Truths};
 use super::guests::Guests;
 use super::layout::Layout;
 use super::notes::Notes;
+use super::row::{RowWriter, Source};
 use super::rows::{ROWS_KEPT, Rows, Shift};
 use super::schedule::Schedule;
 use super::values::Values;
 use crate::model::{Action, FaultKind, FormulaInput, Point, Script, Signal, Variable, Wire};
 use standstill_axis::{Axis, AxisId, AxisState, ErrorId, InstanceId, Standard};
-use standstill_fb::{AnyInstance, Context, PinType, Value};
-use standstill_record::told::Cells;
+use standstill_fb::{Context, Value};
 use standstill_scan::{Machine, ProgramFault, ProgramId, Programs, RUNTIME, ScanTime, TaskId};
-use standstill_trace::{Cell, Note, Trace};
+use standstill_trace::{Note, Trace};
 
 /// The machine of a script: Standard planners over simulated drives.
 pub(crate) type ScriptMachine = Machine<Standard, ScriptDrive>;
@@ -88,17 +88,6 @@ fn by_task(script: &Script) -> Vec<OfTask> {
     tasks
 }
 
-/// The pins of enumerations and tables.
-fn texts(script: &Script) -> Vec<(usize, usize, PinType)> {
-    let instances = script.blocks.iter().enumerate();
-    let pins = instances.flat_map(|(at, instance)| {
-        let pins = instance.block.pins().enumerate();
-        pins.map(move |(pin, info)| (at, pin, info.ty))
-    });
-    pins.filter(|(_, _, ty)| matches!(ty, PinType::Enum(_) | PinType::Table(_)))
-        .collect()
-}
-
 /// Why the resource stops where an expression fails.
 const WIRE_FAULT: &str = "an expression in a wire has no value";
 
@@ -133,11 +122,7 @@ pub(crate) struct Bench<'a> {
     values: Values,
     /// What runs in each task, in file order.
     tasks: Vec<OfTask>,
-    /// Pin types of all instances, in trace order.
-    types: Vec<PinType>,
-    /// The pins whose values may need a text of their own: instance, pin and type.
-    texts: Vec<(usize, usize, PinType)>,
-    cells: Cells,
+    writer: RowWriter,
     schedule: Schedule,
     /// Axis states after all blocks were called, before the motion step.
     states: Vec<AxisState>,
@@ -174,6 +159,7 @@ impl<'a> Bench<'a> {
         values.symbols = guests.values(script)?;
         Ok(Self {
             script,
+            writer: RowWriter::new(script, &layout),
             layout,
             guests,
             formulas: Formulas::new(script)?,
@@ -182,13 +168,6 @@ impl<'a> Bench<'a> {
             time: ScanTime { scan: 0, now_ns: 0 },
             values,
             tasks: by_task(script),
-            types: script
-                .blocks
-                .iter()
-                .flat_map(|instance| instance.block.pins().map(|pin| pin.ty))
-                .collect(),
-            texts: texts(script),
-            cells: cells::cells(script),
             schedule: Schedule::new(script),
             states: Vec::with_capacity(script.axes.len()),
             notes: Notes::new(script),
@@ -376,96 +355,6 @@ impl<'a> Bench<'a> {
             self.guests.write(program, symbol, value);
         }
     }
-
-    /// The row of this scan. It goes into the trace cell by cell, so that nothing is taken from the heap for it.
-    fn push_row(&mut self, machine: &ScriptMachine) {
-        let instances = &self.values.instances;
-        let pins = || {
-            let pins = instances
-                .iter()
-                .flat_map(|instance| (0..).map_while(|pin| instance.get(pin)));
-            self.types.iter().copied().zip(pins)
-        };
-        for &(instance, pin, ty) in &self.texts {
-            if let Some(value) = instances.get(instance).and_then(|instance| instance.get(pin)) {
-                self.cells.prepare(ty, value);
-            }
-        }
-        // Numbers without a name in their enumeration; a program in order has none.
-        let values = || {
-            let programs = self.script.programs.iter().zip(&self.values.symbols);
-            programs.flat_map(|(program, values)| program.symbols.iter().zip(values))
-        };
-        let numbers: Vec<String> = values()
-            .filter_map(|(symbol, value)| symbol.variable.as_ref()?.unnamed(*value))
-            .collect();
-        let mut numbers = numbers.iter();
-        let script = self.script;
-        let axes = machine.axes().iter().zip(&self.states).zip(&script.axes);
-        let axes = axes.flat_map(|((axis, state), configured)| {
-            let setpoint = axis.setpoint();
-            let of_all = [
-                Cell::Name(state.name()),
-                Cell::Real(setpoint.position),
-                Cell::Real(setpoint.velocity),
-                Cell::Real(setpoint.acceleration),
-                Cell::Real(setpoint.jerk),
-                Cell::Real(setpoint.snap),
-                Cell::Real(axis.actual_position()),
-            ];
-            let coupled = axis.coupled();
-            let name = |master: Option<AxisId>| {
-                let master = master.and_then(|master| script.axes.get(master.index()));
-                Cell::Name(master.map_or("", |master| &master.name))
-            };
-            let of_slave = (configured.masters > 0).then(|| {
-                [
-                    name(coupled.map(|coupled| coupled.master)),
-                    Cell::Real(coupled.map_or(0.0, |coupled| coupled.deviation)),
-                    Cell::Real(coupled.map_or(0.0, |coupled| coupled.phase)),
-                ]
-            });
-            let second = coupled.and_then(|coupled| coupled.second);
-            let of_combined = (configured.masters > 1).then(|| {
-                [
-                    name(second.map(|(master, _)| master)),
-                    Cell::Real(second.map_or(0.0, |(_, phase)| phase)),
-                ]
-            });
-            let superimposed = configured
-                .superimposed
-                .then(|| Cell::Real(coupled.map_or(0.0, |coupled| coupled.superimposed)));
-            let shadow = configured.on_cam.then(|| {
-                let shadow = coupled.and_then(|coupled| coupled.shadow);
-                Cell::Real(shadow.unwrap_or(0.0))
-            });
-            let of_slave = of_slave.into_iter().flatten();
-            of_all
-                .into_iter()
-                .chain(of_slave)
-                .chain(of_combined.into_iter().flatten())
-                .chain(superimposed)
-                .chain(shadow)
-        });
-        let named = &self.cells;
-        let variables = self
-            .values
-            .variables
-            .iter()
-            .map(|value| named.cell(PinType::Lreal, *value));
-        let pins = pins().map(|(ty, value)| named.cell(ty, value));
-        let symbols = values().map(|(symbol, value)| match &symbol.variable {
-            None => named.cell(cells::type_of(*value), *value),
-            Some(variable) => match variable.cell(*value) {
-                Some(cell) => cell,
-                None => Cell::Name(numbers.next().map_or("", String::as_str)),
-            },
-        });
-        let row = axes.chain(variables).chain(pins).chain(symbols);
-        if let Err(error) = self.trace.push_cells(row) {
-            self.stop(RunError::Internal(error.to_string()));
-        }
-    }
 }
 
 impl Programs<Standard, ScriptDrive> for Bench<'_> {
@@ -487,8 +376,11 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
             self.write(point, Some(value), time.scan);
         }
         self.time = time;
-        self.readings.clear();
-        self.readings.extend(machine.axes().iter().map(reading));
+        // Nobody else looks at them.
+        if script.tasks.iter().any(|task| task.single.is_some()) {
+            self.readings.clear();
+            self.readings.extend(machine.axes().iter().map(reading));
+        }
     }
 
     fn single(&mut self, task: TaskId) -> bool {
@@ -550,7 +442,16 @@ impl Programs<Standard, ScriptDrive> for Bench<'_> {
     }
 
     fn published(&mut self, time: ScanTime, machine: &ScriptMachine) {
-        self.push_row(machine);
+        let source = Source {
+            script: self.script,
+            values: &self.values,
+            machine,
+            states: &self.states,
+            scan: time.scan,
+        };
+        if let Err(error) = self.writer.write(&source, &mut self.trace) {
+            self.stop(RunError::Internal(error.to_string()));
+        }
         self.guests
             .take_told(self.script, &mut self.notes, &mut self.trace);
         self.notes.take(machine, &mut self.trace, &mut self.shifts);

@@ -94,7 +94,7 @@ impl Layout {
     }
 
     /// Where the trace has a column of the script.
-    fn place(&self, column: usize) -> Option<usize> {
+    pub(super) fn place(&self, column: usize) -> Option<usize> {
         match &self.elsewhere {
             None => Some(column),
             Some(places) => *places.get(column)?,

@@ -9,6 +9,7 @@ mod guests;
 mod layout;
 mod notes;
 mod recorded;
+mod row;
 mod rows;
 mod schedule;
 mod session;

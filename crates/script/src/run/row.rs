@@ -1,0 +1,259 @@
+//! The row of a scan: what it is made of is prepared once. In a scan axes, variables, pins and symbols are taken as words, and
+//! only a cell whose word is another one than in the scan before is made anew.
+
+use super::bench::ScriptMachine;
+use super::cells;
+use super::layout::Layout;
+use super::values::Values;
+use crate::model::Script;
+use standstill_axis::{AxisId, AxisState};
+use standstill_fb::{AnyInstance, PinType, Value};
+use standstill_record::told::Cells;
+use standstill_record::{AXIS_WORDS, write_axis};
+use standstill_trace::{Cell, RowError, Trace};
+
+/// Words of what a slave has besides, in the order of their columns.
+const SLAVE_WORDS: usize = 7;
+
+/// Writes the rows of a script's run.
+pub(super) struct RowWriter {
+    parts: Vec<Part>,
+    /// The last row.
+    row: Vec<u64>,
+    /// Words of the part that is being looked at.
+    words: Vec<u64>,
+    cells: Cells,
+}
+
+/// An axis, the variables, an instance or a program, of which the trace has a column.
+struct Part {
+    of: Of,
+    columns: Vec<Column>,
+    /// How many words it has.
+    count: usize,
+    /// Its words in the last row; none before the first one.
+    words: Vec<u64>,
+}
+
+#[derive(Clone, Copy)]
+enum Of {
+    Axis(usize),
+    Variables,
+    Instance(usize),
+    Program(usize),
+}
+
+/// A column of the trace.
+struct Column {
+    /// Which of the words of its part it tells.
+    place: usize,
+    /// What they are.
+    told: Told,
+}
+
+#[derive(Clone, Copy)]
+enum Told {
+    State,
+    Pin(PinType),
+    /// A symbol of this guest program.
+    Symbol(usize),
+}
+
+/// What a row tells of.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub(super) script: &'a Script,
+    pub(super) values: &'a Values,
+    pub(super) machine: &'a ScriptMachine,
+    /// Axis states after all blocks were called, before the motion step.
+    pub(super) states: &'a [AxisState],
+    pub(super) scan: u64,
+}
+
+impl RowWriter {
+    /// For the columns that the layout has a place for.
+    pub(super) fn new(script: &Script, layout: &Layout) -> Self {
+        let mut all = parts(script);
+        let mut next = 0;
+        for part in &mut all {
+            part.columns.retain(|_| {
+                next += 1;
+                layout.place(next - 1).is_some()
+            });
+        }
+        all.retain(|part| !part.columns.is_empty());
+        let columns = all.iter().map(|part| part.columns.len()).sum();
+        Self {
+            words: vec![0; all.iter().map(|part| part.count).max().unwrap_or(0)],
+            parts: all,
+            row: vec![0; columns],
+            cells: cells::cells(script),
+        }
+    }
+
+    /// Writes the row of a scan. It takes no memory but that of the trace, and for texts that were never there before.
+    pub(super) fn write(&mut self, source: &Source<'_>, trace: &mut Trace) -> Result<(), RowError> {
+        let mut first = 0;
+        for part in &mut self.parts {
+            let own = first..first + part.columns.len();
+            first = own.end;
+            let words = self.words.get_mut(..part.count).unwrap_or_default();
+            source.put(part.of, words);
+            if *words == *part.words {
+                continue;
+            }
+            for (at, column) in own.zip(&part.columns) {
+                let word = words.get(column.place);
+                if let (Some(&word), Some(cell)) = (word, self.row.get_mut(at))
+                    && part.words.get(column.place) != Some(&word)
+                {
+                    *cell = match column.told {
+                        Told::State => trace.word_of(at, Cell::Name(state(word)))?,
+                        Told::Pin(ty) => {
+                            let value = ty.value(word);
+                            self.cells.prepare(ty, value);
+                            trace.word_of(at, self.cells.cell(ty, value))?
+                        }
+                        Told::Symbol(program) => {
+                            source.symbol(program, column.place, |cell| trace.word_of(at, cell))?
+                        }
+                    };
+                }
+            }
+            part.words.clear();
+            part.words.extend_from_slice(words);
+        }
+        trace.push_words(&self.row)
+    }
+}
+
+impl Source<'_> {
+    /// Puts the words of a part there.
+    fn put(&self, of: Of, words: &mut [u64]) {
+        match of {
+            Of::Axis(index) => self.put_axis(index, words),
+            Of::Variables => put_values(&self.values.variables, words),
+            Of::Instance(index) => {
+                if let Some(instance) = self.values.instances.get(index) {
+                    instance.put_words(words);
+                }
+            }
+            Of::Program(index) => put_values(self.symbols(index), words),
+        }
+    }
+
+    fn put_axis(&self, index: usize, words: &mut [u64]) {
+        let (Some(axis), Some(state)) = (self.machine.axes().get(index), self.states.get(index)) else {
+            return;
+        };
+        write_axis(words, self.scan, *state, axis);
+        let of_slave = words.get_mut(AXIS_WORDS..).unwrap_or_default();
+        if of_slave.is_empty() {
+            return;
+        }
+        let coupled = axis.coupled();
+        let second = coupled.and_then(|coupled| coupled.second);
+        let master = |master: Option<AxisId>| Value::Axis(master.unwrap_or(AxisId::NONE));
+        let real = |value: Option<f64>| Value::Lreal(value.unwrap_or(0.0));
+        let values: [Value; SLAVE_WORDS] = [
+            master(coupled.map(|coupled| coupled.master)),
+            real(coupled.map(|coupled| coupled.deviation)),
+            real(coupled.map(|coupled| coupled.phase)),
+            master(second.map(|(master, _)| master)),
+            real(second.map(|(_, phase)| phase)),
+            real(coupled.map(|coupled| coupled.superimposed)),
+            real(coupled.and_then(|coupled| coupled.shadow)),
+        ];
+        put_values(&values, of_slave);
+    }
+
+    fn symbols(&self, program: usize) -> &[Value] {
+        self.values.symbols.get(program).map_or(&[], Vec::as_slice)
+    }
+
+    /// Calls `take` with the cell of a symbol.
+    fn symbol<T>(&self, program: usize, place: usize, take: impl FnOnce(Cell<'_>) -> T) -> T {
+        let declared = self.script.programs.get(program);
+        let variable = declared.and_then(|program| program.symbols.get(place)?.variable.as_ref());
+        let value = self
+            .symbols(program)
+            .get(place)
+            .copied()
+            .unwrap_or(Value::Bool(false));
+        match variable {
+            None => take(Cells::default().cell(cells::type_of(value), value)),
+            Some(variable) => match variable.cell(value) {
+                Some(cell) => take(cell),
+                // A number without a name in its enumeration; a program in order has none.
+                None => take(Cell::Name(&variable.unnamed(value).unwrap_or_default())),
+            },
+        }
+    }
+}
+
+fn put_values(values: &[Value], words: &mut [u64]) {
+    for (word, value) in words.iter_mut().zip(values) {
+        *word = value.word();
+    }
+}
+
+/// The state at a place of [`AxisState::ALL`].
+fn state(word: u64) -> &'static str {
+    let state = usize::try_from(word).ok().and_then(|at| AxisState::ALL.get(at));
+    state.map_or("", |state| state.name())
+}
+
+/// All parts of a script with all their columns, in the order of the trace.
+fn parts(script: &Script) -> Vec<Part> {
+    let mut all = Vec::new();
+    for (index, axis) in script.axes.iter().enumerate() {
+        let (real, name) = (Told::Pin(PinType::Lreal), Told::Pin(PinType::Axis("AXIS_REF")));
+        let of_all = [(0, Told::State)]
+            .into_iter()
+            .chain((1..=6).map(|place| (place, real)));
+        let of_slave = [(0, name), (1, real), (2, real)];
+        let of_combined = [(3, name), (4, real)];
+        let besides = of_slave
+            .into_iter()
+            .filter(|_| axis.masters > 0)
+            .chain(of_combined.into_iter().filter(|_| axis.masters > 1))
+            .chain(axis.superimposed.then_some((5, real)))
+            .chain(axis.on_cam.then_some((6, real)))
+            .map(|(place, told)| (AXIS_WORDS + place, told));
+        let count = match besides.clone().next() {
+            Some(_) => AXIS_WORDS + SLAVE_WORDS,
+            None => AXIS_WORDS,
+        };
+        all.push(Part::new(Of::Axis(index), count, of_all.chain(besides)));
+    }
+    let variables = script.inputs.iter().map(|input| cells::type_of(input.initial));
+    all.push(Part::of_each(Of::Variables, variables.map(Told::Pin)));
+    for (index, instance) in script.blocks.iter().enumerate() {
+        let pins = instance.block.pins().map(|pin| Told::Pin(pin.ty));
+        all.push(Part::of_each(Of::Instance(index), pins));
+    }
+    for (index, program) in script.programs.iter().enumerate() {
+        let symbols = program.symbols.iter().map(|_| Told::Symbol(index));
+        all.push(Part::of_each(Of::Program(index), symbols));
+    }
+    all
+}
+
+impl Part {
+    fn new(of: Of, count: usize, columns: impl Iterator<Item = (usize, Told)>) -> Self {
+        let columns = columns.map(|(place, told)| Column { place, told }).collect();
+        Self {
+            of,
+            columns,
+            count,
+            words: Vec::new(),
+        }
+    }
+
+    /// With a column for each of its words.
+    fn of_each(of: Of, told: impl Iterator<Item = Told>) -> Self {
+        let mut part = Self::new(of, 0, (0..).zip(told));
+        part.count = part.columns.len();
+        part
+    }
+}
