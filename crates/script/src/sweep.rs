@@ -22,6 +22,8 @@ pub struct Sweep {
     pub(crate) varied: Vec<Varied>,
     pub(crate) draw: Draw,
     pub(crate) measures: Vec<Measure>,
+    /// Whether the table has the digest of every case. A case without one need not write down what nobody reads.
+    pub has_digest: bool,
 }
 
 /// A parameter and its values.

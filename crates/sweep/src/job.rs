@@ -4,12 +4,15 @@ use crate::figure::Figure;
 use standstill_script::model::Script;
 use standstill_script::suite::{self, Allowed, SuiteError, Texts};
 use standstill_script::sweep::Sweep;
-use standstill_script::{Outcome, RunError, ScriptError, Session, Verdict, read_sweep, run};
+use standstill_script::{Failure, Outcome, RunError, ScriptError, Session, Verdict, read_sweep, run};
 use standstill_trace::{Extreme, Extremes, digest, shortest};
 use std::path::{Path, PathBuf};
 
 /// What is told of every axis: the magnitudes of [`extremes`] and how far they stay from their limits.
 const QUANTITIES: [&str; 5] = ["velocity", "acceleration", "deceleration", "jerk", "snap"];
+
+/// The signals of an axis that they are taken of.
+const SIGNALS: [&str; 4] = ["Velocity", "Acceleration", "Jerk", "Snap"];
 
 /// Columns before the parameters.
 const FIRST: [&str; 1] = ["case"];
@@ -17,8 +20,11 @@ const FIRST: [&str; 1] = ["case"];
 /// Columns behind them, before those of axes and measures.
 const JUDGEMENT: [&str; 4] = ["verdict", "scans", "claims", "held"];
 
-/// Columns behind all others.
-const LAST: [&str; 2] = ["digest", "why"];
+/// The column of digests, where there are some.
+const DIGEST: &str = "digest";
+
+/// The column behind all others.
+const LAST: [&str; 1] = ["why"];
 
 /// Why a sweep cannot be run.
 #[derive(Debug, thiserror::Error)]
@@ -52,7 +58,13 @@ struct Ran {
     extremes: Vec<Extreme>,
     /// Of the measures, as they stand in the table.
     figures: Vec<String>,
-    digest: u64,
+    digest: Option<u64>,
+}
+
+impl Ran {
+    fn failure(&self) -> Option<&Failure> {
+        self.verdicts.iter().flat_map(|verdict| &verdict.failures).next()
+    }
 }
 
 /// A sweep with its script, both read.
@@ -63,6 +75,8 @@ pub struct Job {
     script: PathBuf,
     axes: Vec<String>,
     columns: Vec<String>,
+    /// The signals that extremes and measures are taken of.
+    signals: Vec<String>,
     key: u64,
 }
 
@@ -128,8 +142,13 @@ impl Job {
         key.write(&script.hash.to_le_bytes());
         // Whatever else a run depends on shows in this one.
         key.write(&digest::whole(&outcome.trace).to_le_bytes());
+        let of_axes = axes
+            .iter()
+            .flat_map(|axis| SIGNALS.map(|signal| format!("{axis}.{signal}")));
+        let measured = sweep.measures().iter().map(|measure| measure.signal.clone());
         Ok(Self {
             columns: columns(&sweep, &axes, true),
+            signals: of_axes.chain(measured).collect(),
             sweep,
             texts,
             script: file,
@@ -177,8 +196,7 @@ impl Job {
             }
             Err(error) => return Ok(refused(error.to_string())),
         };
-        let mut failures = ran.verdicts.iter().flat_map(|verdict| &verdict.failures);
-        let failure = failures.next();
+        let failure = ran.failure();
         let judged = match failure {
             None => Judged::Passed,
             Some(_) => Judged::Failed,
@@ -192,10 +210,21 @@ impl Job {
         })
     }
 
-    /// Runs a script and takes what stands in a table; its rows are given up on the way.
+    /// Runs a script and takes what stands in a table. Where no digest does, only what is read is written down, and a case that
+    /// fails is run again with all of it: what is told of it is then the same.
     fn ran(&self, script: &Script) -> Result<Ran, RunError> {
-        let mut session = Session::new(script)?;
-        let mut digest = digest::Whole::default();
+        if !self.sweep.has_digest {
+            let ran = self.take(Session::lean(script, &self.signals)?)?;
+            if ran.failure().is_none() {
+                return Ok(ran);
+            }
+        }
+        self.take(Session::new(script)?)
+    }
+
+    /// Takes what stands in a table; rows are given up on the way.
+    fn take(&self, mut session: Session<'_>) -> Result<Ran, RunError> {
+        let mut digest = self.sweep.has_digest.then(digest::Whole::default);
         let mut extremes = Extremes::new(session.trace());
         let measures = self.sweep.measures().iter();
         let mut figures: Vec<Figure> = measures
@@ -204,7 +233,9 @@ impl Job {
         while session.advance()? {
             if session.scans() % ROWS_HELD == 0 || session.is_over() {
                 let trace = session.trace();
-                digest.look(trace);
+                if let Some(digest) = &mut digest {
+                    digest.look(trace);
+                }
                 extremes.look(trace);
                 figures.iter_mut().for_each(|figure| figure.look(trace));
                 session.forget();
@@ -216,7 +247,7 @@ impl Job {
             verdicts,
             extremes: extremes.all().collect(),
             figures: figures.iter().map(Figure::text).collect(),
-            digest: digest.finish(),
+            digest: digest.map(|digest| digest.finish()),
         })
     }
 
@@ -263,7 +294,7 @@ impl Job {
                 fields.push(margin.map(shortest).unwrap_or_default());
             }
             fields.extend(ran.figures.iter().cloned());
-            fields.push(format!("{:016x}", ran.digest));
+            fields.extend(ran.digest.map(|digest| format!("{digest:016x}")));
         }
         // A case that did not run has nothing to tell between its verdict and the reason.
         fields.resize(self.columns.len() - 1, String::new());
@@ -289,6 +320,9 @@ fn columns(sweep: &Sweep, axes: &[String], all: bool) -> Vec<String> {
     }
     if all {
         columns.extend(sweep.measures().iter().map(|measure| measure.name.clone()));
+    }
+    if sweep.has_digest {
+        columns.push(DIGEST.to_owned());
     }
     columns.extend(owned(&LAST));
     columns

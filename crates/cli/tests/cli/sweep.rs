@@ -127,6 +127,65 @@ fn part_key(folder: &Path) -> String {
 }
 
 #[test]
+fn a_table_without_digests_is_the_same_but_for_them() {
+    let folder = folder("sweep_bare");
+    let refused = SCRIPT.replace("\"velocity\": 20", "\"velocity\": {\"param\": \"v\"}");
+    write(&folder, "refused.scan.json", &refused);
+    let turn = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/sweeps");
+    for name in ["turn.scan.json", "turn.sweep.json"] {
+        write(&folder, name, &read(&turn, name));
+    }
+    let claims = read(&turn, "turn.scan.json").replace(
+        "\"expect\": [",
+        r#""stop_when": {"turn.Done": true},
+  "expect": [
+    {"within_limits": "X"},
+    {"at": 700, "that": {"X.State": "Standstill"}},
+    {"never": {"X.Position.d1": {"gt": 3}}, "while": {"power.Status": true}},
+    {"once": {"turn.Done": true}, "from": {"when": {"turn.Busy": true}}},
+    {"always": {"torque.Torque": {"same_as": "torque.Torque"}}},"#,
+    );
+    write(&folder, "claims.scan.json", &claims);
+    let other = |name: &str| read(&turn, "turn.sweep.json").replace("turn.scan.json", name);
+    for (sweep, verdicts) in [
+        (SWEEP.to_owned(), "3 passed, 3 failed, 0 refused"),
+        (
+            SWEEP
+                .replace("move.scan", "refused.scan")
+                .replace("[4, 5,", "[0, 10,"),
+            "4 passed, 1 failed, 1 refused",
+        ),
+        (other("turn.scan.json"), "11 passed, 4 failed, 0 refused"),
+        (other("claims.scan.json"), "0 passed, 15 failed, 0 refused"),
+    ] {
+        write(&folder, "all.sweep.json", &sweep);
+        let bare = sweep.replacen("\"script\"", "\"digest\": false, \"script\"", 1);
+        write(&folder, "bare.sweep.json", &bare);
+        let all = standstill(&folder, &["sweep", "all.sweep.json", "-o", "all.csv"]);
+        let bare = standstill(&folder, &["sweep", "bare.sweep.json", "-o", "bare.csv"]);
+        assert!(all.out.contains(verdicts), "{}{}", all.out, all.err);
+        assert!(bare.out.contains(verdicts), "{}{}", bare.out, bare.err);
+        let all = read(&folder, "all.csv");
+        let digest = all
+            .lines()
+            .next()
+            .unwrap()
+            .split(',')
+            .position(|name| name == "digest");
+        // Only what stands behind digests may have commas of its own.
+        let without = |line: &str| {
+            let mut fields: Vec<&str> = line.splitn(digest.unwrap() + 2, ',').collect();
+            fields.remove(digest.unwrap());
+            fields.join(",") + "\n"
+        };
+        assert_eq!(
+            read(&folder, "bare.csv"),
+            all.lines().map(without).collect::<String>()
+        );
+    }
+}
+
+#[test]
 fn a_part_of_another_sweep_is_not_gone_on_with() {
     let folder = folder("sweep_other");
     write(&folder, "a.csv.part", "standstill-sweep,0123456789abcdef,1/1\n");
@@ -267,6 +326,12 @@ fn what_a_sweep_names_must_be_there() {
             "`count` is 1:",
         ),
         ("\"grid\"", "\"grit\"", "4:3", "unknown key `grit`"),
+        (
+            "\"grid\"",
+            "\"digest\": \"false\", \"grid\"",
+            "4:13",
+            "`digest` takes true or false",
+        ),
         (
             "sweep\": 1",
             "sweep\": 2",

@@ -547,7 +547,7 @@ pub(crate) mod machine {
 /// The objects of a sweep.
 pub(crate) mod sweep {
     use super::{Shape, shape};
-    use crate::schema::of::text;
+    use crate::schema::of::{boolean, text};
     use crate::schema_sweep::*;
 
     pub(crate) const SWEEP: Shape = shape(
@@ -560,6 +560,7 @@ pub(crate) mod sweep {
             ("grid", grid),
             ("sample", sample),
             ("measure", measures),
+            ("digest", boolean),
             ("note", text),
         ],
     );

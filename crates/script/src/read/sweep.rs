@@ -50,6 +50,10 @@ impl Reader {
             Some(node) => self.measures(node),
             None => Some(Vec::new()),
         };
+        let has_digest = match fields.get("digest") {
+            Some(node) => self.boolean(node, "`digest`"),
+            None => Some(true),
+        };
         let varied = match (fields.get("grid"), fields.entry("sample")) {
             (Some(_), Some((key, _))) => {
                 let message = "a sweep has a `grid` or a `sample`, not both";
@@ -77,6 +81,7 @@ impl Reader {
             varied,
             draw,
             measures: measures?,
+            has_digest: has_digest?,
         })
     }
 

@@ -24,8 +24,10 @@ pub(crate) struct Layout {
     instances: Vec<usize>,
     /// First column of each guest program.
     programs: Vec<usize>,
-    /// Where a trace that is not of the script's own run has these columns.
+    /// Where a trace that has not all of these columns, or has others between them, has them.
     elsewhere: Option<Vec<Option<usize>>>,
+    /// The trace is not of the script's own run.
+    of_recording: bool,
 }
 
 impl Layout {
@@ -72,6 +74,7 @@ impl Layout {
             instances,
             programs,
             elsewhere: None,
+            of_recording: false,
         }
     }
 
@@ -84,20 +87,39 @@ impl Layout {
         let columns = header(script).columns();
         Self {
             elsewhere: Some(columns.into_iter().map(place).collect()),
+            of_recording: true,
+            ..Self::new(script)
+        }
+    }
+
+    /// The columns of a script of which its trace has these only.
+    pub(crate) fn of_some(script: &Script, kept: &BTreeSet<usize>) -> Self {
+        let end = kept.last().map_or(0, |last| last + 1);
+        let mut places = vec![None; end];
+        for (place, column) in kept.iter().enumerate() {
+            places[*column] = Some(place);
+        }
+        Self {
+            elsewhere: Some(places),
             ..Self::new(script)
         }
     }
 
     /// Whether the trace may begin amid motion: it is not of the script's own run.
     pub(crate) const fn is_of_recording(&self) -> bool {
-        self.elsewhere.is_some()
+        self.of_recording
+    }
+
+    /// Whether the trace has all of these columns, as the script's own run does.
+    pub(crate) const fn has_all(&self) -> bool {
+        self.elsewhere.is_none()
     }
 
     /// Where the trace has a column of the script.
     pub(super) fn place(&self, column: usize) -> Option<usize> {
         match &self.elsewhere {
             None => Some(column),
-            Some(places) => *places.get(column)?,
+            Some(places) => places.get(column).copied().flatten(),
         }
     }
 

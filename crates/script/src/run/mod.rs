@@ -7,6 +7,7 @@ mod drive;
 mod formulas;
 mod guests;
 mod layout;
+mod needed;
 mod notes;
 mod recorded;
 mod row;

@@ -2,10 +2,11 @@
 
 use super::formulas::{Formulas, Truths};
 use super::layout::{self, Layout};
+use super::needed::{column, signals};
 use super::rows::{Rows, Shift};
 use super::{Outcome, told};
 use crate::claims;
-use crate::model::{AxisNumber, Claim, ClaimKind, Comparison, Point, Script, Signal, Test};
+use crate::model::{Script, Signal};
 use crate::why;
 use standstill_record::text::shift;
 use standstill_trace::Trace;
@@ -145,58 +146,4 @@ fn all_there(script: &Script, layout: &Layout) -> Result<(), RecordingError> {
             count => format!(" (nor what {count} other claims speak of)"),
         },
     })
-}
-
-/// The column a signal is taken from.
-fn column(layout: &Layout, signal: &Signal) -> Option<usize> {
-    match *signal {
-        Signal::Point(point) => layout.point(point),
-        Signal::State(axis) => layout.state(axis),
-        Signal::Master(axis, which) => layout.master(axis, which),
-        Signal::Axis(axis, number) => layout.number(axis, number),
-        Signal::Difference(axis, _) => layout.number(axis, AxisNumber::Position),
-        Signal::Formula(_) => None,
-    }
-}
-
-/// Everything a claim looks at.
-fn signals(claim: &Claim) -> Vec<Signal> {
-    let mut found = Vec::new();
-    match &claim.kind {
-        ClaimKind::Exclusive(_, points) => {
-            found.extend(points.iter().map(|(_, point): &(_, Point)| Signal::Point(*point)));
-        }
-        ClaimKind::WithinLimits { axis, .. } => found.push(Signal::Axis(*axis, AxisNumber::Position)),
-        ClaimKind::Follows { follow, .. } => {
-            found.extend([follow.slave, follow.master].map(|axis| Signal::Axis(axis, AxisNumber::Position)));
-        }
-        _ => {}
-    }
-    let window = claim.window.from.iter().chain(&claim.window.to).flatten();
-    for condition in claim.kind.conditions().into_iter().chain(window) {
-        found.push(condition.signal.clone());
-        compared(&condition.test, &mut found);
-    }
-    found
-}
-
-/// The signals that a test compares with.
-fn compared(test: &Test, found: &mut Vec<Signal>) {
-    let Test::Compare(comparisons) = test else {
-        return;
-    };
-    for comparison in comparisons {
-        match comparison {
-            Comparison::SameAs(_, other) | Comparison::NearTo { of: other, .. } => found.push(other.clone()),
-            // A script's nesting is bounded by its reader.
-            Comparison::Ne(inner) => compared(inner, found),
-            Comparison::Near { .. }
-            | Comparison::Le(_)
-            | Comparison::Ge(_)
-            | Comparison::Lt(_)
-            | Comparison::Gt(_)
-            | Comparison::AbsLe(_)
-            | Comparison::Whole(..) => {}
-        }
-    }
 }

@@ -4,7 +4,7 @@ use super::bench::{self, Bench, ScriptMachine};
 use super::cells;
 use super::drive::Ordered;
 use super::layout::{self, Layout};
-use super::{Outcome, RunError, executor, told};
+use super::{Outcome, RunError, executor, needed, told};
 use crate::CELLS_MAX;
 use crate::claims::{self, Judges, Standing, Standings};
 use crate::model::{FaultKind, Point, Script, Variable};
@@ -13,6 +13,15 @@ use crate::why;
 use standstill_fb::{Direction, PinType, Value};
 use standstill_scan::Executor;
 use standstill_trace::{Trace, shortest};
+
+/// Whether a trace of so many columns has room for the rows of a script.
+fn fits(script: &Script, columns: usize) -> Result<(), RunError> {
+    let scans = script.scans;
+    if scans.saturating_mul(columns as u64) > CELLS_MAX {
+        return Err(RunError::TooLarge { scans, columns });
+    }
+    Ok(())
+}
 
 /// A run of a script that goes on when it is asked to.
 pub struct Session<'a> {
@@ -50,13 +59,22 @@ impl<'a> Session<'a> {
     /// [`RunError`]: what the script asks for cannot be set up, or its rows are more than fit into one trace.
     pub fn new(script: &'a Script) -> Result<Self, RunError> {
         let session = Self::long(script)?;
-        let columns = session.trace().columns().len();
-        if script.scans.saturating_mul(columns as u64) > CELLS_MAX {
-            return Err(RunError::TooLarge {
-                scans: script.scans,
-                columns,
-            });
-        }
+        fits(script, session.trace().columns().len())?;
+        Ok(session)
+    }
+
+    /// As [`Session::new`], for a run whose rows nobody looks at but its claims and its steps: its trace has the columns that those
+    /// read, and those of these names. Why claims fail is not looked for.
+    ///
+    /// # Errors
+    /// Those of [`Session::new`].
+    pub fn lean(script: &'a Script, names: &[String]) -> Result<Self, RunError> {
+        let columns = needed::columns(script, names);
+        let header = layout::header(script);
+        let all = header.columns().len();
+        let trace = Trace::with_some(header, |place| columns.contains(&place));
+        let session = Self::with(script, Layout::of_some(script, &columns), trace)?;
+        fits(script, all)?;
         Ok(session)
     }
 
@@ -66,13 +84,15 @@ impl<'a> Session<'a> {
     /// # Errors
     /// [`RunError`]: what the script asks for cannot be set up.
     pub fn long(script: &'a Script) -> Result<Self, RunError> {
-        let layout = Layout::new(script);
-        let header = layout::header(script);
+        Self::with(script, Layout::new(script), Trace::new(layout::header(script)))
+    }
+
+    fn with(script: &'a Script, layout: Layout, trace: Trace) -> Result<Self, RunError> {
         Ok(Self {
             script,
             machine: bench::machine(script)?,
             executor: executor(script)?,
-            bench: Bench::new(script, layout, Trace::new(header))?,
+            bench: Bench::new(script, layout, trace)?,
             scans: 0,
             over: script.scans == 0,
             stopping: false,
@@ -489,7 +509,7 @@ impl<'a> Session<'a> {
         self.judges.look(&rows);
         let verdicts = self.judges.verdicts(&rows);
         let why = match rows.trace.first() {
-            0 => why::why(&rows, &verdicts),
+            0 if rows.layout.has_all() => why::why(&rows, &verdicts),
             _ => Vec::new(),
         };
         let (mut trace, shifts, truths) = self.bench.into_rows();

@@ -1,0 +1,98 @@
+//! The columns that claims and steps read: what a recording must have to be judged, and all that a run has to keep whose rows
+//! nobody looks at.
+
+use super::layout::{self, Layout};
+use crate::model::{AxisNumber, Claim, ClaimKind, Comparison, Condition, Point, Script, Signal, Test, When};
+use std::collections::BTreeSet;
+
+/// The columns of a script's own trace that its claims, its steps and its end read, and those of these names.
+pub(super) fn columns(script: &Script, names: &[String]) -> BTreeSet<usize> {
+    let mut read = Vec::new();
+    for step in &script.steps {
+        if let When::Holds { conditions, .. } = &step.when {
+            all_of(conditions, &mut read);
+        }
+    }
+    if let Some((conditions, _)) = &script.stop_when {
+        all_of(conditions, &mut read);
+    }
+    for claim in &script.claims {
+        read.extend(signals(claim));
+        // Where a recording lacks these, they are 0.
+        if let ClaimKind::Follows { follow, .. } = &claim.kind {
+            let numbers = [AxisNumber::Phase, AxisNumber::Superimposed];
+            read.extend(numbers.map(|number| Signal::Axis(follow.slave, number)));
+        }
+    }
+    let formulas = script.formulas.iter().filter(|formula| formula.in_rows);
+    read.extend(formulas.flat_map(|formula| formula.inputs.iter().map(|input| input.signal.clone())));
+    let layout = Layout::new(script);
+    let named = (0..).zip(layout::header(script).columns());
+    let named = named.filter(|(_, column)| names.contains(&column.name));
+    let read = read.iter().filter_map(|signal| column(&layout, signal));
+    let mut columns: BTreeSet<usize> = read.chain(named.map(|(place, _)| place)).collect();
+    // A trace counts its rows by their cells.
+    if columns.is_empty() {
+        columns.insert(0);
+    }
+    columns
+}
+
+/// Everything that conditions look at.
+fn all_of<'c>(conditions: impl IntoIterator<Item = &'c Condition>, found: &mut Vec<Signal>) {
+    for condition in conditions {
+        found.push(condition.signal.clone());
+        compared(&condition.test, found);
+    }
+}
+
+/// The column a signal is taken from.
+pub(super) fn column(layout: &Layout, signal: &Signal) -> Option<usize> {
+    match *signal {
+        Signal::Point(point) => layout.point(point),
+        Signal::State(axis) => layout.state(axis),
+        Signal::Master(axis, which) => layout.master(axis, which),
+        Signal::Axis(axis, number) => layout.number(axis, number),
+        Signal::Difference(axis, _) => layout.number(axis, AxisNumber::Position),
+        Signal::Formula(_) => None,
+    }
+}
+
+/// Everything a claim looks at.
+pub(super) fn signals(claim: &Claim) -> Vec<Signal> {
+    let mut found = Vec::new();
+    match &claim.kind {
+        ClaimKind::Exclusive(_, points) => {
+            found.extend(points.iter().map(|(_, point): &(_, Point)| Signal::Point(*point)));
+        }
+        ClaimKind::WithinLimits { axis, .. } => found.push(Signal::Axis(*axis, AxisNumber::Position)),
+        ClaimKind::Follows { follow, .. } => {
+            found.extend([follow.slave, follow.master].map(|axis| Signal::Axis(axis, AxisNumber::Position)));
+        }
+        _ => {}
+    }
+    let window = claim.window.from.iter().chain(&claim.window.to).flatten();
+    all_of(claim.kind.conditions().into_iter().chain(window), &mut found);
+    found
+}
+
+/// The signals that a test compares with.
+fn compared(test: &Test, found: &mut Vec<Signal>) {
+    let Test::Compare(comparisons) = test else {
+        return;
+    };
+    for comparison in comparisons {
+        match comparison {
+            Comparison::SameAs(_, other) | Comparison::NearTo { of: other, .. } => found.push(other.clone()),
+            // A script's nesting is bounded by its reader.
+            Comparison::Ne(inner) => compared(inner, found),
+            Comparison::Near { .. }
+            | Comparison::Le(_)
+            | Comparison::Ge(_)
+            | Comparison::Lt(_)
+            | Comparison::Gt(_)
+            | Comparison::AbsLe(_)
+            | Comparison::Whole(..) => {}
+        }
+    }
+}
