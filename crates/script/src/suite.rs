@@ -4,7 +4,7 @@
 
 use crate::golden::{self, Mode, Standing};
 use crate::model::Script;
-use crate::read::{Terms, read_within};
+use crate::read::{Parsed, Terms, read_within};
 use crate::run::{Counted, Outcome, RunError, Session, run_with};
 use crate::{GUEST_MEMORY, Reason, ScriptError, Verdict, Warnings, warnings};
 use serde_json::json;
@@ -361,10 +361,8 @@ pub fn coverage(path: &Path, allowed: &Allowed) -> Result<Option<Vec<Counted>>, 
 /// A script with all it includes, read once to be run with many values of its parameters.
 #[derive(Clone, Debug)]
 pub struct Texts {
-    name: String,
+    parsed: Parsed,
     terms: Terms,
-    text: String,
-    included: BTreeMap<String, String>,
     guests: BTreeMap<String, Vec<u8>>,
 }
 
@@ -375,13 +373,8 @@ impl Texts {
     /// # Errors
     /// [`SuiteError::Io`], [`SuiteError::Encoding`], [`SuiteError::Script`].
     pub fn read(path: &Path, allowed: &Allowed) -> Result<(Self, Script), SuiteError> {
-        let (name, text) = (shown(path), read_text(path)?);
-        let mut files = BTreeMap::new();
-        let mut load = |inner: &str| {
-            let text = included(path, inner, allowed)?;
-            files.insert(inner.to_owned(), text.clone());
-            Ok(text)
-        };
+        let mut load = |inner: &str| included(path, inner, allowed);
+        let parsed = Parsed::new(&read_text(path)?, &shown(path), &mut load)?;
         let mut guests = BTreeMap::new();
         let mut guest = |inner: &str| {
             let bytes = module(path, inner, allowed)?;
@@ -392,12 +385,10 @@ impl Texts {
             guest_memory: allowed.guest_memory,
             ..Terms::default()
         };
-        let script = read_within(&text, &name, &[], &mut load, &mut guest, terms)?;
+        let script = parsed.script(&[], &mut guest, terms)?;
         let texts = Self {
-            name,
+            parsed,
             terms,
-            text,
-            included: files,
             guests,
         };
         Ok((texts, script))
@@ -408,16 +399,11 @@ impl Texts {
     /// # Errors
     /// [`ScriptError`] where it cannot be used with them.
     pub fn script(&self, parameters: &[(String, f64)]) -> Result<Script, ScriptError> {
-        let mut load = |inner: &str| {
-            let text = self.included.get(inner).cloned();
-            text.ok_or_else(|| "it was not included before".to_owned())
-        };
         let mut guest = |inner: &str| {
             let bytes = self.guests.get(inner).cloned();
             bytes.ok_or_else(|| "it was not there before".to_owned())
         };
-        let terms = self.terms;
-        read_within(&self.text, &self.name, parameters, &mut load, &mut guest, terms)
+        self.parsed.script(parameters, &mut guest, self.terms)
     }
 }
 

@@ -30,7 +30,7 @@ pub(crate) mod value;
 mod variable;
 mod wire;
 
-use crate::error::{Code, Diagnostic, ScriptError, quoted};
+use crate::error::{Code, Diagnostic, File, ScriptError, quoted};
 use crate::format::number_text;
 use crate::model::{Conditions, DriveSetup, Formula, Input, Place, Program, Script, Span};
 use json::{Json, Key, Node};
@@ -180,48 +180,84 @@ pub(crate) fn read_within(
     guest: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
     terms: Terms,
 ) -> Result<Script, ScriptError> {
-    let mut guests: Vec<Vec<u8>> = Vec::new();
-    let mut keep = |path: &str| {
-        let bytes = guest(path)?;
-        guests.push(bytes.clone());
-        Ok(bytes)
-    };
-    let plain = without_mark(text);
-    let root =
-        json::parse(plain).map_err(|diagnostic| ScriptError::new(file_name, plain, vec![diagnostic]))?;
-    let mut reader = Reader {
-        terms,
-        ..Reader::default()
-    };
-    let mut files = include::Files::new(file_name, plain, load);
-    let root = reader.with_includes(root, &mut files);
-    reader.folder = files.read.first().map_or("", |script| script.folder()).to_owned();
-    // What is missing may stand in a file that could not be had.
-    let script = if reader.errors.is_empty() {
-        reader.script(&root, overrides, &mut keep)
-    } else {
-        None
-    };
-    reader.leave_out_what_follows();
-    match script {
-        Some(script) if reader.errors.is_empty() => {
-            let mut hash = Fnv1a::new();
-            hash.write(text.as_bytes());
-            for file in files.read.iter().skip(1) {
-                hash.write(file.text().as_bytes());
-            }
-            for guest in &guests {
-                hash.write(guest);
-            }
-            Ok(Script {
-                hash: hash.finish(),
-                files: files.read.into(),
-                ..script
-            })
+    Parsed::new(text, file_name, load)?.script(overrides, guest, terms)
+}
+
+/// A script with what it includes as far as no parameter has a say.
+#[derive(Clone, Debug)]
+pub(crate) struct Parsed {
+    root: Node,
+    /// The script first.
+    files: Arc<[File]>,
+    /// Of the texts of all files.
+    hash: Fnv1a,
+}
+
+impl Parsed {
+    /// Parses a script and the files that it includes; arguments as for [`read_with`].
+    ///
+    /// # Errors
+    /// [`ScriptError`]: a syntax error, or a file that could not be had.
+    pub(crate) fn new(
+        text: &str,
+        file_name: &str,
+        load: &mut dyn FnMut(&str) -> Result<String, String>,
+    ) -> Result<Self, ScriptError> {
+        let plain = without_mark(text);
+        let root =
+            json::parse(plain).map_err(|diagnostic| ScriptError::new(file_name, plain, vec![diagnostic]))?;
+        let mut reader = Reader::default();
+        let mut files = include::Files::new(file_name, plain, load);
+        let root = reader.with_includes(root, &mut files);
+        // What is missing may stand in a file that could not be had.
+        if !reader.errors.is_empty() {
+            return Err(ScriptError::of(files.read, reader.errors));
         }
-        _ => {
-            debug_assert!(!reader.errors.is_empty(), "refused without a reason");
-            Err(ScriptError::of(files.read, reader.errors).with_reports(reader.reports))
+        let mut hash = Fnv1a::new();
+        hash.write(text.as_bytes());
+        for file in files.read.iter().skip(1) {
+            hash.write(file.text().as_bytes());
+        }
+        Ok(Self {
+            root,
+            files: files.read.into(),
+            hash,
+        })
+    }
+
+    /// The script with these parameters; arguments as for [`read_with_programs`].
+    ///
+    /// # Errors
+    /// [`ScriptError`] with everything that is wrong.
+    pub(crate) fn script(
+        &self,
+        overrides: &[(String, f64)],
+        guest: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+        terms: Terms,
+    ) -> Result<Script, ScriptError> {
+        let mut hash = self.hash;
+        let mut keep = |path: &str| {
+            let bytes = guest(path)?;
+            hash.write(&bytes);
+            Ok(bytes)
+        };
+        let mut reader = Reader {
+            terms,
+            folder: self.files.first().map_or("", |script| script.folder()).to_owned(),
+            ..Reader::default()
+        };
+        let script = reader.script(&self.root, overrides, &mut keep);
+        reader.leave_out_what_follows();
+        match script {
+            Some(script) if reader.errors.is_empty() => Ok(Script {
+                hash: hash.finish(),
+                files: Arc::clone(&self.files),
+                ..script
+            }),
+            _ => {
+                debug_assert!(!reader.errors.is_empty(), "refused without a reason");
+                Err(ScriptError::of(self.files.to_vec(), reader.errors).with_reports(reader.reports))
+            }
         }
     }
 }
