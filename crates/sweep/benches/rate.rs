@@ -1,8 +1,10 @@
-//! Axis-scans a second of a sweep, beside a bare loop of trapezoid samples timed in the same run.
+//! Axis-scans a second of sweeps, beside a bare loop of trapezoid samples timed in the same run.
 //!
-//! A case is read, run through executor, blocks, axis and drive into a trace, judged and measured; the loop computes the
-//! position of a trapezoid from its parameters and adds it up. One thread each, the median of some rounds.
+//! A case is read, run through executor, blocks, axis and drive, judged and measured; the loop computes the position of a
+//! trapezoid from its parameters and adds it up. One thread each, medians of some rounds. Names of sweeps after `--` choose among
+//! them.
 
+use standstill_script::suite::Allowed;
 use standstill_sweep::{Job, SweepError, run};
 use std::hint::black_box;
 use std::path::Path;
@@ -13,15 +15,43 @@ const ROUNDS: usize = 11;
 /// Samples of the loop in a round.
 const SAMPLES: u64 = 1_000_000;
 
+/// An ideal axis, and one with a mechanism; those behind have no digests in their tables.
+const SWEEPS: [&str; 4] = ["ideal", "ideal_bare", "turn", "turn_bare"];
+
 fn main() -> Result<(), SweepError> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/sweeps/turn.sweep.json");
-    let job = Job::load(&path, &Default::default())?;
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let allowed = Allowed {
+        folders: vec![here.join("../../docs/sweeps")],
+        ..Allowed::default()
+    };
+    let chosen: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|it| !it.starts_with('-'))
+        .collect();
+    for name in SWEEPS {
+        if !chosen.is_empty() && !chosen.iter().any(|it| it == name) {
+            continue;
+        }
+        let path = here.join(format!("benches/cases/{name}.sweep.json"));
+        let (sweep, bare) = rates(&Job::load(&path, &allowed)?)?;
+        println!(
+            "{name:<12} {:>9.2e} axis-scans a second, bare trapezoids {:>9.2e}; one costs {:>6.1} of them",
+            1.0 / sweep,
+            1.0 / bare,
+            sweep / bare
+        );
+    }
+    Ok(())
+}
+
+/// What an axis-scan of a sweep and a sample of the loop take (s).
+fn rates(job: &Job) -> Result<(f64, f64), SweepError> {
     let cases: Vec<u64> = (0..job.count()).collect();
     let (mut sweeps, mut loops) = (Vec::new(), Vec::new());
     for _ in 0..ROUNDS {
         let begin = Instant::now();
         let mut axis_scans = 0;
-        run(&job, &cases, 1, |row| {
+        run(job, &cases, 1, |row| {
             axis_scans += row.axis_scans;
             Ok::<_, SweepError>(())
         })?;
@@ -34,11 +64,7 @@ fn main() -> Result<(), SweepError> {
         );
         loops.push(begin.elapsed().as_secs_f64() / SAMPLES as f64);
     }
-    let (sweep, bare) = (median(sweeps), median(loops));
-    println!("a sweep             {:>9.2e} axis-scans a second", 1.0 / sweep);
-    println!("a bare trapezoid    {:>9.2e} samples a second", 1.0 / bare);
-    println!("one axis-scan costs {:>9.1} samples", sweep / bare);
-    Ok(())
+    Ok((median(sweeps), median(loops)))
 }
 
 /// A move of 1 at velocity 4 and acceleration 40, at this time (s).
