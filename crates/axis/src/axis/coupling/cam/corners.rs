@@ -11,7 +11,7 @@ use super::super::needs::RESOLVED;
 use super::super::view::{UNKNOWN, View};
 use super::onto::Way;
 use super::shadow::{FASTEST, leaves};
-use super::{Curve, Rung, Shadow};
+use super::{Curve, OnCam, Rung, Shadow};
 use crate::{Approach, OnLimit, Scope};
 use standstill_planner::{DirectedLimits, Lead, Limits, Plan, Planner, Setpoint};
 
@@ -39,6 +39,14 @@ impl Corner {
     }
 }
 
+impl OnCam {
+    /// A derivative jumps somewhere that the limits of the slave do not let jump.
+    pub(super) fn has_corners(&self) -> bool {
+        let order = self.limits.order().degree().saturating_sub(1);
+        usize::from(self.camming.continuity) < order
+    }
+}
+
 impl<P: Planner> Axis<P> {
     /// So many derivatives of a cam the limits of the slave do not let jump.
     pub(super) fn corner_order(&self) -> usize {
@@ -49,9 +57,7 @@ impl<P: Planner> Axis<P> {
     /// The cam as it lies, if it has corners for this slave, and is not over.
     fn curve_with_corners<'a>(&self, scope: &'a Scope<'_>) -> Option<Curve<'a>> {
         let on_cam = self.on_cam.as_ref()?;
-        let order = on_cam.limits.order().degree().saturating_sub(1);
-        let has_none = usize::from(on_cam.camming.continuity) >= order;
-        if has_none || on_cam.ends.is_over() {
+        if !on_cam.has_corners() || on_cam.ends.is_over() {
             return None;
         }
         on_cam.curve(scope.cams.cam(on_cam.camming.cam)?)

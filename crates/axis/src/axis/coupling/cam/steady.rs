@@ -8,12 +8,13 @@ use standstill_planner::{Limits, Planner, Setpoint};
 
 impl OnCam {
     /// Nothing of the cam keeps the next step from being that of a scan in which nothing is new: the slave is in sync behind the
-    /// set-point of its master, and the cam is not over. The limits of the slave are these, and its coordinates have moved so often.
+    /// set-point of its master, and the cam is not over and has no corners. The limits of the slave are these, and its coordinates have moved so often.
     pub(in crate::axis::coupling) fn may_go_on(&self, limits: &Limits, moves: u32) -> bool {
         self.rung.is_locked()
             && self.camming.source == ValueSource::Set
             && self.anchor.is_some()
             && !self.ends.is_over()
+            && !self.has_corners()
             && self.known[0].kind == Kind::Plan
             && self.moves == moves
             && self.limits == *limits
