@@ -12,7 +12,7 @@
 //! | [`start`] | a start that waits for a place of the master |
 //! | [`shadow`] | its shadow in step with the master |
 //! | [`corners`] | its rests where a derivative of the cam jumps |
-//! | [`ahead`] | whether it keeps its limits along what the master does next |
+//! | [`ahead`] | whether it keeps its limits along what the master does next, and where that ends |
 //! | [`beside`] | what it leaves to a shift, and to its master |
 //! | [`steady`] | the motion step in a scan in which nothing is new |
 //! | [`ends`], [`after`] | ends of periods, and what follows then |
@@ -149,6 +149,8 @@ pub(in crate::axis) struct OnCam {
     laid: f64,
     /// What it leaves to its master, once that keeps the limits of the slave.
     bound: Option<Limits>,
+    /// Where its master leads it (u), if that is outside its software limits.
+    leads_outside: Option<f64>,
 }
 
 /// A cam as it lies.
@@ -222,7 +224,13 @@ impl OnCam {
             lead: 0.0,
             laid: 0.0,
             bound: None,
+            leads_outside: None,
         }
+    }
+
+    /// Where its master was told to lead it (u).
+    pub(super) fn leads_outside(&mut self) -> &mut Option<f64> {
+        &mut self.leads_outside
     }
 
     /// The cam as it lies, once it does.

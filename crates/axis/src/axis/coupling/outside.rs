@@ -1,41 +1,46 @@
 //! A master that is commanded to where its slave must not go: told at once, not only when the slave stops inside.
 
 use super::super::Axis;
-use super::Coupling;
 use super::view::{View, way_to_rest};
+use super::{Coupling, OnCam};
 use crate::{Event, Scope};
-use standstill_planner::{Plan, Planner};
+use standstill_planner::{Leads, Plan, Planner};
+
+/// The way (u of what the `leads` are of) from the end of this scan until all masters have come to rest; `None` while that is not
+/// known, or one of them goes on.
+pub(super) fn way_left<Q: Plan>(view: &View<'_, Q>, leads: &Leads<'_, Q>) -> Option<f64> {
+    // At the end of this scan a plan that is not late is one scan further than at its beginning.
+    way_to_rest(leads, u64::from(!view.future.is_late()))
+}
 
 impl Coupling {
     /// Where the law is (u) when all masters have come to rest; `None` while that is not known, or one of them goes on.
     fn rest_of_law<Q: Plan>(&self, view: &View<'_, Q>) -> Option<f64> {
         let anchor = self.anchor?;
         let (now, _) = self.law(&anchor, &view.seen());
-        // At the end of this scan a plan that is not late is one scan further than at its beginning.
-        let scan = u64::from(!view.future.is_late());
-        let way = way_to_rest(&self.leads(&view.future)?, scan)?;
-        Some(now.position + way)
+        Some(now.position + way_left(view, &self.leads(&view.future)?)?)
     }
 }
 
 impl<P: Planner> Axis<P> {
     /// Records that the masters lead out of the software limits of this slave, once for each place they lead to. The law is known
-    /// once it was in gear, or from the sync positions of MC_GearInPos.
+    /// once it was in gear, or from the sync positions of MC_GearInPos; a cam as soon as it lies.
     ///
-    /// Cost: where a master got another plan, one evaluation of the law and two of each plan.
+    /// Cost: where a master got another plan, one evaluation of the law or the cam and two of each plan.
     pub(super) fn tell_outside(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
         if self.parameters.software_limits.is_none() {
             return;
         }
-        let rest = self
-            .coupling
-            .as_ref()
-            .and_then(|coupling| coupling.rest_of_law(view));
+        let rest = match &self.coupling {
+            Some(coupling) => coupling.rest_of_law(view),
+            None => self.rest_of_cam(view, &scope.cams),
+        };
         let outside = rest.filter(|rest| self.allowed(*rest).is_err());
-        let Some(coupling) = &mut self.coupling else {
+        let told = self.coupling.as_mut().map(|coupling| &mut coupling.leads_outside);
+        let Some(told) = told.or_else(|| self.on_cam.as_mut().map(OnCam::leads_outside)) else {
             return;
         };
-        let was = core::mem::replace(&mut coupling.leads_outside, outside);
+        let was = core::mem::replace(told, outside);
         if let Some(position) = outside.filter(|_| was != outside) {
             let limit = self.broken_software_limit(position);
             self.record(Event::LeadsOutside { position, limit }, scope);

@@ -5,7 +5,10 @@
 
 use super::super::super::Axis;
 use super::super::follow::Beyond;
+use super::super::outside::way_left;
+use super::super::view::View;
 use super::Curve;
+use crate::Cams;
 use standstill_planner::{CamBounds, Lead, Limits, Place, Plan, Planner, Setpoint};
 
 /// Most pieces of a plan that are looked at one by one.
@@ -40,6 +43,24 @@ fn larger(one: f64, other: f64) -> f64 {
 }
 
 impl<P: Planner> Axis<P> {
+    /// Where the cam is (u) when its master has come to rest; `None` while that is not known, or the master goes on.
+    pub(in crate::axis::coupling) fn rest_of_cam(
+        &self,
+        view: &View<'_, P::Plan>,
+        cams: &Cams<'_>,
+    ) -> Option<f64> {
+        let on_cam = self.on_cam.as_ref().filter(|on_cam| !on_cam.ends.is_over())?;
+        let curve = on_cam.curve(cams.cam(on_cam.camming.cam)?)?;
+        let lead = self.lead_of_master(view)?;
+        let way = way_left(view, &[Some(lead), None])?;
+        let place = Place {
+            position: view.now.place.position + way,
+            ..view.now.place
+        };
+        let at = curve.at(place, &Setpoint::default(), on_cam.at.piece);
+        Some(at.place.position)
+    }
+
     /// What a slave on `curve` would need beyond `limits` along the rest of a plan, which begins with the master at `place`. A plan
     /// of a lower `degree` than those limits changes at once what the slave may not.
     ///
