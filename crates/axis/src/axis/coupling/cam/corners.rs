@@ -186,6 +186,16 @@ impl<P: Planner> Axis<P> {
         stays.then_some((way, plan))
     }
 
+    /// It is on its way to a corner, and its limits are what they were when that was planned.
+    pub(super) fn is_bound_for_corner(&self) -> bool {
+        let is_under_way = matches!(&self.motion, Motion::Closing { elapsed, scans, .. } if elapsed < scans);
+        let goes_there = |on_cam: &OnCam| {
+            let is_known = on_cam.brakes.is_some_and(|(_, own)| own == on_cam.limits);
+            is_known && matches!(on_cam.rung, Rung::Corner { .. })
+        };
+        is_under_way && self.on_cam.as_ref().is_some_and(goes_there)
+    }
+
     /// From this scan on the slave goes along the curve to rest at the corner; off the curve to rest, where its limits leave it no such
     /// way.
     pub(super) fn brake_for_corner(
@@ -214,13 +224,15 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// Along the curve to rest at the corner, or before it.
     fn way_to_corner(&self, curve: &Curve<'_>, shadow: &Shadow, corner: Corner) -> Option<Way<P::Plan>> {
         let start = Setpoint {
             position: 0.0,
             ..shadow.at
         };
         let distance = curve.place_of(corner.x, shadow.place).position - shadow.place.position;
-        let resolved = RESOLVED * 4.0 * (distance.abs() + shadow.place.position.abs());
+        let numbers = (corner.x * curve.law.master_scaling).abs() + shadow.place.position.abs();
+        let resolved = RESOLVED * 4.0 * (distance.abs() + numbers);
         let most = distance.abs() + resolved;
         let mut within = self.limits_to_corner(curve, &shadow.at);
         let (limits, ramp) = within.find_map(|limits| {

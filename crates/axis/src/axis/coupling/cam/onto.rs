@@ -225,6 +225,10 @@ impl<P: Planner> Axis<P> {
         let Some(on_cam) = &mut self.on_cam else { return };
         let Some(shadow) = &mut on_cam.shadow else { return };
         shadow.place.position += by;
+        // So is its way, where it stays on that.
+        if let Rung::BesideLine { start, .. } | Rung::Corner { start } = &mut on_cam.rung {
+            start.position += by;
+        }
         let periods = by / ((curve.cam.head.end - curve.cam.head.begin) * curve.law.master_scaling);
         let whole = if periods < 0.0 {
             periods - 0.5
@@ -266,6 +270,9 @@ impl<P: Planner> Axis<P> {
             });
         if is_there && may_lock {
             return Choice::Lock;
+        }
+        if self.is_bound_for_corner() {
+            return Choice::Stay;
         }
         let along = self.in_step(curve, view, &shadow, &difference, &stretch);
         match along {
