@@ -241,7 +241,11 @@ fn a_master_too_fast_is_followed_on_the_curve_and_caught_up_with() {
     assert!(rig.events().iter().any(lost));
     assert!(!rig.slave().is_in_gear());
     let highest = rig.highest(cam);
+    // Whatever its velocity, no more is left to its other derivatives than all of the slave's limits where the cam is steepest.
+    let steepest = 100.0 / 180.0 * 2.1875;
+    let most = [narrow.acceleration, narrow.jerk, narrow.snap].map(|limit| 1.001 * limit / steepest);
     let mut last = None;
+    let (mut ways, mut lagging) = ([0.0_f64; 4], 0_u32);
     for scan in 0..20_000 {
         if scan == 6000 {
             rig.run(100.0);
@@ -254,8 +258,21 @@ fn a_master_too_fast_is_followed_on_the_curve_and_caught_up_with() {
         assert!(shadow <= master + 360.0, "{scan}: {shadow} {master}");
         if let Some(last) = last {
             let way: f64 = shadow - last;
-            let speed = (way - 360.0 * (way / 360.0).round()) / 1e-3;
+            let way = way - 360.0 * (way / 360.0).round();
+            let speed = way / 1e-3;
             assert!(speed >= -1e-9 && speed <= highest, "{scan}: {speed}");
+            ways.rotate_right(1);
+            ways[0] = way;
+            lagging = if rig.slave().is_in_gear() { 0 } else { lagging + 1 };
+            let [a, b, c, d] = ways;
+            let told = [
+                (a - b) / 1e-6,
+                (a - 2.0 * b + c) / 1e-9,
+                (a - 3.0 * b + 3.0 * c - d) / 1e-12,
+            ];
+            // Before it lagged it was where its master was.
+            let keeps = told.iter().zip(most).all(|(found, most)| found.abs() <= most);
+            assert!(lagging < 5 || keeps, "{scan}: {told:?} {most:?}");
         }
         last = Some(shadow);
     }
