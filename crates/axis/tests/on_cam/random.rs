@@ -4,7 +4,7 @@
 //! `CAM_EPISODES=100000 cargo test -p standstill-axis --test on_cam --release random` plays as many as it says, from
 //! `CAM_FIRST` on.
 
-use crate::rig::{MASTER, RELATIVE, Rig, config, row};
+use crate::rig::{L1, MASTER, RELATIVE, Rig, WIDE, config, row};
 use standstill_axis::{AxisState, BufferMode, CamRow, CamSelection, Command, Dynamics, Limits, Raw};
 use standstill_planner::CamShape;
 use standstill_testkit::Random;
@@ -425,6 +425,26 @@ fn the_short_way_shows_the_bits_of_the_long_one() {
         assert_eq!(digests[0], digests[1], "seed {seed}");
     }
     assert!(tally.in_sync > 0 && tally.ends > 0);
+}
+
+/// The same where both axes come round, there and back.
+#[test]
+fn the_short_way_round_shows_the_bits_of_the_long_one() {
+    let digests = [true, false].map(|drives_tell| {
+        let mut rig = Rig::new(config(L1, 0.0, Some(360.0)), config(WIDE, 30.0, Some(70.0)));
+        rig.drives_tell = drives_tell;
+        let rows = [row(0.0, 0.0, CamShape::Rest7), row(250.0, 100.0, CamShape::Rest7)];
+        let cam = rig.select(&rows, RELATIVE);
+        let cam_in = rig.cam_in(cam);
+        rig.engage(cam_in, BufferMode::Aborting).unwrap();
+        for velocity in [150.0, -80.0, 20.0] {
+            rig.run(velocity);
+            rig.steps(5000);
+        }
+        assert!(rig.slave().is_in_gear() && rig.slave().cam_ends() > 2);
+        rig.digest
+    });
+    assert_eq!(digests[0], digests[1]);
 }
 
 /// Covers: G45, G46, G51, G60, G62, G66, G78
