@@ -237,6 +237,96 @@ fn continuity_is_told_with_the_row_and_the_jump() {
     assert_eq!(made(&line, false).unwrap().head.smooth.jump, (1, slope));
 }
 
+/// Lines from 0 over 10 and 20, which go on as one, to 30 and 40, and a rest to 50.
+fn zigzag(periodic: bool) -> Made {
+    let line = CamShape::Line;
+    let rows = [
+        row(0.0, 0.0, line),
+        row(10.0, 7.0, line),
+        row(20.0, 14.0, line),
+        row(30.0, 4.0, line),
+        row(40.0, 0.0, CamShape::Rest5),
+        row(50.0, 0.0, line),
+    ];
+    made(&rows, periodic).unwrap()
+}
+
+/// Covers: G71
+#[test]
+fn the_next_corner_is_found_both_ways_through_periods_and_not_where_it_is_stood_on() {
+    let cam = zigzag(true);
+    let next = |x: f64, forwards: bool| cam.cam().next_corner(x, forwards, 1e9, 3);
+    for (x, forwards, found) in [
+        (0.0, true, 20.0),
+        (5.0, true, 20.0),
+        (10.0, true, 20.0),
+        (20.0, true, 30.0),
+        (20.0 - 1e-13, true, 30.0),
+        (41.0, true, 50.0),
+        (50.0, true, 70.0),
+        (-1.0, true, 0.0),
+        (-50.0, true, -30.0),
+        (1e6, true, 1e6 + 20.0),
+        (0.0, false, -10.0),
+        (5.0, false, 0.0),
+        (19.0, false, 0.0),
+        (20.0, false, 0.0),
+        (41.0, false, 40.0),
+        (40.0, false, 30.0),
+        (-41.0, false, -50.0),
+    ] {
+        let (place, derivative) = next(x, forwards).unwrap();
+        assert!(
+            (place - found).abs() < 1e-9 && derivative == 0,
+            "{x} {forwards}: {place}"
+        );
+    }
+    // It is as far as it is.
+    let cam = cam.cam();
+    assert!(cam.next_corner(15.0, true, 4.9, 3).is_none());
+    assert!(cam.next_corner(15.0, true, 5.1, 3).is_some());
+    assert!(cam.next_corner(15.0, false, 14.9, 3).is_none());
+    let level = up_and_back();
+    assert!(level.cam().next_corner(0.0, true, 1e9, 3).is_none());
+}
+
+/// Covers: G71
+#[test]
+fn without_periods_the_ends_are_corners_and_there_is_none_outside() {
+    let cam = zigzag(false);
+    assert_eq!(cam.head.smooth_inside.jump, (3, 1.7));
+    let next = |x: f64, forwards: bool| cam.cam().next_corner(x, forwards, 1e9, 3).map(|(place, _)| place);
+    assert_eq!(next(-5.0, true), Some(0.0));
+    assert_eq!(next(-5.0, false), None);
+    assert_eq!(next(5.0, false), Some(0.0));
+    assert_eq!(next(0.0, false), None);
+    // The rest does not move the slave, so it ends without a jump.
+    assert_eq!(next(45.0, true), None);
+    assert_eq!(next(60.0, false), Some(40.0));
+    let line = made(
+        &[row(0.0, 0.0, CamShape::Line), row(1.0, 2.0, CamShape::Line)],
+        false,
+    )
+    .unwrap();
+    assert_eq!(line.head.smooth_inside.continuity, 3);
+    assert_eq!(
+        (line.head.smooth.continuity, line.head.smooth.jump),
+        (0, (1, 2.0))
+    );
+    let corners = |order: usize| {
+        let rise = made(
+            &[row(0.0, 0.0, CamShape::Rest5), row(1.0, 2.0, CamShape::Rest5)],
+            false,
+        )
+        .unwrap();
+        (0..2)
+            .map(|row| rise.cam().jumps_at(row, order))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(corners(2), [None, None]);
+    assert_eq!(corners(3), [Some(2), Some(2)]);
+}
+
 /// Covers: G80
 #[test]
 fn rows_that_make_no_cam_are_told_by_number() {
