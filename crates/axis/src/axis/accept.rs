@@ -86,10 +86,10 @@ impl<P: Planner> Axis<P> {
         scope: &mut Scope<'_>,
     ) -> Result<(BufferMode, Start), ErrorId> {
         self.admit(request).map_err(|(pin, error)| {
-            let value = if pin == "BufferMode" {
-                f64::from(request.buffer_mode.number())
-            } else {
-                f64::NAN
+            let value = match pin {
+                "BufferMode" => f64::from(request.buffer_mode.number()),
+                "Slave" => f64::from(self.id.number()),
+                _ => f64::NAN,
             };
             self.refuse(pin, value, f64::NAN, error, scope)
         })
@@ -482,7 +482,7 @@ impl<P: Planner> Axis<P> {
             Work::Velocity { velocity, .. } => ("Velocity", velocity),
             Work::Gear(gearing) => ("Master", f64::from(gearing.first.master.number())),
             Work::Cam(camming) => ("Master", f64::from(camming.master.number())),
-            Work::Release(velocity) => ("Slave", velocity),
+            Work::Release(_) => ("Slave", f64::from(self.id.number())),
             Work::Torque { torque, .. } => ("Torque", torque),
             Work::Halt | Work::Stop => ("Deceleration", entry.limits.deceleration),
             Work::Home(position) | Work::SetPosition { position, .. } => ("Position", position),
