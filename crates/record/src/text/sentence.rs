@@ -94,8 +94,6 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
                     | "MasterValueSourceM2" => {
                         integer(out, value as i64)?;
                     }
-                    // The slave is the axis that refuses.
-                    "Slave" if value.is_nan() => out.write_str(names.axis(record.axis.index()))?,
                     "Master" | "Master1" | "Master2" | "Slave" => match value as usize {
                         0 => out.write_str("no axis")?,
                         number => match names.axis(number - 1) {
