@@ -206,9 +206,13 @@ LONG = """
     import signal, standstill
     from conftest import move
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    script = move(scans=1_000_000)
+    # Enough work that it is not over when the signal comes.
+    for number in range(9):
+        script["axes"][f"Y{number}"] = script["axes"]["X"]
     print("begun", flush=True)
     try:
-        standstill.run(move(scans=1_000_000))
+        standstill.run(script)
     except KeyboardInterrupt as stopped:
         trace = stopped.trace
         print(0 < len(trace) < 1_000_000, trace["X.Position"].shape == (len(trace),))
