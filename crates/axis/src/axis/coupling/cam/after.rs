@@ -12,7 +12,7 @@ use super::super::view::View;
 use super::ends::Passed;
 use super::onto::goes_on;
 use super::{Curve, OnCam, Rung, Shadow};
-use crate::{Event, Scope};
+use crate::{ErrorId, Event, Scope};
 use standstill_planner::{Anchor, Cam, CamLaw, Place, Planner, Setpoint};
 
 /// Where a cam gives way to another.
@@ -89,10 +89,14 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// The cam is over: the slave stays there, also where its shadow went past the end on a way that leads back.
-    fn stay_at_end(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
-        if self.is_locked_on_cam() {
+    /// The cam is over: the slave holds its last place, also where its shadow went past the end on a way that leads back. To an end
+    /// that is a corner it comes within the last scan of its way but for rounding, and rests at the end of that.
+    pub(super) fn stay_at_end(&mut self, view: &View<'_, P::Plan>, scope: &mut Scope<'_>) {
+        if self.is_locked_on_cam() || self.is_coming_to_corner() {
             return;
+        }
+        if !self.setpoint.is_at_rest() {
+            return self.fail(ErrorId::DeviationTooLarge, scope);
         }
         if let Some(on_cam) = &mut self.on_cam {
             on_cam.shadow = Some(Shadow {
@@ -100,7 +104,7 @@ impl<P: Planner> Axis<P> {
                 at: view.now.at,
             });
         }
-        self.lock_at_end(scope);
+        self.lock_on_cam(scope);
     }
 
     /// Where in the cam in progress the next one is to take over, if a cam waits and that is not the end.

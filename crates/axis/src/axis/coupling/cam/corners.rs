@@ -186,14 +186,17 @@ impl<P: Planner> Axis<P> {
         stays.then_some((way, plan))
     }
 
-    /// It is on its way to a corner, and its limits are what they were when that was planned.
-    pub(super) fn is_bound_for_corner(&self) -> bool {
+    /// It is on its way to rest at a corner.
+    pub(super) fn is_coming_to_corner(&self) -> bool {
         let is_under_way = matches!(&self.motion, Motion::Closing { elapsed, scans, .. } if elapsed < scans);
-        let goes_there = |on_cam: &OnCam| {
-            let is_known = on_cam.brakes.is_some_and(|(_, own)| own == on_cam.limits);
-            is_known && matches!(on_cam.rung, Rung::Corner { .. })
-        };
-        is_under_way && self.on_cam.as_ref().is_some_and(goes_there)
+        is_under_way && matches!(self.cam_rung(), Some(Rung::Corner { .. }))
+    }
+
+    /// The same, and its limits are what they were when that was planned.
+    pub(super) fn is_bound_for_corner(&self) -> bool {
+        let brakes = self.on_cam.as_ref().map(|on_cam| (on_cam.brakes, on_cam.limits));
+        let is_known = matches!(brakes, Some((Some((_, own)), limits)) if own == limits);
+        is_known && self.is_coming_to_corner()
     }
 
     /// From this scan on the slave goes along the curve to rest at the corner; off the curve to rest, where its limits leave it no such

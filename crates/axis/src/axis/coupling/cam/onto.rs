@@ -77,7 +77,7 @@ impl<P: Planner> Axis<P> {
         let Some(on_cam) = self.on_cam else { return };
         if on_cam.ends.is_over() {
             // It holds its last place, whatever the master does.
-            return self.lock_at_end(scope);
+            return self.stay_at_end(view, scope);
         }
         let Some(owner) = self.owner else { return };
         let was_locked = on_cam.rung.is_locked();
@@ -594,18 +594,6 @@ impl<P: Planner> Axis<P> {
             on_cam.left = left;
         }
         self.motion = Motion::Hold;
-    }
-
-    /// It holds the last place of a cam that is over.
-    pub(super) fn lock_at_end(&mut self, scope: &mut Scope<'_>) {
-        if self.is_locked_on_cam() {
-            return;
-        }
-        if self.setpoint.is_at_rest() {
-            self.lock_on_cam(scope);
-        } else {
-            self.fail(ErrorId::DeviationTooLarge, scope);
-        }
     }
 
     /// The owner can't come onto its cam.
