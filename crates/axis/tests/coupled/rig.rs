@@ -1,8 +1,9 @@
 //! Axes without drives, scan by scan.
 
+use crate::followed::follow_drives;
 use standstill_axis::{
-    Axis, AxisConfig, AxisId, Command, CommandId, Comms, DriveFeedback, DriveRequest, DriveSignals, Dynamics,
-    ErrorId, Followed, Log, Master, Raw, Request, Scope, Standard, SyncPoint, ValueSource, couple, steps,
+    Axis, AxisConfig, AxisId, Command, CommandId, Dynamics, ErrorId, Followed, Log, Master, Raw, Request,
+    Scope, Standard, SyncPoint, ValueSource, couple, steps,
 };
 
 /// Axes, and the number of the next scan.
@@ -59,17 +60,6 @@ impl Rig {
     pub fn step(&mut self) {
         steps::advance(&mut self.axes, &mut Scope::new(self.scan, &mut self.log));
         self.scan += 1;
-        for axis in &mut self.axes {
-            let command = axis.drive_command();
-            let feedback = DriveFeedback {
-                enabled: command.request == DriveRequest::Enable,
-                voltage: true,
-                fault: None,
-                position: command.position,
-                comms: Comms::Ok,
-                signals: DriveSignals::default(),
-            };
-            axis.follow_feedback(&feedback, &mut Scope::new(self.scan, &mut self.log));
-        }
+        follow_drives(&mut self.axes, self.scan, &mut self.log);
     }
 }

@@ -1,10 +1,10 @@
 //! A master, its slave, and the cams they know; scan by scan.
 
+use crate::followed::follow_drives;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, BufferMode, CamId, CamIn, CamPiece, CamRow, CamSelection, CamSlot, Cams,
-    Command, CommandId, Comms, Direction, DriveFeedback, DriveRequest, DriveSignals, Dynamics, ErrorId,
-    Event, Limits, Log, Master, Raw, Request, Scope, Setpoint, Standard, StartMode, StartState, ValueSource,
-    couple, steps,
+    Command, CommandId, Direction, Dynamics, ErrorId, Event, Limits, Log, Master, Raw, Request, Scope,
+    Setpoint, Standard, StartMode, StartState, ValueSource, couple, steps,
 };
 use standstill_planner::CamShape;
 
@@ -192,18 +192,7 @@ impl Rig {
 
     /// What drives that follow at once tell at the begin of a scan.
     fn follow_drives(&mut self) {
-        for axis in &mut self.axes {
-            let command = axis.drive_command();
-            let feedback = DriveFeedback {
-                enabled: command.request == DriveRequest::Enable,
-                voltage: true,
-                fault: None,
-                position: command.position,
-                comms: Comms::Ok,
-                signals: DriveSignals::default(),
-            };
-            axis.follow_feedback(&feedback, &mut Scope::new(self.scan, &mut self.log));
-        }
+        follow_drives(&mut self.axes, self.scan, &mut self.log);
     }
 
     /// The motion step of a scan, and the begin of the next one.
