@@ -3,7 +3,7 @@
 //! Masters move before their slaves, whatever their numbers and whichever block was called first. A ring is refused where it
 //! would close.
 
-use crate::axis::{Future, Part, Seen, Values, View};
+use crate::axis::{Future, Part, Seen, Turn, Values, View};
 use crate::{
     Axis, AxisId, AxisState, Command, CommandId, ErrorId, Followed, Planner, QUEUE_MAX, Request, Scope,
     ValueSource,
@@ -142,21 +142,24 @@ fn seen_before<P: Planner>(axes: &[Axis<P>], (master, source): Values, scan: u64
 /// Cost: as many looks at all axes as the longest chain has axes.
 fn is_above<P: Planner>(axes: &mut [Axis<P>], upper: AxisId, lower: AxisId) -> bool {
     for axis in axes.iter_mut() {
-        axis.set_above(axis.id() == lower);
+        let is_lower = axis.id() == lower;
+        axis.links_mut().set_above(is_lower);
     }
     for _ in 0..axes.len() {
         let mut is_settled = true;
         for index in 0..axes.len() {
-            let Some(axis) = axes.get(index).filter(|axis| axis.is_above()) else {
+            let Some(axis) = axes.get(index).filter(|axis| axis.links().is_above()) else {
                 continue;
             };
             if axis.id() == upper {
                 return true;
             }
             for master in axis.masters() {
-                let new = axes.get_mut(master.index()).filter(|axis| !axis.is_above());
+                let new = axes
+                    .get_mut(master.index())
+                    .filter(|axis| !axis.links().is_above());
                 if let Some(axis) = new {
-                    axis.set_above(true);
+                    axis.links_mut().set_above(true);
                     is_settled = false;
                 }
             }
@@ -171,13 +174,15 @@ fn is_above<P: Planner>(axes: &mut [Axis<P>], upper: AxisId, lower: AxisId) -> b
 /// The motion step where some axis may follow another: masters first, axes of one rank in the order of their numbers.
 #[inline(never)]
 pub(crate) fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
-    let is_known = axes.first().is_some_and(|axis| axis.nth().1 == axes.len());
+    let is_known = axes
+        .first()
+        .is_some_and(|axis| axis.links().turn().among == axes.len());
     let mut is_new = !is_known || !axes.iter().all(Axis::is_settled);
     if is_new {
         prepare(axes, scope.scan);
     }
     for place in 0..axes.len() {
-        let Some((index, _)) = axes.get(place).map(Axis::nth) else {
+        let Some(Turn { index, .. }) = axes.get(place).map(|axis| axis.links().turn()) else {
             continue;
         };
         is_new |= !advance_one(axes, index, scope);
@@ -204,7 +209,7 @@ fn note_masters<P: Planner>(axes: &mut [Axis<P>], index: usize, scan: u64) {
     let Some(axis) = axes.get_mut(index).filter(|axis| !axis.is_settled()) else {
         return;
     };
-    if !axis.is_bound() {
+    if !axis.links().is_bound() {
         return axis.settle_alone();
     }
     let Some(axis) = axes.get(index) else { return };
@@ -213,7 +218,7 @@ fn note_masters<P: Planner>(axes: &mut [Axis<P>], index: usize, scan: u64) {
     let (first, second, awaited) = (see(first), see(second), see(axis.awaited_values()));
     for master in axis.masters() {
         if let Some(master) = axes.get_mut(master.index()) {
-            master.note_followed();
+            master.links_mut().note_followed();
         }
     }
     let Some(axis) = axes.get_mut(index) else { return };
@@ -233,10 +238,10 @@ fn slow_masters<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     for axis in axes.iter_mut() {
         axis.begin_bound();
     }
-    let highest = axes.iter().map(Axis::rank).max().unwrap_or(0);
+    let highest = axes.iter().map(|axis| axis.links().rank()).max().unwrap_or(0);
     for rank in (0..=highest).rev() {
         for index in 0..axes.len() {
-            let Some(axis) = axes.get_mut(index).filter(|axis| axis.rank() == rank) else {
+            let Some(axis) = axes.get_mut(index).filter(|axis| axis.links().rank() == rank) else {
                 continue;
             };
             axis.take_bound(scope);
@@ -255,12 +260,12 @@ fn slow_masters<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
 fn is_in_order<P: Planner>(axes: &[Axis<P>]) -> bool {
     let mut last = None;
     axes.iter().all(|axis| {
-        let (index, among) = axis.nth();
+        let Turn { index, among } = axis.links().turn();
         let Some(axis) = axes.get(index) else { return false };
-        let this = Some((axis.rank(), index));
+        let this = Some((axis.links().rank(), index));
         let is_next = this > last && among == axes.len();
         last = this;
-        is_next && axis.rank() == rank_below(axes, axis)
+        is_next && axis.links().rank() == rank_below(axes, axis)
     })
 }
 
@@ -276,10 +281,10 @@ fn set_order<P: Planner>(axes: &mut [Axis<P>]) {
     let mut place = 0;
     for rank in 0..=highest {
         for index in 0..count {
-            if axes.get(index).is_some_and(|axis| axis.rank() == rank)
+            if axes.get(index).is_some_and(|axis| axis.links().rank() == rank)
                 && let Some(axis) = axes.get_mut(place)
             {
-                axis.set_nth(index, count);
+                axis.links_mut().set_turn(Turn { index, among: count });
                 place += 1;
             }
         }
@@ -289,7 +294,7 @@ fn set_order<P: Planner>(axes: &mut [Axis<P>]) {
 /// Tells every axis how many masters stand above it. Returns the most.
 fn set_ranks<P: Planner>(axes: &mut [Axis<P>]) -> u16 {
     for axis in axes.iter_mut() {
-        axis.set_rank(0);
+        axis.links_mut().set_rank(0);
     }
     let mut highest = 0;
     for _ in 0..axes.len() {
@@ -298,8 +303,8 @@ fn set_ranks<P: Planner>(axes: &mut [Axis<P>]) -> u16 {
             let Some(axis) = axes.get(index) else { continue };
             let rank = rank_below(axes, axis);
             highest = rank.max(highest);
-            if let Some(axis) = axes.get_mut(index).filter(|axis| axis.rank() != rank) {
-                axis.set_rank(rank);
+            if let Some(axis) = axes.get_mut(index).filter(|axis| axis.links().rank() != rank) {
+                axis.links_mut().set_rank(rank);
                 is_settled = false;
             }
         }
@@ -312,17 +317,17 @@ fn set_ranks<P: Planner>(axes: &mut [Axis<P>]) -> u16 {
 
 /// The rank of an axis, as those of its masters are now.
 fn rank_below<P: Planner>(axes: &[Axis<P>], axis: &Axis<P>) -> u16 {
-    if !axis.is_bound() {
+    if !axis.links().is_bound() {
         return 0;
     }
     let above = axis.masters().filter_map(|master| axes.get(master.index()));
-    let rank = above.map(|master| master.rank().saturating_add(1)).max();
+    let rank = above.map(|master| master.links().rank().saturating_add(1)).max();
     rank.unwrap_or(0)
 }
 
 /// What waits behind a motion may become active in this step: if it could not then, it is told before.
 fn bar_rings<P: Planner>(axes: &mut [Axis<P>], index: usize) {
-    let Some(axis) = axes.get_mut(index).filter(|axis| axis.is_bound()) else {
+    let Some(axis) = axes.get_mut(index).filter(|axis| axis.links().is_bound()) else {
         return;
     };
     if !axis.renew_bound() {
@@ -348,7 +353,7 @@ fn advance_one<P: Planner>(axes: &mut [Axis<P>], index: usize, scope: &mut Scope
         return true;
     };
     axis.note_before(scope.scan);
-    if !axis.is_bound() {
+    if !axis.links().is_bound() {
         axis.advance(scope);
         return true;
     }

@@ -30,7 +30,7 @@ pub fn follow<P: Planner, D: Drive>(
 /// the master got another plan at most seven plans.
 #[inline]
 pub fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
-    if axes.iter().any(Axis::is_bound) {
+    if axes.iter().any(|axis| axis.links().is_bound()) {
         return couple::advance(axes, scope);
     }
     for axis in axes {

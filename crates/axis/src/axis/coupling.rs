@@ -14,6 +14,7 @@
 //! | [`approach`] | the rungs: how a slave comes onto the law |
 //! | [`bound`] | what the limits of slaves leave to their master |
 //! | [`cam`] | the same on a cam, in a folder of its own |
+//! | [`links`] | the place of an axis among masters and slaves |
 //! | [`phasing`] | a shift between the master and what the slave sees of it |
 //! | [`steady`] | the same in a scan in which nothing is new |
 //! | [`sync`] | MC_GearInPos: a law that is given, and a start that waits for a place of the master |
@@ -25,6 +26,7 @@ mod approach;
 mod bound;
 mod cam;
 mod follow;
+mod links;
 mod needs;
 mod outside;
 mod phasing;
@@ -41,13 +43,13 @@ use crate::{
 pub(super) use bound::Bound;
 pub(super) use cam::OnCam;
 pub use cam::{CamFit, CamLaid};
+pub(crate) use links::{Links, Turn};
 pub(super) use phasing::Phasing;
 use standstill_planner::{Anchor, Gear, Limits, Place, Planner, Setpoint};
-pub(super) use steady::Room;
+pub(super) use steady::Steady;
 pub(super) use sync::Awaited;
 pub(super) use view::Kind;
 use view::SeenBoth;
-pub(super) use view::Source;
 pub(crate) use view::{Future, Part, Seen, View};
 pub(super) use view::{end_of, way_to_rest};
 
@@ -484,7 +486,7 @@ impl<P: Planner> Axis<P> {
             return self.await_master_on_cam(camming, entry, scope);
         }
         let Work::Gear(gearing) = entry.work else { return };
-        self.is_bound = true;
+        self.links.set_bound(true);
         let known = self.coupling.as_ref().map(|coupling| coupling.gearing);
         if known != Some(gearing) {
             for leg in gearing.legs().into_iter().flatten() {
@@ -525,46 +527,14 @@ impl<P: Planner> Axis<P> {
         self.leave_cam();
     }
 
-    /// The owner, or a command that waits, may follow a master.
+    /// Its place among axes that follow each other.
     #[inline]
-    pub(crate) fn is_bound(&self) -> bool {
-        self.is_bound
+    pub(crate) fn links(&self) -> &Links {
+        &self.links
     }
 
-    /// The index of the axis that moves after as many as its own index, and of how many.
-    #[inline]
-    pub(crate) fn nth(&self) -> (usize, usize) {
-        (self.nth, self.among)
-    }
-
-    /// After as many axes as its own index, of so many, the one of this index moves.
-    pub(crate) fn set_nth(&mut self, nth: usize, axes: usize) {
-        (self.nth, self.among) = (nth, axes);
-    }
-
-    /// Some slave may follow it.
-    pub(crate) fn note_followed(&mut self) {
-        self.is_followed = true;
-    }
-
-    /// How many masters stand above it, as told last.
-    pub(crate) fn rank(&self) -> u16 {
-        self.rank
-    }
-
-    /// So many masters stand above it.
-    pub(crate) fn set_rank(&mut self, rank: u16) {
-        self.rank = rank;
-    }
-
-    /// Whether the search for a ring that is under way has come to this axis.
-    pub(crate) fn is_above(&self) -> bool {
-        self.is_above
-    }
-
-    /// The search for a ring has come here, or begins.
-    pub(crate) fn set_above(&mut self, is_above: bool) {
-        self.is_above = is_above;
+    pub(crate) fn links_mut(&mut self) -> &mut Links {
+        &mut self.links
     }
 
     /// Whom it follows, and for whose place a command of it waits.
@@ -576,14 +546,17 @@ impl<P: Planner> Axis<P> {
     /// A command waits, maybe one that follows a master.
     pub(super) fn note_bound(&mut self, entry: &Entry) {
         self.unsettle();
-        self.is_bound |= matches!(entry.work, Work::Gear(_) | Work::Cam(_));
+        if matches!(entry.work, Work::Gear(_) | Work::Cam(_)) {
+            self.links.set_bound(true);
+        }
     }
 
     /// Notes anew whether the owner, or a command that waits, may follow a master. Returns whether one that waits may.
     pub(crate) fn renew_bound(&mut self) -> bool {
         let couples = |entry: &Entry| matches!(entry.work, Work::Gear(_) | Work::Cam(_));
         let waits = !self.queue.is_empty() && self.queue.iter().any(couples);
-        self.is_bound = self.is_coupled() || self.is_on_cam() || self.awaited.is_some() || waits;
+        let is_bound = self.is_coupled() || self.is_on_cam() || self.awaited.is_some() || waits;
+        self.links.set_bound(is_bound);
         waits
     }
 

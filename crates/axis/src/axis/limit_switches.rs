@@ -13,10 +13,10 @@ use standstill_planner::Planner;
 impl<P: Planner> Axis<P> {
     /// Takes over this scan's signals. A drive that counts the other way has its positive end at the lower one.
     pub(super) fn latch_signals(&mut self, told: DriveSignals) {
-        self.signals = told;
+        self.beside.signals = told;
         if self.config.scaling.is_some_and(|scaling| scaling.invert()) {
-            self.signals.limit_switch_positive = told.limit_switch_negative;
-            self.signals.limit_switch_negative = told.limit_switch_positive;
+            self.beside.signals.limit_switch_positive = told.limit_switch_negative;
+            self.beside.signals.limit_switch_negative = told.limit_switch_positive;
         }
     }
 
@@ -24,9 +24,9 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub(super) fn is_on_limit_switch(&self, up: bool) -> bool {
         if up {
-            self.signals.limit_switch_positive
+            self.beside.signals.limit_switch_positive
         } else {
-            self.signals.limit_switch_negative
+            self.beside.signals.limit_switch_negative
         }
     }
 

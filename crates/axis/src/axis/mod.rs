@@ -7,6 +7,7 @@
 //! | [`commands`] | what a command is: its work, the table of what each kind of work is, its entry |
 //! | [`queue`] | commands that wait |
 //! | [`stage`] | the power stage: what is wanted of it, what the drive tells of it |
+//! | [`failure`] | the error shown, whether its cause persists, the reset under way |
 //! | [`feedback`] | actual positions, and which can be compared |
 //! | [`frame`] | what positions are called, for the drive and since when |
 //! | [`modulo`] | turns, and the way round |
@@ -32,6 +33,7 @@ mod coordinates;
 mod coupling;
 mod dynamics;
 mod factors;
+mod failure;
 mod feedback;
 mod frame;
 mod guard;
@@ -69,7 +71,7 @@ use crate::{
 pub use commands::WorkKind;
 use commands::{Ending, Entry, Work};
 pub use coupling::{CamFit, CamLaid, Coupled};
-pub(crate) use coupling::{Future, Part, Seen, Values, View};
+pub(crate) use coupling::{Future, Part, Seen, Turn, Values, View};
 pub use factors::Factors;
 use feedback::Feedback;
 use frame::Frame;
@@ -145,8 +147,13 @@ impl<P: Plan> Motion<P> {
 /// What goes to and comes from a drive beside its motion.
 #[derive(Clone, Copy, Debug, Default)]
 struct BesideMotion {
+    /// Switches, as told last.
+    signals: DriveSignals,
     report: DriveReport,
     order: DriveOrder,
+    probes: probe::Probes,
+    /// Of outputs that follow positions.
+    cam_tracks: [CamTrack; DIGITAL as usize],
 }
 
 /// How little there is to look after in a scan, see [`Axis::calmness`]. `No` may be stale, the others never are.
@@ -270,14 +277,8 @@ pub struct Axis<P: Planner = Standard> {
     modulo: Option<Modulo>,
     /// Actual positions.
     feedback: Feedback,
-    /// What the drive reported last beside its position.
-    signals: DriveSignals,
     /// What the drive has beside its motion.
     beside: BesideMotion,
-    /// Touch probes.
-    probes: probe::Probes,
-    /// Of outputs that follow positions.
-    cam_tracks: [CamTrack; DIGITAL as usize],
     /// What positions are called.
     frame: Frame,
     motion: Motion<P::Plan>,
@@ -304,39 +305,18 @@ pub struct Axis<P: Planner = Standard> {
     phasing: coupling::Phasing<P::Plan>,
     /// What follows a master from a place of it on, and waits for that.
     awaited: Option<coupling::Awaited>,
-    /// The owner or a command that waits may follow a master; never FALSE where one does.
-    is_bound: bool,
-    /// Where its set-point comes from in this scan, where some axis may follow another.
-    source: coupling::Source,
     /// What its slaves leave of its limits.
     bound: coupling::Bound,
-    /// How many masters stand above it.
-    rank: u16,
-    /// The index of the axis that moves after as many as this one's own index, of so many axes.
-    nth: usize,
-    among: usize,
-    /// Some slave may follow it, or did.
-    is_followed: bool,
-    /// Where it was before its step in this scan; only where some slave may follow it.
-    was: Seen,
-    /// Nothing is new where some axis may follow another; never stale where it is TRUE.
-    is_settled: bool,
-    /// In its last step nothing was new, nor for its masters.
-    has_gone_on: bool,
-    /// What its limits leave in a scan in which nothing is new; `None` before the first of these behind a master.
-    room: Option<coupling::Room>,
-    /// Reached in the search for a ring that is under way.
-    is_above: bool,
+    /// Its place among axes that follow each other.
+    links: coupling::Links,
+    /// Whether anything is new, where some axis may follow another.
+    steady: coupling::Steady,
     /// The owner is MC_Stop, stands, and is held by its Execute.
     stop_held: bool,
     queue: Queue,
     fates: Fates,
     power: Power,
-    error: ErrorId,
-    error_code: u16,
-    /// The cause of an axis fault persists.
-    cause_present: bool,
-    reset: Option<power::Reset>,
+    failure: failure::Failure,
     homed: bool,
     /// The search of MC_Home.
     homing: homing::Search,
@@ -378,10 +358,7 @@ impl<P: Planner> Axis<P> {
             setpoint: Setpoint::at_rest(config.position),
             modulo: Modulo::new(&config),
             feedback: Feedback::new(config.position),
-            signals: DriveSignals::default(),
             beside: BesideMotion::default(),
-            probes: probe::Probes::default(),
-            cam_tracks: [CamTrack::default(); DIGITAL as usize],
             frame: Frame::default(),
             motion: if powered { Motion::Hold } else { Motion::Follow },
             layer: None,
@@ -396,26 +373,14 @@ impl<P: Planner> Axis<P> {
             cam_ends: 0,
             phasing: coupling::Phasing::default(),
             awaited: None,
-            is_bound: false,
-            source: coupling::Source::default(),
             bound: coupling::Bound::default(),
-            rank: 0,
-            nth: 0,
-            among: 0,
-            is_followed: false,
-            was: Seen::default(),
-            is_settled: false,
-            has_gone_on: false,
-            room: None,
-            is_above: false,
+            links: coupling::Links::default(),
+            steady: coupling::Steady::default(),
             stop_held: false,
             queue: Queue::default(),
             fates: Fates::default(),
             power: Power::new(powered),
-            error: ErrorId::None,
-            error_code: 0,
-            cause_present: false,
-            reset: None,
+            failure: failure::Failure::default(),
             homed: false,
             homing: homing::Search::default(),
             watched: false,
@@ -488,12 +453,12 @@ impl<P: Planner> Axis<P> {
 
     /// The axis error; `None` outside ErrorStop.
     pub fn error_id(&self) -> ErrorId {
-        self.error
+        self.failure.error()
     }
 
     /// The drive's or fault's own code belonging to [`Axis::error_id`], 0 if none.
     pub fn error_code(&self) -> u16 {
-        self.error_code
+        self.failure.code()
     }
 
     /// The plan in progress and the scans since its start.
@@ -566,8 +531,8 @@ impl<P: Planner> Axis<P> {
     fn fate_of_other(&self, id: CommandId) -> Fate {
         if self.queue.contains(id)
             || self.awaits_start(id)
-            || self.probes.is_waiting(id)
-            || self.reset.as_ref().is_some_and(|reset| reset.id == id)
+            || self.beside.probes.is_waiting(id)
+            || self.failure.reset() == Some(id)
         {
             return Fate::Waiting;
         }
@@ -601,9 +566,9 @@ impl<P: Planner> Axis<P> {
             tripped: self.power.is_tripped(),
             unconfirmed: self.power.is_unconfirmed(),
             power_waited: self.power.waited(),
-            error: self.error,
-            cause_present: self.cause_present,
-            reset: self.reset.as_ref().map(|reset| reset.id),
+            error: self.failure.error(),
+            cause_present: self.failure.has_cause(),
+            reset: self.failure.reset(),
             homed: self.homed,
             homing: self.homing.bits(),
             forward: self.last_velocity > 0.0,

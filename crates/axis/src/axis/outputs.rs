@@ -91,7 +91,7 @@ impl<P: Planner> Axis<P> {
 
     /// What the digital outputs remember that follow positions, in order of their numbers.
     pub fn cam_tracks_mut(&mut self) -> &mut [CamTrack; DIGITAL as usize] {
-        &mut self.cam_tracks
+        &mut self.beside.cam_tracks
     }
 
     pub(super) fn set_output(&mut self, bit: u32, value: bool) {

@@ -191,7 +191,7 @@ impl<P: Planner> Axis<P> {
             Parameter::MaxDecelerationAppl => ParameterValue::Real(own.limits.deceleration),
             Parameter::MaxJerkSystem => ParameterValue::Real(system.jerk),
             Parameter::MaxJerkAppl => ParameterValue::Real(own.limits.jerk),
-            Parameter::DriveErrorCode => ParameterValue::Real(self.error_code.into()),
+            Parameter::DriveErrorCode => ParameterValue::Real(self.failure.code().into()),
             Parameter::PositionLag => {
                 self.fresh_position()?;
                 ParameterValue::Real(self.following_error())

@@ -15,9 +15,6 @@ use standstill_planner::{Limits, Planner};
 /// cycle from a nanosecond on it is. NaN and infinity are no such step.
 const USUAL_STEP: f64 = 1e290;
 
-/// Scans a drive may take to answer a fault reset before MC_Reset gives up.
-const RESET_PATIENCE: u32 = 1000;
-
 /// How an axis comes to rest after an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reaction {
@@ -25,13 +22,6 @@ pub(super) enum Reaction {
     Ramp,
     /// The drive is off already: the set-point follows the feedback.
     Follow,
-}
-
-/// A reset under way.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Reset {
-    pub id: CommandId,
-    waited: u32,
 }
 
 impl<P: Planner> Axis<P> {
@@ -52,7 +42,7 @@ impl<P: Planner> Axis<P> {
             if self.is_measured() {
                 self.measure_actual(Some(feedback.position));
             }
-            self.signals = feedback.signals;
+            self.beside.signals = feedback.signals;
             self.power.latch_voltage(feedback.voltage);
         } else {
             self.follow_change(feedback, scope);
@@ -92,7 +82,7 @@ impl<P: Planner> Axis<P> {
     /// comparisons by it.
     fn calmness(&self) -> Calm {
         let is_in_operation = !matches!(self.state, AxisState::Disabled | AxisState::ErrorStop);
-        let is_pending = self.reset.is_some() || self.shift_due || self.frame.is_renaming();
+        let is_pending = self.failure.reset().is_some() || self.shift_due || self.frame.is_renaming();
         // The order of one that has handed over is taken back in the scan after.
         let is_torque = matches!(self.motion, Motion::Torque { .. }) || self.beside.order.torque.is_some();
         let is_watched = self.parameters.lag.on || self.is_homing() || is_torque;
@@ -337,13 +327,13 @@ impl<P: Planner> Axis<P> {
 
     /// The axis fails for a reason of its own, which persists until [`Axis::clear_cause`].
     pub fn raise(&mut self, error: ErrorId, code: u16, scope: &mut Scope<'_>) {
-        self.cause_present = true;
+        self.failure.set_cause(true);
         self.trip(error, code, Reaction::Ramp, scope);
     }
 
     /// The cause given to [`Axis::raise`] is gone; MC_Reset is still needed.
     pub fn clear_cause(&mut self) {
-        self.cause_present = false;
+        self.failure.set_cause(false);
     }
 
     /// Enters ErrorStop: the owner fails with `error`, what waits fails because of the state (R77). The first
@@ -356,8 +346,7 @@ impl<P: Planner> Axis<P> {
         let scope = &mut self.owner_scope(scope);
         self.record(Event::Fault { error, code }, scope);
         self.end_all(Fate::Failed(error), Fate::Failed(ErrorId::InErrorStop));
-        self.error = error;
-        self.error_code = code;
+        self.failure.show(error, code);
         self.power.end_going_off();
         match reaction {
             // A fault does not look at slaves.
@@ -378,17 +367,17 @@ impl<P: Planner> Axis<P> {
         if self.state == AxisState::ErrorStop && self.cause_known() {
             return Err(self.refuse("", f64::NAN, f64::NAN, ErrorId::CauseStillPresent, scope));
         }
-        if let Some(reset) = &self.reset {
-            return Ok(reset.id);
+        if let Some(id) = self.failure.reset() {
+            return Ok(id);
         }
         let id = self.new_id();
-        self.reset = Some(Reset { id, waited: 0 });
+        self.failure.begin_reset(id);
         self.stir();
         Ok(id)
     }
 
     fn cause_known(&self) -> bool {
-        self.cause_present
+        self.failure.has_cause()
             || self.is_silent()
             || !self.power.has_voltage()
             || self.lags()
@@ -397,21 +386,18 @@ impl<P: Planner> Axis<P> {
 
     /// Completes a reset when all it waits for has happened (notes 3 and 4, S12).
     pub(super) fn finish_reset(&mut self) {
-        if self.reset.is_some() {
-            self.try_reset();
+        if let Some(id) = self.failure.reset() {
+            self.try_reset(id);
         }
     }
 
     #[cold]
-    fn try_reset(&mut self) {
+    fn try_reset(&mut self, id: CommandId) {
         let (reached, moves_itself) = (self.goal_reached(), self.moves_itself());
-        let Some(reset) = &mut self.reset else { return };
-        let id = reset.id;
         if self.state == AxisState::ErrorStop {
-            reset.waited = reset.waited.saturating_add(1);
-            let given_up = reset.waited > RESET_PATIENCE && self.power.fault().is_some();
+            let given_up = self.failure.waits_too_long() && self.power.fault().is_some();
             if given_up || self.cause_known() {
-                self.reset = None;
+                self.failure.end_reset();
                 self.decide(id, Fate::Failed(ErrorId::CauseStillPresent));
                 return;
             }
@@ -421,8 +407,7 @@ impl<P: Planner> Axis<P> {
                 return;
             }
             self.power.let_return();
-            self.error = ErrorId::None;
-            self.error_code = 0;
+            self.failure.show(ErrorId::None, 0);
             self.enter(if self.power.is_on() {
                 AxisEvent::ResetPowered
             } else {
@@ -431,7 +416,7 @@ impl<P: Planner> Axis<P> {
         } else if self.power.is_unconfirmed() {
             self.power.let_return();
         }
-        self.reset = None;
+        self.failure.end_reset();
         self.decide(id, Fate::Done);
     }
 
@@ -452,7 +437,7 @@ impl<P: Planner> Axis<P> {
             return DriveRequest::Enable;
         }
         let ramping = matches!(self.motion, Motion::Run { .. });
-        if self.reset.is_some() && self.is_resetting_drive() {
+        if self.failure.reset().is_some() && self.is_resetting_drive() {
             DriveRequest::FaultReset
         } else if ramping && self.power.is_on() {
             DriveRequest::Enable

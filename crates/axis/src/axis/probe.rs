@@ -65,7 +65,7 @@ impl<P: Planner> Axis<P> {
         if let Some(window) = request.window {
             self.check_window(window, scope)?;
         }
-        let before = self.probes.waiting.get(probe).copied().flatten();
+        let before = self.beside.probes.waiting.get(probe).copied().flatten();
         if before.is_some_and(|before| Some(before.id) != request.replaces) {
             let number = f64::from(request.trigger.number());
             let error = ErrorId::TriggerTaken;
@@ -77,7 +77,7 @@ impl<P: Planner> Axis<P> {
         let id = self.new_id();
         // A drive that waits for this edge already goes on waiting: nothing that comes now is missed.
         let armed = before.is_some_and(|before| before.armed && before.edge == edge);
-        if let Some(slot) = self.probes.waiting.get_mut(probe) {
+        if let Some(slot) = self.beside.probes.waiting.get_mut(probe) {
             *slot = Some(Waiting {
                 id,
                 edge,
@@ -113,14 +113,14 @@ impl<P: Planner> Axis<P> {
 
     /// What command `id` recorded (u), in the coordinates that were in force then; each probe remembers the last one.
     pub fn recorded_position(&self, id: CommandId) -> Option<f64> {
-        let mut recorded = self.probes.recorded.iter().flatten();
+        let mut recorded = self.beside.probes.recorded.iter().flatten();
         recorded.find(|(of, _)| *of == id).map(|(_, position)| *position)
     }
 
     /// Command `id` waits no longer, and nobody is told.
     pub fn forget_probe(&mut self, id: CommandId) {
         for probe in 0..PROBES {
-            let waiting = self.probes.waiting.get(probe).copied().flatten();
+            let waiting = self.beside.probes.waiting.get(probe).copied().flatten();
             if waiting.is_some_and(|waiting| waiting.id == id) {
                 self.end_probing(probe);
             }
@@ -135,7 +135,7 @@ impl<P: Planner> Axis<P> {
             // The latch that comes takes a closer look.
             self.stir();
         }
-        if self.probes.waiting.iter().any(Option::is_some) {
+        if self.beside.probes.waiting.iter().any(Option::is_some) {
             self.follow_probes();
         }
     }
@@ -144,7 +144,7 @@ impl<P: Planner> Axis<P> {
     #[inline(never)]
     fn follow_probes(&mut self) {
         for probe in 0..PROBES {
-            let waiting = self.probes.waiting.get(probe).copied().flatten();
+            let waiting = self.beside.probes.waiting.get(probe).copied().flatten();
             let told = self.beside.report.probes.get(probe).copied();
             let (Some(waiting), Some(told)) = (waiting, told) else {
                 continue;
@@ -156,11 +156,11 @@ impl<P: Planner> Axis<P> {
                 self.end_probing(probe);
                 // One that is no number is none; the axis fails for it, and the probe waits for the next.
                 if latched.is_finite() && waiting.window.is_none_or(|window| is_inside(window, position)) {
-                    if let Some(slot) = self.probes.recorded.get_mut(probe) {
+                    if let Some(slot) = self.beside.probes.recorded.get_mut(probe) {
                         *slot = Some((waiting.id, position));
                     }
                     self.decide(waiting.id, Fate::Done);
-                } else if let Some(slot) = self.probes.waiting.get_mut(probe) {
+                } else if let Some(slot) = self.beside.probes.waiting.get_mut(probe) {
                     *slot = Some(Waiting {
                         armed: false,
                         ..waiting
@@ -174,7 +174,7 @@ impl<P: Planner> Axis<P> {
     fn arm_probe(&mut self, probe: usize) {
         let told = self.beside.report.probes.get(probe);
         let free = told.is_some_and(|told| !told.armed);
-        let Some(Some(waiting)) = self.probes.waiting.get_mut(probe) else {
+        let Some(Some(waiting)) = self.beside.probes.waiting.get_mut(probe) else {
             return;
         };
         waiting.armed = free;
@@ -190,7 +190,7 @@ impl<P: Planner> Axis<P> {
 
     fn end_probing(&mut self, probe: usize) -> Option<Waiting> {
         self.order_probe(probe, None);
-        self.probes.waiting.get_mut(probe)?.take()
+        self.beside.probes.waiting.get_mut(probe)?.take()
     }
 
     fn trigger(&self, trigger: Raw<Trigger>, scope: &mut Scope<'_>) -> Result<(usize, Edge), ErrorId> {

@@ -202,7 +202,7 @@ impl<P: Planner> Axis<P> {
 
     /// What the drive reports beside its position.
     pub fn drive_signals(&self) -> DriveSignals {
-        self.signals
+        self.beside.signals
     }
 }
 

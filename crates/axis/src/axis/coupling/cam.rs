@@ -548,7 +548,7 @@ impl<P: Planner> Axis<P> {
 
     /// `entry` goes onto a cam from the next motion step on, or has new values for it.
     pub(super) fn await_master_on_cam(&mut self, camming: Camming, entry: &Entry, scope: &mut Scope<'_>) {
-        self.is_bound = true;
+        self.links.set_bound(true);
         let known = self.on_cam.as_ref().map(|on_cam| on_cam.camming);
         if known != Some(camming) {
             let event = Event::OnCam {

@@ -13,10 +13,25 @@ use super::{Coupling, Seen};
 use crate::{AxisId, OnLimit, Scope, ValueSource};
 use standstill_planner::{Limits, Place, Planner, Setpoint};
 
+/// What an axis keeps of its last step, where some axis may follow another: whether anything is new in the next.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::axis) struct Steady {
+    /// Nothing is new; never stale where it is TRUE.
+    is_settled: bool,
+    /// In the last step nothing was new, nor for the masters of the axis.
+    has_gone_on: bool,
+    /// What the limits of the axis leave in a scan in which nothing is new; `None` before the first of these behind a master.
+    pub(super) room: Option<Room>,
+    /// Where the axis was before its step in this scan; only where some slave may follow it.
+    was: Seen,
+    /// Where the set-point comes from in this scan.
+    pub(super) source: Source,
+}
+
 /// What the set-point of a slave may have for a scan in which nothing is new, worked out once. All of it is finite, so what is within it
 /// is a number.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::axis) struct Room {
+pub(super) struct Room {
     /// Its derivatives: the limits of the slave.
     most: Limits,
     /// Way (u) from the set-point before it, and what velocity (u/s) and acceleration (u/s^2) change by: the limits of the axis.
@@ -130,52 +145,52 @@ impl<P: Planner> Axis<P> {
 
     /// After a step: notes whether the next one may be that of a scan in which nothing is new.
     pub(super) fn note_steady(&mut self) {
-        self.is_settled = self.may_go_on();
-        if self.is_settled {
+        self.steady.is_settled = self.may_go_on();
+        if self.steady.is_settled {
             let is_straight = self.coupling.as_ref().is_some_and(Coupling::is_straight);
             let (limits, widest) = (&self.in_force, &self.config.limits);
-            self.room = Some(Room::new(limits, widest, self.planner.cycle(), is_straight));
+            self.steady.room = Some(Room::new(limits, widest, self.planner.cycle(), is_straight));
         }
     }
 
     /// Before any axis has moved in this scan: nothing is new for an axis that follows none.
     pub(crate) fn settle_alone(&mut self) {
-        self.is_settled = true;
+        self.steady.is_settled = true;
     }
 
     /// Nothing is new: it follows none, or is a slave whose next step may be that of a scan in which nothing is new. Whatever ends
     /// that says so ([`Axis::unsettle`]).
     #[inline]
     pub(crate) fn is_settled(&self) -> bool {
-        self.is_settled
+        self.steady.is_settled
     }
 
     /// Something is new, or may be.
     #[inline]
     pub(in crate::axis) fn unsettle(&mut self) {
-        self.is_settled = false;
+        self.steady.is_settled = false;
     }
 
     /// Before a step in which something may be new.
     pub(crate) fn begin_anew(&mut self) {
         self.unsettle();
-        self.has_gone_on = false;
+        self.steady.has_gone_on = false;
         self.note_source();
     }
 
     /// Before its step, if some slave may follow it: notes where it is.
     #[inline(always)]
     pub(crate) fn note_before(&mut self, scan: u64) {
-        if !self.is_followed {
+        if !self.links.is_followed() {
             return;
         }
         if self.modulo.is_none() {
-            self.was.at = self.setpoint;
-            self.was.moved = self.coordinates_moved(scan);
+            self.steady.was.at = self.setpoint;
+            self.steady.was.moved = self.coordinates_moved(scan);
         } else {
             self.note_before_round(scan);
         }
-        if !self.is_bound {
+        if !self.links.is_bound() {
             self.note_source();
         }
     }
@@ -183,12 +198,12 @@ impl<P: Planner> Axis<P> {
     /// The same on an axis that comes round.
     #[inline(never)]
     fn note_before_round(&mut self, scan: u64) {
-        self.was = self.seen_before(scan);
+        self.steady.was = self.seen_before(scan);
     }
 
     /// After its step: where it was before that, as noted.
     pub(crate) fn was(&self) -> Seen {
-        let mut was = self.was;
+        let mut was = self.steady.was;
         was.place.position = was.at.position;
         was
     }
@@ -196,7 +211,7 @@ impl<P: Planner> Axis<P> {
     /// The one master of a slave for which nothing is new.
     #[inline(always)]
     pub(crate) fn steady_master(&self) -> Option<AxisId> {
-        if !self.is_settled {
+        if !self.steady.is_settled {
             return None;
         }
         let coupling = self.coupling.as_ref();
@@ -211,12 +226,12 @@ impl<P: Planner> Axis<P> {
     fn went_on(&self) -> Option<(usize, u64)> {
         match &self.motion {
             // Where something was new for it, or for a master of it, its slaves look at the step as it did.
-            Motion::Geared if self.has_gone_on => {
-                let coupling = self.coupling.as_ref().filter(|_| self.is_settled)?;
+            Motion::Geared if self.steady.has_gone_on => {
+                let coupling = self.coupling.as_ref().filter(|_| self.steady.is_settled)?;
                 let known = &coupling.known[0];
                 Some((known.root, known.elapsed))
             }
-            Motion::Run { .. } if self.source == Source::Plan => match self.course() {
+            Motion::Run { .. } if self.steady.source == Source::Plan => match self.course() {
                 Course::Plan(_, elapsed) => Some((self.id.index(), elapsed)),
                 Course::Still | Course::Unknown | Course::Measured(_) => None,
             },
@@ -241,7 +256,7 @@ impl<P: Planner> Axis<P> {
             return self.follow_cam_steadily(master, plan, scope);
         };
         let (known, gear) = (&mut coupling.known[0], &coupling.gearing.first.gear);
-        let (Some(anchor), Some(room)) = (&coupling.anchor, &self.room) else {
+        let (Some(anchor), Some(room)) = (&coupling.anchor, &self.steady.room) else {
             return false;
         };
         if !known.goes_on(plan) {
@@ -267,7 +282,7 @@ impl<P: Planner> Axis<P> {
             return false;
         }
         (_, known.elapsed) = plan;
-        self.source = Source::Gear;
+        self.steady.source = Source::Gear;
         let place = Place {
             turns,
             position,
@@ -281,10 +296,10 @@ impl<P: Planner> Axis<P> {
     // In line, so that the set-point stays in registers.
     #[inline(always)]
     pub(super) fn publish_steadily(&mut self, place: Place, next: Setpoint, scope: &mut Scope<'_>) {
-        self.has_gone_on = true;
+        self.steady.has_gone_on = true;
         let positions = [self.setpoint.position, next.position];
         let stays = |modulo: &Modulo| modulo.stays_in(place.turns, positions);
-        if let Some(room) = &self.room
+        if let Some(room) = &self.steady.room
             && self.modulo.as_ref().is_none_or(stays)
             && room.holds_step(&self.setpoint, &next)
         {

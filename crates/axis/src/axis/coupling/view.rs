@@ -384,12 +384,12 @@ impl<P: Planner> Axis<P> {
 
     /// Before its step in this scan, which is from here.
     pub(crate) fn note_source(&mut self) {
-        self.source = self.source();
+        self.steady.source = self.source();
     }
 
     /// Its next set-point comes from elsewhere than that of this scan.
     pub(crate) fn has_new_source(&self) -> bool {
-        self.source != self.source()
+        self.steady.source != self.source()
     }
 
     /// What its actual values do next.
