@@ -141,6 +141,9 @@ fn build(given: &[Source<'_>], options: &Options, module: bool) -> Result<Built,
         found.add(wrong);
         return Err(found.report(sources));
     }
+    if !options.axes.is_empty() {
+        lint::without_axis(&program, &image, &sources, &mut found);
+    }
     match emit::emit(&program, &image, &counters) {
         Ok(emitted) => {
             let symbols = Symbols::new(program, emitted.sites, counters.list(&sources), &sources);

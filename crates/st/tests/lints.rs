@@ -136,3 +136,39 @@ fn a_lint_is_switched_off_in_place() {
     assert_eq!(lints("", off), [("ST55", 13)]);
     assert_eq!(lints("", "{lint off ST50}\ngo := a = b;"), [("ST55", 11)]);
 }
+
+/// An AXIS_REF that nobody binds is told where the axes are known.
+#[test]
+fn an_axis_that_nobody_names_is_told() {
+    let doubts = |variables: &str, statements: &str, axes: &[&str], bindings: &[(&str, u16)]| {
+        let text = format!(
+            "PROGRAM P\nVAR\n  Power : MC_Power;\n{variables}\nEND_VAR\n{statements}\n\
+             Power(Axis := X, Enable := TRUE);\nEND_PROGRAM\n"
+        );
+        let source = Source {
+            name: "p.st",
+            bytes: text.as_bytes(),
+        };
+        let options = Options {
+            axes: axes.iter().map(ToString::to_string).collect(),
+            bindings: bindings
+                .iter()
+                .map(|(path, axis)| (path.to_string(), *axis))
+                .collect(),
+            ..Options::default()
+        };
+        let report = standstill_st::compile(&[source], &options).unwrap().report;
+        let told = report.diagnostics().iter();
+        told.map(|it| (report.positions(it.span).0.line, it.message.clone()))
+            .collect::<Vec<_>>()
+    };
+    let plain = "  X : AXIS_REF;";
+    let message = "`X` names no axis: blocks refuse it with ErrorID 100".to_owned();
+    assert_eq!(doubts(plain, "", &["Belt"], &[]), [(4, message)]);
+    // Called like an axis, bound, numbered, or set at work; or no machine is known.
+    assert_eq!(doubts(plain, "", &["Belt", "x"], &[]), []);
+    assert_eq!(doubts(plain, "", &["Belt"], &[("X", 1)]), []);
+    assert_eq!(doubts("  X : AXIS_REF := (Number := 1);", "", &["Belt"], &[]), []);
+    assert_eq!(doubts(plain, "X.Number := 1;", &["Belt"], &[]), []);
+    assert_eq!(doubts(plain, "", &[], &[]), []);
+}

@@ -632,3 +632,20 @@ fn what_cannot_run_is_told() {
         );
     }
 }
+
+/// Covers: ST11
+#[test]
+fn the_default_of_a_type_may_name_what_the_type_declares() {
+    let mut running = Running::new(
+        "TYPE Mode : (Idle := 3, Homing, Feed) := Feed; Level : INT (0..9) := 4;
+         Wide : (Low, High := 70000) DINT := Wide#High; END_TYPE
+         PROGRAM P VAR m : Mode; l : Level; w : Wide; n : DINT; END_VAR
+         IF m = Mode#Feed AND w = High THEN n := n + 1; END_IF; END_PROGRAM",
+    );
+    running.scan().unwrap();
+    assert_eq!(running.whole("n"), 1);
+    assert_eq!(running.whole("l"), 4);
+    // A structure still can't hold itself, in its default neither.
+    let told = wrong("TYPE S : STRUCT a : S := (a := 1); END_STRUCT; END_TYPE");
+    assert_eq!(told[0].0, "circle", "{told:?}");
+}

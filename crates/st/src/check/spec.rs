@@ -140,15 +140,24 @@ impl<'a> Checker<'a> {
                     SpecKind::Structure(members) => (checker.structure(members, name), Start::Default),
                     _ => checker.spec(&syntax.spec),
                 };
-                let start = syntax.initial.as_ref().map(|initial| checker.start(initial, ty));
-                (ty, start.unwrap_or(default))
+                let Some(initial) = &syntax.initial else {
+                    return (ty, default);
+                };
+                // The value may name the type: `(Idle, Busy) := Idle`.
+                checker.know(key, (ty, default));
+                (ty, checker.start(initial, ty))
             })
         });
+        self.know(key, found.clone());
+        found
+    }
+
+    /// What the name of a type in upper case stands for.
+    fn know(&mut self, key: &str, found: (TypeId, Start)) {
         if let Some(named) = self.named.get_mut(key) {
-            named.found = found.clone();
+            named.found = found;
             named.state = State::Done;
         }
-        found
     }
 
     /// A whole number that is known before the program runs.

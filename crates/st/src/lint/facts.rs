@@ -3,7 +3,7 @@
 use crate::check::Program;
 use crate::source::Span;
 use crate::typed::{Argument, Base, Expr, Kind, Place, Stmt, StmtKind};
-use crate::types::{Elementary, Type, TypeId, UnitId};
+use crate::types::{Elementary, MemberKind, Type, TypeId, UnitId};
 
 /// A variable of a unit, or a global one, by its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -41,6 +41,8 @@ pub(super) struct Facts {
     pub calls: Vec<Call>,
     /// Variables that are read, written, called or handed over.
     pub used: std::collections::BTreeSet<Variable>,
+    /// Variables that a statement gives a value.
+    pub assigned: std::collections::BTreeSet<Variable>,
     /// Reads of a part of a variable: where the part begins, and of an array whether any element is meant.
     pub reads: Vec<(Variable, u32)>,
     /// Comparisons of two numbers with a point.
@@ -109,6 +111,9 @@ impl Walk<'_, '_, '_> {
         match &statement.kind {
             StmtKind::Assign(target, value) | StmtKind::Copy(target, value, _) => {
                 self.write(target);
+                if let Some((variable, _)) = self.variable(target) {
+                    self.facts.assigned.insert(variable);
+                }
                 self.expression(value);
             }
             StmtKind::Evaluate(value) => self.expression(value),
@@ -299,9 +304,11 @@ impl Walk<'_, '_, '_> {
                 let mut members = info(unit)?.members.list.iter().enumerate();
                 members.find(|(_, member)| {
                     let pointer = matches!(place.base, Base::ThisPointer(_) | Base::MemoryPointer(_));
+                    // Of a VAR_IN_OUT the unit holds the address alone.
                     let bytes = if pointer { 1 } else { size(member.ty).max(1) };
                     (member.offset..member.offset + bytes).contains(&offset)
-                        && !matches!(member.kind, crate::types::MemberKind::External(_))
+                        && pointer == (member.kind == MemberKind::InOut)
+                        && !matches!(member.kind, MemberKind::External(_))
                 })
             }
             None => {

@@ -19,6 +19,17 @@ pub(crate) fn lint(program: &Program<'_>, sources: &Sources, found: &mut Found) 
     }
 }
 
+/// Variables of type AXIS_REF of the PROGRAMs, and global ones, that name no axis: `image` is the memory they begin with, and no
+/// statement gives any variable of this type another value.
+pub(crate) fn without_axis(program: &Program<'_>, image: &[u8], sources: &Sources, found: &mut Found) {
+    let off = Off::new(sources);
+    for diagnostic in rules::without_axis(program, &facts::gather(program), image) {
+        if !off.holds(&diagnostic) {
+            found.add(diagnostic);
+        }
+    }
+}
+
 /// Where lints are switched off: the name, and the bytes from and to which.
 struct Off(Vec<(String, u32, u32)>);
 

@@ -214,3 +214,39 @@ fn unused(program: &Program<'_>, facts: &Facts, told: &mut Vec<Diagnostic>) {
         }
     }
 }
+
+/// See [`super::without_axis`].
+pub(super) fn without_axis(program: &Program<'_>, facts: &Facts, image: &[u8]) -> Vec<Diagnostic> {
+    let is_axis = |member: &Member| matches!(program.types.get(member.ty), Type::Structure(structure) if structure.name == "AXIS_REF");
+    let mut assigned = facts.assigned.iter().filter_map(|it| member(program, *it));
+    if assigned.any(is_axis) {
+        return Vec::new();
+    }
+    let of_programs = program.instances.iter().flat_map(|instance| {
+        let members = program.units[instance.unit.0 as usize].members.list.iter();
+        members.enumerate().map(|(place, member)| {
+            let unit = Some(instance.unit);
+            (Variable { unit, member: place }, member, instance.address)
+        })
+    });
+    let globals = program.globals.iter().enumerate().map(|(place, global)| {
+        let unit = None;
+        (Variable { unit, member: place }, &global.member, 0)
+    });
+    let lacks = |(variable, member, begin): &(Variable, &Member, u32)| {
+        let at = (begin + member.offset) as usize;
+        facts.used.contains(variable)
+            && is_axis(member)
+            && !matches!(member.kind, MemberKind::InOut | MemberKind::External(_))
+            && image.get(at..at + 4).is_none_or(|number| number == [0; 4])
+    };
+    let without = of_programs.chain(globals).filter(lacks);
+    let told = without.map(|(_, member, _)| {
+        let name = &member.name;
+        let message = format!("`{name}` names no axis: blocks refuse it with ErrorID 100");
+        Diagnostic::warning(Code::Doubtful, member.span, message).help(format!(
+            "call an axis `{name}`, or bind it in a script: `\"axes\": {{\"{name}\": \"X\"}}`"
+        ))
+    });
+    told.collect()
+}
