@@ -1,13 +1,15 @@
 //! What a random program does, its minutes repeat to the bit, and its scan script is one that runs.
 
 use standstill_axis::{AxisConfig, Limits, StartState};
+use standstill_blocks::REGISTRY;
 use standstill_blocks::registry::find;
 use standstill_drives::simulated::DriveSetup;
-use standstill_fb::Value;
+use standstill_fb::{Group, Value};
 use standstill_soak::monkey::{
-    Action, AxisSetup, BlockSetup, Failure, Scenario, Step, Who, play, record, replay, shrink_by,
+    Action, AxisSetup, BlockSetup, Failure, Scenario, Step, Who, kind_of, play, record, replay, shrink_by,
 };
-use standstill_soak::rules::Broken;
+use standstill_soak::rules::{Broken, Kind};
+use std::collections::BTreeSet;
 
 /// Runs the script of a scenario: whether its claims hold.
 fn passes(scenario: &Scenario, failure: Option<&Failure>) -> bool {
@@ -27,6 +29,20 @@ fn minutes_repeat_an_episode_and_are_a_script() {
     }
     assert_eq!(play(3, 5, 600).seen, play(3, 5, 600).seen);
     assert_ne!(play(3, 5, 600).seen.digest, play(4, 5, 600).seen.digest);
+}
+
+/// A block of the standard or of ours that moves something is played, and the rules know what it is: a new one that nobody told
+/// them of fails here.
+#[test]
+fn every_block_is_played_and_known_to_the_rules() {
+    let drawn: BTreeSet<&str> = (0..400)
+        .flat_map(|number| record(11, number, 1).2.blocks)
+        .map(|setup| setup.block)
+        .collect();
+    for info in REGISTRY.iter().filter(|info| info.group != Group::Standard) {
+        assert!(drawn.contains(info.name), "{} is never drawn", info.name);
+        assert_ne!(kind_of(info), Kind::Other, "{}: what is it?", info.name);
+    }
 }
 
 /// The ring of records holds 64, and in one scan the coordinates of 70 axes move.
