@@ -180,11 +180,9 @@ fn the_imports_are_json_and_name_every_block() {
     let value: serde_json::Value = serde_json::from_str(&json.text).unwrap();
     let imports = value["imports"].as_array().unwrap();
     assert_eq!(imports.len(), standstill_blocks::REGISTRY.len() + 2);
-    let absolute = imports
-        .iter()
-        .find(|import| import["name"] == "mc_move_absolute")
-        .unwrap();
-    assert_eq!(absolute["in"]["size"], 72);
-    assert_eq!(absolute["in"]["fields"][3]["name"], "Position");
-    assert_eq!(absolute["in"]["fields"][3]["offset"], 16);
+    // One whose pins are those of IEC 61131-3 for good.
+    let timer = imports.iter().find(|import| import["name"] == "ton").unwrap();
+    assert_eq!(timer["in"]["size"], 16);
+    assert_eq!(timer["in"]["fields"][1]["name"], "PT");
+    assert_eq!(timer["in"]["fields"][1]["offset"], 8);
 }
