@@ -9,6 +9,7 @@
 
 mod behind;
 mod plan;
+mod soonest;
 mod update;
 
 use super::commands::{Entry, REST, Work, WorkKind};
@@ -207,7 +208,7 @@ impl<P: Planner> Axis<P> {
     /// Takes MC_MoveSuperimposed, or refuses it without any effect (R38). It aborts only a superimposed
     /// command before it (R66) and takes over from its motion.
     ///
-    /// Cost: at most 7 plans, each laid over the owner's.
+    /// Cost: where the owner moves that of `Axis::soonest`: at most 50 plans; else at most 7. Each is laid over the owner's.
     ///
     /// # Errors
     /// The [`ErrorId`] the block shows; the refusal is recorded with pin, value and limit. Lack of room

@@ -1,5 +1,6 @@
 //! Finding a superimposed motion that leaves the sum inside the axis limits.
 
+use super::soonest::Below;
 use super::{Added, Adds, Layer, Progress};
 use crate::axis::commands::{Entry, Work, refusal};
 use crate::axis::{Axis, Motion};
@@ -17,7 +18,7 @@ pub(super) struct Proposal<Plan> {
     pub plan: Plan,
     pub limits: Limits,
     /// It is not the one asked for.
-    lowered: bool,
+    pub lowered: bool,
 }
 
 fn min(a: f64, b: f64) -> f64 {
@@ -41,7 +42,7 @@ impl Room {
 }
 
 /// `limits` for the same path in a time longer by `1 / rate`.
-fn slower(limits: &Limits, rate: f64) -> Limits {
+pub(super) fn slower(limits: &Limits, rate: f64) -> Limits {
     let square = rate * rate;
     Limits {
         velocity: limits.velocity * rate,
@@ -54,7 +55,7 @@ fn slower(limits: &Limits, rate: f64) -> Limits {
 
 /// The limits of proposal `index`: as asked; at most the velocity that is free all the time; at most
 /// everything that is free all the time; slower and slower. `None` if there is no such proposal.
-fn limits_of(index: usize, asked: &Limits, room: &Room) -> Option<Limits> {
+pub(super) fn limits_of(index: usize, asked: &Limits, room: &Room) -> Option<Limits> {
     const LEAST: f64 = SLOWER[SLOWER.len() - 1];
     const LEAST_2: f64 = LEAST * LEAST;
     let free = &room.limits;
@@ -121,6 +122,11 @@ impl<P: Planner> Axis<P> {
             endless: base.is_some_and(|(plan, _)| plan.at(u64::from(plan.scans())).velocity != 0.0),
         };
         let range = self.range(layer.taken);
+        let begins = matches!(command.adds, Adds::Distance { .. }) && !layer.moves() && !command.halting;
+        if let (Some(rest), true) = (base, begins) {
+            self.admit_way(layer, command)?;
+            return self.soonest(layer, command, &room(), &Below { rest, axis, range });
+        }
         // What lies over nothing may not turn outside the software limits either.
         let still = Setpoint::at_rest(layer.base.position);
         let hold = range.and_then(|_| self.planner.ramp_to(&still, 0.0, axis, axis).ok());
@@ -141,11 +147,7 @@ impl<P: Planner> Axis<P> {
         if command.halting && !layer.moves() {
             return Ok(None);
         }
-        if let (Adds::Distance { target, .. }, false) = (command.adds, layer.moves())
-            && let Some(error) = self.way_barred(target - layer.added.position)
-        {
-            return Err(error);
-        }
+        self.admit_way(layer, command)?;
         let room = room();
         let moving = self.limits_in_state(&layer.added, &layer.in_force, &layer.before);
         let mut last = None;
@@ -192,6 +194,16 @@ impl<P: Planner> Axis<P> {
             }
         }
         Ok(None)
+    }
+
+    /// Whether MC_Power permits the direction of a distance that begins.
+    fn admit_way(&self, layer: &Layer<P::Plan>, command: &Added) -> Result<(), ErrorId> {
+        match command.adds {
+            Adds::Distance { target, .. } if !layer.moves() => {
+                self.way_barred(target - layer.added.position).map_or(Ok(()), Err)
+            }
+            Adds::Distance { .. } | Adds::Halt => Ok(()),
+        }
     }
 
     /// Sets the layer's command in motion as proposed, or lets it wait; what moves already is left as it is if
