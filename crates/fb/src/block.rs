@@ -32,12 +32,12 @@ impl Group {
     }
 }
 
-/// What a block may touch during one call.
+/// What a block may use during one call.
 #[derive(Debug)]
 pub struct Context<'a, P: Planner = Standard> {
-    /// Time of this task execution (ns); constant during it.
+    /// Time of this task execution (ns). It does not change during the call.
     pub now_ns: i64,
-    /// This scan, the instance being called, and the ring its records go to.
+    /// This scan, the instance being called, and the ring that takes its records.
     pub scope: Scope<'a>,
     /// The axes.
     pub axes: &'a mut [Axis<P>],
@@ -46,7 +46,7 @@ pub struct Context<'a, P: Planner = Standard> {
 }
 
 impl<'a, P: Planner> Context<'a, P> {
-    /// The axis at a pin, and what it is called in.
+    /// The axis at a pin, together with the call it is used in.
     ///
     /// # Errors
     /// [`ErrorId::AxisUnknown`] if there is no such axis.
@@ -56,7 +56,7 @@ impl<'a, P: Planner> Context<'a, P> {
         Ok((axis, &mut self.scope))
     }
 
-    /// The axis at the pin Slave, and what it is called in.
+    /// The axis at the pin Slave, together with the call it is used in.
     ///
     /// # Errors
     /// [`ErrorId::AxisUnknown`] if there is no such axis. It is recorded.
@@ -68,7 +68,7 @@ impl<'a, P: Planner> Context<'a, P> {
         }
     }
 
-    /// The axis at a pin as a master, with its turns if it has any.
+    /// The axis at a pin as a master, with its turns if it has them.
     pub fn master(&self, axis: AxisId) -> Master {
         let turn = self.axes.get(axis.index()).and_then(|axis| axis.config().modulo);
         Master { axis, turn }
@@ -79,7 +79,7 @@ impl<'a, P: Planner> Context<'a, P> {
 pub trait Block: Copy + Default {
     /// IEC name.
     const NAME: &'static str;
-    /// Where it stands in the catalogue.
+    /// Its place in the catalogue.
     const GROUP: Group;
     /// One sentence.
     const DOC: &'static str;
@@ -105,7 +105,8 @@ pub struct Instance<B: Block> {
 
 impl<B: Block> Instance<B> {
     /// Calls the block with the inputs as they stand.
-    // In line, outputs are written where they stay: copied there, a processor waits for what it has just written.
+    // Inlined, so that the outputs are written in place: after a copy the processor waits for what it has
+    // just written.
     #[inline(always)]
     pub fn call<P: Planner>(&mut self, context: &mut Context<'_, P>) {
         self.outputs = self.block.call(&self.inputs, context);
@@ -126,7 +127,7 @@ pub trait AnyInstance {
     /// The value at pin `index`.
     fn get(&self, index: usize) -> Option<Value>;
 
-    /// Writes the words ([`Value::word`]) of all pins, in table order, as far as there is room.
+    /// Writes the words ([`Value::word`]) of all pins in table order, until `words` is full.
     fn put_words(&self, words: &mut [u64]);
 
     /// Writes in_out or input `index`.
@@ -135,10 +136,10 @@ pub trait AnyInstance {
     /// [`PinError`] if it is an output, does not exist, or has another type.
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError>;
 
-    /// [`Pins::set_flat`] of the in_outs and inputs.
+    /// Sets the in_outs and inputs as [`Pins::set_flat`] does.
     fn set_flat(&mut self, flat: &[u8], pointer: Pointer);
 
-    /// [`Pins::put_flat`] of the outputs.
+    /// Writes the outputs as [`Pins::put_flat`] does.
     fn put_flat(&self, flat: &mut [u8]);
 }
 
@@ -240,7 +241,7 @@ impl BlockInfo {
             .find(|(_, pin)| pin.name.eq_ignore_ascii_case(name))
     }
 
-    /// What input `index` holds before anything is wired or written; `None` for outputs.
+    /// The value of input `index` before it is wired or written; `None` for outputs.
     pub fn default_of(&self, index: usize) -> Option<Value> {
         (self.default)(index)
     }

@@ -9,14 +9,14 @@ use standstill_axis::{Axis, AxisId, ErrorId, Planner, Scope};
 /// (R53).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reading<T> {
-    /// Not enabled: nothing is shown (R55, R59).
+    /// Not enabled: no outputs are set (R55, R59).
     #[default]
     Off,
-    /// These values.
+    /// Valid, with these values.
     Valid(T),
-    /// Nothing now; values come again by themselves when the cause is gone (R56).
+    /// An error that passes: values return by themselves when its cause is gone (R56).
     Recoverable(ErrorId),
-    /// Nothing before the next rising edge of Enable (R57).
+    /// An error that stays until the next rising edge of Enable (R57).
     Failed(ErrorId),
 }
 
@@ -44,7 +44,7 @@ impl<T: Default> Reading<T> {
         }
     }
 
-    /// The values; FALSE and 0 without any.
+    /// The values; FALSE and 0 if there are none.
     pub fn value(self) -> T {
         if let Self::Valid(value) = self {
             value
@@ -57,13 +57,13 @@ impl<T: Default> Reading<T> {
 /// State kept between calls.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EnableCore {
-    /// What ended the reading until Enable falls.
+    /// The error that ended the reading. It stays until Enable falls.
     failed: Option<ErrorId>,
 }
 
 impl EnableCore {
-    /// One call: reads the axis at the pin with `read`, whose errors are recoverable. An axis that does not exist
-    /// is not: the pin is wired to nothing.
+    /// One call: reads the axis at the pin with `read`, whose errors are recoverable. A missing axis is
+    /// not recoverable, because it is a wiring error.
     pub fn scan<P: Planner, T>(
         &mut self,
         enable: bool,
@@ -88,7 +88,7 @@ impl EnableCore {
         })
     }
 
-    /// What `ask` gives while enabled; `None` is a lack of an axis.
+    /// The result of `ask` while enabled; `None` if there is no such axis.
     fn answer<T>(&mut self, enable: bool, ask: impl FnOnce() -> Option<Result<T, ErrorId>>) -> Reading<T> {
         if !enable {
             self.failed = None;
@@ -116,7 +116,7 @@ mod tests {
     const HERE: AxisId = AxisId::new(0);
     const STALE: ErrorId = ErrorId::CommunicationLost;
 
-    /// What one call gives for Enable, the axis at the pin and what reading it gives.
+    /// The result of one call, from Enable, the axis at the pin and the reading.
     struct Bench {
         core: EnableCore,
         axes: [Axis; 1],
@@ -151,7 +151,7 @@ mod tests {
         }
     }
 
-    /// What a call sees: Enable FALSE, values, a passing error, no axis.
+    /// The cases of a call: Enable FALSE, values, a passing error, no axis.
     #[derive(Clone, Copy, Debug, PartialEq)]
     enum Input {
         Disabled,

@@ -1,4 +1,5 @@
-//! The core of blocks with an `Execute` pin: edge, one command, and a result that stays until it was seen.
+//! The core of blocks with an `Execute` pin: edge, one command, and a result that stays for at least one
+//! call.
 //!
 //! Source: PLCopen Motion Control Part 1, section on Execute/Done; rules R19 to R38.
 
@@ -16,7 +17,7 @@ pub enum Phase {
     Busy {
         /// The command owns the axis.
         active: bool,
-        /// An endless motion runs at its goal.
+        /// An endless motion has reached its goal.
         reached: bool,
     },
     /// Completed.
@@ -90,19 +91,20 @@ impl From<Fate> for Phase {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ExecuteCore {
     executed: bool,
-    /// What was shown last.
+    /// The phase shown in the last call.
     phase: Phase,
     command: Option<(AxisId, CommandId)>,
 }
 
 impl ExecuteCore {
-    /// What was shown last.
+    /// The phase shown in the last call.
     pub fn phase(&self) -> Phase {
         self.phase
     }
 
-    /// One call. `issue` gives the command at a rising edge (R8) and is told which command the instance
-    /// held before (a retrigger replaces it silently, R32); it returns where to ask for its fate.
+    /// One call. At a rising edge (R8) `issue` gives the command. Its argument is the command the
+    /// instance held before, which a retrigger replaces silently (R32). It returns the place where the
+    /// status of the new command is asked for.
     #[inline]
     pub fn scan<P: Planner>(
         &mut self,
@@ -121,7 +123,7 @@ impl ExecuteCore {
                 Some(axis) => axis.fate(id).into(),
                 None => Phase::Failed(ErrorId::AxisUnknown),
             },
-            // A result was already shown in an earlier call; with Execute FALSE it goes (R28, R30).
+            // A result shown in an earlier call disappears when Execute is FALSE (R28, R30).
             None if !execute => Phase::Idle,
             None => self.phase,
         };
@@ -132,7 +134,8 @@ impl ExecuteCore {
         phase
     }
 
-    /// The command that goes on in a call with `execute`: none if it ended, or a rising edge is about to replace it.
+    /// The command that continues in a call with `execute`. There is none if it has ended or if a rising
+    /// edge is about to replace it.
     pub fn running<P: Planner>(
         &self,
         execute: bool,
@@ -142,8 +145,8 @@ impl ExecuteCore {
         self.command.filter(|_| !rising)
     }
 
-    /// Whether the command is under way on an axis that is set up to ignore edges while an instance is Busy. An edge at MC_Stop is
-    /// never ignored: Execute is its lock.
+    /// Whether the command runs on an axis that ignores edges while an instance is Busy. MC_Stop never
+    /// ignores an edge: its Execute is a lock.
     fn ignores_edges<P: Planner>(&self, context: &Context<'_, P>) -> bool {
         let Some((axis, id)) = self.command else {
             return false;
@@ -164,7 +167,7 @@ impl ExecuteCore {
             self.command = Some(issue(context, None)?);
             return Ok(());
         };
-        // What waits gives up its place first, whatever becomes of the new command (R97).
+        // A waiting command gives up its place first, even if the new command is then refused (R97).
         let waited = context.axis(axis).is_ok_and(|(holder, _)| holder.withdraw(held));
         let issued = issue(context, Some(held));
         let new = issued.ok().filter(|(given_to, _)| *given_to == axis);

@@ -1,5 +1,5 @@
-//! Pins as bytes: the one layout in which hosts in other languages hand over the inputs of a block and get its
-//! outputs. The C library, WebAssembly guests and the generated headers all take it from here.
+//! Pins as bytes: the one layout in which hosts in other languages hand over the inputs of a block and
+//! read its outputs. The C library, WebAssembly guests and the generated headers all use it.
 //!
 //! A block of pins is a C structure. It begins with its own size, a `u32`; then come its pins in table order, each at
 //! the next multiple of its own size:
@@ -11,11 +11,11 @@
 //! | LREAL | `f64` |
 //! | TIME | `i64`, nanoseconds |
 //! | enumerations | `i32`, the number |
-//! | AXIS_REF and its kin | `i32`, axis numbers from 1; 0 is no axis |
-//! | arrays | the address of the first record, then a `u32`: how many there are |
+//! | AXIS_REF and similar references | `i32`, axis numbers from 1; 0 is no axis |
+//! | arrays | the address of the first record, then the number of records, a `u32` |
 //!
-//! Numbers are little-endian here; a host of another order turns each of them round. A record of an array is laid out
-//! by the same rules without a size in front. Sizes are rounded up to a multiple of 8.
+//! Numbers are little-endian here; a big-endian host swaps the bytes of each. A record of an array is
+//! laid out by the same rules without a size in front. Sizes are rounded up to a multiple of 8.
 
 use crate::{BlockInfo, Direction, Pin, PinType};
 
@@ -25,7 +25,7 @@ pub const SIZE_FIELD: usize = 4;
 /// What every size is rounded up to.
 pub const ALIGN: usize = 8;
 
-/// Most inputs or outputs of a block, and most fields of a record; the macros that declare them hold it.
+/// The largest number of inputs or outputs of a block, and of fields of a record.
 pub const PINS_MOST: usize = 32;
 
 /// A number in the flat form of a pin.
@@ -48,7 +48,7 @@ pub enum Scalar {
 }
 
 impl Scalar {
-    /// Its bytes, which are its alignment, too.
+    /// Its size in bytes, which is also its alignment.
     pub const fn size(self) -> usize {
         match self {
             Self::U8 => 1,
@@ -59,7 +59,7 @@ impl Scalar {
     }
 }
 
-/// How wide addresses are where the bytes come from.
+/// The width of an address on the side that the bytes come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pointer {
     /// 32 bits, as in a WebAssembly guest.
@@ -69,14 +69,14 @@ pub enum Pointer {
 }
 
 impl Pointer {
-    /// That of the processor this is compiled for.
+    /// The width on the processor this is compiled for.
     pub const NATIVE: Self = if size_of::<usize>() == 8 {
         Self::Bits64
     } else {
         Self::Bits32
     };
 
-    /// Its bytes.
+    /// Its size in bytes.
     pub const fn size(self) -> usize {
         match self {
             Self::Bits32 => 4,
@@ -86,7 +86,7 @@ impl Pointer {
 }
 
 impl PinType {
-    /// The number that stands for a pin of this type; `None` for an array, which is an address and a count.
+    /// The scalar form of a pin of this type; `None` for an array, which is an address and a count.
     pub const fn scalar(self) -> Option<Scalar> {
         Some(match self {
             Self::Bool => Scalar::U8,
@@ -101,23 +101,23 @@ impl PinType {
     }
 }
 
-/// Where the pins of a structure stand.
+/// The offsets of the pins of a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     offsets: [usize; PINS_MOST],
-    /// Bytes of the whole.
+    /// The size of the whole in bytes.
     pub size: usize,
 }
 
 impl Layout {
-    /// Of the inputs or outputs of a block, behind their size.
+    /// The layout of the inputs or outputs of a block, after the size field.
     pub const fn of_pins(pins: &[Pin], pointer: Pointer) -> Self {
         Self::from(pins, SIZE_FIELD, pointer)
     }
 
-    /// Of a record of an array.
+    /// The layout of a record of an array.
     pub const fn of_record(fields: &[Pin]) -> Self {
-        // A record has no arrays, so the width of addresses plays no part.
+        // A record has no arrays, so the width of addresses does not matter.
         Self::from(fields, 0, Pointer::Bits64)
     }
 
@@ -145,7 +145,7 @@ impl Layout {
         layout
     }
 
-    /// Where pin `index` begins: the place among the pins given.
+    /// The offset of pin `index`, counted among the pins of this layout.
     #[inline]
     pub const fn offset(&self, index: usize) -> usize {
         if index < PINS_MOST { self.offsets[index] } else { 0 }
@@ -185,11 +185,11 @@ impl BlockInfo {
     }
 }
 
-/// A number that stands for a pin, in bytes.
+/// One pin value in bytes.
 pub trait Flat: Copy {
-    /// The number at `offset`; that of no bytes if it does not lie in there.
+    /// The number at `offset`; zero bytes if it lies outside.
     fn read(flat: &[u8], offset: usize) -> Self;
-    /// Writes it to `offset`, if it lies in there.
+    /// Writes the number to `offset`, unless it lies outside.
     fn write(self, flat: &mut [u8], offset: usize);
 }
 
@@ -214,7 +214,7 @@ macro_rules! flat {
 
 flat!(u8, i16, u16, u32, i32, i64, u64, f64);
 
-/// What an array is in the pins' own conversion: nothing, because who reads its records sets the pin.
+/// An array has no scalar value: the caller reads its records and sets the pin.
 impl Flat for () {
     #[inline]
     fn read(_: &[u8], _: usize) -> Self {}
@@ -234,7 +234,7 @@ pub fn read_table(flat: &[u8], offset: usize, pointer: Pointer) -> (u64, u32) {
 
 /// Spreads a record into the numbers of the runtime's tables: one for each field.
 ///
-/// Cost: a few operations for each field. What does not fit into `cells` is left out.
+/// Cost: a few operations for each field. Fields that do not fit into `cells` are left out.
 pub fn read_record(record: &[u8], fields: &[Pin], layout: &Layout, cells: &mut [f64]) {
     for ((index, field), cell) in fields.iter().enumerate().zip(cells) {
         let offset = layout.offset(index);

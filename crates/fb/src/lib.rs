@@ -1,7 +1,8 @@
-//! What all function blocks share: pins as data, and the cores that own edges, results and readings.
+//! The common part of all function blocks: pins as data, and the cores that own edges, results and
+//! readings.
 //!
-//! What does not stand here: no block, and no motion. A block says only which command it gives; the cores
-//! own rising edges, results that stay until Execute falls, and visibility for at least one call.
+//! This crate has no block and no motion. A block says only which command it gives. The cores own rising
+//! edges, results that stay until Execute falls, and outputs that show for at least one call.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -26,7 +26,7 @@ pub struct EnumInfo {
 }
 
 impl EnumInfo {
-    /// The name of `number`, if it is defined.
+    /// The name of the element `number`; `None` if it is not defined.
     pub fn name_of(&self, number: i32) -> Option<&'static str> {
         self.elements
             .iter()
@@ -34,7 +34,7 @@ impl EnumInfo {
             .map(|(name, _)| *name)
     }
 
-    /// The number of `name`, without regard to case.
+    /// The number of the element `name`, without regard to case.
     pub fn number_of(&self, name: &str) -> Option<i32> {
         self.elements
             .iter()
@@ -60,7 +60,7 @@ pub enum PinType {
     Dword,
     /// TIME, in nanoseconds.
     Time,
-    /// An axis, by the name of the reference: AXIS_REF, or what stands for something its drive has.
+    /// An axis, or a part of an axis's drive: AXIS_REF and the reference types made from it.
     Axis(&'static str),
     /// An enumeration.
     Enum(EnumInfo),
@@ -85,7 +85,7 @@ impl PinType {
         }
     }
 
-    /// The value of this type behind a word that [`Value::word`] made.
+    /// The value of this type from a word that [`Value::word`] made.
     pub const fn value(self, word: u64) -> Value {
         match self {
             Self::Bool => Value::Bool(word != 0),
@@ -123,12 +123,12 @@ pub enum Value {
     Axis(AxisId),
     /// An enumeration's number, defined or not.
     Enum(i32),
-    /// Where a table stands.
+    /// The place of a table.
     Table(TableRef),
 }
 
 impl Value {
-    /// The value as a word; its type stands elsewhere. Numbers are their bits, whatever is signed is extended with its sign.
+    /// The value as a word, without its type. Numbers keep their bits; signed types are sign-extended.
     pub const fn word(self) -> u64 {
         match self {
             Self::Bool(value) => value as u64,
@@ -155,15 +155,15 @@ pub struct Time(pub i64);
 pub trait PinValue: Copy {
     /// Its IEC type.
     const TYPE: PinType;
-    /// To data.
+    /// Converts to data.
     fn into_value(self) -> Value;
-    /// From data, if the type fits.
+    /// Converts from data; `None` if the type differs.
     fn from_value(value: Value) -> Option<Self>;
-    /// The number that stands for it in bytes; [`PinType::scalar`] says the same as data.
+    /// The scalar form in bytes, equal to [`PinType::scalar`] of the type.
     type Flat: Flat;
-    /// As that number.
+    /// Converts to the scalar form.
     fn into_flat(self) -> Self::Flat;
-    /// From that number.
+    /// Converts from the scalar form.
     fn from_flat(flat: Self::Flat) -> Self;
 }
 
@@ -239,7 +239,7 @@ macro_rules! axis_value {
 
 /// How hosts in other languages number axes: from 1, and 0 is no axis, so that zeroed memory commands nothing.
 pub const fn axis_number(id: AxisId) -> i32 {
-    // `AxisId::NONE` comes round to 0.
+    // `AxisId::NONE` gives 0 here too.
     (id.index() as i32 + 1) % 65_536
 }
 
@@ -406,7 +406,7 @@ pub trait Pins: Copy + Default {
     /// The value at pin `index`, if there is one.
     fn get(&self, index: usize) -> Option<Value>;
 
-    /// Writes the words ([`Value::word`]) of all pins, in declaration order, as far as there is room.
+    /// Writes the words ([`Value::word`]) of all pins in declaration order, until `words` is full.
     fn put_words(&self, words: &mut [u64]);
 
     /// Writes pin `index`.
@@ -415,18 +415,19 @@ pub trait Pins: Copy + Default {
     /// [`PinError`] if there is no such pin or the type differs.
     fn set(&mut self, index: usize, value: Value) -> Result<(), PinError>;
 
-    /// Takes all pins but arrays from bytes laid out as [`crate::flat`] says, from a place with addresses of that
-    /// width. Missing bytes are zero.
+    /// Reads all pins except arrays from bytes laid out as [`crate::flat`] says. `width` is the width of
+    /// addresses on the side the bytes come from. Missing bytes are zero.
     fn set_flat(&mut self, flat: &[u8], pointer: Pointer);
 
-    /// Writes all pins but arrays to bytes for this processor; the size in front and what lies between them stays.
+    /// Writes all pins except arrays to bytes for this processor. The size field and the padding are not
+    /// written.
     fn put_flat(&self, flat: &mut [u8]);
 }
 
 /// Declares the `Inputs` and `Outputs` structs of a block and their tables.
 ///
-/// Sections stand in the order of the trace. `vendor_inputs` and `vendor_outputs` are pins the standard
-/// does not have; they come after all standard pins of their kind.
+/// Sections are in the order of the trace. `vendor_inputs` and `vendor_outputs` are pins the standard
+/// does not have. They come after all standard pins of their kind.
 ///
 /// ```text
 /// pins! {
@@ -468,8 +469,8 @@ macro_rules! pins {
         }
 
         /// What the block shows: VAR_OUTPUT.
-        // Whole words: the outputs of most blocks then go to their place as one number. A word short of a byte
-        // is put together and taken apart again.
+        // Aligned to whole words, so that the outputs of most blocks are copied as one number. A smaller
+        // structure would be put together and taken apart again.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         #[repr(align(8))]
         pub struct Outputs {
@@ -545,7 +546,7 @@ macro_rules! pins {
                 };
                 let mut place = 0_usize;
                 $(
-                    // Of an array only the records count, and who read them sets the pin.
+                    // Of an array only the records matter, and whoever reads them sets the pin.
                     if <$ty as $crate::PinValue>::TYPE.scalar().is_some() {
                         let number = <$ty as $crate::PinValue>::Flat::read(flat, layout.offset(place));
                         self.$field = <$ty as $crate::PinValue>::from_flat(number);

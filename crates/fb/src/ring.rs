@@ -1,5 +1,5 @@
-//! Records of the diagnostic ring as numbers and bytes: the one form in which hosts in other languages read them. The C
-//! library and WebAssembly guests take it from here.
+//! Records of the diagnostic ring as numbers and bytes: the one form in which hosts in other languages
+//! read them. The C library and WebAssembly guests use it.
 
 use crate::axis_number;
 use crate::flat::Flat;
@@ -8,10 +8,10 @@ use standstill_axis::{Event, Goal, Record};
 /// Bytes of a record.
 pub const RECORD_SIZE: usize = 96;
 
-/// Bytes of the name in a record, the 0 at its end among them.
+/// Bytes of the name in a record, including the 0 at its end.
 pub const NAME_SIZE: usize = 32;
 
-/// The fields of a record: what they are called, their type, what they mean, and where they begin.
+/// The fields of a record: name, type, meaning and offset.
 pub const FIELDS: [(&str, &str, &str, usize); 11] = [
     ("number", "u64", "Its number, from 0 since the start.", 0),
     ("scan", "u64", "The scan it happened in, from 0.", 8),
@@ -78,7 +78,7 @@ pub struct FlatRecord {
 }
 
 impl FlatRecord {
-    /// Record `number` of the ring, for a reader who calls its instance so.
+    /// Record `number` of the ring, with the name that the reader gives its instance.
     pub fn new(number: u64, instance: u32, from: &Record) -> Self {
         let mut record = Self {
             number,
@@ -232,7 +232,7 @@ impl FlatRecord {
         record
     }
 
-    /// Writes it to [`RECORD_SIZE`] bytes; what does not fit into fewer is left out.
+    /// Writes the record to [`RECORD_SIZE`] bytes. If `bytes` is shorter, the rest is left out.
     pub fn put_flat(&self, flat: &mut [u8]) {
         self.number.write(flat, 0);
         self.scan.write(flat, 8);
@@ -311,7 +311,7 @@ mod tests {
         FlatRecord::default().put_flat(&mut [0; 3]);
     }
 
-    /// The number of each event stands in [`FIELDS`] and in the C header.
+    /// The number of each event is documented in [`FIELDS`] and in the C header.
     #[test]
     fn every_event_has_its_number_and_its_values() {
         use standstill_axis::Event as E;

@@ -1,8 +1,9 @@
 //! Tables at pins: arrays of records.
 //!
-//! A pin of such a type is a reference, as VAR_IN_OUT is: it says where in the numbers of the runtime
-//! ([`Context::tables`](crate::Context::tables)) the records stand, so that instances stay small however large a table
-//! is. Each field of a record is one number there. Blocks read a table as a whole, into memory of a fixed size.
+//! A pin of such a type is a reference, as VAR_IN_OUT is: it holds the place of the records among the
+//! numbers of the runtime ([`Context::tables`](crate::Context::tables)). So instances stay small however
+//! large a table is. Each field of a record is one number there. Blocks read a table as a whole, into
+//! memory of a fixed size.
 
 use crate::{Pin, PinType, PinValue, Pins, Value};
 use core::marker::PhantomData;
@@ -12,18 +13,18 @@ use core::marker::PhantomData;
 pub struct TableInfo {
     /// IEC name of the type.
     pub name: &'static str,
-    /// Fields of a record. What is left out of a record is 0, FALSE, or the number 0 of an enumeration.
+    /// Fields of a record. A field that is left out is 0, FALSE, or the number 0 of an enumeration.
     pub fields: &'static [Pin],
-    /// Most records.
+    /// The largest number of records.
     pub most: usize,
 }
 
-/// Where a table stands: its first number, and how many records follow.
+/// The place of a table: its first number, and the number of records from there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TableRef {
-    /// Place of its first number.
+    /// Index of its first number.
     pub first: u32,
-    /// Records.
+    /// Number of records.
     pub records: u16,
 }
 
@@ -33,7 +34,7 @@ pub trait Record: Pins {
     const TYPE: &'static str;
 }
 
-/// At most `N` records, read.
+/// Up to `N` records that were read from a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Table<R, const N: usize> {
     rows: [R; N],
@@ -41,13 +42,13 @@ pub struct Table<R, const N: usize> {
 }
 
 impl<R: Record, const N: usize> Table<R, N> {
-    /// Its records.
+    /// The records.
     pub fn rows(&self) -> &[R] {
         self.rows.get(..self.len).unwrap_or_default()
     }
 }
 
-/// A pin with a table of at most `N` records; without any until it is set.
+/// A pin with a table of at most `N` records; empty until it is set.
 #[derive(Debug)]
 pub struct TableOf<R, const N: usize> {
     place: TableRef,
@@ -69,7 +70,7 @@ impl<R, const N: usize> Default for TableOf<R, N> {
 }
 
 impl<R, const N: usize> TableOf<R, N> {
-    /// Where the table stands.
+    /// The place of the table.
     pub const fn place(&self) -> TableRef {
         self.place
     }
@@ -84,9 +85,10 @@ impl<R, const N: usize> TableOf<R, N> {
 }
 
 impl<R: Record, const N: usize> TableOf<R, N> {
-    /// Reads record `index`, from 0, from the numbers of the runtime; `None` if it does not stand there.
+    /// Reads record `index`, counted from 0; `None` if there is no such record.
     ///
-    /// Numbers that do not fit a field become the nearest that does. Cost: a few operations for each field.
+    /// A number that does not fit its field becomes the nearest one that does. Cost: a few operations for
+    /// each field.
     pub fn row(&self, tables: &[f64], index: usize) -> Option<R> {
         let width = R::PINS.len();
         if index >= usize::from(self.place.records) {
@@ -102,9 +104,10 @@ impl<R: Record, const N: usize> TableOf<R, N> {
         Some(row)
     }
 
-    /// Reads the records from the numbers of the runtime; `None` if they do not stand there or are more than `N`.
+    /// Reads the records; `None` if they lie outside the numbers of the runtime or are more than `N`.
     ///
-    /// Numbers that do not fit a field become the nearest that does. Cost: a few operations for each field.
+    /// A number that does not fit its field becomes the nearest one that does. Cost: a few operations for
+    /// each field.
     pub fn read(&self, tables: &[f64]) -> Option<Table<R, N>> {
         let width = R::PINS.len();
         let len = usize::from(self.place.records);

@@ -9,10 +9,10 @@ use standstill_axis::{
 
 /// What a block commands, as it stands at its pins.
 pub trait Values: Copy {
-    /// Whether `other` is the same, to the bit.
+    /// Whether `other` has the same values, bit for bit.
     fn is_same(&self, other: &Self) -> bool;
 
-    /// Gives the running command `id` these values. Values that are no good change nothing; the axis records them.
+    /// Gives the running command `id` these values. Invalid values change nothing; the axis records them.
     fn apply<P: Planner>(&self, axis: AxisId, id: CommandId, context: &mut Context<'_, P>);
 }
 
@@ -54,8 +54,8 @@ pub struct Move {
 #[derive(Clone, Copy, Debug)]
 pub struct UpdateCore<V> {
     execute: ExecuteCore,
-    /// The values last seen, while changes count: from a rising edge with ContinuousUpdate TRUE until it is FALSE or
-    /// the command has ended (R10, R11).
+    /// The values last seen. They exist while changes count: from a rising edge with ContinuousUpdate
+    /// TRUE until it is FALSE or the command has ended (R10, R11).
     seen: Option<V>,
 }
 
@@ -69,7 +69,7 @@ impl<V> Default for UpdateCore<V> {
 }
 
 impl<V: Values> UpdateCore<V> {
-    /// What was shown last.
+    /// The phase shown in the last call.
     pub fn phase(&self) -> Phase {
         self.execute.phase()
     }
@@ -94,7 +94,7 @@ impl<V: Values> UpdateCore<V> {
         )
     }
 
-    /// The same for a command that takes a look at other axes.
+    /// The same for a command that also reads other axes.
     #[inline]
     pub fn scan_among<P: Planner>(
         &mut self,
@@ -115,7 +115,7 @@ impl<V: Values> UpdateCore<V> {
         })
     }
 
-    /// Before the fate is asked for, so that what the new values change shows in the same call.
+    /// Changes are given before the status is asked for, so that their effect shows in the same call.
     fn update<P: Planner>(
         &mut self,
         pins: Move,
