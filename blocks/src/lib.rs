@@ -1,7 +1,7 @@
 //! The function blocks: one file each, and the registry that lists them.
 //!
-//! A block says which pins it has and which command it gives; edges and results belong to `standstill-fb`,
-//! motion to `standstill-axis`. What does not stand here: names of scripts, text, heap.
+//! A block says which pins it has and which command it gives. Edges and results belong to
+//! `standstill-fb`, motion to `standstill-axis`. This crate has no names of scripts, no text and no heap.
 //!
 //! A new block is one file in the folder of its group and one line in [`registry`].
 #![no_std]

@@ -4,8 +4,8 @@ use standstill_axis::Planner;
 use standstill_fb::flat::Pointer;
 use standstill_fb::{AnyInstance, BlockInfo, Context, Described, Instance, PinError, Value};
 
-/// Calls the macro `$then` with every block of the registry: its type, and its place in this crate, whose last name is
-/// the block's name in C.
+/// Calls the macro `$then` with every block of the registry: its type and its path in this crate. The
+/// last name of the path is the block's name in C.
 #[macro_export]
 macro_rules! for_every_block {
     ($then:ident) => {
@@ -82,8 +82,8 @@ macro_rules! registry {
             $(#[doc = concat!("An instance of [`", stringify!($block), "`].")] $block(Instance<$block>),)*
         }
 
-        /// Every block as data, in the order of the catalogue.
-        // Not a constant: each crate that names one would carry all tables and their texts once more.
+        /// Every block as data, in catalogue order.
+        // Not a constant: otherwise each crate that uses it would contain a copy of all tables and texts.
         pub static REGISTRY: &[BlockInfo] = &[$(<$block as Described>::INFO),*];
 
         impl BlockInstance {
@@ -115,7 +115,7 @@ macro_rules! registry {
 
 for_every_block!(registry);
 
-// A host has many of them in a row: what is large stands elsewhere (tables, the memory of outputs).
+// A host has many instances in a row, so large data is kept elsewhere (tables, the memory of outputs).
 const _: () = assert!(size_of::<BlockInstance>() <= 256);
 
 impl AnyInstance for BlockInstance {

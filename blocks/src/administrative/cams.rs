@@ -1,8 +1,8 @@
 //! Cams: which tracks are on at a position.
 //!
-//! Positions are those of one instant a scan. With a compensation time t an edge at E is met where
-//! `position - velocity * t` is E: a negative t looks ahead. Between two instants the way is known, so an edge that was
-//! passed is seen however fast the axis goes.
+//! Positions are sampled once per scan. With a compensation time t, an edge at E is reached when
+//! `position - velocity * t` equals E, so a negative t looks ahead. The way between two samples is known,
+//! so no edge is missed, however fast the axis goes.
 //!
 //! Source: PLCopen Motion Control Part 1, MC_DigitalCamSwitch; T39 h.
 
@@ -12,7 +12,7 @@ use standstill_fb::{Int, Time, record};
 /// Tracks are numbered from 1 to this, one for each output.
 pub const TRACKS: usize = 32;
 
-/// Most switches of an instance.
+/// The largest number of switches of an instance.
 pub const SWITCHES: usize = 32;
 
 const NS: f64 = 1e-9;
@@ -37,7 +37,7 @@ record! {
 }
 
 record! {
-    /// What is set for a track as a whole.
+    /// Settings of a whole track.
     pub struct TrackOption = "MC_TRACK_REF" {
         /// Time by which the track switches on later; negative: earlier.
         OnCompensation => on_compensation: Time, "";
@@ -48,13 +48,13 @@ record! {
     }
 }
 
-/// A field that is no good: its name, the value, the limit and the error.
+/// An invalid field: its name, the value, the limit and the error.
 pub type Refusal = (&'static str, f64, f64, ErrorId);
 
-/// Whether all switches and tracks can be worked with on an axis whose turns have the length `turn` (u).
+/// Checks all switches and tracks for an axis whose turn has the length `turn` (u).
 ///
 /// # Errors
-/// The first [`Refusal`], switches before tracks.
+/// The first [`Refusal`]; switches are checked before tracks.
 pub fn check(switches: &[CamSwitch], tracks: &[TrackOption], turn: Option<f64>) -> Result<(), Refusal> {
     for switch in switches {
         check_switch(switch, turn)?;
@@ -104,23 +104,23 @@ fn check_switch(switch: &CamSwitch, turn: Option<f64>) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Where the axis is in a scan.
+/// The axis in one scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
     /// Time (ns).
     pub now_ns: i64,
-    /// Position (u), on a modulo axis in the first turn.
+    /// Position (u); on a modulo axis within the first turn.
     pub position: f64,
     /// Velocity (u/s).
     pub velocity: f64,
-    /// Length of a turn (u), of a modulo axis.
+    /// Length of a turn (u) of a modulo axis.
     pub turn: Option<f64>,
-    /// Changes whenever coordinates move: positions before and after have nothing in common.
+    /// Changes whenever the coordinates are moved. Positions before and after a move cannot be compared.
     pub coordinates: u32,
 }
 
 impl Sample {
-    /// Distance (u) from `from` ahead to `to`; on a modulo axis from 0 to below a turn.
+    /// Distance (u) from `from` forward to `to`. On a modulo axis it is at least 0 and less than a turn.
     fn ahead(&self, from: f64, to: f64) -> f64 {
         match self.turn {
             Some(turn) => split(to - from, turn).1,
@@ -137,7 +137,8 @@ impl Sample {
         }
     }
 
-    /// The way (u) since `before`, signed: of those that fit the positions the one nearest to what the velocities say.
+    /// The signed way (u) since `before`. On a modulo axis several ways fit the positions; this is the
+    /// one nearest to what the velocities predict.
     fn way_since(&self, before: &Self) -> f64 {
         let way = self.position - before.position;
         let Some(turn) = self.turn else { return way };
@@ -148,19 +149,19 @@ impl Sample {
     }
 }
 
-/// What an instance remembers of all its tracks together.
+/// What an instance remembers of its tracks.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cams {
     before: Option<Sample>,
-    /// The last motion was in positive direction; none before the first.
+    /// Whether the last motion was in positive direction; `None` before the first motion.
     forward: Option<bool>,
 }
 
 impl Cams {
-    /// The tracks that are on now, a bit each; those not in `mask` are left alone.
+    /// The tracks that are on now, one bit each. Tracks outside `mask` are not changed.
     ///
-    /// `switches` and `options` have passed [`check`]; `tracks` is what the outputs remember. Cost: some 60 operations
-    /// for each switch.
+    /// `switches` and `options` must have passed [`check`]. `tracks` is the memory of the outputs. Cost:
+    /// about 60 operations for each switch.
     pub fn scan(
         &mut self,
         switches: &[CamSwitch],
@@ -189,7 +190,7 @@ impl Cams {
                 continue;
             }
             if comparable.is_none() {
-                // Switching points lie in coordinates that are gone.
+                // The coordinates were moved, so the old switching points mean nothing.
                 (track.point, track.held_at) = (None, None);
             }
             let option = options.get(index).copied().unwrap_or_default();
@@ -228,7 +229,7 @@ struct Cam {
     leave: f64,
 }
 
-/// How the axis came to where it is.
+/// How the axis moved in this scan.
 struct Motion<'a> {
     now: &'a Sample,
     before: &'a Sample,
@@ -246,12 +247,13 @@ impl Motion<'_> {
         }
     }
 
-    /// Whether `edge` (u), which comes `compensation` later, was met in this scan: passed or reached, not left.
+    /// Whether the axis passed or reached `edge` (u), which is shifted by `compensation`, in this scan.
+    /// Leaving the edge does not count.
     fn meets(&self, edge: f64, compensation: Time) -> bool {
         let time = compensation.0 as f64 * NS;
         let from = self.before.position - self.before.velocity * time;
         let way = self.way - (self.now.velocity - self.before.velocity) * time;
-        // While the axis slows down, what looks ahead may go back; that meets nothing.
+        // While the axis slows down, the position looked at ahead may go back. That is no crossing.
         if self.forward != Some(way > 0.0) {
             return false;
         }
@@ -260,7 +262,7 @@ impl Motion<'_> {
         } else {
             self.now.ahead(edge, from)
         };
-        // Where it stood already it was met before.
+        // An edge at the starting point was already met.
         ahead > 0.0 && ahead <= way.abs()
     }
 
@@ -300,7 +302,8 @@ impl Motion<'_> {
         }
     }
 
-    /// The position that put the track on by time is behind: it may do so again.
+    /// Whether the position that switched the track on by time is left, so that it may switch the track
+    /// on again.
     fn lets_go(&self, option: &TrackOption, track: &mut CamTrack) {
         let near = |at: &f64| self.now.distance(self.now.position, *at) < option.hysteresis;
         track.held_at = track.held_at.filter(near);
@@ -320,7 +323,7 @@ impl Motion<'_> {
     }
 }
 
-/// Switches as the cams want, unless that would be too near to where the track switched last.
+/// Switches the track as the cams demand, unless this is too close to its last switching point.
 fn follow(track: &mut CamTrack, wanted: Option<(usize, Cam)>, hysteresis: f64, motion: &Motion<'_>) {
     let now = motion.now;
     let near = |point: f64| now.distance(now.position, point) < hysteresis;
@@ -328,7 +331,8 @@ fn follow(track: &mut CamTrack, wanted: Option<(usize, Cam)>, hysteresis: f64, m
         return;
     }
     let edge = wanted.map_or(track.leave, |(_, cam)| cam.enter);
-    // An edge that was not passed just now is not what switched: the axis turned round inside a cam.
+    // If no edge was passed in this scan, the axis turned round inside a cam, and the edge is not the
+    // switching point.
     let passed = now.distance(now.position, edge) <= motion.way.abs();
     track.point = Some(if passed { edge } else { now.position });
     track.on = wanted.is_some();

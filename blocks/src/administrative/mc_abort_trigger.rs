@@ -1,4 +1,4 @@
-//! `MC_AbortTrigger`: ends the waiting for an event.
+//! `MC_AbortTrigger`: aborts the block that waits for an event.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; T39 g.
 

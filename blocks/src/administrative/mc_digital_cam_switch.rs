@@ -1,6 +1,7 @@
 //! `MC_DigitalCamSwitch`: digital outputs that follow the position of an axis.
 //!
-//! It owns the outputs of the tracks in its mask that have a switch. What they remember between scans stands with them.
+//! It owns the outputs of those tracks in its mask that have a switch. The memory of each output is kept
+//! with the output.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; T39 h.
 
@@ -48,9 +49,9 @@ pins! {
 pub struct McDigitalCamSwitch {
     core: EnableCore,
     cams: Cams,
-    /// Outputs this instance writes, and of which axis.
+    /// The outputs this instance writes, and their axis.
     owned: (AxisId, u32),
-    /// What was recorded last, not to record it in every call.
+    /// The error last recorded. It is recorded once and not in every call.
     refused: Option<ErrorId>,
 }
 
@@ -94,7 +95,7 @@ impl Block for McDigitalCamSwitch {
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let outputs = AxisId::from(inputs.outputs);
-        // Without outputs there is nothing to do either.
+        // Without outputs there is nothing to switch.
         let axis = match context.axes.get(outputs.index()) {
             Some(_) => inputs.axis,
             None => AxisId::NONE,
@@ -111,7 +112,7 @@ impl Block for McDigitalCamSwitch {
         let working = self.core.write(inputs.enable, axis, context, |axis, scope| {
             let read = read(axis);
             let error = read.as_ref().err().map(|(.., error)| *error);
-            // Not recorded in every call.
+            // Recorded once and not in every call.
             if let Err((pin, value, limit, error)) = read
                 && *refused != Some(error)
             {
@@ -153,7 +154,8 @@ impl Block for McDigitalCamSwitch {
 }
 
 impl McDigitalCamSwitch {
-    /// From now on it writes the outputs of `tracks`: those it wrote and no longer does are off, new ones start afresh.
+    /// Takes over the outputs of `tracks`. Outputs it wrote before and no longer owns are switched off;
+    /// new ones start afresh.
     fn take<P: Planner>(&mut self, outputs: AxisId, tracks: u32, context: &mut Context<'_, P>) {
         let (by, held) = core::mem::replace(&mut self.owned, (outputs, tracks));
         let kept = if by == outputs { held & tracks } else { 0 };

@@ -34,7 +34,7 @@ pins! {
     vendor_outputs {}
 }
 
-/// Keeps nothing: level in, level out.
+/// Keeps no state: it works on the level of its inputs.
 #[doc(alias = "MC_Power")]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct McPower;

@@ -35,7 +35,7 @@ pins! {
     vendor_outputs {}
 }
 
-/// Factors that were not taken, as bits, and the command that was active then.
+/// Factors that were refused, as bits, and the command that was active then.
 #[derive(Clone, Copy, Debug)]
 struct Refusal {
     factors: [u64; 3],
@@ -48,7 +48,7 @@ struct Refusal {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct McSetOverride {
     core: EnableCore,
-    /// Not tried, nor recorded, in every call.
+    /// The last refusal. The same factors are not tried or recorded again in every call.
     refused: Option<Refusal>,
 }
 

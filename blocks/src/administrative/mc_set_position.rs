@@ -57,7 +57,8 @@ impl Block for McSetPosition {
         Outputs {
             done: phase.is_done(),
             busy: phase.is_busy(),
-            // It has no CommandAborted: removed from the buffer it was never executed, which is an error.
+            // The block has no CommandAborted. A command removed from the buffer was never executed,
+            // which is an error here.
             error: phase.is_error() || phase.is_aborted(),
             error_id: if phase.is_aborted() {
                 ErrorId::RemovedFromBuffer

@@ -59,7 +59,8 @@ impl Block for McTouchProbe {
 
     fn call<P: Planner>(&mut self, inputs: &Inputs, context: &mut Context<'_, P>) -> Outputs {
         let given = &mut self.given;
-        // What a refused edge left waiting is still ours, so the core's memory does not do here.
+        // A command still waits for the probe after a refused edge. The core forgets it, so the block
+        // keeps it here.
         let phase = self.core.scan(inputs.execute, context, |context, _| {
             let held = given.filter(|(axis, _)| *axis == inputs.axis).map(|(_, id)| id);
             let (axis, scope) = context.axis(inputs.axis)?;

@@ -1,8 +1,8 @@
-//! `MC_Home`: the axis finds its reference, whose place gets a name.
+//! `MC_Home`: the axis searches its reference and sets its position there.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 //!
-//! What it looks for, and how, is a matter of the axis: see `docs/homing.md`.
+//! The axis decides what to search and how: see `docs/homing.md`.
 
 use standstill_axis::{AxisId, BufferMode, Command, ErrorId, Planner, Raw, Request};
 use standstill_fb::{Block, Context, ExecuteCore, Group, pins};

@@ -72,7 +72,7 @@ pins! {
     }
 }
 
-/// What the block commands, as it stands at its pins: less than a [`Command`] takes.
+/// What the block commands, as its pins say. It is smaller than a [`Command`].
 #[derive(Clone, Copy, Debug)]
 struct Commanded {
     master: AxisId,
@@ -123,7 +123,7 @@ impl Values for Commanded {
 
     fn apply<P: Planner>(&self, axis: AxisId, id: CommandId, context: &mut Context<'_, P>) {
         let command = self.command(context);
-        // The block shows no Error: its command goes on as it was (R21).
+        // The block shows no Error: the running command continues unchanged (R21).
         let _recorded = update_coupled(context.axes, axis, id, &command, &mut context.scope);
     }
 }
@@ -133,7 +133,7 @@ impl Values for Commanded {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct McCamIn {
     core: UpdateCore<Commanded>,
-    /// Ends of cams the slave has reached, while it is active.
+    /// The number of cam ends the slave has reached while the block is active.
     ends: Option<u32>,
 }
 
@@ -172,11 +172,11 @@ impl Block for McCamIn {
             });
         let slave = context.axes.get(inputs.slave.index());
         let ends = slave.map(|slave| slave.cam_ends());
-        // Also in the call in which what waited has taken over at the end.
+        // Also in the call in which a buffered cam has taken over at the end.
         let end_of_profile = self.ends.is_some() && self.ends != ends;
         self.ends = ends.filter(|_| phase.is_active());
         if phase.is_reached() {
-            // Nothing else is to be told.
+            // There is nothing else to report.
             return Outputs {
                 in_sync: true,
                 busy: true,

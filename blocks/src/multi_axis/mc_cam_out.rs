@@ -1,4 +1,4 @@
-//! `MC_CamOut`: a slave goes on by itself.
+//! `MC_CamOut`: a slave leaves its cam and keeps its velocity.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 

@@ -1,4 +1,4 @@
-//! `MC_CamTableSelect`: a table becomes a cam.
+//! `MC_CamTableSelect`: makes a cam from a table.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; V20a. The rows are told in docs/cams.md.
 
@@ -69,15 +69,15 @@ pins! {
     }
 }
 
-/// What the block is at.
+/// The step the block is in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum At {
     #[default]
     Idle,
-    /// What was commanded before has to finish first.
+    /// Waits until the command given before has finished.
     Waiting,
     Looking,
-    /// Complete since the last call.
+    /// The cam was completed since the last call.
     Complete,
     Done,
     Failed(ErrorId),
@@ -146,7 +146,7 @@ impl Block for McCamTableSelect {
     }
 }
 
-/// What was commanded to the slave before has finished, or goes on without an end.
+/// Whether the command given to the slave before has finished, or is endless.
 fn is_free<P: Planner>(context: &Context<'_, P>, slave: AxisId) -> bool {
     let Some(axis) = context.axes.get(slave.index()) else {
         return true;
@@ -202,7 +202,7 @@ impl McCamTableSelect {
         Ok(())
     }
 
-    /// Takes a slot and the room for the rows.
+    /// Takes a slot and reserves room for the rows.
     fn set_up<P: Planner>(&mut self, context: &mut Context<'_, P>) -> Result<(), ErrorId> {
         let rows = usize::from(self.table.place().records);
         if rows > 0 && rows <= CAM_ROWS && self.table.row(context.tables, rows - 1).is_none() {
@@ -229,7 +229,7 @@ impl McCamTableSelect {
         Err(ErrorId::CamTableInvalid)
     }
 
-    /// Looks at the next rows; whether the cam is complete, and good for both axes.
+    /// Reads the next rows. Returns whether the cam is complete and valid for both axes.
     fn look<P: Planner>(&mut self, context: &mut Context<'_, P>) -> Result<bool, ErrorId> {
         let (tables, table) = (context.tables, self.table);
         let undefined: Cell<Option<(usize, i32)>> = Cell::new(None);
@@ -266,7 +266,7 @@ impl McCamTableSelect {
         Ok(true)
     }
 
-    /// Whether both axes can go along the complete cam.
+    /// Whether both axes can follow the complete cam.
     fn check<P: Planner>(&mut self, head: &CamHead, context: &mut Context<'_, P>) -> Result<(), ErrorId> {
         let master = context.axes.get(self.selection.master.index());
         let velocity = master.map_or(f64::INFINITY, |master| master.config().limits.velocity);
@@ -278,7 +278,7 @@ impl McCamTableSelect {
     }
 }
 
-/// What of a row is no good: its number, the field, the value and what that breaks.
+/// The fault of a row: its number, the field, the value and the limit it breaks.
 fn told(fault: &CamFault, row: Option<CamRow>) -> (usize, &'static str, f64, f64) {
     let row = row.unwrap_or_default();
     let fields = [
@@ -295,5 +295,5 @@ fn told(fault: &CamFault, row: Option<CamRow>) -> (usize, &'static str, f64, f64
     }
 }
 
-// The rows that are looked at in a call are what its cost is made of.
+// The cost of a call is that of the rows it reads.
 const _: () = assert!(CAM_ROWS_PER_CALL == 32);

@@ -1,4 +1,4 @@
-//! `MC_CombineAxes`: a slave follows two masters, whose ways are added.
+//! `MC_CombineAxes`: a slave follows the sum of the ways of two masters.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 

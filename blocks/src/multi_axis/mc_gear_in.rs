@@ -121,7 +121,7 @@ impl Block for McGearIn {
 }
 
 impl McGearIn {
-    /// What is to be told while the slave is not in gear, or not by this block.
+    /// The outputs while the slave is not in gear, or not by this block.
     #[inline(never)]
     fn out_of_gear<P: Planner>(&self, slave: Option<&Axis<P>>) -> Outputs {
         let phase = self.core.phase();

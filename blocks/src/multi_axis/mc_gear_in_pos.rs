@@ -1,4 +1,4 @@
-//! `MC_GearInPos`: a slave follows a master by a ratio, through a given place of both.
+//! `MC_GearInPos`: a slave follows a master by a ratio, synchronized at given positions of both.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 

@@ -1,4 +1,4 @@
-//! `MC_GearOut`: a slave goes on by itself.
+//! `MC_GearOut`: a slave leaves its gear and keeps its velocity.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 

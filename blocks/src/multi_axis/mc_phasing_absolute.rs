@@ -1,4 +1,4 @@
-//! `MC_PhasingAbsolute`: a slave sees its master ahead of where it is, or behind.
+//! `MC_PhasingAbsolute`: shifts the master's position as its slave sees it, to an absolute value.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 

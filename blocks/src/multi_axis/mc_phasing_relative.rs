@@ -1,4 +1,4 @@
-//! `MC_PhasingRelative`: a slave sees its master ahead of where it is, or behind.
+//! `MC_PhasingRelative`: shifts the master's position as its slave sees it, by a distance.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 
@@ -58,7 +58,7 @@ pub struct McPhasingRelative {
     core: ExecuteCore,
     /// The shift at the rising edge.
     start: f64,
-    /// How far it had come in the last call in which it changed.
+    /// The distance covered in the last call in which it changed.
     covered: f64,
     was_busy: bool,
 }

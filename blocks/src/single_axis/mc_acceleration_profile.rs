@@ -7,7 +7,7 @@ use standstill_axis::{AxisId, BufferMode, ErrorId, Planner, ProfileKind, Profile
 use standstill_fb::{Block, Context, Group, Time, pins, record};
 
 record! {
-    /// A point of a acceleration profile.
+    /// A point of an acceleration profile.
     pub struct AccelerationPoint = "MC_TA_REF" {
         /// Time since the point before, above 0; of the first one since the start, which may be 0.
         DeltaTime => delta_time: Time, "";

@@ -1,4 +1,4 @@
-//! `MC_Halt`: a controlled stop other commands may interrupt.
+//! `MC_Halt`: a controlled stop that other commands may interrupt.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 

@@ -1,4 +1,4 @@
-//! `MC_HaltSuperimposed`: ends what is superimposed; the motion under it goes on.
+//! `MC_HaltSuperimposed`: stops the superimposed motion; the motion under it continues.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; V14a.
 

@@ -48,7 +48,7 @@ pins! {
     }
 }
 
-/// A command given, and the values it stops with.
+/// A command of this block, and the values for its stop.
 #[derive(Clone, Copy, Debug)]
 struct Given {
     axis: AxisId,
@@ -60,14 +60,14 @@ struct Given {
 #[doc(alias = "MC_Jog")]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct McJog {
-    /// The button of the last call: forward or backward.
+    /// The button held in the last call: TRUE is forward, FALSE backward.
     held: Option<bool>,
     given: Option<Given>,
-    /// The last result; of no meaning while there is a command.
+    /// The last result; not used while there is a command.
     phase: Phase,
 }
 
-/// The button that counts, forward or backward; both are none.
+/// The active button, forward or backward. Both together count as none.
 fn button(inputs: &Inputs) -> Option<bool> {
     match (inputs.jog_forward, inputs.jog_backward) {
         (true, false) => Some(true),
@@ -77,7 +77,7 @@ fn button(inputs: &Inputs) -> Option<bool> {
 }
 
 impl McJog {
-    /// A button is pressed: one motion, which replaces the one this instance has.
+    /// A button is pressed: starts a motion, which replaces the one of this instance.
     fn press<P: Planner>(
         &mut self,
         forward: bool,
@@ -112,7 +112,7 @@ impl McJog {
         })
     }
 
-    /// No button, or both: what this instance set in motion comes to rest.
+    /// No button, or both: stops the motion of this instance.
     fn release<P: Planner>(&mut self, context: &mut Context<'_, P>) -> Result<(), ErrorId> {
         let Some(given) = &mut self.given else {
             return Ok(());
@@ -120,7 +120,7 @@ impl McJog {
         let (axis, scope) = context.axis(given.axis)?;
         if Phase::from(axis.fate(given.id)).is_busy() {
             let gentle = halt(axis, given.dynamics, scope);
-            // A ramp that would take too long is no reason to go on.
+            // If the gentle ramp would take too long, the axis must stop all the same.
             given.id = gentle.or_else(|_| halt(axis, Dynamics::default(), scope))?;
         }
         Ok(())
@@ -137,7 +137,7 @@ impl McJog {
                 Ok(())
             }
             Err(error) => {
-                // The other button is no longer held: its motion must not go on.
+                // The other button is released: its motion must not continue.
                 let released = self.release(context);
                 self.given = None;
                 released.and(Err(error))
@@ -159,7 +159,7 @@ impl McJog {
                 Some(axis) => axis.fate(given.id).into(),
                 None => Phase::Failed(ErrorId::AxisUnknown),
             },
-            // A result was already shown in an earlier call; without a button it goes.
+            // A result shown in an earlier call disappears when no button is held.
             None if held.is_none() => Phase::Idle,
             None => self.phase,
         };

@@ -1,4 +1,4 @@
-//! `MC_MoveAdditive`: one axis by a distance added to where it was last sent.
+//! `MC_MoveAdditive`: one axis by a distance, added to its last commanded position.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 

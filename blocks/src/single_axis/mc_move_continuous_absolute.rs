@@ -1,4 +1,4 @@
-//! `MC_MoveContinuousAbsolute`: one axis to a position, and on from there at a velocity.
+//! `MC_MoveContinuousAbsolute`: one axis to a position, which it passes at a given velocity.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name.
 

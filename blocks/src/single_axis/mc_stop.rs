@@ -42,7 +42,7 @@ pins! {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct McStop {
     core: ExecuteCore,
-    /// The stop that locks the axis until Execute falls; it outlives `Done`.
+    /// The stop that locks the axis until Execute falls; the lock remains after `Done`.
     lock: Option<(AxisId, CommandId)>,
 }
 

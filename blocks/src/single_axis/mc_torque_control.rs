@@ -1,4 +1,4 @@
-//! `MC_TorqueControl`: a torque instead of a position.
+//! `MC_TorqueControl`: commands a torque instead of a position.
 //!
 //! Source: PLCopen Motion Control Part 1, section of that name; V25.
 

@@ -1,4 +1,5 @@
-//! What the three profile blocks share: values taken at the rising edge, and points given when the turn has come.
+//! The common part of the three profile blocks. The values are taken at the rising edge; the points are
+//! given when the command becomes active.
 //!
 //! Source: PLCopen Motion Control Part 1, sections on Execute/Done and ContinuousUpdate; R8 to R14, V24.
 
@@ -16,14 +17,14 @@ pub trait Point: Record {
     /// The pin of the table.
     const PIN: &'static str;
 
-    /// The same for the axis.
+    /// The same point as the axis takes it.
     fn row(&self) -> ProfileRow;
 }
 
 /// The table at a pin.
 pub type Points<R> = TableOf<R, PROFILE_POINTS>;
 
-/// What a profile is made of, as it stands at the pins.
+/// What defines a profile, as its pins say.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape<R> {
     /// The table.
@@ -42,7 +43,7 @@ impl<R: Point> Shape<R> {
         self.table.place() == other.table.place() && bits(self) == bits(other)
     }
 
-    /// Hands the profile with the points of the table to `to`.
+    /// Calls `to` with the profile and the points of the table.
     fn read<T>(&self, tables: &[f64], to: impl FnOnce(&Profile<'_>) -> T) -> Option<T> {
         let table = self.table.read(tables)?;
         let mut rows = [ProfileRow::default(); PROFILE_POINTS];
@@ -76,7 +77,7 @@ pub struct Pins {
 #[derive(Clone, Copy, Debug)]
 pub struct ProfileCore<R> {
     execute: ExecuteCore,
-    /// The values that hold; none before the first command.
+    /// The values in force; none before the first command.
     given: Option<Shape<R>>,
     /// Changed values count, from a rising edge with ContinuousUpdate TRUE until it is FALSE (R10, R11).
     continuous: bool,
@@ -93,8 +94,8 @@ impl<R> Default for ProfileCore<R> {
 }
 
 impl<R: Point> ProfileCore<R> {
-    /// One call. Cost while the profile runs: some comparisons; at its start and when a value changes that of reading
-    /// the table and of [`Axis::profile`].
+    /// One call. Cost while the profile runs: some comparisons. At its start, and when a value changes:
+    /// reading the table and [`Axis::profile`].
     pub fn scan<P: Planner>(&mut self, pins: &Pins, shape: &Shape<R>, context: &mut Context<'_, P>) -> Phase {
         if let Some((axis, id)) = self.execute.running(pins.execute, context) {
             self.follow(axis, id, pins, shape, context);
@@ -111,7 +112,8 @@ impl<R: Point> ProfileCore<R> {
         })
     }
 
-    /// A command in progress, before its fate is asked for: new values, and the points when its turn has come.
+    /// Serves a command in progress before its status is asked for: gives new values, and the points when
+    /// it becomes active.
     fn follow<P: Planner>(
         &mut self,
         axis: AxisId,
@@ -149,7 +151,7 @@ impl<R: Point> ProfileCore<R> {
     }
 }
 
-/// The table does not stand where the pin says.
+/// The table does not exist at the place that the pin gives.
 fn unknown<P: Planner>(axis: &Axis<P>, pin: &'static str, scope: &mut Scope<'_>) -> ErrorId {
     let error = ErrorId::TableUnknown;
     axis.note_refusal(pin, f64::NAN, f64::NAN, error, scope);

@@ -33,7 +33,7 @@ pub struct Tof {
 
 #[derive(Clone, Copy, Debug)]
 enum State {
-    /// Q is FALSE; `et` stays from the last timing.
+    /// Q is FALSE; `et` keeps the time of the last delay.
     Off { et: Time },
     /// IN is TRUE.
     On,

@@ -35,7 +35,7 @@ pub struct Ton {
 #[derive(Clone, Copy, Debug)]
 struct Running {
     start_ns: i64,
-    /// PT has passed; a larger PT does not take that back.
+    /// PT has passed; a larger PT does not reset it.
     q: bool,
 }
 
