@@ -1,4 +1,4 @@
-//! Tasks and programs as declared, and everything that can be wrong with them.
+//! Declarations of tasks and programs, and the check that finds their defects.
 
 use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::string::String;
@@ -22,15 +22,15 @@ pub struct TaskConfig {
     pub interval_ns: u64,
     /// PRIORITY; 0 is the highest.
     pub priority: u32,
-    /// SINGLE is bound: a rising edge executes the task once, and while it is TRUE there is no periodic
-    /// execution.
+    /// SINGLE is bound: a rising edge executes the task once. There is no periodic execution while it is
+    /// TRUE.
     pub single: bool,
     /// Watchdog, if any.
     pub watchdog: Option<Watchdog>,
 }
 
 impl TaskConfig {
-    /// A periodic task of the highest priority without watchdog.
+    /// A periodic task of the highest priority, without watchdog.
     pub fn every(name: &str, interval_ns: u64) -> Self {
         Self {
             name: name.into(),
@@ -110,7 +110,7 @@ pub enum ConfigError {
         /// The task it names.
         task: String,
     },
-    /// An interval is no whole multiple of the base tick.
+    /// An interval is not a whole multiple of the base tick.
     Interval {
         /// The task.
         task: String,
@@ -246,7 +246,7 @@ pub(crate) fn by_name(tasks: &[TaskConfig]) -> BTreeMap<String, usize> {
     tasks.map(|(index, task)| (upper(&task.name), index)).collect()
 }
 
-/// What a name has in common with those that differ from it in case only.
+/// The name in upper case: names that differ in case only are equal.
 pub(crate) fn upper(name: &str) -> String {
     name.to_ascii_uppercase()
 }

@@ -18,13 +18,13 @@ use standstill_axis::{Drive, Planner};
 pub struct ScanReport {
     /// Number of the scan, from 0.
     pub scan: u64,
-    /// Base tick since the start that its instant belongs to.
+    /// The base tick of its instant, counted from the start.
     pub tick: u64,
-    /// Ticks since the scan before that had no scan of their own.
+    /// Ticks since the last scan that had no scan.
     pub missed_ticks: u64,
     /// Tasks executed.
     pub executions: usize,
-    /// Of these, tasks whose next due time had passed when they ended.
+    /// Number of these whose next due time had passed when they ended.
     pub overruns: usize,
     /// Whether programs run from now on.
     pub mode: Mode,
@@ -52,7 +52,7 @@ impl Mode {
     }
 }
 
-/// The instant given to a scan is before that of the scan before; nothing was executed.
+/// The instant given to a scan is earlier than that of the last scan. Nothing was executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimeRanBackwards {
     /// The instant given (ns).
@@ -80,25 +80,25 @@ struct Program {
     task: Option<TaskId>,
 }
 
-/// An execution to come; they are done in this order: of the highest priority first, among equals of the task that waits
-/// longest, then of the one declared first.
+/// An execution that waits. The order is: highest priority first, then the task that waits longest, then
+/// the one declared first.
 type Waiting = (u32, u64, TaskId);
 
 /// One resource: its tasks and program instances, executed one after the other without preemption.
 ///
 /// A task is due on the ticks of its phase grid, which begins at the first scan after a start. An instant
-/// belongs to the nearest tick, so jitter below half a tick changes nothing. Where programs say how long
-/// they take, the processing unit is taken for that long: what is due meanwhile waits, at most one
-/// execution of each task, and further periods are skipped and counted. Motion has the nominal tick
-/// whatever the programs take: axes advance once in every scan.
+/// belongs to the nearest tick, so jitter below half a tick changes nothing. If programs report how long
+/// they take, the processing unit is busy for that time. A task that becomes due meanwhile waits for one
+/// execution; further periods are skipped and counted. Motion does not depend on this: every axis
+/// advances by one nominal tick in every scan.
 #[derive(Clone, Debug)]
 pub struct Executor {
     base_tick_ns: NonZero<u64>,
     tasks: Vec<Task>,
     programs: Vec<Program>,
-    /// The programs of each task, and behind them those without one, in declaration order.
+    /// The programs of each task, then those without one, in declaration order.
     by_task: Vec<Vec<ProgramId>>,
-    /// What is executed in the scan under way; it has room for all tasks.
+    /// The executions of the current scan; it has room for all tasks.
     waiting: Vec<Waiting>,
     /// Number of the next scan.
     next_scan: u64,
@@ -119,7 +119,7 @@ struct Work {
 }
 
 impl Executor {
-    /// An executor for these declarations. It uses the heap; nothing later does.
+    /// Creates an executor for these declarations. This is the only step that uses the heap.
     ///
     /// # Errors
     /// [`ConfigError`]: the first defect, with its values.
@@ -160,11 +160,11 @@ impl Executor {
         })
     }
 
-    /// Starts the resource: variables are set, tasks and counts begin anew, a fault is forgotten.
+    /// Starts the resource: sets the variables, restarts tasks and counts, and clears the fault.
     ///
     /// A resource whose programs already have their initial values needs no start before its first scan;
-    /// axes then have their configured state. Before any later start they must be off, so that no motion
-    /// is carried over. Scan numbers go on, so that records stay unambiguous.
+    /// axes then have their configured state. Before any later start the axes must be off, so that no
+    /// motion continues after it. Scan numbers go on, so that records stay unambiguous.
     ///
     /// # Errors
     /// [`NotOff`] if an axis is not off; nothing has changed then.
@@ -187,8 +187,8 @@ impl Executor {
         Ok(())
     }
 
-    /// Stops the resource: no program runs any more, and every axis is asked to stop and switch off in its
-    /// configured way, which takes further scans. Without effect on a resource that has stopped.
+    /// Stops the resource: no program runs any more, and every axis is asked to stop and switch off as it
+    /// is configured, which takes further scans. No effect on a stopped resource.
     pub fn stop<P: Planner, D: Drive>(
         &mut self,
         programs: &mut impl Programs<P, D>,
@@ -199,13 +199,13 @@ impl Executor {
         }
     }
 
-    /// One scan at the instant `now_ns`. This body is the order of everything in a scan.
+    /// One scan at the instant `now_ns`. This function body is the order of everything in a scan.
     ///
-    /// Work: each task at most once, each axis and drive once. While the resource is stopped no program
-    /// runs, but axes and drives are served, because an axis can only stop in its configured way in scans.
+    /// Work: each task at most once, each axis and drive once. A stopped resource runs no program, but
+    /// axes and drives are served, because an axis needs scans to stop.
     ///
     /// # Errors
-    /// [`TimeRanBackwards`] if `now_ns` is smaller than that of the last scan; nothing was executed.
+    /// [`TimeRanBackwards`] if `now_ns` is less than that of the last scan; nothing was executed.
     pub fn scan<P: Planner, D: Drive>(
         &mut self,
         now_ns: i64,
@@ -323,7 +323,7 @@ impl Executor {
     ) {
         self.mode = mode;
         programs.stopped(mode.fault());
-        // The scan under way; after it, the last one.
+        // The current scan; between scans, the last one.
         machine.power_off(self.next_scan.saturating_sub(1));
     }
 
@@ -335,7 +335,7 @@ impl Executor {
         machine: &mut Machine<P, D>,
         work: &mut Work,
     ) -> Result<(), Fault> {
-        // An execution takes its task out of the waiting ones, and nothing puts one in, so they are sorted once.
+        // Executions only leave the waiting list during a scan, so it is sorted once.
         self.waiting.clear();
         let waiting = self.tasks.iter().enumerate();
         let waiting =
@@ -369,8 +369,8 @@ impl Executor {
         Ok(())
     }
 
-    /// Runs the programs of `task`, or those without a task, in declaration order; gives what they took
-    /// together (ns).
+    /// Runs the programs of `task`, or those without a task, in declaration order. Returns the time they
+    /// took together (ns).
     fn run_programs<P: Planner, D: Drive>(
         &self,
         task: Option<TaskId>,

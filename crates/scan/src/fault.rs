@@ -6,7 +6,7 @@ use core::fmt;
 /// Why the resource stopped. Programs run again only after a start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// A program did not end as it should.
+    /// A program reported a fault.
     Program {
         /// The scan.
         scan: u64,
@@ -17,7 +17,8 @@ pub enum Fault {
         /// What happened.
         reason: &'static str,
     },
-    /// A task took longer than its watchdog permits, as often in a row as its sensitivity says.
+    /// A task took longer than its watchdog permits, for as many executions in a row as its sensitivity
+    /// says.
     Watchdog {
         /// The scan.
         scan: u64,

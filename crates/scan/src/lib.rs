@@ -1,9 +1,10 @@
 //! The deterministic cyclic executor: tasks, the order of one scan, axes and their drives.
 //!
-//! What stands here: which program runs in which scan ([`Executor`]), and the steps of a scan on axes and
-//! drives ([`Machine`]). The order of a scan is behaviour and stands in one place, [`Executor::scan`].
-//! What does not: no function block (a host brings its own through [`Programs`]), no script, no text. Time
-//! is an argument; nothing reads a clock. The heap is used while setting up and never in a scan.
+//! It has two parts: [`Executor`] decides which program runs in which scan, and [`Machine`] has the steps
+//! of a scan on axes and drives. The order of a scan is behaviour, so one function holds it:
+//! [`Executor::scan`]. The crate has no function block (a host brings its own through [`Programs`]), no
+//! script and no text. Time is an argument; nothing reads a clock. The heap is used at set-up and never
+//! in a scan.
 #![no_std]
 #![forbid(unsafe_code)]
 

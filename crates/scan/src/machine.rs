@@ -1,4 +1,4 @@
-//! The axes with their drives, and what a scan does to them.
+//! The axes with their drives, and the steps of a scan that serve them.
 
 use crate::{NotOff, ScanTime};
 use alloc::vec::Vec;
@@ -9,7 +9,7 @@ use standstill_axis::{
 };
 use standstill_fb::{Context, Record, TableRef, Value};
 
-/// The instance in records of what no block instance caused.
+/// The instance number in records that no block instance caused.
 pub const RUNTIME: InstanceId = InstanceId(u16::MAX);
 
 /// All axes, the drive under each, and their common ring of records.
@@ -63,7 +63,8 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         Ok(id)
     }
 
-    /// Adds a table for the pins of blocks, record after record; uses the heap. `None` if it has more than 65535 records.
+    /// Adds a table for the pins of blocks, given record by record. Uses the heap. `None` if it has more
+    /// than 65535 records.
     pub fn add_table<R: Record>(&mut self, records: &[R]) -> Option<TableRef> {
         let place = TableRef {
             first: u32::try_from(self.tables.len()).ok()?,
@@ -77,9 +78,9 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         Some(place)
     }
 
-    /// Sets up the store of cams: so many slots, and so many pieces in all, one less for each cam than it has rows; uses the
-    /// heap, about 120 bytes for a piece. Without it MC_CamTableSelect has no room. What was selected before is gone, so call it
-    /// before the first scan.
+    /// Sets up the store of cams with `slots` slots and `pieces` pieces in all. A cam takes one piece
+    /// less than it has rows. Uses the heap, about 120 bytes for a piece. Without a store
+    /// MC_CamTableSelect has no room. Cams selected before are lost, so call it before the first scan.
     pub fn set_cam_store(&mut self, slots: usize, pieces: usize) {
         self.cams = (Vec::new(), Vec::new());
         self.cams.0.resize(slots, CamSlot::default());
@@ -91,17 +92,18 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         self.set_cam_store(CAM_SLOTS, CAM_PIECES);
     }
 
-    /// The cams that were selected.
+    /// The selected cams.
     pub fn cams(&mut self) -> Cams<'_> {
         Cams::new(&mut self.cams.0, &mut self.cams.1)
     }
 
-    /// The numbers of all tables: places in here are those of [`TableRef`]. A change counts from the next call on.
+    /// The numbers of all tables; a [`TableRef`] is a place in them. A change has effect from the next
+    /// call.
     pub fn tables_mut(&mut self) -> &mut Vec<f64> {
         &mut self.tables
     }
 
-    /// All axes; an [`AxisId`] is a place in here.
+    /// All axes; an [`AxisId`] is an index into them.
     pub fn axes(&self) -> &[Axis<P>] {
         &self.axes
     }
@@ -121,7 +123,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         &mut self.drives
     }
 
-    /// What the drives told in this scan, in axis order; empty before the first scan.
+    /// The feedback of this scan, in axis order; empty before the first scan.
     pub fn feedback(&self) -> &[DriveFeedback] {
         &self.feedback
     }
@@ -131,7 +133,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         &self.log
     }
 
-    /// What a block called by `instance` may touch.
+    /// The context for a block called by `instance`.
     pub fn context(&mut self, time: ScanTime, instance: InstanceId) -> Context<'_, P> {
         Context {
             now_ns: time.now_ns,
@@ -146,7 +148,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
         }
     }
 
-    /// Reads every drive once, in axis order, then lets the axis states follow.
+    /// Reads every drive once, in axis order, then updates the axis states.
     pub(crate) fn read_feedback(&mut self, time: ScanTime) {
         self.feedback.clear();
         self.feedback
@@ -186,7 +188,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
     }
 }
 
-/// What the machine itself does in `scan`.
+/// The scope of records that the machine itself writes in `scan`.
 fn runtime_scope(scan: u64, log: &mut Log) -> Scope<'_> {
     Scope {
         scan,

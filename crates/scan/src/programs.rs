@@ -1,14 +1,14 @@
-//! What a host brings: its programs, its inputs and outputs, and what it wants to see of a scan.
+//! The host's part: its programs, its inputs and outputs, and hooks to observe a scan.
 
 use crate::{Fault, Machine};
 use standstill_axis::{AxisId, AxisState, Drive, Planner};
 use standstill_fb::Context;
 
-/// A task: its place in the declaration.
+/// A task: its index in the declaration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct TaskId(pub usize);
 
-/// A program instance: its place in the declaration.
+/// A program instance: its index in the declaration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ProgramId(pub usize);
 
@@ -37,7 +37,7 @@ pub struct ProgramFault {
     pub reason: &'static str,
 }
 
-/// A start was refused because an axis is switched on or still moving; neither is carried over a start.
+/// A start was refused because an axis is switched on or still moves. Neither may continue over a start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotOff {
     /// The first such axis.
@@ -65,8 +65,8 @@ pub trait Programs<P: Planner, D: Drive> {
     /// instances before their owner.
     fn start(&mut self, _start: Start) {}
 
-    /// Latches the inputs: all programs of the scan see this image and nothing newer. A simulation changes
-    /// its drives here.
+    /// Latches the inputs: all programs of the scan see this image and nothing newer. A simulation also
+    /// changes its drives here.
     fn latch(&mut self, _time: ScanTime, _machine: &mut Machine<P, D>) {}
 
     /// The BOOL bound to SINGLE of `task`. Asked once a scan and only of tasks that declare SINGLE.
@@ -74,17 +74,19 @@ pub trait Programs<P: Planner, D: Drive> {
         false
     }
 
-    /// Runs a program instance to its end and says how long it took (ns): by a budget that is the same in
-    /// every run, such as counted instructions, or 0 if nobody counts. A measured time would make the
+    /// Runs a program instance to its end. Returns the time it took (ns) by a measure that is the same in
+    /// every run, such as counted instructions, or 0 if none is counted. A measured time would make the
     /// schedule differ from run to run.
     ///
-    /// `context.scope.instance` is [`crate::RUNTIME`] at first; a host that calls blocks sets it for each.
+    /// `context.scope.instance` is [`crate::RUNTIME`] at first. A host that calls blocks sets it for each
+    /// block.
     ///
     /// # Errors
     /// [`ProgramFault`] ends the scan's programs and stops the resource.
     fn run(&mut self, program: ProgramId, context: &mut Context<'_, P>) -> Result<u64, ProgramFault>;
 
-    /// All programs of this scan have run, the motion step has not: axis states as the trace shows them.
+    /// Called after all programs of this scan and before the motion step. Axis states are those the trace
+    /// shows.
     fn observe(&mut self, _time: ScanTime, _machine: &Machine<P, D>) {}
 
     /// Publishes the outputs of the programs. Not called while the resource is stopped, nor in the scan of a
@@ -95,6 +97,6 @@ pub trait Programs<P: Planner, D: Drive> {
     /// once.
     fn stopped(&mut self, _fault: Option<&Fault>) {}
 
-    /// The scan is over: set-points are those the drives were given.
+    /// The scan is over; set-points are those the drives were given.
     fn published(&mut self, _time: ScanTime, _machine: &Machine<P, D>) {}
 }

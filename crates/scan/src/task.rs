@@ -1,6 +1,6 @@
-//! One task: when it is released, and what becomes of periods it could not keep.
+//! One task: when it is released, and how periods it could not keep are counted.
 //!
-//! All times are base ticks since the start, so jitter of the scan's instant never moves a task.
+//! All times are base ticks since the start, so jitter of the scan's instant never shifts a task.
 
 use crate::{TaskConfig, Watchdog};
 use alloc::string::String;
@@ -13,8 +13,8 @@ pub struct TaskCounts {
     pub executions: u64,
     /// Executions at whose end the next due time had passed.
     pub overruns: u64,
-    /// Periods without an execution of their own, because an execution lasted over them, the processing
-    /// unit was taken, or no scan came in time. Periods suspended by SINGLE do not count.
+    /// Periods without an execution of their own. Causes: an execution lasted longer, the processing unit
+    /// was busy, or no scan came in time. Periods suspended by SINGLE do not count.
     pub skipped: u64,
 }
 
@@ -48,7 +48,7 @@ struct State {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Ended {
     pub(crate) overrun: bool,
-    /// The limit that stops the resource, if the watchdog fires.
+    /// The limit that was exceeded, if the watchdog stops the resource.
     pub(crate) fired: Option<u64>,
 }
 
@@ -64,7 +64,7 @@ impl Task {
         }
     }
 
-    /// As before the first tick.
+    /// Returns to the state before the first tick.
     pub(crate) fn restart(&mut self) {
         self.state = State::default();
     }
@@ -115,7 +115,8 @@ impl Task {
         }
     }
 
-    /// Moves `next_due` along the phase grid to the first point not before `tick`; gives the points passed.
+    /// Moves `next_due` along the phase grid to the first point not before `tick`. Returns the number of
+    /// points passed.
     fn pass(&mut self, tick: u64) -> u64 {
         let Some(interval) = self.interval else {
             return 0;

@@ -1,9 +1,10 @@
 //! standstill: a PLCopen motion runtime to embed in a soft-PLC.
 //!
-//! It gives the layers a host needs one name: [`planner`] is motion maths, [`axis`] the state machine with commands and
-//! drives, [`fb`] what blocks share, [`blocks`] the function blocks and their registry, [`scan`] tasks and the order of
-//! a scan, [`record`] the flight recorder. On top of them stands [`runtime`], which puts axes, drives, blocks and
-//! programs together; a host that wants to do this itself uses the layers, as here:
+//! It brings the layers a host needs under one name: [`planner`] is motion maths, [`axis`] the state
+//! machine with commands and drives, [`fb`] the common part of blocks, [`blocks`] the function blocks and
+//! their registry, [`scan`] tasks and the order of a scan, [`record`] the flight recorder. [`runtime`] is
+//! above them and puts axes, drives, blocks and programs together. A host that wants to do this itself
+//! uses the layers, as here:
 //!
 //! ```
 //! use standstill::prelude::*;
@@ -44,8 +45,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The examples of this crate are whole hosts: `single_axis` in forty lines, `own_drive` with blocks and a drive of its
-//! own, `recording` with a flight recorder.
+//! The examples of this crate are whole hosts: `single_axis` has forty lines, `own_drive` has blocks and
+//! a drive of its own, `recording` has a flight recorder.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -60,7 +61,7 @@ pub use standstill_planner as planner;
 pub use standstill_record as record;
 pub use standstill_scan as scan;
 
-/// What nearly every host names.
+/// The names that nearly every host uses.
 pub mod prelude {
     pub use crate::runtime::{BlockId, Blocks, BuildError, Builder, Program, Ready, Running};
     pub use standstill_axis::{

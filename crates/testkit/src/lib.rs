@@ -2,7 +2,8 @@
 
 #![no_std]
 
-/// splitmix64 (Steele, Lea, Flood 2014): a counter and a mixing function. It begins at the counter it is made with.
+/// splitmix64 (Steele, Lea, Flood 2014): a counter and a mixing function. The seed is the first value of
+/// the counter.
 #[derive(Clone, Copy, Debug)]
 pub struct Random(pub u64);
 
@@ -54,9 +55,10 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// From `low` to `high`, both above 0, with every power as likely.
+    /// From `low` to `high`, both above 0, with every power equally likely.
     ///
-    /// Each of ever smaller roots of `high / low` is in or out: a logarithm would not give the same bits everywhere.
+    /// The result is `low` times a random choice of the roots of `high / low`. A logarithm would not give
+    /// the same bits everywhere.
     pub fn log(&mut self, low: f64, high: f64) -> f64 {
         let (mut value, mut root) = (low, high / low);
         for _ in 0..40 {

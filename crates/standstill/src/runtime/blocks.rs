@@ -13,7 +13,7 @@ pub struct BlockId(pub(super) u16);
 /// The block instances of a runtime, by number.
 #[derive(Clone, Debug, Default)]
 pub struct Blocks {
-    /// With the number that each has in records.
+    /// Each with its number in records.
     all: Vec<(String, InstanceId, BlockInstance)>,
 }
 
@@ -43,7 +43,8 @@ impl Blocks {
         self.all.get_mut(usize::from(id.0)).map(|(.., instance)| instance)
     }
 
-    /// Calls an instance with its inputs as they stand. Cost: that of the block; an id of another runtime does nothing.
+    /// Calls an instance with its present inputs. Cost: that of the block. An id of another runtime does
+    /// nothing.
     pub fn call(&mut self, id: BlockId, context: &mut Context<'_>) {
         if let Some((_, number, instance)) = self.all.get_mut(usize::from(id.0)) {
             context.scope.instance = *number;
@@ -51,7 +52,8 @@ impl Blocks {
         }
     }
 
-    /// Writes an input or in_out by its IEC name, without regard to case. Cost: a look through the pins of the block.
+    /// Writes an input or in_out by its IEC name, without regard to case. Cost: a search through the pins
+    /// of the block.
     ///
     /// # Errors
     /// [`PinError`] if there is no such pin, it is an output, or it has another type.

@@ -10,7 +10,7 @@ use standstill_fb::{BlockInfo, Described, Record, TableRef};
 use standstill_record::{Recorder, Setup, Signals};
 use standstill_scan::{ConfigError, Executor, Machine, MachineError, ProgramConfig, TaskConfig};
 
-/// A runtime that is being put together. Everything here may use the heap; nothing later does.
+/// A runtime under construction. Everything here may use the heap; nothing later does.
 #[derive(Debug)]
 pub struct Builder<D: Drive = IdealDrive> {
     cycle_ns: u64,
@@ -28,12 +28,12 @@ pub struct Builder<D: Drive = IdealDrive> {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// Two axes or instances have one name, without regard to case; names stand for them in traces.
+    /// Two axes or instances have the same name, without regard to case. Traces identify them by name.
     Name {
         /// The name.
         name: String,
     },
-    /// An axis cannot be set up like this.
+    /// The configuration of an axis is not valid.
     Axis {
         /// Its name.
         name: String,
@@ -44,17 +44,18 @@ pub enum BuildError {
     UnknownBlock {
         /// The instance.
         name: String,
-        /// The block it should be one of.
+        /// The block it should be an instance of.
         block: String,
     },
-    /// Instances have 16 bits for their numbers.
+    /// Instance numbers have 16 bits, and none is left.
     TooManyBlocks,
-    /// A table has more records than its reference can count, or all tables together more numbers.
+    /// A table has more records than its reference can count, or all tables together have too many
+    /// numbers.
     TableTooLong {
         /// Its records.
         records: usize,
     },
-    /// Tasks and programs do not fit together, or the cycle is 0.
+    /// The declarations of tasks and programs do not fit together, or the cycle is 0.
     Tasks(ConfigError),
 }
 
@@ -122,7 +123,7 @@ impl<D: Drive> Builder<D> {
         Ok(id)
     }
 
-    /// Adds an instance that belongs to the runtime, of the block of this IEC name, without regard to case.
+    /// Adds an instance that belongs to the runtime. `block` is an IEC name, without regard to case.
     ///
     /// # Errors
     /// [`BuildError::Name`], [`BuildError::UnknownBlock`], [`BuildError::TooManyBlocks`].
@@ -138,8 +139,8 @@ impl<D: Drive> Builder<D> {
             .ok_or(BuildError::TooManyBlocks)
     }
 
-    /// Declares an instance that stands in the host's own struct, so that records and the recorder know it. The host
-    /// puts the number into `context.scope.instance` before it calls it.
+    /// Declares an instance that the host keeps in its own struct, so that records and the recorder know
+    /// it. The host sets `context.scope.instance` to the returned number before each call.
     ///
     /// # Errors
     /// [`BuildError::Name`], [`BuildError::TooManyBlocks`].
@@ -161,14 +162,14 @@ impl<D: Drive> Builder<D> {
         })
     }
 
-    /// Adds a task. Its number is its place among the tasks.
+    /// Adds a task. Its number is its index among the tasks.
     pub fn task(&mut self, task: TaskConfig) -> &mut Self {
         self.tasks.push(task);
         self
     }
 
-    /// Adds a program instance. Its number is its place among the programs. A runtime without any has one, `main`, that
-    /// runs in every scan.
+    /// Adds a program instance. Its number is its index among the programs. A runtime without any has
+    /// one, `main`, that runs in every scan.
     pub fn program(&mut self, program: ProgramConfig) -> &mut Self {
         self.programs.push(program);
         self
@@ -181,7 +182,7 @@ impl<D: Drive> Builder<D> {
         self
     }
 
-    /// Checks everything that needs the whole, and takes the memory that is left to take.
+    /// Runs all checks that need the whole, and allocates the remaining memory.
     ///
     /// # Errors
     /// [`BuildError::Tasks`].
@@ -214,7 +215,7 @@ impl<D: Drive> Builder<D> {
         })
     }
 
-    /// The next number for records; 0 is for what no instance of the runtime causes.
+    /// The next number for records; 0 is for records that no instance of the runtime causes.
     fn number(&self) -> Result<InstanceId, BuildError> {
         let count = self.blocks.instances().count() + self.own.len();
         let number = u16::try_from(count + 1).ok().map(InstanceId);

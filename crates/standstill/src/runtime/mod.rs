@@ -1,9 +1,10 @@
-//! A machine with its programs, put together step by step: [`Builder`], [`Ready`], [`Running`].
+//! A machine with its programs, built step by step: [`Builder`], [`Ready`], [`Running`].
 //!
-//! All memory is taken while building; [`Running::scan`] takes none, so a host can make everything at power-up and run
-//! for years. Axes and drives belong to the runtime. Block instances may, and are then called by their [`BlockId`], or
-//! they stand in the host's own structs, where the compiler knows their types. A host that wants its axes in its own
-//! structs, too, needs no runtime: the loop in the README is all there is to it.
+//! All memory is allocated while building; [`Running::scan`] allocates none, so a host can set up
+//! everything at power-up and run for years. Axes and drives belong to the runtime. Block instances may
+//! belong to it too, and are then called by their [`BlockId`]. Or they are fields of the host's own
+//! structs, where the compiler knows their types. A host that also wants its axes in its own structs
+//! needs no runtime: the loop in the README is enough.
 
 mod blocks;
 mod builder;
@@ -32,9 +33,9 @@ pub trait Program<D: Drive = IdealDrive> {
         false
     }
 
-    /// Runs a program instance to its end and says how long it took by a deterministic budget (ns), or 0. `blocks` are
-    /// the runtime's own. Before a block of the host's own is called, `context.scope.instance` takes the number that
-    /// [`Builder::own_block`] gave it.
+    /// Runs a program instance to its end. Returns the time it took by a deterministic measure (ns), or
+    /// 0. `blocks` are the runtime's own. Before a call of a block of the host's own, set
+    /// `context.scope.instance` to the number that [`Builder::own_block`] returned.
     ///
     /// # Errors
     /// [`ProgramFault`] ends the scan's programs and stops the resource.
@@ -45,14 +46,15 @@ pub trait Program<D: Drive = IdealDrive> {
         context: &mut Context<'_>,
     ) -> Result<u64, ProgramFault>;
 
-    /// Shows the recorder the host's own instances, in the order in which [`Builder::own_block`] declared them.
+    /// Gives the recorder the pins of the host's own instances, in the order in which
+    /// [`Builder::own_block`] declared them.
     fn pins(&self, _pins: &mut Pins<'_>) {}
 
     /// The scan is over: set-points are those the drives were given.
     fn published(&mut self, _time: ScanTime, _machine: &Machine<Standard, D>) {}
 }
 
-/// Everything is checked and has its memory; no scan has been made.
+/// A runtime that is checked and has its memory, before the first scan.
 #[derive(Debug)]
 pub struct Ready<D: Drive = IdealDrive> {
     executor: Executor,
@@ -99,8 +101,8 @@ struct Host<P> {
 }
 
 impl<P: Program<D>, D: Drive> Running<P, D> {
-    /// One scan at this instant (ns) of a monotonic clock. Axes advance by one nominal cycle whatever the instant: a
-    /// late scan stretches a motion and never enlarges a step.
+    /// One scan at this instant (ns) of a monotonic clock. Axes advance by one nominal cycle at any
+    /// instant: a late scan stretches a motion and never enlarges a step.
     ///
     /// Work: each task, axis, drive and recorded signal at most once; no heap.
     ///
@@ -110,8 +112,8 @@ impl<P: Program<D>, D: Drive> Running<P, D> {
         self.executor.scan(now_ns, &mut self.host, &mut self.machine)
     }
 
-    /// No program runs any more, and every axis stops and switches off as its configuration says, which takes further
-    /// scans; [`Running::is_off`] tells when.
+    /// Stops all programs. Every axis stops and switches off as it is configured, which takes further
+    /// scans; [`Running::is_off`] says when this is done.
     pub fn stop(&mut self) {
         self.executor.stop(&mut self.host, &mut self.machine);
     }
