@@ -1,9 +1,9 @@
-//! One PLCopen axis: its states, the commands it obeys and remembers, its errors, and the drive under it.
+//! One PLCopen axis: its states, its commands, its errors, and the drive under it.
 //!
-//! What stands here: the axis state machine with its arrows as data, one active command and a bounded
-//! buffer, the reaction to power and faults, the motion step that turns a plan into a set-point. What does
-//! not: an axis knows no function block (they meet through a [`CommandId`]), no script, no clock; nothing
-//! allocates, every loop has a constant bound.
+//! An axis has a state machine with its arrows as data, one active command and a bounded buffer. It
+//! reacts to power and faults, and its motion step turns a plan into a set-point. It knows no function
+//! block (they meet through a [`CommandId`]), no script and no clock. Nothing allocates; every loop has a
+//! constant bound.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! What the measures share: the yardstick, the random moves and the axis under test.
+//! The common part of the measurements: the yardstick, the random moves and the axis under test.
 //!
 //! The measures themselves are `benches/ratios.rs` (time, against the yardstick in the same run),
 //! `examples/instructions.rs` (instructions, under valgrind), `examples/worst_plan.rs` (search steps),

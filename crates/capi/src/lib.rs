@@ -1,8 +1,9 @@
 //! The C library: a runtime behind an opaque handle, blocks as functions on flat structures.
 //!
-//! What stands here: the border. It checks what comes over it and gives a result code instead of undefined behaviour
-//! wherever C lets it; `docs/embedding-c.md` says what it cannot see. What does not: motion, states, blocks. There is no
-//! global state, no heap and no clock: a runtime lives in memory its host gives it.
+//! This crate is the border to C. It checks its arguments and returns a result code instead of undefined
+//! behaviour wherever C permits it; `docs/embedding-c.md` lists what it cannot see. It has no motion,
+//! states or blocks of its own. There is no global state, no heap and no clock: a runtime lives in memory
+//! its host gives it.
 //!
 //! The two headers in `include/` are generated: `standstill.h` from this crate, `standstill_blocks.h` from the table of
 //! blocks.

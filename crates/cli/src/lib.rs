@@ -1,7 +1,7 @@
-//! The program `standstill`: arguments, exit statuses, printing. What it prints comes from the libraries.
+//! The program `standstill`: arguments, exit statuses, printing. The contents come from the libraries.
 //!
-//! Standard output is the same on every machine; messages and progress go to standard error. A library beside the program,
-//! so that a fuzzer and a page can call what reads lines of plans.
+//! Standard output is the same on every machine; messages and progress go to standard error. The library
+//! beside the program lets a fuzzer and a page call the reader of plan lines.
 #![forbid(unsafe_code)]
 
 mod args;

@@ -1,8 +1,9 @@
-//! Drives behind an axis: CiA 402 as controllers see it, and simulated ones that behave like the real thing.
+//! Drives behind an axis: CiA 402 from the controller's side, and simulated drives that behave like real
+//! ones.
 //!
-//! What stands here: the decoding of status words, the sequencer of control words, the adapter that makes a
-//! [`Drive`](standstill_axis::Drive) of any CiA 402 node, and a simulated node with all states and transitions.
-//! What does not: buses, object dictionaries of makers, the axis. Nothing allocates.
+//! The crate decodes status words and chooses control words. Its adapter makes a
+//! [`Drive`](standstill_axis::Drive) of any CiA 402 node, and its simulated node has all states and
+//! transitions. It has no bus, no manufacturer's object dictionary and no axis. Nothing allocates.
 //!
 //! Source: CiA 402 (IEC 61800-7-201), sections on the power drive system's state machine and its modes.
 #![no_std]

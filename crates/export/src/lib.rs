@@ -1,8 +1,8 @@
-//! What a host needs to call the blocks, written from the one table of blocks.
+//! Declarations of the blocks for hosts in other languages, written from the table of blocks.
 //!
-//! What stands here: text. Each module writes one language, from the registry and from [`flat`](standstill_fb::flat)
-//! alone, so that pins, layouts and defaults are those of the library. What does not: files of other systems; the shims
-//! are text of ours, for compilers the user has.
+//! Each module writes one language. It uses only the registry and [`flat`](standstill_fb::flat), so pins,
+//! layouts and defaults are those of the library. No files of other systems are copied: the shims are our
+//! own text, for compilers the user has.
 #![forbid(unsafe_code)]
 
 mod c;

@@ -1,19 +1,22 @@
 //! Guests: control programs in WebAssembly that call the function blocks.
 //!
-//! A guest exports `plc_scan(tick: i32, now_ns: i64)`, `memory` and, if it likes, `plc_init()`; it imports functions of
-//! blocks, `(key, in, out) -> result` of addresses in its memory, `log(text, bytes)`, `log_read`, which copies records
-//! of the diagnostic ring, and `math_sin` and its kin. Nothing else can be imported.
-//! `standstill export wasm` writes the blocks out, with the layout of every structure.
+//! A guest exports `plc_scan(tick: i32, now_ns: i64)`, `memory` and, optionally, `plc_init()`. It may
+//! import functions of blocks, `(key, in, out) -> result` with addresses in its memory;
+//! `log(text, bytes)`; `log_read`, which copies records of the diagnostic ring; and `math_sin` and
+//! similar functions. It can import nothing else. `standstill export wasm` writes the blocks with the
+//! layout of every structure.
 //!
-//! A guest is not trusted. It is checked and compiled before it runs; every call of it has a budget of instructions,
-//! so that it ends and does so at the same instruction everywhere; its memory has a limit that is checked before it is
-//! had; and whatever it does wrong is a [`Fault`], after which the host stops the resource.
+//! A guest is not trusted. It is checked and compiled before it runs. Every call has a budget of
+//! instructions, so that it ends, and ends at the same instruction everywhere. Its memory has a limit
+//! that is checked before memory is allocated. Any error of the guest is a [`Fault`], after which the
+//! host stops the resource.
 //!
-//! Without the feature `engine`, which is on by default, there is no interpreter: every program is refused as
-//! [`LoadError::NotBuilt`]. What reads and runs scan scripts is the same with and without.
+//! Without the feature `engine`, which is on by default, there is no interpreter: every program is
+//! refused as [`LoadError::NotBuilt`]. The code that reads and runs scan scripts is the same with and
+//! without it.
 //!
-//! What stands here: [`Program`], which is what was compiled, and [`Guest`], a running one. What does not: which file
-//! a guest comes from, what its variables are called, tasks (`standstill-script`).
+//! A [`Program`] is a compiled guest and a [`Guest`] a running one. Files, names of variables and tasks
+//! belong to `standstill-script`.
 #![forbid(unsafe_code)]
 
 #[cfg(not(feature = "engine"))]

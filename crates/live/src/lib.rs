@@ -1,7 +1,7 @@
-//! A scan script as a cyclic task of Linux: one scan a period of the wall clock.
+//! A scan script as a cyclic task of Linux: one scan in each period of the wall clock.
 //!
-//! What stands here: the pacing (`pace`), its measurement (`Timing`), and what Linux permits a task to ask
-//! for (`System`). What does not: the run itself, which is a `Session`, and reading scripts.
+//! The crate paces scans (`pace`), measures the pacing (`Timing`) and asks Linux for what a task may have
+//! (`System`). The run itself is a `Session` of `standstill-script`, which also reads scripts.
 #![forbid(unsafe_code)]
 
 mod pace;

@@ -1,8 +1,8 @@
 //! A language server for Structured Text and scan scripts.
 //!
-//! What stands here: the protocol on standard input and output, the documents that an editor has open, and what it is told of
-//! them: mistakes, declarations, completions, layout. What does not: the language itself, which is the compiler's, and the
-//! script format, which is the reader's; both are asked anew after each change.
+//! The crate speaks the protocol on standard input and output and keeps the documents that an editor has
+//! open. For each it reports mistakes, declarations, completions and layout. The language belongs to the
+//! compiler and the script format to the reader; both run again after each change.
 #![forbid(unsafe_code)]
 
 mod documents;

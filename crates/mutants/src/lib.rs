@@ -1,7 +1,9 @@
-//! What the tests do not see: changes the sources of the axis, the blocks and their core a little, one change at a
-//! time, and asks the scan scripts and then the Rust tests whether they notice.
+//! Finds what the tests do not see. It changes the sources of the axis, the blocks and their core a
+//! little, one change at a time, and runs the scan scripts and then the Rust tests to see whether one
+//! fails.
 //!
-//! All sampled changes stand in one build, in a copy below `target/mutants`; a variable of the environment chooses one.
+//! All sampled changes are in one build, in a copy below `target/mutants`; an environment variable
+//! chooses one.
 
 mod copy;
 mod judge;

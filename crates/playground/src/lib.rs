@@ -1,11 +1,11 @@
 //! Scan scripts in a browser: reader, runner, judge and planner behind a few functions on JSON.
 //!
-//! What stands here: what each function takes and gives, and how much of it. What does not: motion, scripts, traces, which are
-//! the libraries'; the page, which is in `page/`. There are no files, no clock and no network: a script comes with the texts of
-//! the files it names.
+//! The crate defines what each function takes and returns, and its limits. Motion, scripts and traces
+//! belong to the libraries; the page is in `page/`. There are no files, no clock and no network: a script
+//! comes with the texts of the files it names.
 //!
-//! Everything is bounded, with a message that says the bound: nobody who opens a link waits for a script that somebody else
-//! made too large. A run tells how far it is, and its caller may end it.
+//! Everything is bounded, and a message names the bound, so that nobody who opens a link waits for
+//! somebody else's large script. A run reports its progress, and its caller may end it.
 
 mod bounds;
 #[cfg(target_arch = "wasm32")]

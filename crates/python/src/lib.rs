@@ -1,7 +1,7 @@
-//! The compiled half of the Python package `standstill`: what is quick or belongs to the runtime. What a user sees of it, and
-//! the words for people, stand in the package's own files under `standstill/`.
+//! The compiled half of the Python package `standstill`: the fast parts and the parts of the runtime. The
+//! interface that a user sees, and its texts, are in the package's own files under `standstill/`.
 //!
-//! No `unsafe` of ours: PyO3's macros write the border, a run's rows go to NumPy as the vector they are in.
+//! No `unsafe` of ours: PyO3's macros write the border, and the rows of a run go to NumPy without a copy.
 
 mod answer;
 mod errors;

@@ -1,12 +1,12 @@
 //! What a machine did, scan by scan: a recorder of fixed size, and its rows as a trace.
 //!
-//! What stands here: a ring of the last scans that freezes around a trigger ([`Ring`]), with the feature `alloc` a
-//! recorder that keeps them on the heap (`Recorder`), its text as a trace for hosts without one ([`text`]), and with
-//! the feature `std` the words for axes, pins, values and records that every trace uses (`told`). What does not: no
-//! block and no executor is known; who runs the machine says in every scan what there is to see.
+//! A ring of the last scans freezes around a trigger ([`Ring`]). With the feature `alloc` a recorder
+//! keeps them on the heap (`Recorder`); hosts without a heap write its text as a trace ([`text`]). The
+//! feature `std` adds the words for axes, pins, values and records that every trace uses (`told`). The
+//! crate knows no block and no executor: whoever runs the machine passes the values in every scan.
 //!
-//! The recorder takes memory once, when it is made. In a scan it copies numbers: no heap, no text, work proportional to
-//! the number of signals.
+//! The recorder allocates memory once, when it is made. In a scan it copies numbers: no heap, no text,
+//! work proportional to the number of signals.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,12 +1,12 @@
-//! Traces as a page to look at: curves with their limits, states, a timing diagram of every pin, claims, events, and a
-//! cursor that reads the exact values. One trace, or several laid over each other.
+//! Traces as a page: curves with their limits, states, a timing diagram of every pin, claims, events, and
+//! a cursor that reads the exact values. A page shows one trace, or several over each other.
 //!
 //! The page is one file that loads nothing: its content policy allows its own script and style, by their hashes, and
 //! nothing else. Texts of a trace become texts of the page, never markup. Rows travel as the exact companion of the trace
 //! ([`standstill_trace::exact`]), so every bit is there; `page/decode.js` unpacks them.
 //!
-//! What is not here: curves are drawn by uPlot (`vendor/`, MIT licence), everything else of the page stands readable in
-//! `page/`; no step builds it. The crate reads no clock and no files: same traces, same bytes.
+//! Curves are drawn by uPlot (`vendor/`, MIT licence). All other parts of the page are readable in
+//! `page/`; no step builds them. The crate reads no clock and no files: same traces, same bytes.
 
 #![forbid(unsafe_code)]
 

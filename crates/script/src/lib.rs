@@ -1,8 +1,8 @@
 //! Scan scripts: reading, binding, running, judging.
 //!
-//! What stands here: the script format of the contract as values, its errors with file, line and column,
-//! the run of a script through the executor into a trace, and the judgement of claims and goldens. What does
-//! not: arguments and printing (the command line), motion, block behaviour.
+//! The crate has the script format as values, its errors with file, line and column, the run of a script
+//! through the executor into a trace, and the judgement of claims and goldens. It has no arguments and no
+//! printing (these are in the command line), no motion and no block behaviour.
 #![forbid(unsafe_code)]
 
 mod advice;

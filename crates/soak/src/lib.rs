@@ -1,8 +1,8 @@
-//! Random replans, and what is claimed of plans held against them.
+//! Random replans, and a judge that checks the claims about every plan.
 //!
-//! What stands here: chains of replans from numbers, the plans of each, an integrator that shares no code with
-//! the planner, and the judge. What does not: running them by the million, which is `standstill soak`, and
-//! choosing the numbers so that they reach every branch, which is the fuzz target in `fuzz/`.
+//! The crate makes chains of replans from numbers, has an integrator that shares no code with the
+//! planner, and the judge. `standstill soak` runs them by the million. The fuzz target in `fuzz/` chooses
+//! the numbers so that they reach every branch.
 
 #![forbid(unsafe_code)]
 

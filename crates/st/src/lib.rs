@@ -1,12 +1,12 @@
 //! Structured Text of IEC 61131-3: checked, with places in every message, and compiled to a guest.
 //!
-//! [`compile`] takes the files of a project and gives a module in WebAssembly, as `standstill-guest` and the hosts of
-//! other languages run it, with a table of [`Symbols`]: where every variable stands, and where in the text a fault
-//! happened. [`check`] only says what is wrong. Function blocks are those of the table of blocks; a new one is known here
-//! without a line.
+//! [`compile`] takes the files of a project and returns a WebAssembly module, which `standstill-guest`
+//! and hosts in other languages run, and a table of [`Symbols`]: the place of every variable, and the
+//! place in the text for every fault. [`check`] only reports mistakes. Function blocks are those of the
+//! table of blocks; a new block needs no code here.
 //!
-//! What stands here: text to tokens (`lex`), to a tree (`parse`), to a checked program (`check`), to a module (`emit`).
-//! What does not: files, clocks, an interpreter, machine code.
+//! Text becomes tokens (`lex`), a tree (`parse`), a checked program (`check`) and a module (`emit`). The
+//! crate has no files, no clock, no interpreter and no machine code.
 #![forbid(unsafe_code)]
 
 mod check;

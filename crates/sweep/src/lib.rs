@@ -1,10 +1,10 @@
-//! Sweeps: a scan script run with many values of its parameters, a row of figures a case.
+//! Sweeps: a scan script run with many values of its parameters, with one row of figures for each case.
 //!
-//! What stands here: the cases of a sweep file run on any number of threads, the table of what came of them, a part of
-//! a table that an interrupted run left, and tables of shards put together. What does not: which values a case has and
-//! how the file is read (`standstill-script`), arguments and printing (the command line).
+//! The crate runs the cases of a sweep file on any number of threads and writes the table of results. It
+//! continues the table of an interrupted run and merges the tables of shards. The values of each case and
+//! the file format belong to `standstill-script`, arguments and printing to the command line.
 //!
-//! A row depends on the sweep file, the script and the number of its case, and on nothing else: threads, shards and
+//! A row depends only on the sweep file, the script and the number of its case: threads, shards and
 //! interruptions leave no trace in a table.
 #![forbid(unsafe_code)]
 

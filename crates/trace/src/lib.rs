@@ -4,10 +4,9 @@
 //! the trace is read only: it can be written as CSV or JSON Lines and read back bit by bit, condensed
 //! into a golden text for people to review, compared with another one, and drawn in a terminal.
 //!
-//! What is not here: the crate knows no script, no executor and no block, and reads no clock; only
-//! [`file`](mod@file) and [`golden`] touch files. The same trace gives the
-//! same bytes on every processor: numbers are written in shortest round-trip form, digests are taken in
-//! a fixed byte order, and nothing is iterated in a random one.
+//! The crate knows no script, no executor and no block, and reads no clock; only [`file`](mod@file) and
+//! [`golden`] touch files. The same trace gives the same bytes on every processor: numbers have their
+//! shortest round-trip form, digests use a fixed byte order, and nothing is iterated in random order.
 //!
 //! ```
 //! use standstill_trace::{Cell, Header, Input, Trace, events_text};
@@ -21,7 +20,8 @@
 //! # Ok::<(), standstill_trace::RowError>(())
 //! ```
 //!
-//! The work of every function here is proportional to rows times columns, unless it says otherwise.
+//! The work of every function here is proportional to rows times columns, unless its documentation says
+//! otherwise.
 
 #![forbid(unsafe_code)]
 

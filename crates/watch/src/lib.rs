@@ -1,8 +1,9 @@
-//! A scan script, watched in a terminal: run and stopped, stepped by a scan, to the next event or the next claim that is
-//! decided, with inputs changed by hand.
+//! A scan script in a terminal: run, stop, step by a scan, to the next event or to the next decided
+//! claim, and change inputs by hand.
 //!
-//! What stands here: the state of the watching ([`App`]), its screen ([`draw`]), and the terminal around them
-//! ([`watch`]). What does not: the run itself, which is a [`Session`](standstill_script::Session), and reading scripts.
+//! The crate has the state of the view ([`App`]), its screen ([`draw`]), and the terminal around them
+//! ([`watch`]). The run itself is a [`Session`](standstill_script::Session) of `standstill-script`, which
+//! also reads scripts.
 #![forbid(unsafe_code)]
 
 mod app;
