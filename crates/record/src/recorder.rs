@@ -1,4 +1,4 @@
-//! The recorder of hosts with a heap.
+//! The recorder for hosts with a heap.
 
 use crate::ring::{AXIS_WORDS, Ring, Setup, State, write_axis};
 use alloc::string::String;
@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use standstill_axis::{Axis, AxisConfig, AxisState, Log, Planner, Record};
 use standstill_fb::{AnyInstance, BlockInfo};
 
-/// What is recorded: axes and block instances, by name.
+/// The recorded signals: axes and block instances, by name.
 #[derive(Clone, Debug, Default)]
 pub struct Signals {
     axes: Vec<(String, String, AxisConfig)>,
@@ -19,21 +19,21 @@ impl Signals {
         Self::default()
     }
 
-    /// The next axis of the machine: its name, the label of its unit, and its configuration.
+    /// Adds the next axis of the machine: its name, the label of its unit, and its configuration.
     #[must_use]
     pub fn axis(mut self, name: &str, unit: &str, config: &AxisConfig) -> Self {
         self.axes.push((name.into(), unit.into(), *config));
         self
     }
 
-    /// The next block instance: its name, the number it has in records, and its block.
+    /// Adds the next block instance: its name, its number in records, and its block.
     #[must_use]
     pub fn instance(mut self, name: &str, number: u16, block: &'static BlockInfo) -> Self {
         self.instances.push((name.into(), number, block));
         self
     }
 
-    /// Names, labels of the units and configurations of the axes.
+    /// Names, unit labels and configurations of the axes.
     pub fn axes(&self) -> impl Iterator<Item = (&str, &str, &AxisConfig)> {
         self.axes
             .iter()
@@ -54,14 +54,14 @@ impl Signals {
     }
 }
 
-/// Takes the pins of a scan, instance by instance, in the order of [`Signals`].
+/// Takes the pins of one scan, instance by instance, in the order of [`Signals`].
 #[derive(Debug)]
 pub struct Pins<'a> {
     row: &'a mut [u64],
 }
 
 impl Pins<'_> {
-    /// The next instance. What does not fit the signals is left out.
+    /// Adds the pins of the next instance. Pins that do not match the signals are left out.
     pub fn add(&mut self, instance: &dyn AnyInstance) {
         let count = instance.info().pins().count();
         let Some((own, rest)) = core::mem::take(&mut self.row).split_at_mut_checked(count) else {
@@ -72,15 +72,15 @@ impl Pins<'_> {
     }
 }
 
-/// The last scans of a machine, frozen around a trigger: what a flight recorder is for an aircraft.
+/// A flight recorder: the last scans of a machine, frozen around a trigger.
 ///
-/// Memory is taken by [`Recorder::new`] and never after it: `scans` rows of 8 bytes a signal.
+/// [`Recorder::new`] allocates all memory: `scans` rows of 8 bytes a signal. Nothing is allocated later.
 #[derive(Clone, Debug)]
 pub struct Recorder {
     signals: Signals,
     ring: Ring,
     width: usize,
-    /// Rows one after the other, at the places of the ring.
+    /// All rows, one after the other, at their places in the ring.
     words: Vec<u64>,
     /// States after all blocks were called, before the motion step.
     states: Vec<AxisState>,
@@ -88,8 +88,8 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// A recorder of these signals. A `setup` of no scans counts as one of 1, and `after` is at most one less than the
-    /// scans.
+    /// Creates a recorder of these signals. A `setup` with 0 scans counts as 1, and `after` is limited to
+    /// one less than the scans.
     pub fn new(setup: Setup, signals: Signals) -> Self {
         let ring = Ring::new(setup);
         let width = signals.width();
@@ -103,12 +103,13 @@ impl Recorder {
         }
     }
 
-    /// Takes the states of the axes; call it after all blocks and before the motion step.
+    /// Takes the states of the axes. Call it after all blocks and before the motion step.
     pub fn observe<P: Planner>(&mut self, axes: &[Axis<P>]) {
         self.ring.observe(&mut self.states, axes);
     }
 
-    /// The end of a scan: set-points are those the drives were given. `pins` adds every instance of the signals.
+    /// Ends a scan: set-points are those the drives were given. `pins` adds every instance of the
+    /// signals.
     pub fn record<P: Planner>(
         &mut self,
         scan: u64,
@@ -142,8 +143,8 @@ impl Recorder {
         self.ring.end(log);
     }
 
-    /// Trips the recorder in the scan whose end comes next, for a reason of the host's; without effect on one that has
-    /// tripped.
+    /// Trips the recorder in the scan that ends next, for a reason of the host's own. No effect on a
+    /// tripped recorder.
     pub fn trip(&mut self) {
         self.ring.trip(None);
     }
@@ -154,7 +155,7 @@ impl Recorder {
         self.records.clear();
     }
 
-    /// Where rows and records stand.
+    /// The places of rows and records.
     #[cfg(feature = "std")]
     pub(crate) const fn ring(&self) -> &Ring {
         &self.ring
@@ -170,20 +171,21 @@ impl Recorder {
         self.ring.state()
     }
 
-    /// The scan that tripped it, and the place of the axis that went into ErrorStop; no axis if the host did.
+    /// The scan that tripped the recorder, and the index of the axis that went into ErrorStop; no axis if
+    /// the host tripped it.
     pub fn tripped(&self) -> Option<(u64, Option<usize>)> {
         self.ring.tripped()
     }
 
-    /// The number of the first scan that is there, and how many are.
+    /// The number of the first scan in the recorder, and the count of scans.
     pub fn scans(&self) -> (u64, usize) {
         self.ring.scans()
     }
 
-    /// The words of the scans that are there, oldest first, for a host without `std` to send elsewhere. Of every axis:
-    /// the place of its state in [`AxisState::ALL`], then the bits of position, velocity, acceleration, jerk, snap, actual
-    /// position, and by how much its coordinates moved in that scan. Then the pins of every instance: numbers as their bits, whatever is signed extended with its
-    /// sign.
+    /// The words of the recorded scans, oldest first, for a host without `std` to send elsewhere. For
+    /// every axis: the index of its state in [`AxisState::ALL`], then the bits of position, velocity,
+    /// acceleration, jerk, snap and actual position, and the shift of its coordinates in that scan. Then
+    /// the pins of every instance: numbers as their bits, signed ones sign-extended.
     pub fn rows(&self) -> impl Iterator<Item = &[u64]> {
         let (_, kept) = self.scans();
         (0..kept).filter_map(|row| {
@@ -192,7 +194,7 @@ impl Recorder {
         })
     }
 
-    /// The records that are there, oldest first.
+    /// The recorded records, oldest first.
     pub fn records(&self) -> impl Iterator<Item = &Record> {
         self.ring.records().filter_map(|place| self.records.get(place))
     }

@@ -1,11 +1,11 @@
-//! Where the last scans stand in memory of whatever kind, and the trigger that freezes them.
+//! The places of the last scans in memory of any kind, and the trigger that freezes them.
 
 use standstill_axis::{Axis, AxisState, Log, Planner};
 
-/// Words of an axis in a row: its state, the numbers of a trace, and by how much its coordinates moved.
+/// Words of an axis in a row: its state, the numbers of a trace, and the shift of its coordinates.
 ///
-/// Records of moved coordinates may be lost, or give way to later ones while their scan is still there. A trace without
-/// one of them shows a jump, so they stand in the rows.
+/// The rows hold the shifts, because the record of a shift may be lost or overwritten while its scan is
+/// still in the ring. A trace without the shift would show a jump.
 pub const AXIS_WORDS: usize = 8;
 
 /// How much a recorder keeps, and when it stops.
@@ -53,7 +53,7 @@ pub enum State {
         /// Scans until it freezes.
         left: usize,
     },
-    /// What is there stays, until [`Ring::arm`].
+    /// The contents stay until [`Ring::arm`].
     Frozen,
 }
 
@@ -62,13 +62,14 @@ pub enum State {
 struct Tripped {
     /// The scan, counted from arming.
     at: u64,
-    /// Place of the axis; none if the host did.
+    /// Index of the axis; none if the host tripped the recorder.
     axis: Option<usize>,
 }
 
-/// The places of rows and records in lists of fixed length, and when to stop writing there.
+/// The places of rows and records in lists of fixed length, and the moment to stop writing.
 ///
-/// It has no rows itself: [`Recorder`](crate::Recorder) keeps them on the heap, others in memory they were given.
+/// It holds no rows: [`Recorder`](crate::Recorder) keeps them on the heap, other recorders in memory they
+/// were given.
 #[derive(Clone, Copy, Debug)]
 pub struct Ring {
     setup: Setup,
@@ -80,12 +81,13 @@ pub struct Ring {
     tripped: Option<Tripped>,
     /// Records since arming.
     recorded: u64,
-    /// Records of the log taken so far.
+    /// Number of records of the log taken so far.
     taken: u64,
 }
 
 impl Ring {
-    /// Armed. A `setup` of no scans counts as one of 1, and `after` is at most one less than the scans.
+    /// Creates an armed ring. A `setup` with 0 scans counts as 1, and `after` is limited to one less than
+    /// the scans.
     pub fn new(setup: Setup) -> Self {
         let scans = setup.scans.max(1);
         Self {
@@ -108,8 +110,8 @@ impl Ring {
         &self.setup
     }
 
-    /// The states of the axes after all blocks were called and before the motion step; `states` are those of the scan
-    /// before, and become these.
+    /// Takes the states of the axes after all blocks were called and before the motion step. `states`
+    /// holds those of the scan before and is updated.
     pub fn observe<P: Planner>(&mut self, states: &mut [AxisState], axes: &[Axis<P>]) {
         let entered = |(state, axis): (&AxisState, &Axis<P>)| {
             axis.state() == AxisState::ErrorStop && *state != AxisState::ErrorStop
@@ -123,7 +125,7 @@ impl Ring {
         }
     }
 
-    /// The end of `scan`: the place of its row, or none if it is not to be kept.
+    /// Ends `scan`: returns the place of its row, or none if it is not kept.
     pub fn begin(&mut self, scan: u64, log: &Log) -> Option<usize> {
         if self.state == State::Frozen {
             self.taken = log.total();
@@ -135,19 +137,19 @@ impl Ring {
         Some(self.place(self.seen, self.setup.scans))
     }
 
-    /// The number of the first record of the log that was not taken yet.
+    /// The number of the first record of the log that has not been taken.
     pub const fn taken(&self) -> u64 {
         self.taken
     }
 
-    /// The place of one more record; none if none are kept.
+    /// The place for one more record; none if records are not kept.
     pub fn keep(&mut self) -> Option<usize> {
         let number = self.recorded;
         self.recorded += 1;
         (self.setup.records > 0).then(|| self.place(number, self.setup.records))
     }
 
-    /// The row and the records are there.
+    /// Says that the row and the records are written.
     pub fn end(&mut self, log: &Log) {
         self.taken = log.total();
         self.seen += 1;
@@ -158,8 +160,8 @@ impl Ring {
         };
     }
 
-    /// Trips in the scan whose end comes next, because of an axis at this place or for a reason of the host's; without
-    /// effect on one that has tripped.
+    /// Trips in the scan that ends next, because of the axis at this index or for a reason of the host's
+    /// own. No effect on a tripped ring.
     pub fn trip(&mut self, axis: Option<usize>) {
         if self.state == State::Armed {
             self.state = State::Tripped {
@@ -194,21 +196,21 @@ impl Ring {
         (self.first + (self.seen - kept), kept as usize)
     }
 
-    /// The place of the row of the scan that is the `row`th of those that are there.
+    /// The place of row number `row` among the rows in the ring.
     pub fn row(&self, row: usize) -> Option<usize> {
         let (_, kept) = self.scans();
         let oldest = self.seen - kept as u64;
         (row < kept).then(|| self.place(oldest + row as u64, self.setup.scans))
     }
 
-    /// The places of the records that are there, oldest first.
+    /// The places of the records in the ring, oldest first.
     pub fn records(&self) -> impl Iterator<Item = usize> + use<> {
         let ring = *self;
         let kept = ring.recorded.min(ring.setup.records as u64);
         (ring.recorded - kept..ring.recorded).map(move |number| ring.place(number, ring.setup.records))
     }
 
-    /// A number that rises with every scan that is kept, and when it is armed.
+    /// A number that rises with every scan that is kept, and with every arming.
     pub const fn stamp(&self) -> u64 {
         self.first.wrapping_add(self.seen)
     }
@@ -218,13 +220,14 @@ impl Ring {
     }
 }
 
-/// By how much the words of an axis say that its coordinates moved in their scan (u); 0 if they did not.
+/// The shift of the coordinates in this scan (u), from the words of an axis; 0 if there was none.
 pub fn moved(words: &[u64]) -> f64 {
     words.last().map_or(0.0, |word| f64::from_bits(*word))
 }
 
-/// Writes an axis into its words of the row of `scan`: the place of its state in [`AxisState::ALL`], then the bits of its
-/// numbers. `state` is that before the motion step, set-points are those the drive was given.
+/// Writes an axis into its words of the row of `scan`: the index of its state in [`AxisState::ALL`], then
+/// the bits of its numbers. `state` is the state before the motion step; set-points are those the drive
+/// was given.
 pub fn write_axis<P: Planner>(words: &mut [u64], scan: u64, state: AxisState, axis: &Axis<P>) {
     let setpoint = axis.setpoint();
     let numbers = [

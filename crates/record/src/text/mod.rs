@@ -1,7 +1,7 @@
 //! A recorder's scans as the text of a trace, line by line, without a heap.
 //!
-//! The text is that which `standstill-trace` writes of the same rows; a test of the C library, which has a recorder in
-//! memory of its host, holds the two against each other.
+//! The text is the same that `standstill-trace` writes for these rows. A test of the C library, whose
+//! recorder lives in memory of its host, compares the two.
 
 mod number;
 mod sentence;
@@ -14,15 +14,15 @@ use core::fmt::{self, Write};
 use standstill_axis::{AxisConfig, AxisState, Event, Order, Record};
 use standstill_fb::{BlockInfo, Direction, PinType, TableRef, Value};
 
-/// A recorder: what it recorded, and where that stands.
+/// A recorder: its contents, and the places they are at.
 pub trait Recorded: Called {
     /// Where rows and records stand.
     fn ring(&self) -> &Ring;
 
-    /// Label of the unit and configuration of the axis at a place; none behind the last one.
+    /// Unit label and configuration of the axis at an index; none behind the last axis.
     fn axis_setup(&self, place: usize) -> Option<(&str, &AxisConfig)>;
 
-    /// Name and block of the instance at a place; none behind the last one.
+    /// Name and block of the instance at an index; none behind the last instance.
     fn instance_setup(&self, place: usize) -> Option<(&str, &'static BlockInfo)>;
 
     /// The words at a place of the ring: of every axis, then of every instance.
@@ -39,12 +39,12 @@ pub enum Form {
     JsonLines,
     /// A table: the names of the columns, then a line a scan.
     Csv,
-    /// What stands beside a table: the header.
+    /// The file beside a table: the header.
     Meta,
 }
 
 impl Form {
-    /// Lines there are of a recorder.
+    /// The number of lines for a recorder.
     pub fn lines(self, recorded: &impl Recorded) -> u64 {
         match self {
             Self::JsonLines | Self::Csv => 1 + recorded.ring().scans().1 as u64,
@@ -53,10 +53,10 @@ impl Form {
     }
 }
 
-/// Writes line `line` of a form, from 0, and its end; nothing behind the last one. `cycle_ns` is the time between two
-/// scans (ns).
+/// Writes line `line` of a form, counted from 0, with its end; nothing behind the last line. `cycle_ns`
+/// is the time between two scans (ns).
 ///
-/// Cost: as the number of signals, or for a header also as that of records.
+/// Cost: proportional to the number of signals; for a header also to the number of records.
 ///
 /// # Errors
 /// Those of `out`.
@@ -79,7 +79,7 @@ pub fn line(
     out.write_str("\n")
 }
 
-/// The columns of every axis, in the order of its words; the last word is told in a note.
+/// The columns of every axis, in the order of its words. The last word is written as a note.
 const SIGNALS: [&str; AXIS_WORDS - 1] = [
     "State",
     "Position",
@@ -167,13 +167,13 @@ fn state(word: u64) -> &'static str {
     found.map_or("", |known| known.name())
 }
 
-/// A value as a trace shows it.
+/// A value in the form of a trace.
 enum Cell<'a> {
     Bool(bool),
     Integer(i64),
     Real(f64),
     Name(&'a str),
-    /// A number where a name would stand.
+    /// A number in place of a missing name.
     Nameless(i32),
     Records(u16),
 }
@@ -247,7 +247,7 @@ impl<W: Write> Members<'_, W> {
         self.out.write_str(value)
     }
 
-    /// A text in which nothing has to be escaped.
+    /// A text without characters that need escaping.
     fn text(&mut self, key: &str, value: &str) -> fmt::Result {
         self.key(key)?;
         for part in ["\"", value, "\""] {
@@ -272,7 +272,7 @@ impl<W: Write> Members<'_, W> {
         }
     }
 
-    /// A list or an object, by whoever writes it.
+    /// A list or an object; the caller writes its text to the result.
     fn nested<'s>(&'s mut self, key: &str) -> Result<&'s mut W, fmt::Error> {
         self.key(key)?;
         Ok(self.out)
@@ -325,7 +325,7 @@ fn header<W: Write>(out: &mut W, recorded: &impl Recorded, title: &str, cycle_ns
         out.write_str("[")?;
         note(out, 0, "recorder", |out| standing(out, recorded.ring(), recorded))?;
         let (first, kept) = recorded.ring().scans();
-        // In the order of their scans, moves of coordinates first.
+        // In the order of their scans; in a scan, shifts of coordinates come first.
         let mut shifts = shifts(recorded);
         let mut next = shifts.next();
         let mut shifts_until = |out: &mut W, last: u64| {
@@ -353,7 +353,7 @@ fn header<W: Write>(out: &mut W, recorded: &impl Recorded, title: &str, cycle_ns
     })
 }
 
-/// Where coordinates moved: the row, the axis, and by how much (u).
+/// The shifts of coordinates: the row, the axis, and the distance (u).
 fn shifts(recorded: &impl Recorded) -> impl Iterator<Item = (u64, &str, f64)> {
     let (_, kept) = recorded.ring().scans();
     (0..kept).flat_map(move |row| {

@@ -1,8 +1,8 @@
-//! Numbers as traces write them, without a heap and without a panic that could be reached.
+//! Numbers as traces write them, without a heap and without a reachable panic.
 
 use core::fmt::{self, Write};
 
-/// Significant digits of a number, and then some: the longest text of `ryu` has 24 bytes.
+/// Room for the significant digits of a number: the longest text of `ryu` has 24 bytes.
 const DIGITS: usize = 24;
 
 /// The shortest text that reads back as the same number, as `standstill_trace::shortest` gives it: NaN and infinities
@@ -26,7 +26,7 @@ pub fn real(out: &mut impl Write, value: f64) -> fmt::Result {
     let mut buffer = ryu::Buffer::new();
     let mut digits = Digits::of(buffer.format_finite(value.abs()));
     digits.round_up(value.abs());
-    // From here on as `{:?}` does it: powers of ten where plain digits would be long.
+    // From here on as `{:?}` does: powers of ten where plain digits would be long.
     match digits.exponent {
         exponent @ (-4..16) => digits.plain(out, exponent),
         exponent => {
@@ -57,7 +57,7 @@ pub fn integer(out: &mut impl Write, value: i64) -> fmt::Result {
 /// # Errors
 /// Those of `out`.
 pub fn whole(out: &mut impl Write, value: u64) -> fmt::Result {
-    // 20 digits hold every one.
+    // 20 digits are enough for every u64.
     let mut digits = [b'0'; 20];
     let mut rest = value;
     let mut count = 0;
@@ -80,7 +80,8 @@ fn put(out: &mut impl Write, digits: &[u8]) -> fmt::Result {
     out.write_str(core::str::from_utf8(digits).unwrap_or_default())
 }
 
-/// The significant digits of a number above 0, the first and the last not 0, and the power of ten of the first.
+/// The significant digits of a number above 0, and the power of ten of the first. The first and the last
+/// digit are not 0.
 struct Digits {
     digits: [u8; DIGITS],
     count: usize,
@@ -88,7 +89,7 @@ struct Digits {
 }
 
 impl Digits {
-    /// Of a text like `120.0`, `0.0012` or `1.2e-7`.
+    /// From a text like `120.0`, `0.0012` or `1.2e-7`.
     fn of(text: &str) -> Self {
         let mut all = Self {
             digits: [b'0'; DIGITS],
@@ -125,8 +126,8 @@ impl Digits {
         all
     }
 
-    /// Where the number lies in the middle between two texts of this length, `ryu` takes the even one and `{:?}` the
-    /// larger one: takes the larger one, too.
+    /// If the number lies exactly between two texts of this length, `ryu` takes the even one and `{:?}`
+    /// the larger one. This takes the larger one, too.
     fn round_up(&mut self, value: f64) {
         let Some(last) = self
             .count
@@ -138,7 +139,7 @@ impl Digits {
         if *last % 2 == 1 {
             return;
         }
-        // The number is odd * 2^two, as a number above 0 that is not infinite.
+        // The number is odd * 2^two, because it is above 0 and not infinite.
         let bits = value.to_bits();
         let (fraction, biased) = (bits & ((1 << 52) - 1), (bits >> 52) as i32);
         let (whole, two) = if biased == 0 {
@@ -148,7 +149,8 @@ impl Digits {
         };
         let odd = whole >> whole.trailing_zeros().min(63);
         let two = two + whole.trailing_zeros() as i32;
-        // In the middle it is (2 * digits + 1) * 10^ten / 2, `ten` being the place of the last digit.
+        // An exact middle equals (2 * digits + 1) * 10^ten / 2, where `ten` is the place of the last
+        // digit.
         let ten = self.exponent + 1 - self.count as i32;
         *last += 1;
         let mut wanted = 0_u64;
@@ -171,7 +173,7 @@ impl Digits {
         }
     }
 
-    /// Digits from one place to before another; zeros where there are no more.
+    /// The digits from one place to before another; zeros behind the last digit.
     fn put(&self, out: &mut impl Write, from: usize, to: usize) -> fmt::Result {
         let there = to.min(self.count);
         put(out, self.digits.get(from..there).unwrap_or_default())?;
@@ -181,7 +183,7 @@ impl Digits {
         Ok(())
     }
 
-    /// Without a power of ten, which is at most 15.
+    /// Without a power of ten in the text; `ten` is at most 15.
     fn plain(&self, out: &mut impl Write, exponent: i32) -> fmt::Result {
         let Ok(exponent) = usize::try_from(exponent) else {
             out.write_str("0.")?;
@@ -208,7 +210,7 @@ mod tests {
         out
     }
 
-    /// As `standstill_trace::shortest`, which prints with `{:?}`.
+    /// The reference is `standstill_trace::shortest`, which prints with `{:?}`.
     #[test]
     fn numbers_are_those_of_traces() {
         for value in [
@@ -239,12 +241,12 @@ mod tests {
             assert_eq!(text(value), format!("{:?}", value + 0.0));
         }
         assert_eq!([text(f64::NAN), text(f64::NEG_INFINITY)], ["NaN", "-Infinity"]);
-        // Any bits, and numbers of everyday sizes.
+        // Random bits, and numbers of everyday sizes.
         let mut random = standstill_testkit::Random(1);
         for round in 0..200_000 {
             let bits = random.bits();
             let everyday = (bits >> 40) as f64 / 1000.0 - 5000.0;
-            // What binary fractions end in is in the middle of two texts more often.
+            // Numbers with short binary fractions lie exactly between two texts more often.
             let dyadic = (bits >> (12 + round % 50)) as f64 / (1_u64 << (round % 53)) as f64;
             for value in [f64::from_bits(bits), everyday, everyday * everyday, dyadic] {
                 if value.is_finite() {

@@ -1,20 +1,21 @@
-//! What the axes recorded, and where a recorder stands, in words.
+//! The records of the axes, and the state of a recorder, in words.
 
 use super::number::{integer, real, whole};
 use crate::ring::Ring;
 use core::fmt::{self, Write};
 use standstill_axis::{Approach, Event, Excess, Goal, Record};
 
-/// What axes and block instances are called.
+/// Names of axes and block instances.
 pub trait Called {
     /// The axis at a place; empty if there is none.
     fn axis(&self, place: usize) -> &str;
 
-    /// The instance of a number in records.
+    /// The instance with a number in records.
     fn instance(&self, number: u16) -> Option<&str>;
 }
 
-/// Whose line a record stands under: what a program asked for under its instance, what the axis did under the axis.
+/// The subject of a record's line: the instance for what a program asked for, the axis for what the axis
+/// did.
 pub fn subject<'n>(names: &'n impl Called, record: &Record) -> &'n str {
     let axis = names.axis(record.axis.index());
     match record.event {
@@ -48,10 +49,10 @@ pub fn subject<'n>(names: &'n impl Called, record: &Record) -> &'n str {
     }
 }
 
-/// What the sentence of a shift begins with.
+/// The beginning of the sentence about a shift.
 const SHIFTED: &str = "coordinates moved by ";
 
-/// That coordinates moved by so much (u).
+/// Says that coordinates were shifted by this distance (u).
 ///
 /// # Errors
 /// Those of `out`.
@@ -60,7 +61,7 @@ pub fn shifted(out: &mut impl Write, by: f64) -> fmt::Result {
     real(out, by)
 }
 
-/// By how much the coordinates of its subject moved (u), if this is what a sentence tells.
+/// The shift (u) that a sentence reports, if it reports one.
 #[must_use]
 pub fn shift(sentence: &str) -> Option<f64> {
     sentence.strip_prefix(SHIFTED)?.parse().ok()
@@ -283,7 +284,7 @@ pub fn happened(out: &mut impl Write, names: &impl Called, record: &Record) -> f
     }
 }
 
-/// Which scans of the machine a recorder has, and why there are no more.
+/// Says which scans of the machine a recorder holds, and why there are no more.
 ///
 /// # Errors
 /// Those of `out`.

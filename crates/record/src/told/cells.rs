@@ -8,7 +8,7 @@ use std::format;
 use std::string::{String, ToString};
 use std::vec::Vec;
 
-/// Texts of axes, of enum numbers that have no name, and of tables; a cell only borrows its text.
+/// Texts of axes, of enum numbers without a name, and of tables. A cell only borrows its text.
 #[derive(Clone, Debug, Default)]
 pub struct Cells {
     axes: Vec<String>,
@@ -25,7 +25,7 @@ impl Cells {
         }
     }
 
-    /// Makes the text of a value that will need one.
+    /// Makes the text of a value that needs one.
     pub fn prepare(&mut self, ty: PinType, value: Value) {
         match (ty, value) {
             (_, Value::Enum(number)) if enum_name(ty, number).is_none() => {
@@ -39,7 +39,7 @@ impl Cells {
         }
     }
 
-    /// The cell of a value at a pin of type `ty`, once it has been prepared.
+    /// The cell of a value at a pin of type `ty`, after [`Cells::prepare`].
     pub fn cell(&self, ty: PinType, value: Value) -> Cell<'_> {
         match value {
             Value::Bool(value) => Cell::Bool(value),

@@ -12,10 +12,11 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 impl Recorder {
-    /// What is there as a trace, which everything that reads traces reads. Its rows count from 0; the first note says
-    /// which scans of the machine they are and what tripped the recorder. `cycle_ns` is the time between two scans (ns).
+    /// The contents as a trace, for everything that reads traces. Its rows count from 0. The first note
+    /// says which scans of the machine they are and what tripped the recorder. `cycle_ns` is the time
+    /// between two scans (ns).
     ///
-    /// Cost: as the number of scans times that of signals, on the heap; not for the scan.
+    /// Cost: proportional to scans times signals, on the heap. Not for use in a scan.
     ///
     /// # Errors
     /// [`RowError`] where a name of [`crate::Signals`] holds a control character.
@@ -82,7 +83,7 @@ impl Recorder {
         Ok(trace)
     }
 
-    /// Which scans these are, and why there are no more.
+    /// Says which scans these are, and why there are no more.
     fn standing(&self, names: &Names) -> Note {
         said(0, "recorder", |text| standing(text, self.ring(), names))
     }
@@ -90,7 +91,7 @@ impl Recorder {
 
 fn said(scan: usize, subject: &str, write: impl FnOnce(&mut String) -> fmt::Result) -> Note {
     let mut text = String::new();
-    // A string takes whatever is written to it.
+    // Writing to a string cannot fail.
     write(&mut text).unwrap_or_default();
     Note {
         scan,
@@ -99,7 +100,7 @@ fn said(scan: usize, subject: &str, write: impl FnOnce(&mut String) -> fmt::Resu
     }
 }
 
-/// The cells of an axis: its state, then its numbers; by how much its coordinates moved is told in a note.
+/// The cells of an axis: its state, then its numbers. A shift of its coordinates is written as a note.
 fn axis_cells<'c>(words: &[u64]) -> impl Iterator<Item = Cell<'c>> + use<'c> {
     let (state, numbers) = words.split_first().unwrap_or((&0, &[]));
     let (_, numbers) = numbers.split_last().unwrap_or((&0, &[]));

@@ -1,4 +1,5 @@
-//! The words for axes, block instances, values and records that every trace uses, and a recorder's rows as a trace.
+//! The words that every trace uses for axes, block instances, values and records, and a recorder's rows
+//! as a trace.
 
 mod cells;
 mod dump;
@@ -13,7 +14,7 @@ use standstill_trace as trace;
 use std::borrow::ToOwned;
 use std::string::String;
 
-/// What the header of a trace says of an axis; `unit` is the label of its unit.
+/// The header entry of an axis; `unit` is the label of its unit.
 pub fn axis(name: &str, unit: &str, config: &AxisConfig) -> trace::Axis {
     trace::Axis {
         name: name.to_owned(),
@@ -38,7 +39,7 @@ pub fn axis(name: &str, unit: &str, config: &AxisConfig) -> trace::Axis {
     }
 }
 
-/// What the header of a trace says of a block instance.
+/// The header entry of a block instance.
 pub fn instance(name: String, block: &BlockInfo) -> trace::Instance {
     trace::Instance {
         name,

@@ -1,4 +1,4 @@
-//! What the axes recorded, as notes in a trace.
+//! The records of the axes as notes in a trace.
 
 use crate::text::{Called, happened, subject};
 use standstill_axis::{Event, Order, Record, Setpoint, StandardPlan};
@@ -28,7 +28,7 @@ impl Called for Names {
     }
 }
 
-/// The note of a record for the row at `scan`; `plan` is the plan that it speaks of, where that is still there.
+/// The note of a record for the row at `scan`. `plan` is the plan it refers to, if it is still available.
 pub fn note(names: &Names, record: &Record, scan: usize, plan: Option<&StandardPlan>) -> Note {
     Note {
         scan,
@@ -48,7 +48,7 @@ fn text(names: &Names, record: &Record, plan: Option<&StandardPlan>) -> String {
     text
 }
 
-/// Everything a plan is made of, to the bit.
+/// All data of a plan, with exact bits.
 fn plan_text(plan: &StandardPlan) -> String {
     match plan {
         StandardPlan::Grid(grid) if grid.scans() == 0 => format!("from {}", shortest(grid.start())),
@@ -95,7 +95,7 @@ fn plan_text(plan: &StandardPlan) -> String {
     }
 }
 
-/// Box lengths and the highest derivative they switch on and off.
+/// The lengths of the boxes, and the highest derivative they switch on and off.
 fn boxes_text(boxes: &[u32], order: Order, amplitude: f64) -> String {
     let boxes: Vec<_> = boxes.iter().map(u32::to_string).collect();
     let derivative = match order {
@@ -106,10 +106,10 @@ fn boxes_text(boxes: &[u32], order: Order, amplitude: f64) -> String {
     format!("boxes {}, {derivative} {}", boxes.join(" "), shortest(amplitude))
 }
 
-/// The highest derivative of a ramp piece by piece; with the state it starts from, that is all of it. A piece
-/// is given as its duration (s), acceleration, jerk and snap.
+/// The highest derivative of a ramp, piece by piece. With its start state this defines the ramp. Each
+/// piece has its duration (s), acceleration, jerk and snap.
 fn ramp_text(pieces: Vec<[f64; 4]>) -> String {
-    // The highest one that is ever there: it is constant in every piece.
+    // The highest derivative that is ever used: it is constant in every piece.
     let highest = [("snap", 3), ("jerk", 2), ("acceleration", 1)]
         .into_iter()
         .find(|(_, place)| pieces.iter().any(|piece| piece[*place] != 0.0));
