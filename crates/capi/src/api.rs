@@ -1,6 +1,6 @@
-//! The functions of `standstill.h`. What each says in its comment is what C programmers read.
+//! The functions of `standstill.h`. Their comments are the documentation that C programmers read.
 //!
-//! All of them: a pointer that is neither null nor what its type says cannot be told from a good one.
+//! A limit of all of them: a wrong pointer that is not null cannot be detected.
 
 use crate::drive::AnyDrive;
 use crate::enter::{When, enter};
@@ -56,7 +56,7 @@ pub extern "C" fn standstill_result_text(result: i32) -> *const c_char {
 /// Codes: NULL_POINTER, STRUCT_SIZE, BAD_VALUE (a size of the configuration is 0 or too large).
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say.
+/// Each pointer is null or valid for its type.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_runtime_size"))]
 pub unsafe extern "C" fn standstill_runtime_size(config: *const RuntimeConfig, bytes: *mut usize) -> i32 {
     // SAFETY: the caller's contract.
@@ -77,7 +77,7 @@ pub unsafe extern "C" fn standstill_runtime_size(config: *const RuntimeConfig, b
 /// Codes: ABI_MISMATCH, NULL_POINTER, STRUCT_SIZE, BAD_VALUE, STORAGE.
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say, `storage` to so many bytes.
+/// Each pointer is null or valid for its type; `storage` has the given number of bytes.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_runtime_init"))]
 pub unsafe extern "C" fn standstill_runtime_init(
     abi_version: u32,
@@ -106,13 +106,13 @@ pub unsafe extern "C" fn standstill_runtime_init(
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, IN_TICK, NOT_OFF.
 ///
 /// # Safety
-/// `runtime` is null or a handle whose storage is still there.
+/// `runtime` is null or a handle whose storage still exists.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_runtime_close"))]
 pub unsafe extern "C" fn standstill_runtime_close(runtime: *mut Runtime) -> i32 {
     // SAFETY: the caller's contract.
     let closed = unsafe { enter(runtime, When::Outside, |inner| inner.check_off()) };
     if closed == Code::Ok as i32 {
-        // SAFETY: there was a runtime a moment ago. Nothing it holds has to be dropped.
+        // SAFETY: `enter` found a runtime just now. Nothing it holds needs a destructor.
         unsafe { (*runtime).magic.store(!MAGIC, Release) };
     }
     closed
@@ -123,7 +123,7 @@ pub unsafe extern "C" fn standstill_runtime_close(runtime: *mut Runtime) -> i32 
 /// Codes: NULL_POINTER, STRUCT_SIZE.
 ///
 /// # Safety
-/// The pointer is null or leads to as many bytes as the size in front says.
+/// The pointer is null, or has as many bytes as its size field says.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_axis_defaults"))]
 pub unsafe extern "C" fn standstill_axis_defaults(setup: *mut AxisSetup) -> i32 {
     // SAFETY: the caller's contract.
@@ -155,10 +155,10 @@ pub unsafe extern "C" fn standstill_axis_add(
     drive: *const DriveSetup,
     axis: *mut i32,
 ) -> i32 {
-    // SAFETY: the caller's contract, here and in all that follows.
+    // SAFETY: the caller's contract, here and below.
     unsafe {
         enter(runtime, When::Outside, |inner| {
-            // What a host of the first header does not know of stays out.
+            // Fields that a host of the first header does not have are left out.
             let setup = raw::read_over(setup, AxisSetup::defaults(0))?;
             let drive = raw::read_over(drive, DriveSetup::defaults(0))?;
             if axis.is_null() {
@@ -393,7 +393,7 @@ pub unsafe extern "C" fn standstill_simulate_input(
                 return Err(Code::BadValue);
             }
             let level = level != 0;
-            // Only a push can be refused.
+            // Only `push` can be refused.
             let _done = drive.change(DriveChange::Input { number, level });
             Ok(())
         })
@@ -476,7 +476,7 @@ pub unsafe extern "C" fn standstill_simulate_report(
             let drive = inner.simulated(axis)?;
             let whole = value as i64;
             let change = match quantity {
-                // What does not fit is another number when it comes back.
+                // A value that does not fit changes when it is converted back.
                 0 if counts && whole as f64 != value => return Err(Code::BadValue),
                 0 if counts => DriveChange::ReportPosition(DrivePosition::Increments(whole)),
                 0 => DriveChange::ReportPosition(DrivePosition::Units(value)),
@@ -497,7 +497,7 @@ pub unsafe extern "C" fn standstill_simulate_report(
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE.
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say, `records` to `room` of them.
+/// Each pointer is null or valid for its type; `records` has `room` entries.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_log_read"))]
 pub unsafe extern "C" fn standstill_log_read(
     runtime: *mut Runtime,
@@ -520,7 +520,7 @@ pub unsafe extern "C" fn standstill_log_read(
             let from = next.read_unaligned();
             let total = inner.log.total();
             let held = inner.log.since(from);
-            // What is not held any more is skipped.
+            // Records no longer in the ring are skipped.
             let first = total - held.count().min(total as usize) as u64;
             let (mut number, mut count) = (first, 0_usize);
             for record in inner.log.since(from).take(room as usize) {

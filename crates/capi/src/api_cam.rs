@@ -12,7 +12,7 @@ use core::ffi::c_void;
 /// Codes: NULL_POINTER, BAD_VALUE.
 ///
 /// # Safety
-/// `bytes` is null or leads to what its type says.
+/// `bytes` is null or valid for its type.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_cams_size"))]
 pub unsafe extern "C" fn standstill_cams_size(slots: u32, pieces: u32, bytes: *mut usize) -> i32 {
     if bytes.is_null() {

@@ -7,7 +7,8 @@ use core::ffi::{c_char, c_void};
 use core::slice;
 use standstill_record::text::Form;
 
-/// The entries of a list in C, each taken with its place: a stride may be longer than what this version knows.
+/// The entries of a C list, each with its index. The stride may be longer than the entry this version
+/// knows.
 #[derive(Clone, Copy)]
 struct Entries {
     at: *const Recorded,
@@ -31,11 +32,11 @@ impl Entries {
     }
 
     /// # Safety
-    /// As many entries are there as the count says, at distances of the stride, and nothing writes there.
+    /// `count` entries exist, `stride` bytes apart, and nothing writes to them.
     unsafe fn each(self) -> impl Iterator<Item = Recorded> + Clone {
         (0..self.count as usize).map(move |place| {
             let at = self.at.cast::<u8>().wrapping_add(place * self.stride);
-            // SAFETY: the caller's contract; its place may be odd.
+            // SAFETY: the caller's contract; the entry may be unaligned.
             unsafe { at.cast::<Recorded>().read_unaligned() }
         })
     }
@@ -47,7 +48,7 @@ impl Entries {
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, STRUCT_SIZE, UNKNOWN_KEY, BAD_VALUE (a number of the configuration).
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say, `recorded` to `count` of them.
+/// Each pointer is null or valid for its type; `recorded` has `count` entries.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_recorder_size"))]
 pub unsafe extern "C" fn standstill_recorder_size(
     runtime: *mut Runtime,
@@ -80,7 +81,8 @@ pub unsafe extern "C" fn standstill_recorder_size(
 /// with quotes).
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say, `storage` to so many bytes, `recorded` to `count` entries.
+/// Each pointer is null or valid for its type; `storage` has the given number of bytes, `recorded` has
+/// `count` entries.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_recorder_init"))]
 pub unsafe extern "C" fn standstill_recorder_init(
     runtime: *mut Runtime,
@@ -193,7 +195,7 @@ pub unsafe extern "C" fn standstill_recorder_state(
 /// were kept since the first piece).
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say, `buffer` to `room` bytes.
+/// Each pointer is null or valid for its type; `buffer` has `room` bytes.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_recorder_read"))]
 pub unsafe extern "C" fn standstill_recorder_read(
     runtime: *mut Runtime,
@@ -229,7 +231,7 @@ pub unsafe extern "C" fn standstill_recorder_read(
             }
             let mut written = 0;
             if room > 0 {
-                // What stands there is not read, but a reference to bytes wants them to be some.
+                // The bytes are not read, but a reference to bytes needs initialized ones.
                 buffer.write_bytes(0, room);
                 let room = slice::from_raw_parts_mut(buffer.cast::<u8>(), room);
                 (at.line, at.skip, written) =
@@ -248,7 +250,7 @@ pub unsafe extern "C" fn standstill_recorder_read(
 /// Codes: NULL_POINTER, NO_RUNTIME, OTHER_THREAD, BAD_VALUE (no block has this name), NO_ROOM.
 ///
 /// # Safety
-/// Pointers are null or lead to what their types say, `block` to a text that ends in 0.
+/// Each pointer is null or valid for its type; `block` ends in 0.
 #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_instance_make"))]
 pub unsafe extern "C" fn standstill_instance_make(
     runtime: *mut Runtime,

@@ -1,4 +1,4 @@
-//! A function for every block of the registry. Their declarations stand in `standstill_blocks.h`.
+//! A function for every block of the registry. Their declarations are in `standstill_blocks.h`.
 
 use crate::enter::{When, enter, running};
 use crate::runtime::{Inner, Runtime};
@@ -9,7 +9,7 @@ use standstill_blocks::BlockInstance;
 use standstill_fb::flat::{Layout, Pointer, read_record, read_table};
 use standstill_fb::{Block, Described, Instance, PinType, Pins, TableRef, Value};
 
-/// Bytes of the structures of `B`.
+/// Sizes of the structures of `B`.
 struct Sizes<B>(PhantomData<B>);
 
 impl<B: Block> Sizes<B> {
@@ -17,11 +17,11 @@ impl<B: Block> Sizes<B> {
     const OUTPUTS: usize = Layout::of_pins(<B::Outputs as Pins>::PINS, Pointer::NATIVE).size;
 }
 
-/// One call of an instance of `B`, made first if its key is 0.
+/// One call of an instance of `B`. A key of 0 creates the instance first.
 ///
 /// # Safety
-/// As every function of `standstill_blocks.h`: each pointer is null or leads to what its type says, as long as the size
-/// in front tells, and arrays to as many records as their count.
+/// As for every function of `standstill_blocks.h`: each pointer is null or valid for as many bytes as its
+/// size field says, and arrays have as many records as their count.
 unsafe fn call<B: Block + Described>(
     inner: &mut Inner,
     key: *mut u64,
@@ -34,19 +34,19 @@ unsafe fn call<B: Block + Described>(
     if key.is_null() {
         return Err(Code::NullPointer);
     }
-    // SAFETY: null, or long enough for a size, by the contract.
+    // SAFETY: by contract null, or long enough for a size field.
     unsafe {
         raw::check_size(inputs, Sizes::<B>::INPUTS)?;
         raw::check_size(outputs, Sizes::<B>::OUTPUTS)?;
     }
-    // SAFETY: not null, and as long as its size told. Nothing writes there while it is used: the outputs are written
-    // later.
+    // SAFETY: not null, and as long as its size field says. Nothing writes there while it is used: the
+    // outputs are written later.
     let flat = unsafe { slice::from_raw_parts(inputs, Sizes::<B>::INPUTS) };
     if const { B::INFO.has_tables() } {
-        // SAFETY: the contract says that arrays are as long as their counts.
+        // SAFETY: by contract arrays are as long as their counts.
         unsafe { load_tables::<B>(inner, inputs, flat)? };
     }
-    // SAFETY: not null; its place may be odd.
+    // SAFETY: not null; it may be unaligned.
     let mut number = unsafe { key.read_unaligned() };
     if number == 0 {
         number = inner.create(make(Instance::default()))?;
@@ -58,7 +58,8 @@ unsafe fn call<B: Block + Described>(
         set_tables(instance, flat);
     }
     instance.call_flat(flat, Pointer::NATIVE, &mut context);
-    // SAFETY: not null, and as long as its size told; the inputs are not used any more, should they overlap.
+    // SAFETY: not null, and as long as its size field says. The inputs are not used any more, in case the
+    // two overlap.
     let shown = unsafe { raw::bytes_mut(outputs, Sizes::<B>::OUTPUTS) };
     instance.outputs.put_flat(shown);
     Ok(())
@@ -67,7 +68,7 @@ unsafe fn call<B: Block + Described>(
 /// Copies the records of a block's arrays into the numbers of the runtime, one array behind the other.
 ///
 /// # Safety
-/// `flat` are the bytes at `inputs`, and every address in there leads to as many records as its count says.
+/// `flat` are the bytes at `inputs`, and every address in them has as many records as its count says.
 unsafe fn load_tables<B: Block + Described>(
     inner: &mut Inner,
     inputs: *const u8,
@@ -79,7 +80,8 @@ unsafe fn load_tables<B: Block + Described>(
         let PinType::Table(table) = pin.ty else { continue };
         let (_, count) = read_table(flat, layout.offset(index), Pointer::NATIVE);
         let count = count as usize;
-        // SAFETY: the layout puts an address there. Read as one, and not as a number, it keeps what it leads to.
+        // SAFETY: the layout has an address there. It is read as a pointer and not as a number, so that
+        // it keeps its provenance.
         let first = unsafe {
             inputs
                 .add(layout.offset(index))
@@ -91,7 +93,7 @@ unsafe fn load_tables<B: Block + Described>(
         }
         let record = Layout::of_record(table.fields);
         for row in 0..count {
-            // SAFETY: the caller says that so many records are there.
+            // SAFETY: by contract these records exist.
             let bytes = unsafe { slice::from_raw_parts(first.add(row * record.size), record.size) };
             let (cells_of_row, rest) = cells
                 .split_at_mut_checked(table.fields.len())
@@ -103,14 +105,14 @@ unsafe fn load_tables<B: Block + Described>(
     Ok(())
 }
 
-/// Tells a block where [`load_tables`] put its records.
+/// Gives a block the places where [`load_tables`] put its records.
 fn set_tables<B: Block + Described>(instance: &mut Instance<B>, flat: &[u8]) {
     let layout = B::INFO.flat_inputs(Pointer::NATIVE);
     let mut first = 0_u32;
     for (index, pin) in B::INFO.tables() {
         let PinType::Table(table) = pin.ty else { continue };
         let (_, count) = read_table(flat, layout.offset(index), Pointer::NATIVE);
-        // Both were checked against the most records of the table.
+        // Both were checked against the largest number of records of the table.
         let place = TableRef {
             first,
             records: count as u16,
@@ -126,8 +128,8 @@ macro_rules! functions {
             stringify!($name), "): see `standstill_blocks.h`.")]
         ///
         /// # Safety
-        /// Each pointer is null or leads to what its type says, as long as the size in front tells, and arrays to as
-        /// many records as their count; nothing else changes them during the call.
+        /// Each pointer is null or valid for as many bytes as its size field says, and arrays have as
+        /// many records as their count. Nothing else changes them during the call.
         #[unsafe(export_name = concat!(env!("STANDSTILL_SYMBOLS"), "_", stringify!($name)))]
         pub unsafe extern "C" fn $name(
             runtime: *mut Runtime,

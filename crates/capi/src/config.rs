@@ -1,4 +1,4 @@
-//! From the structures of C to the configuration of an axis.
+//! Converts the structures of C to the configuration of an axis.
 
 use crate::{AxisSetup, DriveSetup};
 use standstill_axis::{
@@ -83,7 +83,7 @@ impl AxisSetup {
         }
     }
 
-    /// As the axis takes it.
+    /// The configuration in the axis's own type.
     pub(crate) fn config(&self) -> Result<AxisConfig, SetupFault> {
         let scaling = (self.scaling_increments != 0).then(|| {
             Scaling::new(
@@ -291,7 +291,7 @@ impl DriveSetup {
         }
     }
 
-    /// The simulated drive under an axis of this configuration, in cycles of so many nanoseconds.
+    /// The simulated drive under an axis of this configuration. `cycle_ns` is the cycle in nanoseconds.
     pub(crate) fn simulated(
         &self,
         axis: &AxisConfig,
@@ -349,7 +349,7 @@ impl DriveSetup {
     ) -> Result<Cia402Setup, SetupFault> {
         let scaling = axis.scaling.ok_or(fault("scaling_increments", 0.0))?;
         let rate = given(self.deceleration).unwrap_or(axis.limits.deceleration);
-        // The node brakes by increments, of which there must be a countable number.
+        // The node brakes in increments, so their number must be finite.
         let counted = rate * (f64::from(scaling.increments()) / f64::from(scaling.units()));
         if !(rate > 0.0 && counted.is_finite()) {
             return Err(fault("drive.deceleration", rate));
@@ -374,7 +374,7 @@ impl DriveSetup {
         })
     }
 
-    /// The motor of a CiA 402 drive, as its bus can tell of it.
+    /// The motor of a CiA 402 drive, within the values its bus can express.
     fn motor(&self) -> Result<Option<MotorSetup>, SetupFault> {
         let rated_torque = self.rated_torque;
         if rated_torque == 0.0 {
@@ -387,7 +387,7 @@ impl DriveSetup {
             viscous: self.viscous,
             coulomb: self.coulomb,
         };
-        // A thousandth of the rated torque is the smallest the bus can say, 32767 the most.
+        // The smallest value on the bus is a thousandth of the rated torque, the largest 32767 of them.
         let told = 0.001 * rated_torque..=f64::from(i16::MAX) / 1000.0 * rated_torque;
         let finite = [rated_torque, motor.inertia, motor.viscous, motor.coulomb].map(f64::is_finite);
         let good = [
@@ -454,7 +454,7 @@ impl DriveSetup {
             limits,
             home,
             marker,
-            // That of the axis is put in when the drive is made.
+            // The value of the axis is filled in when the drive is made.
             turn: None,
         })
     }
@@ -464,8 +464,7 @@ const fn fault(key: &'static str, value: f64) -> SetupFault {
     SetupFault { key, value }
 }
 
-/// 0 stands for what is not given; NaN is a value, and refused as one.
-/// A value, or what 0 stands for.
+/// 0 means not given, and returns `instead`. NaN is a value, and is refused as one.
 fn or(value: f64, instead: f64) -> f64 {
     if value == 0.0 { instead } else { value }
 }
@@ -482,7 +481,7 @@ fn choice<T: Copy>(key: &'static str, number: i32, of: &[T]) -> Result<T, SetupF
     })
 }
 
-/// The key and the value an error of the axis speaks of.
+/// The key and the value that an error of the axis refers to.
 pub(crate) fn refused(error: &ConfigError) -> SetupFault {
     let value = match *error {
         ConfigError::NotPositive { value, .. }
@@ -513,10 +512,10 @@ mod tests {
     use standstill_axis::keys::AXIS;
     use std::vec::Vec;
 
-    /// What a host does to set a key, on top of what the key needs.
+    /// What a host does to set a key, in addition to what the key requires.
     type Set = fn(&mut AxisSetup);
 
-    /// Each key of an axis in C.
+    /// Every key of an axis, and how a C host sets it.
     const KEYS: &[(&str, Set)] = &[
         ("limits.velocity", |axis| axis.velocity = 7.0),
         ("limits.acceleration", |axis| axis.acceleration = 70.0),
@@ -596,7 +595,7 @@ mod tests {
         ("coupling.cam_continuity", |axis| axis.cam_continuity = -1),
     ];
 
-    /// A host in C can set up what a script can.
+    /// A C host can set up everything that a script can.
     #[test]
     fn every_key_of_an_axis_has_its_fields() {
         let mut plain = AxisSetup::defaults(0);

@@ -1,4 +1,4 @@
-//! The drives an axis may have here: the host's own, and simulated ones.
+//! The drives an axis may have: the host's own, and simulated ones.
 
 use crate::config::SetupFault;
 use crate::{Code, Command, DriveSetup, Feedback};
@@ -8,29 +8,30 @@ use standstill_axis::{
 };
 use standstill_drives::simulated::SimulatedDrive;
 
-/// A drive. They stand in the storage of the runtime beside each other, so the larger sets the size of both.
+/// A drive. Drives are stored beside each other in the storage of the runtime, so the larger kind
+/// determines the size of both.
 #[allow(clippy::large_enum_variant)]
 pub(crate) enum AnyDrive {
     Host(HostDrive),
     Simulated(SimulatedDrive),
 }
 
-/// What a host has told since the last tick began.
+/// What a host has reported since the last tick began.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum News {
     /// Nothing.
     None,
-    /// Nothing but what was refused, because it is no number.
+    /// Only values that were refused, because they are not numbers.
     NoNumber,
     /// Feedback.
     Fresh,
 }
 
-/// Both sides of a drive the host carries: what it told, and what it is told.
+/// A drive of the host: the feedback it reports and the commands it gets.
 pub(crate) struct HostDrive {
     feedback: DriveFeedback,
     report: DriveReport,
-    /// What the host has told since the last tick began.
+    /// What the host has reported since the last tick began.
     news: News,
     command: DriveCommand,
     order: DriveOrder,
@@ -59,7 +60,8 @@ impl HostDrive {
         }
     }
 
-    /// Takes what the host tells; refused if a choice in it is none, or a number.
+    /// Takes the feedback of the host. Refused if an enumeration has an unknown value or a number is not
+    /// finite.
     pub fn tell(&mut self, told: &Feedback) -> Result<(), Code> {
         let counts = matches!(self.feedback.position, DrivePosition::Increments(_));
         let at = |units: f64, increments: i64| {
@@ -142,7 +144,7 @@ impl HostDrive {
         Ok(())
     }
 
-    /// What the drive is told.
+    /// The commands for the drive.
     pub fn told(&self, size: u32) -> Command {
         let (position, increments) = match self.command.position {
             DrivePosition::Units(units) => (units, 0),
@@ -180,7 +182,8 @@ impl HostDrive {
 }
 
 impl AnyDrive {
-    /// The drive of this setup under an axis of this configuration, in cycles of so many nanoseconds.
+    /// The drive of this setup under an axis of this configuration. `cycle_ns` is the cycle in
+    /// nanoseconds.
     pub fn new(setup: &DriveSetup, axis: &AxisConfig, cycle_ns: i64) -> Result<Self, SetupFault> {
         if setup.kind == 0 {
             let position = match &axis.scaling {

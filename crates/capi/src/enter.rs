@@ -1,4 +1,4 @@
-//! The door to a runtime: one thread at a time, in a tick or outside of it, and no panic goes through it.
+//! The only way into a runtime: one thread at a time, inside or outside a tick, and no panic gets out.
 
 use crate::Code;
 use crate::runtime::{Inner, MAGIC, Mode, Runtime};
@@ -7,7 +7,7 @@ use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 /// When a function may be called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum When {
-    /// Between begin and end, by the thread that began.
+    /// Between begin and end, on the thread that began the tick.
     InTick,
     /// Not then.
     Outside,
@@ -15,7 +15,7 @@ pub(crate) enum When {
     Any,
 }
 
-/// A number for the calling thread, not 0: the address of a variable that each has.
+/// A non-zero number for the calling thread: the address of a thread-local variable.
 #[cfg(feature = "std")]
 fn me() -> usize {
     std::thread_local! {
@@ -24,7 +24,7 @@ fn me() -> usize {
     ME.with(|me| core::ptr::from_ref(me).addr())
 }
 
-/// Without `std` threads cannot be told apart; that two are inside at a time can, see [`Busy`].
+/// Without `std` threads cannot be distinguished. Two calls at a time can be detected, see [`Busy`].
 #[cfg(not(feature = "std"))]
 #[inline]
 fn me() -> usize {
@@ -52,10 +52,10 @@ impl Drop for Busy<'_> {
     }
 }
 
-/// Does `work` on the runtime at `runtime`, if it may be done now.
+/// Runs `work` on the runtime at `runtime`, if this is allowed now.
 ///
 /// # Safety
-/// `runtime` is null, or four bytes can be read there; if a [`Runtime`] was made there it is still in place.
+/// `runtime` is null, or four bytes can be read there. If a [`Runtime`] was made there, it still exists.
 #[inline]
 pub(crate) unsafe fn enter(
     runtime: *mut Runtime,
@@ -67,7 +67,7 @@ pub(crate) unsafe fn enter(
     result.map_or_else(|code| code as i32, |()| Code::Ok as i32)
 }
 
-/// The runtime at this place.
+/// The runtime at this address.
 ///
 /// # Safety
 /// As [`enter`].
@@ -79,12 +79,13 @@ unsafe fn there<'a>(runtime: *mut Runtime) -> Result<&'a Runtime, Code> {
     if !runtime.is_aligned() {
         return Err(Code::NoRuntime);
     }
-    // SAFETY: aligned, and readable for as long as the magic is, which comes first; any bits are an atomic number.
+    // SAFETY: aligned, and readable for the length of the magic, which comes first. Any bits are a valid
+    // atomic number.
     if unsafe { &(*runtime).magic }.load(Acquire) != MAGIC {
         return Err(Code::NoRuntime);
     }
-    // SAFETY: a runtime was made here and not closed, so all of it is there; what threads share of it is atomic, the rest
-    // in a cell.
+    // SAFETY: a runtime was made here and not closed, so all of it exists. Its shared parts are atomic;
+    // the rest is in a cell.
     Ok(unsafe { &*runtime })
 }
 
@@ -101,7 +102,7 @@ unsafe fn try_enter(
     #[cfg(not(feature = "std"))]
     let _busy = Busy::new(runtime)?;
     let me = me();
-    // Equal to `me` only if this thread wrote it, so nothing has to be ordered before it.
+    // Equal to `me` only if this thread wrote it, so no memory ordering is needed.
     let owner = runtime.owner.load(Relaxed);
     match (owner == me, when) {
         (true, When::Outside) => return Err(Code::InTick),
@@ -113,8 +114,9 @@ unsafe fn try_enter(
             }
         }
     }
-    // SAFETY: the owner is this thread, set here or when its tick began, and no other thread comes past the check above
-    // until it is 0 again. In this thread nothing is under way: no function calls back into the host.
+    // SAFETY: this thread is the owner, set here or when its tick began. No other thread passes the check
+    // above until the owner is 0 again. In this thread no call is under way, because no function calls
+    // back into the host.
     let inner = unsafe { &mut *runtime.inner.get() };
     let result = caught(inner, work);
     if !inner.ticking {
@@ -123,7 +125,7 @@ unsafe fn try_enter(
     result
 }
 
-/// Why a function for the open tick is refused.
+/// The reason why a function for the open tick is refused.
 fn not_in_tick(owner: usize) -> Code {
     if owner == 0 {
         Code::NotInTick
@@ -132,12 +134,12 @@ fn not_in_tick(owner: usize) -> Code {
     }
 }
 
-/// Does `work`; a panic ends the tick, and the resource is stopped.
+/// Runs `work`. A panic ends the tick and stops the resource.
 #[cfg(feature = "std")]
 #[inline]
 fn caught<T>(inner: &mut Inner, work: impl FnOnce(&mut Inner) -> Result<T, Code>) -> Result<T, Code> {
     use std::panic::{AssertUnwindSafe, catch_unwind};
-    // What it leaves behind is asked for nothing but to ramp down.
+    // After a panic, the state is used only to ramp down.
     catch_unwind(AssertUnwindSafe(|| work(inner))).unwrap_or_else(|_| broken(inner))
 }
 
@@ -170,7 +172,7 @@ mod tests {
     use super::*;
     use crate::{AxisSetup, DriveSetup, RuntimeConfig, storage};
 
-    /// What a defect of ours would do: no panic comes out, and the axis is ramped down in the ticks that follow.
+    /// Simulates a defect of ours: no panic gets out, and the axis is ramped down in the next ticks.
     #[test]
     fn a_caught_panic_stops_the_resource_and_the_axis_switches_off() {
         let config = RuntimeConfig {
@@ -182,7 +184,7 @@ mod tests {
         };
         let bytes = storage::size(&config).unwrap();
         let mut memory = vec![0_u128; bytes.div_ceil(16)];
-        // SAFETY: as long and as aligned as asked for, and alive until the end of the test.
+        // SAFETY: as long and as aligned as required, and alive until the end of the test.
         let runtime = unsafe { storage::init(memory.as_mut_ptr().cast(), bytes, &config) }.unwrap();
         // SAFETY: the runtime made above.
         let with = |when, work: &mut dyn FnMut(&mut Inner) -> Result<(), Code>| unsafe {

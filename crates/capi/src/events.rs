@@ -1,4 +1,4 @@
-//! The ring of records as C reads it.
+//! The ring of records in the form of C.
 
 use crate::runtime::NOBODY;
 use crate::{NAME, Record, raw};
@@ -6,7 +6,7 @@ use core::mem::offset_of;
 use standstill_axis as axis;
 use standstill_fb::ring::{FIELDS, FlatRecord, NAME_SIZE, RECORD_SIZE};
 
-// Fields follow each other without gaps ([`FIELDS`]), so the last one shows the place of all.
+// Fields follow each other without gaps ([`FIELDS`]), so the offset of the last one proves all others.
 const _: () = assert!(size_of::<Record>() == RECORD_SIZE && NAME == NAME_SIZE);
 const _: () = assert!(offset_of!(Record, count) == FIELDS[6].3 && offset_of!(Record, name) == FIELDS[10].3);
 

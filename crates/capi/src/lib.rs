@@ -8,11 +8,12 @@
 //! The two headers in `include/` are generated: `standstill.h` from this crate, `standstill_blocks.h` from the table of
 //! blocks.
 #![cfg_attr(not(feature = "std"), no_std)]
-// The one crate of the repository that may: it is the border to C. Each use says why it is sound.
+// The only crate of the repository that may use `unsafe`: it is the border to C. Each use says why it is
+// sound.
 #![allow(unsafe_code)]
 #![deny(unsafe_op_in_unsafe_fn, clippy::undocumented_unsafe_blocks)]
 
-// Pins cross as `fb::flat` has them, which is how these processors have them in memory.
+// Pins have the layout of `fb::flat`, which is the memory layout of these processors.
 #[cfg(target_endian = "big")]
 compile_error!("the C library is for little-endian processors: pins would cross the border turned round");
 
@@ -37,10 +38,11 @@ pub use blocks::*;
 pub use runtime::Runtime;
 pub use types::*;
 
-/// Of the functions and structures below. It is raised by a change that a host compiled before would misread.
+/// Version of the functions and structures below. It rises with a change that an already compiled host
+/// would misread.
 pub const ABI_VERSION: u32 = 1;
 
-// Hosts without `std` bring what is to happen; `.ci/no-panic` shows that nothing calls it.
+// A host without `std` brings its own panic handler; `.ci/no-panic` shows that nothing calls it.
 #[cfg(all(not(feature = "std"), not(test)))]
 mod panic {
     unsafe extern "C" {

@@ -1,4 +1,4 @@
-//! The flight recorder: the last scans of a runtime in memory of its host, and their text.
+//! The flight recorder: the last scans of a runtime, in memory of its host, and their text.
 
 use crate::runtime::{NOBODY, Slot};
 use crate::storage::{ALIGN, List};
@@ -12,10 +12,10 @@ use standstill_fb::{AnyInstance, BlockInfo, axis_number};
 use standstill_record::text::{Called, Form, integer, line};
 use standstill_record::{AXIS_WORDS, Ring, Setup, State, Trigger, write_axis};
 
-/// Most scans and records of a recorder.
+/// The largest number of scans and of records of a recorder.
 const MOST: u32 = 1 << 24;
 
-/// A text of at most so many bytes.
+/// A text of at most `N` bytes.
 #[derive(Clone, Copy)]
 struct Text<const N: usize> {
     bytes: [u8; N],
@@ -28,7 +28,7 @@ impl<const N: usize> Text<N> {
         len: 0,
     };
 
-    /// A name as C has it, which ends in 0 within its room; none if it does not, or is not UTF-8.
+    /// A name from C, which ends in 0 within its room. None if it does not, or is not UTF-8.
     fn of(name: &[c_char; N]) -> Option<Self> {
         let bytes = name.map(|byte| byte as u8);
         let len = bytes.iter().position(|byte| *byte == 0)?;
@@ -41,7 +41,7 @@ impl<const N: usize> Text<N> {
         str::from_utf8(bytes).unwrap_or_default()
     }
 
-    /// An IEC identifier, as columns of a trace are called.
+    /// Whether it is an IEC identifier, as names of trace columns must be.
     fn is_name(&self) -> bool {
         let mut bytes = self.get().bytes();
         let starts = bytes
@@ -50,7 +50,7 @@ impl<const N: usize> Text<N> {
         starts && bytes.all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
     }
 
-    /// What can stand in a JSON text as it is.
+    /// Whether a JSON text can hold it without escapes.
     fn is_plain(&self) -> bool {
         self.get()
             .chars()
@@ -98,7 +98,7 @@ pub(crate) struct Recorder {
     records: List<Option<axis::Record>>,
 }
 
-/// Where everything stands in the storage.
+/// The places of all parts in the storage.
 struct Plan {
     whole: Layout,
     names: usize,
@@ -109,7 +109,7 @@ struct Plan {
     width: usize,
 }
 
-/// What a recorder is to keep, checked.
+/// The checked settings of a recorder.
 pub(crate) struct Order<'a> {
     pub config: RecorderConfig,
     pub axes: &'a [Axis],
@@ -143,7 +143,7 @@ impl Order<'_> {
         })
     }
 
-    /// The block of the instance that a key is of.
+    /// The block of the instance with this key.
     fn block(&self, key: u64) -> Result<&'static BlockInfo, Code> {
         instance(self.slots, key)
             .map(AnyInstance::info)
@@ -180,16 +180,16 @@ impl Order<'_> {
         })
     }
 
-    /// Bytes that a recorder of these needs.
+    /// Bytes that a recorder of these signals needs.
     pub fn size(&self, given: impl Iterator<Item = Recorded>) -> Result<usize, Code> {
         Ok(self.plan(given)?.whole.size())
     }
 
-    /// Makes the recorder in its storage; the list has it.
+    /// Makes the recorder in its storage, and returns it as a list.
     ///
     /// # Safety
-    /// `storage` is not null, `bytes` bytes can be read and written there, and nothing but the recorder uses them as
-    /// long as it is there.
+    /// `storage` is not null, `bytes` bytes can be read and written there, and nothing but the recorder
+    /// uses them while it exists.
     pub unsafe fn make(
         &self,
         given: impl Iterator<Item = Recorded> + Clone,
@@ -240,17 +240,17 @@ impl Order<'_> {
         for _ in 0..ring.setup().records {
             recorder.records.push(None);
         }
-        // SAFETY: the head stands at the start of the storage, long and aligned enough for it by the plan.
+        // SAFETY: the head is at the start of the storage. The plan made it long and aligned enough.
         let mut head = unsafe { List::new(storage.cast(), 1) };
         head.push(recorder);
         Ok(head)
     }
 }
 
-// The host is told one alignment.
+// The host is given only one alignment.
 const _: () = assert!(align_of::<Recorder>() <= ALIGN && align_of::<Option<axis::Record>>() <= ALIGN);
 
-/// The instance that a key is of.
+/// The instance with this key.
 fn instance(slots: &[Slot], key: u64) -> Option<&dyn AnyInstance> {
     let slot = slots.get((key as u32 as usize).wrapping_sub(1))?;
     let block = slot
@@ -261,7 +261,7 @@ fn instance(slots: &[Slot], key: u64) -> Option<&dyn AnyInstance> {
 }
 
 impl Recorder {
-    /// Takes a name of the host's.
+    /// Takes the host's name for an axis or an instance.
     fn call(&mut self, recorded: &Recorded, order: &Order<'_>) -> Result<(), Code> {
         let name = Text::of(&recorded.name)
             .filter(Text::is_name)
@@ -283,7 +283,8 @@ impl Recorder {
         Ok(())
     }
 
-    /// No two are called alike: columns are found by their names. Cost: the square of their number.
+    /// Checks that no two have the same name, because columns are found by name. Cost: the square of
+    /// their number.
     fn check_names(&self) -> Result<(), Code> {
         let all = || {
             let axes = self.names.slice().iter().map(|axis| &axis.name);
@@ -300,12 +301,12 @@ impl Recorder {
         Ok(())
     }
 
-    /// After all blocks were called, before the motion step.
+    /// Called after all blocks and before the motion step.
     pub fn observe(&mut self, axes: &[Axis]) {
         self.ring.observe(self.states.slice_mut(), axes);
     }
 
-    /// The end of a tick.
+    /// Ends a tick.
     pub fn record(&mut self, scan: u64, axes: &[Axis], slots: &[Slot], log: &Log) {
         let Some(place) = self.ring.begin(scan, log) else {
             return;
@@ -342,7 +343,7 @@ impl Recorder {
         self.ring.end(log);
     }
 
-    /// Trips for a reason of the host's.
+    /// Trips for a reason of the host's own.
     pub fn trip(&mut self) {
         self.ring.trip(None);
     }
@@ -378,8 +379,8 @@ impl Recorder {
         self.ring.stamp()
     }
 
-    /// Fills `room` with the text of a form from line `line` on, of which `skip` bytes are left out; the line and the
-    /// bytes to go on with, and how many there are.
+    /// Fills `room` with the text of a form from line `line` on, without its first `skip` bytes. Returns
+    /// the line and the bytes to continue with, and the number of bytes written.
     pub fn read(
         &self,
         axes: &[Axis],
@@ -409,7 +410,7 @@ impl Recorder {
     }
 }
 
-/// A part of a text: so many bytes are left out, then comes what there is room for.
+/// A part of a text: `skip` bytes are left out, then as many bytes follow as there is room for.
 struct Window<'a> {
     skip: u64,
     room: &'a mut [u8],
@@ -430,7 +431,7 @@ impl fmt::Write for Window<'_> {
     }
 }
 
-/// A recorder and the axes it is of.
+/// A recorder and the axes it belongs to.
 struct Told<'a> {
     recorder: &'a Recorder,
     axes: &'a [Axis],

@@ -1,4 +1,4 @@
-//! A runtime: axes with their drives, block instances under keys, and where it stands in its tick.
+//! A runtime: axes with their drives, block instances under keys, and its position in the tick.
 
 use crate::config::refused;
 use crate::drive::AnyDrive;
@@ -14,22 +14,23 @@ use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_drives::simulated::{DriveChange, SimulatedDrive};
 use standstill_fb::{Context, PinType, axis_number, numbered_axis};
 
-/// The instance in records of what no block caused; `standstill-scan` has the same.
+/// The instance number in records that no block caused; `standstill-scan` has the same.
 pub(crate) const NOBODY: InstanceId = InstanceId(u16::MAX);
 
-/// Most axes of a runtime.
+/// The largest number of axes of a runtime.
 pub(crate) const AXES: u32 = 1024;
 
-/// Most instances of a runtime: their numbers in records have 16 bits, and one of them means nobody.
+/// The largest number of instances of a runtime: their numbers in records have 16 bits, and one number
+/// means nobody.
 pub(crate) const INSTANCES: u32 = 65_534;
 
-/// Most slots of a store of cams: their numbers have 16 bits.
+/// The largest number of slots of a store of cams: their numbers have 16 bits.
 pub(crate) const CAM_SLOTS: u32 = 0xFFFF;
 
-/// Most pieces of a store of cams.
+/// The largest number of pieces of a store of cams.
 pub(crate) const CAM_PIECES: u32 = 1 << 24;
 
-/// Numbers that the arrays of one block take.
+/// Number of values that the arrays of one block take.
 const CELLS: usize = {
     let mut most = 0;
     let mut blocks = REGISTRY;
@@ -50,23 +51,24 @@ const CELLS: usize = {
     most
 };
 
-/// What a handle points to. The magic comes first: it is looked at before the rest is known to be there.
+/// The target of a handle. The magic comes first, because it is checked before the rest is known to
+/// exist.
 #[repr(C)]
 pub struct Runtime {
     /// [`MAGIC`] from init to close.
     pub(crate) magic: AtomicU32,
-    /// The thread inside, or with a tick open; 0 for none.
+    /// The thread inside, or with an open tick; 0 for none.
     pub(crate) owner: AtomicUsize,
-    /// Without threads to tell apart: a call is under way.
+    /// Without distinguishable threads: a call is under way.
     #[cfg(not(feature = "std"))]
     pub(crate) busy: core::sync::atomic::AtomicBool,
     pub(crate) inner: UnsafeCell<Inner>,
 }
 
-/// "STST", which zeroed or foreign memory hardly begins with.
+/// "STST": zeroed or foreign memory is unlikely to begin with it.
 pub(crate) const MAGIC: u32 = 0x5453_5453;
 
-/// What no block does in `scan`.
+/// The scope for actions of no block in `scan`.
 fn nobody(scan: u64, log: &mut Log) -> Scope<'_> {
     Scope {
         scan,
@@ -80,7 +82,7 @@ fn nobody(scan: u64, log: &mut Log) -> Scope<'_> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mode {
     Running,
-    /// Running, and a flight recorder wants the inputs of every call.
+    /// Running with a flight recorder that needs the inputs of every call.
     Recorded,
     Stopped,
     /// A panic was caught; without `std` none can be.
@@ -159,7 +161,7 @@ impl Inner {
         self.recorder.slice_mut().first_mut().ok_or(Code::NoRecorder)
     }
 
-    /// What a flight recorder of this runtime is to be made of.
+    /// The settings of a flight recorder of this runtime.
     pub fn recorder_order(&self, config: RecorderConfig) -> Order<'_> {
         Order {
             config,
@@ -168,7 +170,7 @@ impl Inner {
         }
     }
 
-    /// Takes a flight recorder, or gives its storage back.
+    /// Takes a flight recorder, or returns its storage.
     pub fn set_recorder(&mut self, recorder: Option<List<Recorder>>) {
         self.recorder = recorder.unwrap_or(List::none());
         if matches!(self.mode, Mode::Running | Mode::Recorded) {
@@ -185,7 +187,7 @@ impl Inner {
         }
     }
 
-    /// The axis of a number.
+    /// The index of an axis number.
     pub fn place(&self, axis: i32) -> Result<usize, Code> {
         let id = numbered_axis(axis);
         if id.index() < self.axes.len() {
@@ -195,7 +197,7 @@ impl Inner {
         }
     }
 
-    /// Adds an axis; its number.
+    /// Adds an axis and returns its number.
     pub fn add_axis(&mut self, setup: &AxisSetup, drive: &DriveSetup) -> Result<i32, Code> {
         let id = u16::try_from(self.axes.len()).map_or(AxisId::NONE, AxisId::new);
         if self.axes.is_full() || id == AxisId::NONE {
@@ -210,7 +212,7 @@ impl Inner {
         })?;
         let drive = AnyDrive::new(drive, axis.config(), self.cycle_ns)
             .map_err(|fault| self.refuse(fault.key, fault.value))?;
-        // Only to have a value there: the first tick reads the drive before anybody looks.
+        // An initial value only: the first tick reads the drive before any use.
         let feedback = DriveFeedback {
             enabled: false,
             voltage: false,
@@ -219,7 +221,7 @@ impl Inner {
             comms: standstill_axis::Comms::Lost,
             signals: standstill_axis::DriveSignals::default(),
         };
-        // Of equal capacity, so all of them take it.
+        // All lists have the same capacity, so each has room for it.
         self.axes.push(axis);
         self.drives.push(drive);
         self.feedback.push(feedback);
@@ -245,7 +247,7 @@ impl Inner {
         Ok(axis.is_some_and(|axis| axis.config().scaling.is_some()))
     }
 
-    /// Lets something befall an axis or the simulated drive under it.
+    /// Applies a disturbance to an axis or to the simulated drive under it.
     pub fn suffer(&mut self, axis: i32, mishap: Mishap, code: u16) -> Result<(), Code> {
         let place = self.place(axis)?;
         let drive = self.simulated(axis)?;
@@ -313,7 +315,7 @@ impl Inner {
         Ok(())
     }
 
-    /// Ends a tick: motion advances by one cycle, drives are written.
+    /// Ends a tick: advances motion by one cycle, then writes the drives.
     pub fn end(&mut self) {
         if let Some(recorder) = self.recorder.slice_mut().first_mut() {
             recorder.observe(self.axes.slice());
@@ -329,7 +331,7 @@ impl Inner {
         self.ticking = false;
     }
 
-    /// Calls no block any more, and switches axes off.
+    /// Stops calling blocks, and switches the axes off.
     pub fn stop(&mut self) {
         if matches!(self.mode, Mode::Running | Mode::Recorded) {
             self.mode = Mode::Stopped;
@@ -406,7 +408,7 @@ impl Inner {
         }
     }
 
-    /// The instance of a key as what `find` takes it for, and what it is called with.
+    /// The instance of a key in the form that `find` returns, and its context.
     #[inline]
     pub fn instance<T>(
         &mut self,
@@ -430,7 +432,7 @@ impl Inner {
             now_ns: self.now_ns,
             scope: Scope {
                 scan: self.scan,
-                // At most 65534, so no cut is made.
+                // At most 65534, so the conversion is exact.
                 instance: InstanceId(key as u16),
                 log: &mut self.log,
                 cams: self.cams.lend(),
@@ -441,7 +443,7 @@ impl Inner {
         Ok((found, context))
     }
 
-    /// A place for a new instance; its key. Cost: a look at every place, at most 65534.
+    /// Takes a place for a new instance and returns its key. Cost: a search of all places, at most 65534.
     pub fn create(&mut self, block: BlockInstance) -> Result<u64, Code> {
         let slots = self.slots.slice_mut().iter_mut();
         let free = (1_u64..).zip(slots).find(|(_, slot)| slot.block.is_none());
@@ -450,7 +452,7 @@ impl Inner {
         Ok(u64::from(slot.generation) << 32 | number)
     }
 
-    /// Gives the place of an instance back.
+    /// Frees the place of an instance.
     pub fn release(&mut self, key: u64) -> Result<(), Code> {
         self.slot(key)?;
         let place = (key as u32 as usize).wrapping_sub(1);

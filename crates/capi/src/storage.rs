@@ -1,4 +1,4 @@
-//! The memory of a runtime: one piece from the host, cut into a head and four lists.
+//! The memory of a runtime: one block from the host, divided into a head and four lists.
 
 use crate::drive::AnyDrive;
 use crate::runtime::{AXES, CAM_PIECES, CAM_SLOTS, INSTANCES, Inner, MAGIC, Runtime, Slot};
@@ -9,12 +9,12 @@ use core::sync::atomic::{AtomicU32, AtomicUsize};
 use core::{ptr, slice};
 use standstill_axis::{Axis, CamPiece, CamSlot, Cams, DriveFeedback};
 
-/// What storage must be aligned to.
+/// The alignment that storage must have.
 pub(crate) const ALIGN: usize = 16;
 
 /// A list of fixed capacity in the storage.
 pub(crate) struct List<T> {
-    /// Room for `capacity` values; the first `len` are there.
+    /// Room for `capacity` values; the first `len` are valid.
     at: *mut T,
     len: usize,
     capacity: usize,
@@ -29,7 +29,7 @@ impl<T> List<T> {
         Self { at, len: 0, capacity }
     }
 
-    /// A list of no capacity.
+    /// A list without capacity.
     pub const fn none() -> Self {
         Self {
             at: ptr::dangling_mut(),
@@ -49,8 +49,8 @@ impl<T> List<T> {
     /// Adds a value if there is room.
     pub fn push(&mut self, value: T) {
         if !self.is_full() {
-            // SAFETY: `len` is below the capacity, so the place is inside the room that `new` was promised. Nothing is
-            // dropped there: it was never written.
+            // SAFETY: `len` is below the capacity, so the place is inside the room that `new` was
+            // promised. The place was never written, so nothing needs dropping.
             unsafe { self.at.add(self.len).write(value) };
             self.len += 1;
         }
@@ -64,12 +64,12 @@ impl<T> List<T> {
 
     #[inline]
     pub fn slice_mut(&mut self) -> &mut [T] {
-        // SAFETY: as `slice`, and `self` is borrowed alone.
+        // SAFETY: as for `slice`, and `self` is borrowed exclusively.
         unsafe { slice::from_raw_parts_mut(self.at, self.len) }
     }
 }
 
-/// Memory behind what is there before it, and where it begins.
+/// Adds memory behind the existing layout. Returns the new layout and where the memory begins.
 fn behind<T>(before: Layout, count: u32) -> Result<(Layout, usize), Code> {
     let list = Layout::array::<T>(count as usize).map_err(|_| Code::NoRoom)?;
     before.extend(list).map_err(|_| Code::NoRoom)
@@ -82,7 +82,7 @@ pub(crate) struct CamStore {
 }
 
 impl CamStore {
-    /// No cam has room in it.
+    /// A store without room for a cam.
     pub const fn none() -> Self {
         Self {
             slots: List::none(),
@@ -108,7 +108,7 @@ impl CamStore {
         Ok((whole.pad_to_align(), pieces))
     }
 
-    /// Bytes that a store of so many slots and pieces needs.
+    /// Bytes that a store of this many slots and pieces needs.
     pub fn size(slots: u32, pieces: u32) -> Result<usize, Code> {
         Ok(Self::layout(slots, pieces)?.0.size())
     }
@@ -116,14 +116,15 @@ impl CamStore {
     /// Makes the store in its storage.
     ///
     /// # Safety
-    /// `storage` is not null, `bytes` bytes can be read and written there, and nothing but the store uses them as long as it is
-    /// there.
+    /// `storage` is not null, `bytes` bytes can be read and written there, and nothing but the store uses
+    /// them while it exists.
     pub unsafe fn make(slots: u32, pieces: u32, storage: *mut u8, bytes: usize) -> Result<Self, Code> {
         let (whole, place) = Self::layout(slots, pieces)?;
         if whole.size() > bytes || !storage.addr().is_multiple_of(ALIGN) {
             return Err(Code::Storage);
         }
-        // SAFETY: both places lie inside the storage, disjoint, each aligned for its type; nothing else uses the storage.
+        // SAFETY: both places lie inside the storage, are disjoint, and are aligned for their types.
+        // Nothing else uses the storage.
         let mut store = unsafe {
             Self {
                 slots: List::new(storage.cast(), slots as usize),
@@ -172,7 +173,7 @@ impl Plan {
     }
 }
 
-// The host is told one alignment for all configurations.
+// The host is given one alignment for all configurations.
 const _: () = assert!(align_of::<Runtime>() <= ALIGN && align_of::<Axis>() <= ALIGN);
 const _: () = assert!(align_of::<AnyDrive>() <= ALIGN && align_of::<Slot>() <= ALIGN);
 const _: () = assert!(align_of::<CamSlot>() <= ALIGN && align_of::<CamPiece>() <= ALIGN);

@@ -1,4 +1,4 @@
-//! What crosses the border: plain structures without hidden gaps, each with its size in front.
+//! The structures that cross the border: plain, without hidden gaps, each beginning with its size.
 
 use core::ffi::c_char;
 
@@ -502,7 +502,7 @@ pub enum Mishap {
 }
 
 impl Mishap {
-    /// All, each at the place of its number.
+    /// All values, each at the index of its number.
     pub(crate) const ALL: [Self; 9] = [
         Self::Clear,
         Self::Fault,
@@ -589,7 +589,7 @@ pub struct Dump {
     pub stamp: u64,
 }
 
-// No gap a compiler might fill otherwise: every byte belongs to a field.
+// There is no padding that a compiler might fill: every byte belongs to a field.
 const _: () = assert!(size_of::<RuntimeConfig>() == 24);
 const _: () = assert!(size_of::<AxisSetup>() == 376);
 const _: () = assert!(size_of::<DriveSetup>() == 248);
