@@ -1,4 +1,5 @@
-//! The keys of the simulated drives, each said once, as those of an axis are ([`standstill_axis::keys`]).
+//! The keys of the simulated drives, each described once, like those of an axis
+//! ([`standstill_axis::keys`]).
 
 use crate::cia402::Reaction;
 use crate::mechanism::{Load, Stops};
@@ -7,13 +8,13 @@ use crate::switches::Marker;
 use standstill_axis::DELAY_MAX;
 use standstill_axis::keys::{Bounds, Holds, Key, Null, Object};
 
-/// The largest number of scans that a file can say to the unit.
+/// The largest number of scans that a file can give exactly.
 const SCANS: (u64, u64) = (0, 1 << 53);
 
 /// From 0 on.
 const FROM_ZERO: Bounds = Bounds::from(0.0);
 
-/// A place that is not given yet.
+/// The default of a place that is not given.
 const NOWHERE: (f64, f64) = (0.0, 0.0);
 
 fn short(scans: u64) -> u32 {
@@ -87,7 +88,7 @@ macro_rules! power_on {
     };
 }
 
-/// What stands along the travel of any drive.
+/// Switches and markers along the travel of any drive.
 macro_rules! limit_switches {
     () => {
         object!(
@@ -191,7 +192,7 @@ pub static IDEAL: Object<IdealDriveSetup> = Object::new(
     ],
 );
 
-/// How a CiA 402 drive comes to rest by itself; the last one is for the quick stop only.
+/// The ways a CiA 402 drive comes to rest by itself; the last one is for the quick stop only.
 const REACTIONS: [Reaction; 3] = [Reaction::Coast, Reaction::Ramp, Reaction::RampAndStay];
 
 /// A reaction of a CiA 402 drive.
@@ -305,7 +306,7 @@ const NODE_HOMING: &[Key<Cia402Setup>] = &[
     },
 ];
 
-/// Largest torque by the rated one where none is given.
+/// Default ratio of the largest torque to the rated torque.
 const MAX_TORQUE: f64 = 3.0;
 
 const NO_MOTOR: MotorSetup = MotorSetup {
@@ -375,7 +376,8 @@ const MOTOR: &[Key<Cia402Setup>] = &[
     ),
 ];
 
-/// The keys of a drive with a mechanism. Gains that are not given are NaN until [`PlantSetup::with_gains`].
+/// The keys of a drive with a mechanism. Gains that are not given are NaN until
+/// [`PlantSetup::with_gains`].
 pub static PLANT: Object<PlantSetup> = Object::new(
     "a plant",
     &[

@@ -4,7 +4,7 @@ use crate::nearest;
 use crate::wire::Wire;
 use standstill_axis::{DriveOrder, DrivePosition, DriveReport, Edge, PROBES, ProbeReport};
 
-/// A probe's input and what it has seen.
+/// A probe's input and its latched position.
 #[derive(Clone, Copy, Debug, Default)]
 struct Probe {
     wire: Wire,
@@ -12,10 +12,10 @@ struct Probe {
     latched: Option<DrivePosition>,
 }
 
-/// What a simulated drive has beside its motion.
+/// The peripherals of a simulated drive.
 ///
-/// Between two feedbacks the position is taken as linear: a probe's edge at a part of that interval latches the
-/// position there, in increments the nearest one.
+/// Between two feedbacks the position is taken as linear. A probe's edge within that interval latches the
+/// position there; positions in increments are rounded to the nearest one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Peripherals {
     inputs: u32,
@@ -23,12 +23,12 @@ pub struct Peripherals {
     probes: [Probe; PROBES],
     /// The position of the feedback before.
     before: Option<DrivePosition>,
-    /// Length of a turn (u) of a drive that speaks units and whose positions come round.
+    /// Length of a turn (u), for a drive that uses units and whose positions are modulo.
     turn: Option<f64>,
 }
 
 impl Peripherals {
-    /// Those of a drive whose positions in units, if it speaks such, come round after `turn` (u).
+    /// Peripherals of a drive. `turn` (u) is the modulo length of a drive that uses units, if it has one.
     pub fn new(turn: Option<f64>) -> Self {
         Self {
             turn,
@@ -36,14 +36,14 @@ impl Peripherals {
         }
     }
 
-    /// From now on positions in units are called `by` (u) more: the drive was told a new name.
+    /// Renames positions in units: each is `by` (u) more from now on.
     pub fn shift(&mut self, by: f64) {
         if let Some(DrivePosition::Units(before)) = &mut self.before {
             *before += by;
         }
     }
 
-    /// Sets the digital input `number`; those from [`standstill_axis::DIGITAL`] on do not exist.
+    /// Sets the digital input `number`. Inputs from [`standstill_axis::DIGITAL`] on do not exist.
     pub fn set_input(&mut self, number: u32, level: bool) {
         if let Some(bit) = 1_u32.checked_shl(number) {
             self.inputs = if level {
@@ -54,15 +54,15 @@ impl Peripherals {
         }
     }
 
-    /// The input of probe `number`, from 0, is at `level` from the part `at` (0 to 1) of the interval on that ends
-    /// with the next feedback. Up to four changes in one interval are kept.
+    /// Sets the input of probe `number`, counted from 0, to `level`. The change is at the part `at` (0 to
+    /// 1) of the interval that ends with the next feedback. Up to four changes in one interval are kept.
     pub fn set_probe(&mut self, number: usize, at: f64, level: bool) {
         if let Some(probe) = self.probes.get_mut(number) {
             probe.wire.set(at, level);
         }
     }
 
-    /// Takes the position (as fed back in this scan) and fills in what the drive tells.
+    /// Takes the position (as fed back in this scan) and fills in the report.
     pub fn report(&mut self, position: DrivePosition, report: &mut DriveReport) {
         let before = self.before.replace(position).unwrap_or(position);
         for (probe, told) in self.probes.iter_mut().zip(&mut report.probes) {
@@ -80,11 +80,12 @@ impl Peripherals {
         (report.inputs, report.outputs) = (self.inputs, self.outputs);
     }
 
-    /// Takes what the drive is asked.
+    /// Takes the orders for the drive.
     pub fn order(&mut self, order: &DriveOrder) {
         self.outputs = order.outputs;
         for (probe, edge) in self.probes.iter_mut().zip(order.probes) {
-            // A probe starts afresh when it is armed for another edge, or after it was disarmed.
+            // A probe starts afresh when it is armed for another edge, or armed again after it was
+            // disarmed.
             if probe.ordered != edge {
                 probe.latched = None;
             }
@@ -93,7 +94,7 @@ impl Peripherals {
     }
 }
 
-/// The position at a part of the way from one to the other, the shorter one where positions in units come round.
+/// The position at a part of the way from one to the other. Modulo positions take the shorter way.
 fn between(from: DrivePosition, to: DrivePosition, part: f64, turn: Option<f64>) -> DrivePosition {
     match (from, to) {
         (DrivePosition::Units(from), DrivePosition::Units(to)) => {
@@ -108,7 +109,7 @@ fn between(from: DrivePosition, to: DrivePosition, part: f64, turn: Option<f64>)
             let exact = part * to.saturating_sub(from) as f64;
             DrivePosition::Increments(from.saturating_add(nearest(exact)))
         }
-        // A drive does not change what it speaks.
+        // A drive does not change its kind of position.
         (_, to) => to,
     }
 }
@@ -139,7 +140,7 @@ mod tests {
             latched: Some(Units(11.0)),
         };
         assert_eq!(report.probes, [seen, ProbeReport::default()]);
-        // Later edges count no more, until it is armed anew.
+        // Later edges do not count until it is armed again.
         for (level, position) in [(false, 15.0), (true, 16.0)] {
             device.set_probe(0, 0.5, level);
             device.report(Units(position), &mut report);

@@ -1,7 +1,8 @@
-//! The simulated drives with all they can have: motion, switches along the travel, digital inputs and outputs, probes.
+//! The simulated drives with all their parts: motion, switches along the travel, digital inputs and
+//! outputs, probes.
 //!
-//! What stands here: how a drive is described in the units of its axis, and the drive made of that. What does not: how
-//! its parts behave, which stands in the modules they are from. Scan scripts and the C library have these drives.
+//! This module describes a drive in the units of its axis and makes the drive from that. The parts
+//! themselves are in the modules they come from. Scan scripts and the C library use these drives.
 
 use crate::cia402::{Cia402Drive, MotorLoad, NodeHoming, Reaction, Settings, TorqueScale};
 use crate::mechanism::{Gains, Mechanism, MechanismError, Plant, PlantDrive, Servo, Stops};
@@ -26,7 +27,7 @@ pub enum DriveSetup {
 /// Parameters of a drive with a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlantSetup {
-    /// Scans until power is confirmed; `None` never.
+    /// Scans until power is confirmed; `None` for never.
     pub power_on: Option<u32>,
     /// What is moved.
     pub plant: Plant,
@@ -39,7 +40,7 @@ pub struct PlantSetup {
 }
 
 impl PlantSetup {
-    /// Nothing that moves yet: without inertia, friction and load, and with gains that are still to be found.
+    /// A start value: no inertia, friction or load, and gains not chosen yet.
     pub const NONE: Self = Self {
         power_on: Some(0),
         plant: Plant {
@@ -60,7 +61,7 @@ impl PlantSetup {
         switches: Switches::NONE,
     };
 
-    /// With the gains of [`Gains::of`] in scans of `cycle` seconds where they are NaN.
+    /// Replaces gains that are NaN by those of [`Gains::of`] in scans of `cycle` seconds.
     #[must_use]
     pub fn with_gains(self, cycle: f64) -> Self {
         let own = Gains::of(&self.plant, cycle);
@@ -76,7 +77,8 @@ impl PlantSetup {
 }
 
 impl Cia402Setup {
-    /// A drive that follows at once, ramps down at a quick stop and a fault, and coasts where it is disabled.
+    /// A drive without delay that ramps down at a quick stop and at a fault, and coasts when it is
+    /// disabled.
     pub const PLAIN: Self = Self {
         delay: 0,
         power_on: Some(0),
@@ -92,7 +94,7 @@ impl Cia402Setup {
 }
 
 impl IdealDriveSetup {
-    /// A drive that follows at once.
+    /// A drive without delay.
     pub const PLAIN: Self = Self {
         delay: 0,
         power_on: Some(0),
@@ -101,7 +103,7 @@ impl IdealDriveSetup {
 }
 
 impl DriveSetup {
-    /// What stands along its travel.
+    /// The switches along its travel.
     pub fn switches(&self) -> &Switches {
         match self {
             Self::Ideal(setup) => &setup.switches,
@@ -122,11 +124,11 @@ impl Default for DriveSetup {
 pub struct Cia402Setup {
     /// Scans from command to actual position.
     pub delay: usize,
-    /// Scans from Switched on to Operation enabled; `None` never.
+    /// Scans from Switched on to Operation enabled; `None` for never.
     pub power_on: Option<u32>,
     /// Scans of self-test.
     pub start_up: u32,
-    /// Rate of the drive's own ramps (u/s^2), above 0; that of the axis limits if absent.
+    /// Rate of the drive's own ramps (u/s^2), above 0; the deceleration of the axis limits if absent.
     pub deceleration: Option<f64>,
     /// Object 605Ah.
     pub quick_stop: Reaction,
@@ -134,20 +136,20 @@ pub struct Cia402Setup {
     pub on_disable: Reaction,
     /// Object 605Eh.
     pub on_fault: Reaction,
-    /// What it does in homing mode: whether it goes upwards, and the velocity (u/s), above 0.
+    /// Homing mode: whether it goes upwards, and the velocity (u/s), above 0.
     pub homing: Option<(bool, f64)>,
-    /// What it turns in torque mode; none if it does not know the mode.
+    /// The motor in torque mode; none if it does not have the mode.
     pub motor: Option<MotorSetup>,
     /// Along its travel.
     pub switches: Switches,
 }
 
-/// The motor of a simulated CiA 402 drive, in a unit of torque of the host's choice.
+/// The motor of a simulated CiA 402 drive, in a unit of torque that the host chooses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorSetup {
     /// Object 6076h, above 0.
     pub rated_torque: f64,
-    /// Object 6072h, above 0 and within what the bus can say.
+    /// Object 6072h, above 0 and within the range of the bus.
     pub max_torque: f64,
     /// Torque for an acceleration (torque s^2/u), above 0.
     pub inertia: f64,
@@ -168,20 +170,20 @@ pub struct IdealDriveSetup {
     pub switches: Switches,
 }
 
-/// What happens to a drive, beside failing.
+/// A disturbance of a drive other than a fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DriveChange {
     /// Someone pushes the axis while its power is off (u; increments at drives that count them).
     Displace(f64),
-    /// A CiA 402 drive listens to its controller, or does not.
+    /// Whether a CiA 402 drive obeys its controller.
     Remote(bool),
-    /// A CiA 402 drive shows a warning, or does not.
+    /// Whether a CiA 402 drive shows a warning.
     Warning(bool),
     /// A digital input.
     Input {
         /// From 0.
         number: u32,
-        /// What it shows from this scan on.
+        /// The level from this scan on.
         level: bool,
     },
     /// The input of a touch probe.
@@ -190,18 +192,19 @@ pub enum DriveChange {
         number: usize,
         /// The part of the scan that ends with this feedback (0 to 1).
         at: f64,
-        /// What it shows from there on.
+        /// The level from there on.
         level: bool,
     },
-    /// Its encoder is broken: from this scan on it tells this position, whatever the axis does, until its cause is cleared.
+    /// Its encoder is broken: from this scan on it reports this position, wherever the axis is, until its
+    /// cause is cleared.
     ReportPosition(DrivePosition),
-    /// The same of the actual torque; nothing for a drive that tells none.
+    /// The same for the actual torque. No effect on a drive that reports none.
     ReportTorque(f64),
 }
 
-/// A drive, and what it has beside its motion.
+/// A drive with its peripherals.
 ///
-/// Powers up, moves and fails as its [`DriveSetup`] says, in cycles of fixed length.
+/// It powers up, moves and fails as its [`DriveSetup`] says, in cycles of fixed length.
 #[derive(Clone, Debug)]
 pub struct SimulatedDrive {
     kind: Kind,
@@ -209,7 +212,7 @@ pub struct SimulatedDrive {
     travel: Travel,
     /// As last fed back.
     position: DrivePosition,
-    /// Told instead of what it measures.
+    /// Reported instead of the measured position.
     told_position: Option<DrivePosition>,
     told_torque: Option<f64>,
     /// The last command in units.
@@ -218,7 +221,7 @@ pub struct SimulatedDrive {
 
 /// What moves.
 #[derive(Clone, Debug)]
-// Without a heap they stand where the drive stands, so the largest sets the size of all.
+// Without a heap all kinds share this place, so the largest determines the size.
 #[allow(clippy::large_enum_variant)]
 enum Kind {
     Ideal(IdealDrive),
@@ -227,10 +230,10 @@ enum Kind {
 }
 
 impl SimulatedDrive {
-    /// The drive under an axis of this configuration, in cycles of so many nanoseconds, above 0.
+    /// The drive under an axis of this configuration. `cycle_ns` is the cycle in nanoseconds, above 0.
     ///
-    /// Only a mechanism is checked. A CiA 402 drive under an axis without a scaling counts one increment a unit; what
-    /// is out of the ranges of [`Cia402Setup`] and [`MotorSetup`] gives a drive of no use.
+    /// Only a mechanism is checked. A CiA 402 drive under an axis without a scaling counts one increment
+    /// per unit. Values outside the ranges of [`Cia402Setup`] and [`MotorSetup`] give a useless drive.
     ///
     /// # Errors
     /// [`MechanismError`], of a plant.
@@ -278,7 +281,8 @@ impl SimulatedDrive {
                     drive = drive.with_torque(TorqueScale {
                         rated: motor.rated_torque,
                         increments: if counts_down(axis) { -per_unit } else { per_unit },
-                        // Four scans from any distance to the bound: no swing, and little left of it.
+                        // The bound is reached in about four scans: no oscillation, and little distance
+                        // left.
                         gain: 0.25 * motor.inertia * rate,
                     });
                 }
@@ -320,7 +324,7 @@ impl SimulatedDrive {
         matches!(self.kind, Kind::Cia402(_))
     }
 
-    /// A drive fault with the drive's own `code`.
+    /// Raises a drive fault with the drive's own `code`.
     pub fn fail(&mut self, code: u16) {
         match &mut self.kind {
             Kind::Ideal(drive) => drive.fail(code),
@@ -347,7 +351,7 @@ impl SimulatedDrive {
         }
     }
 
-    /// The cause of whatever fault is gone.
+    /// Removes the causes of all faults.
     pub fn clear_cause(&mut self) {
         (self.told_position, self.told_torque) = (None, None);
         match &mut self.kind {
@@ -357,10 +361,10 @@ impl SimulatedDrive {
         }
     }
 
-    /// What befalls it beside faults; what only a CiA 402 drive knows does nothing to others.
+    /// Applies a disturbance. One that only a CiA 402 drive knows has no effect on others.
     ///
     /// # Errors
-    /// [`Powered`] if it is to be pushed while it has torque.
+    /// [`Powered`] if it is pushed while it has torque.
     pub fn change(&mut self, change: DriveChange) -> Result<(), Powered> {
         match (&mut self.kind, change) {
             (Kind::Ideal(drive), DriveChange::Displace(distance)) => drive.displace(distance),
@@ -405,14 +409,15 @@ fn counts_down(axis: &AxisConfig) -> bool {
     axis.scaling.is_some_and(|scaling| scaling.invert())
 }
 
-/// In thousandths of the rated torque, increments and scans, `per_unit` increments a unit and `rate` scans a second.
+/// Converts to thousandths of the rated torque, increments and scans. `per_unit` is in increments per
+/// unit, `rate` in scans per second.
 fn load(motor: &MotorSetup, per_unit: f64, rate: f64) -> MotorLoad {
     let thousandths = 1000.0 / motor.rated_torque;
     MotorLoad {
         inertia: motor.inertia * thousandths * (rate * rate) / per_unit,
         viscous: motor.viscous * thousandths * rate / per_unit,
         coulomb: motor.coulomb * thousandths,
-        // Within 16 bits since it was read.
+        // The reader has checked that it fits 16 bits.
         most: (motor.max_torque * thousandths + 0.5) as u16,
     }
 }
@@ -440,7 +445,7 @@ impl Drive for SimulatedDrive {
         if let Kind::Cia402(drive) = &self.kind {
             self.travel.drop_increments(drive.node().origin());
         }
-        // Switches stand where they stand, whatever the encoder says.
+        // Switches have fixed places, whatever the encoder reports.
         self.travel.read(&mut feedback);
         feedback.position = self.told_position.unwrap_or(feedback.position);
         self.position = feedback.position;
@@ -463,7 +468,7 @@ impl Drive for SimulatedDrive {
     }
 
     fn report(&mut self, report: &mut DriveReport) {
-        // A CiA 402 node has probes of its own, which take the place of these.
+        // A CiA 402 node has probes of its own, which replace these.
         self.peripherals.report(self.position, report);
         match &mut self.kind {
             Kind::Ideal(drive) => drive.report(report),

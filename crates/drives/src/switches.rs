@@ -5,25 +5,26 @@ use standstill_axis::{
     split,
 };
 
-/// Where an encoder gives a reference pulse.
+/// The places of an encoder's reference pulses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Marker {
     /// One of the places (u).
     pub at: f64,
-    /// From one to the next (u), above 0; `None`: there is but one.
+    /// Distance from one to the next (u), above 0; `None` if there is only one.
     pub every: Option<f64>,
 }
 
-/// What stands along the travel, at places (u) that keep their names whatever an axis calls its positions.
+/// The switches and pulses along the travel. Their places (u) keep their values when the axis renames its
+/// positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Switches {
-    /// The limit switches are active up to the first and from the second on (u).
+    /// The limit switches are active below the first place and above the second (u), the places included.
     pub limits: Option<(f64, f64)>,
     /// The home switch is active from the first to the second (u).
     pub home: Option<(f64, f64)>,
     /// Reference pulses.
     pub marker: Option<Marker>,
-    /// Length of a turn (u) of an axis whose places come round.
+    /// Length of a turn (u) of a modulo axis.
     pub turn: Option<f64>,
 }
 
@@ -46,7 +47,7 @@ impl Switches {
         }
     }
 
-    /// Sets the switches that exist as they are at `place` (u).
+    /// Sets the existing switches as they are at `place` (u).
     pub fn show(&self, place: f64, signals: &mut DriveSignals) {
         let place = self.turn.map_or(place, |turn| split(place, turn).1);
         if let Some((low, high)) = self.limits {
@@ -58,11 +59,11 @@ impl Switches {
         }
     }
 
-    /// The first reference pulse on the way from one place (u), which is left out, to another (u).
+    /// The first reference pulse on the way from one place (u), which is excluded, to another (u).
     pub fn pulse_between(&self, from: f64, to: f64) -> Option<f64> {
         let Marker { at, every } = self.marker?;
         let is_between = |place: f64| (from < place && place <= to) || (to <= place && place < from);
-        // On an axis that comes round a single pulse comes round, too.
+        // On a modulo axis a single pulse repeats once per turn.
         let Some(every) = every.or(self.turn) else {
             return is_between(at).then_some(at);
         };
@@ -80,15 +81,15 @@ impl Switches {
     }
 }
 
-/// A simulated drive on its travel: where it is, what the switches show there, and the latch of the reference pulse.
+/// The travel of a simulated drive: its place, the switches there, and the latch of the reference pulse.
 #[derive(Clone, Copy, Debug)]
 pub struct Travel {
     switches: Switches,
     /// Of a drive that counts increments.
     scaling: Option<Scaling>,
-    /// What a drive that speaks units calls its positions beyond their places (u).
+    /// The offset of positions in units from their places (u).
     renamed: f64,
-    /// Increments a drive has dropped from its count.
+    /// Increments that the drive has dropped from its count.
     origin: i64,
     /// At the last two feedbacks (u).
     places: Option<[f64; 2]>,
@@ -110,17 +111,17 @@ impl Travel {
         }
     }
 
-    /// From now on positions in units are called `by` (u) more.
+    /// Renames positions in units: each is `by` (u) more from now on.
     pub fn shift(&mut self, by: f64) {
         self.renamed += by;
     }
 
-    /// From now on the count of increments is `origin` less than at the start.
+    /// From now on the count of increments is less by `origin` than at the start.
     pub fn drop_increments(&mut self, origin: i64) {
         self.origin = origin;
     }
 
-    /// Takes the position and shows the switches that exist.
+    /// Takes the position and sets the existing switches.
     pub fn read(&mut self, feedback: &mut DriveFeedback) {
         let place = match (feedback.position, &self.scaling) {
             (DrivePosition::Units(units), _) => units - self.renamed,
@@ -135,13 +136,13 @@ impl Travel {
         self.switches.show(place, signals);
         let counts_down = self.scaling.is_some_and(|scaling| scaling.invert());
         if counts_down && self.switches.limits.is_some() {
-            // A drive tells them as it counts.
+            // A drive reports positions in its own count.
             (signals.limit_switch_negative, signals.limit_switch_positive) =
                 (signals.limit_switch_positive, signals.limit_switch_negative);
         }
     }
 
-    /// Tells what there is, and what the latch has seen between the last two feedbacks.
+    /// Fills in the report: the equipment, and the latched pulse between the last two feedbacks.
     pub fn report(&mut self, report: &mut DriveReport) {
         if let (true, None, Some([from, to])) = (self.ordered, self.latched, self.places) {
             self.latched = self.pulse_between(from, to);
@@ -158,7 +159,7 @@ impl Travel {
 
     /// Takes what the drive is asked.
     pub fn order(&mut self, order: &DriveOrder) {
-        // It starts afresh when it is armed.
+        // The latch starts afresh when it is armed.
         if !self.ordered {
             self.latched = None;
         }
@@ -166,7 +167,7 @@ impl Travel {
     }
 
     fn pulse_between(&self, from: f64, to: f64) -> Option<DrivePosition> {
-        // What comes round comes the shorter way.
+        // On a modulo axis the way is the shorter one.
         let from = match self.switches.turn {
             Some(turn) if to - from > 0.5 * turn => from + turn,
             Some(turn) if from - to > 0.5 * turn => from - turn,

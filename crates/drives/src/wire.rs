@@ -5,17 +5,18 @@ use standstill_axis::Edge;
 /// Changes of a level that are kept for one interval.
 const CHANGES: usize = 4;
 
-/// A level and when it changes within the interval that ends with the next feedback.
+/// A level and its changes within the interval that ends with the next feedback.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Wire {
     level: bool,
-    /// Part of the interval, and the level from there on; the first `count`, in the order of time.
+    /// Part of the interval, and the level from there on. The first `count` are valid, in time order.
     changes: [(f64, bool); CHANGES],
     count: usize,
 }
 
 impl Wire {
-    /// The level from the part `at` (0 to 1) of the interval on. With more changes than are kept the last one counts.
+    /// Sets the level from the part `at` (0 to 1) of the interval on. If there are more changes than are
+    /// kept, the last one counts.
     pub fn set(&mut self, at: f64, level: bool) {
         let change = (at.clamp(0.0, 1.0), level);
         self.count = (self.count + 1).min(CHANGES);
@@ -25,7 +26,7 @@ impl Wire {
         if let Some(last) = kept.last_mut() {
             *last = change;
         }
-        // A later one goes behind those of the same instant.
+        // A later change at the same instant goes behind.
         for slot in (1..kept.len()).rev() {
             if let Some([before, after]) = kept.get_mut(slot - 1..=slot)
                 && before.0 > after.0
@@ -35,7 +36,7 @@ impl Wire {
         }
     }
 
-    /// Ends the interval: `seen` is told of its edges, in the order of time.
+    /// Ends the interval: calls `seen` for each edge, in time order.
     pub fn take(&mut self, mut seen: impl FnMut(f64, Edge)) {
         for (at, level) in self.changes.iter().take(self.count) {
             match (self.level, *level) {

@@ -1,4 +1,4 @@
-//! A drive of any CiA 402 node.
+//! A drive made of any CiA 402 node.
 
 use super::homing::Link;
 use super::node::{Inputs, MODE_CSP, MODE_CST, Node, Outputs};
@@ -11,19 +11,20 @@ use standstill_axis::{
     DriveSignals, Fault,
 };
 
-/// Makes a [`Drive`] of a [`Node`], in cyclic synchronous position mode, and in homing mode or cyclic synchronous torque
-/// mode while the axis asks for it.
+/// Makes a [`Drive`] of a [`Node`] in cyclic synchronous position mode. It changes to homing mode or to
+/// cyclic synchronous torque mode while the axis asks for it.
 ///
-/// - The node's position, modulo 2^32, is extended: it may wrap as often as it likes, as long as it moves less
-///   than 2^31 increments between two scans (DR-2).
-/// - Operation counts as enabled when the state says so and the mode is acknowledged (CI-7). Until then the
-///   target is the actual position, so that enabling never makes a step (CI-3).
-/// - While the change to torque mode is not acknowledged the node goes on with the velocity it has; on the way back it
-///   has no torque until position mode is. Both take no time where the node answers in the same scan.
-/// - The velocity bounds of a torque are held here, by taking torque away near them: the profile has but one bound
-///   (6080h), of both directions, which is left to the node.
-/// - Inputs that do not arrive make the communication lost in the same scan (CI-8); the outputs are sent on.
-/// - A node that is not under remote control counts as one without supply: not ready, no error (CI-6).
+/// - The node's position is modulo 2^32. It is extended, so it may wrap any number of times, if it moves
+///   less than 2^31 increments between two scans (DR-2).
+/// - Operation counts as enabled when the state is Operation enabled and the mode is acknowledged (CI-7).
+///   Until then the target is the actual position, so that enabling never makes a step (CI-3).
+/// - Until the change to torque mode is acknowledged, the node keeps its velocity. On the way back its
+///   torque is 0 until position mode is acknowledged. Both take no time if the node answers in the same
+///   scan.
+/// - The adapter keeps the velocity bounds of a torque command by reducing the torque near them. The
+///   profile has only one bound (6080h) for both directions, which is left to the node.
+/// - If inputs do not arrive, the communication is lost in the same scan (CI-8); outputs are still sent.
+/// - A node that is not under remote control counts as a node without supply: not ready, no error (CI-6).
 ///
 /// Positions at this drive are increments, so its axis needs a scaling.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +37,7 @@ pub struct Adapter<N> {
     last: Inputs,
     /// The node's position, extended.
     position: i64,
-    /// The last target, and how far it was from the one before.
+    /// The last target, and its distance from the one before.
     target: (i64, i64),
     /// Nothing has arrived yet.
     fresh: bool,
@@ -44,7 +45,8 @@ pub struct Adapter<N> {
 }
 
 impl<N: Node> Adapter<N> {
-    /// Before the first scan. Positions begin within 2^31 of 0, where the node says.
+    /// The state before the first scan. Positions begin at the node's position, which is within 2^31 of
+    /// 0.
     pub fn new(node: N) -> Self {
         Self {
             node,
@@ -60,7 +62,7 @@ impl<N: Node> Adapter<N> {
         }
     }
 
-    /// The same for a node that measures torques and, if its 6072h says so, holds them.
+    /// The same for a node that measures torque, and that holds a torque if its 6072h says so.
     pub fn with_torque(mut self, scale: TorqueScale) -> Self {
         self.torque.set_scale(scale);
         self
@@ -76,7 +78,7 @@ impl<N: Node> Adapter<N> {
         &mut self.node
     }
 
-    /// Says that nothing real moves.
+    /// Marks the drive as simulated: nothing real moves.
     pub(super) fn simulated(mut self) -> Self {
         self.simulated = true;
         self
@@ -115,9 +117,10 @@ impl<N: Node> Adapter<N> {
             DrivePosition::Increments(_) if is_in_mode && self.torque.is_wanted() => {
                 before.saturating_add(step)
             }
-            // On the way back from a torque it has to be good in the scan in which position mode begins.
+            // On the way back from torque mode, the target must be right in the scan in which position
+            // mode begins.
             DrivePosition::Increments(increments) if is_in_mode || self.torque.is_on_way_back() => increments,
-            // An axis without a scaling cannot be told what an increment is: it stays where it is.
+            // Without a scaling the axis cannot know what an increment is: it does not move.
             DrivePosition::Increments(_) | DrivePosition::Units(_) => self.position,
         }
     }
@@ -143,7 +146,7 @@ impl<N: Node> Drive for Adapter<N> {
             voltage: status.voltage() && status.remote(),
             fault: is_faulty.then_some(Fault {
                 code: self.last.error_code,
-                // The profile has no word for it: whether a reset works is seen when it is tried.
+                // The profile does not say whether a reset will work. Only trying it shows.
                 cause_present: false,
             }),
             position: DrivePosition::Increments(self.position),

@@ -1,26 +1,26 @@
-//! Homing by the drive, mode 6: how a controller asks for it, and how a simulated node does it.
+//! Homing by the drive, mode 6: the controller's side, and the behaviour of a simulated node.
 
 use super::node::{Inputs, MODE_CSP, MODE_HM};
 use super::words::{Command, HomingStatus, State, Statusword};
 use standstill_axis::{DriveHoming, DrivePosition};
 
-/// The controller's side: mode 6 is asked for, bit 4 set once it is acknowledged (CI-7), the status judged from then
-/// on, and mode 8 taken back once the drive stands.
+/// The controller's side. It asks for mode 6, sets bit 4 once the mode is acknowledged (CI-7), and judges
+/// the status from then on. Once the drive stands it returns to mode 8.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Link {
     /// The axis wants the drive to home.
     wanted: bool,
-    /// Mode 6 has been asked for, and mode 8 is not back yet.
+    /// Mode 6 has been asked for, and mode 8 is not in force again yet.
     leads: bool,
     /// Bit 4 has been sent.
     started: bool,
-    /// Bit 12 has been seen FALSE: what it tells from now on is of this homing.
+    /// Bit 12 has been seen FALSE: from now on it belongs to this homing.
     fresh: bool,
     told: DriveHoming,
 }
 
 impl Link {
-    /// Takes what the axis orders.
+    /// Takes the request of the axis.
     pub fn order(&mut self, wanted: bool) {
         if wanted && !self.wanted {
             self.leads = true;
@@ -30,7 +30,7 @@ impl Link {
         self.wanted = wanted;
     }
 
-    /// Takes what arrived; `reference` is where the drive has it once it is known.
+    /// Takes the inputs. `reference` is its position at the drive once it is known.
     pub fn take(&mut self, inputs: &Inputs, reference: DrivePosition) {
         if !self.leads {
             return;
@@ -61,7 +61,8 @@ impl Link {
         }
     }
 
-    /// Mode and further bits of the control word, given what arrived last and whether operation is asked for.
+    /// Mode and further bits of the control word, from the last inputs and from whether operation is
+    /// asked for.
     pub fn give(&mut self, inputs: &Inputs, enable: bool) -> (i8, u16) {
         if !self.leads {
             return (MODE_CSP, 0);
@@ -78,7 +79,7 @@ impl Link {
         }
     }
 
-    /// Whether the drive may be in a mode other than 8 because it was asked to.
+    /// Whether the drive may be in a mode other than 8 because of this request.
     pub fn leads(&self) -> bool {
         self.leads
     }
@@ -96,8 +97,8 @@ fn is_in_mode(inputs: &Inputs) -> bool {
 /// 603Fh of a simulated node whose homing met a limit switch: the profile's "reference limit".
 pub(super) const REFERENCE_LIMIT: u16 = 0x8612;
 
-/// What a simulated node does in mode 6: it goes to the home switch, calls the place where it goes on 0, and comes to
-/// rest. A limit switch in the way is an error.
+/// Homing of a simulated node in mode 6: it goes to the home switch, calls the place where it goes on 0,
+/// and comes to rest. A limit switch on the way is an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeHoming {
     /// Towards larger positions.
@@ -116,7 +117,7 @@ pub(super) enum Progress {
     Searching,
     /// The switch has been found.
     Attained,
-    /// It has not been found.
+    /// It was not found.
     Failed,
 }
 

@@ -1,17 +1,18 @@
-//! What a simulated node turns: an ideal motor, some scans late.
+//! The motor of a simulated node: ideal, with a delay of some scans.
 
 use crate::nearest;
 use standstill_axis::DELAY_MAX;
 
-/// Positions of a ramp stay within the increments a 64-bit float knows apart.
+/// Positions of a ramp stay in the range in which a 64-bit float is exact to the increment.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// What a simulated node turns when it holds a torque, all of it in thousandths of the rated torque.
+/// The load that a simulated node turns in torque mode. All torques are in thousandths of the rated
+/// torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorLoad {
-    /// For an acceleration of 1 increment/scan^2, above 0.
+    /// Torque for an acceleration of 1 increment/scan^2, above 0.
     pub inertia: f64,
-    /// Friction for a velocity of 1 increment/scan, from 0.
+    /// Friction at a velocity of 1 increment/scan, from 0.
     pub viscous: f64,
     /// Friction against any motion, from 0.
     pub coulomb: f64,
@@ -20,7 +21,7 @@ pub struct MotorLoad {
 }
 
 impl MotorLoad {
-    /// Torque that gets from one velocity (increments/scan) to another within a scan.
+    /// The torque that changes one velocity (increments/scan) to another within a scan.
     fn needed(&self, before: f64, after: f64) -> f64 {
         let coulomb = if after == 0.0 {
             0.0
@@ -32,7 +33,7 @@ impl MotorLoad {
 
     /// The velocity (increments/scan) after a scan under `torque`.
     fn velocity(&self, before: f64, torque: f64) -> f64 {
-        // Implicit in the friction that grows with velocity, so that no amount of it swings.
+        // Friction that grows with velocity is solved implicitly, so that no amount of it oscillates.
         let free = (self.inertia * before + torque) / (self.inertia + self.viscous);
         let held = self.coulomb / (self.inertia + self.viscous);
         if free.abs() <= held {
@@ -43,21 +44,21 @@ impl MotorLoad {
     }
 }
 
-/// Follows every target `delay` scans late, and comes to rest by itself when it has to. Under a torque and at a velocity
-/// there is no target to be late for.
+/// Follows every target `delay` scans late, and brakes by itself when required. Under a torque, and at a
+/// velocity, there is no target and no delay.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motor {
-    /// Positions on their way, a ring; the oldest is the actual one.
+    /// Positions that are still delayed, as a ring; the oldest is the actual one.
     line: [i64; DELAY_MAX + 1],
     head: usize,
     delay: usize,
-    /// The one in force.
+    /// The newest position, with its fraction of an increment.
     late: usize,
     /// The newest position, between increments.
     place: f64,
     /// Increments a scan.
     velocity: f64,
-    /// Thousandths of the rated torque, of the last scan.
+    /// The torque of the last scan (thousandths of the rated torque).
     torque: f64,
     load: Option<MotorLoad>,
 }
@@ -85,7 +86,7 @@ impl Motor {
             .unwrap_or_default()
     }
 
-    /// The newest position it was sent to.
+    /// The newest position that it was sent to.
     pub fn newest(&self) -> i64 {
         self.line.get(self.head).copied().unwrap_or_default()
     }
@@ -116,7 +117,7 @@ impl Motor {
         self.ramp(velocity, f64::INFINITY);
     }
 
-    /// One scan under `torque` (thousandths of the rated one), as far as it goes.
+    /// One scan under `torque` (thousandths of the rated torque), within the exact range.
     pub fn turn(&mut self, torque: f64) {
         self.be_late(0);
         let Some(load) = self.load else { return };
@@ -127,7 +128,7 @@ impl Motor {
         self.torque = torque;
     }
 
-    /// From now on it is so late; what was on its way is dropped.
+    /// Sets the delay; delayed positions are dropped.
     fn be_late(&mut self, late: usize) {
         if self.late != late {
             let actual = self.actual();
@@ -137,7 +138,7 @@ impl Motor {
         }
     }
 
-    /// The torque of a scan that began with velocity `before`.
+    /// Computes the torque of a scan that began with velocity `before`.
     fn feel(&mut self, before: f64) {
         self.torque = self.load.map_or(0.0, |load| load.needed(before, self.velocity));
     }
@@ -161,7 +162,7 @@ impl Motor {
         self.feel(before);
     }
 
-    /// From now on every position counts `by` increments more.
+    /// Renames positions: each counts `by` increments more from now on.
     pub fn count_from(&mut self, by: i64) {
         for position in &mut self.line {
             *position = position.saturating_add(by);
@@ -169,12 +170,12 @@ impl Motor {
         self.place += by as f64;
     }
 
-    /// At rest, with nothing on its way.
+    /// Whether it is at rest with no delayed position.
     pub fn is_at_rest(&self) -> bool {
         self.velocity == 0.0 && self.actual() == self.newest()
     }
 
-    /// Without torque it stands where it is; what was on its way is dropped.
+    /// Without torque it stops where it is; delayed positions are dropped.
     pub fn let_go(&mut self) {
         self.stand_at(self.actual());
     }

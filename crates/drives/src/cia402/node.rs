@@ -1,4 +1,4 @@
-//! Process data of a node: what a bus carries in every scan.
+//! Process data of a node: the values a bus carries in every scan.
 
 use standstill_axis::{Equipment, PROBES};
 
@@ -33,7 +33,8 @@ pub struct Inputs {
     pub digital_inputs: u32,
     /// 60B9h
     pub probe_status: u16,
-    /// 60BAh to 60BDh (increments), modulo 2^32: at the rising and the falling edge of each probe.
+    /// 60BAh to 60BDh (increments), modulo 2^32: latched at the rising and the falling edge of each
+    /// probe.
     pub probe_positions: [[i32; 2]; PROBES],
 }
 
@@ -54,7 +55,7 @@ pub struct Outputs {
     pub probe_function: u16,
 }
 
-/// A CiA 402 node on whatever bus, exchanging process data once a scan.
+/// A CiA 402 node on any bus. It exchanges process data once per scan.
 pub trait Node {
     /// This scan's inputs; `None` if they did not arrive.
     fn inputs(&mut self, now_ns: i64) -> Option<Inputs>;
@@ -62,7 +63,8 @@ pub trait Node {
     /// This scan's outputs.
     fn outputs(&mut self, now_ns: i64, outputs: &Outputs);
 
-    /// What it has. By default both kinds of switches, in 60FDh, and mode 6; a node that has less says so.
+    /// The equipment of the node. The default is both kinds of switches, in 60FDh, and mode 6; a node
+    /// with less overrides it.
     fn equipment(&self) -> Equipment {
         Equipment {
             home_switch: true,
@@ -72,8 +74,8 @@ pub trait Node {
         }
     }
 
-    /// 6072h: the largest torque it holds in mode 10 (thousandths of the rated torque); 0, as by default, if it does not
-    /// know the mode.
+    /// 6072h: the largest torque it holds in mode 10 (thousandths of the rated torque). 0, the default,
+    /// if it does not have the mode.
     fn max_torque(&self) -> u16 {
         0
     }

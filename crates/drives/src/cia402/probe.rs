@@ -1,4 +1,4 @@
-//! Touch probes: what a controller asks of a node, and how a simulated node latches.
+//! Touch probes: the requests of a controller, and the latches of a simulated node.
 //!
 //! Source: CiA 402, objects 60B8h (function), 60B9h (status) and 60BAh to 60BDh (positions).
 
@@ -12,13 +12,13 @@ use standstill_axis::{DrivePosition, DriveReport, Edge, PROBES, ProbeReport};
 pub struct ProbeFunction;
 
 impl ProbeFunction {
-    /// Enabled: armed as long as it is set.
+    /// Enabled: armed while it is set.
     pub const ENABLE: u16 = 1 << 0;
 
     /// Every edge is latched, not only the first.
     pub const CONTINUOUS: u16 = 1 << 1;
 
-    /// What is watched: 0 is the probe's input.
+    /// The source: 0 is the probe's input.
     pub const SOURCE: u16 = 0b11 << 2;
 
     /// Rising edges are latched.
@@ -27,7 +27,7 @@ impl ProbeFunction {
     /// Falling edges are latched.
     pub const FALLING: u16 = 1 << 5;
 
-    /// To wait for one edge.
+    /// Waits for one edge.
     const fn once(edge: Edge) -> u16 {
         match edge {
             Edge::Rising => Self::ENABLE | Self::RISING,
@@ -62,11 +62,12 @@ const fn of(word: u16, probe: usize) -> u16 {
     word >> (8 * probe) & 0xff
 }
 
-/// The controller's side. To be armed anew a probe is disabled, and enabled once its status says that it was.
+/// The controller's side. To arm a probe anew it disables the probe, and enables it again once the status
+/// shows that it was disabled.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Link {
     ordered: [Option<Edge>; PROBES],
-    /// What the function word asks for.
+    /// The function that is asked for.
     asked: [Option<Edge>; PROBES],
 }
 
@@ -75,7 +76,7 @@ impl Link {
         self.ordered = probes;
     }
 
-    /// 60B8h, given what arrived last.
+    /// 60B8h, from the last inputs.
     pub fn give(&mut self, inputs: &Inputs) -> u16 {
         let mut function = 0;
         for (probe, (ordered, asked)) in self.ordered.iter().zip(&mut self.asked).enumerate() {
@@ -87,7 +88,7 @@ impl Link {
         function
     }
 
-    /// For the axis; latched positions lie within 2^31 increments of `position`.
+    /// The report for the axis. Latched positions lie within 2^31 increments of `position`.
     pub fn report(&self, inputs: &Inputs, position: i64, report: &mut DriveReport) {
         let probes = self.asked.iter().zip(&inputs.probe_positions).enumerate();
         for ((probe, (asked, positions)), told) in probes.zip(&mut report.probes) {
@@ -108,33 +109,35 @@ impl Link {
     }
 }
 
-/// The node's side: between two feedbacks its position is taken as linear, and the increment nearest to the edge is
-/// latched.
+/// The node's side. Between two feedbacks the position is taken as linear, and the increment nearest to
+/// the edge is latched.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct NodeProbes {
     wires: [Wire; PROBES],
     function: u16,
     status: u16,
-    /// 60BAh to 60BDh: at the rising and the falling edge of each.
+    /// 60BAh to 60BDh: positions at the rising and the falling edge of each probe.
     positions: [[i32; 2]; PROBES],
     /// The position of the feedback before.
     before: Option<i64>,
 }
 
 impl NodeProbes {
-    /// The input of `probe`, from 0, is at `level` from the part `at` of the interval on that ends with the next feedback.
+    /// Sets the input of `probe`, counted from 0, to `level`. The change is at the part `at` of the
+    /// interval that ends with the next feedback.
     pub fn set(&mut self, probe: usize, at: f64, level: bool) {
         if let Some(wire) = self.wires.get_mut(probe) {
             wire.set(at, level);
         }
     }
 
-    /// Positions count `by` increments more.
+    /// Renames positions: each counts `by` increments more.
     pub fn count_from(&mut self, by: i64) {
         self.before = self.before.map(|before| before.saturating_add(by));
     }
 
-    /// Takes 60B8h. What is not enabled forgets what it stored; a source other than the input it does not have.
+    /// Takes 60B8h. A disabled probe clears its stored positions. A source other than the input does not
+    /// exist.
     pub fn obey(&mut self, function: u16) {
         for probe in 0..PROBES {
             let (asked, before) = (of(function, probe), of(self.function, probe));
@@ -149,7 +152,7 @@ impl NodeProbes {
         self.function = function;
     }
 
-    /// The interval ends at `position`.
+    /// Ends the interval at `position`.
     pub fn latch(&mut self, position: i64) {
         let before = self.before.replace(position).unwrap_or(position);
         let way = position.saturating_sub(before) as f64;

@@ -1,21 +1,21 @@
-//! Which control word brings a drive where the axis wants it.
+//! The control word that brings a drive to the state the axis asks for.
 
 use super::words::{Command, State, Statusword};
 use standstill_axis::DriveRequest;
 
-/// What the sequencer remembers from one scan to the next.
+/// Data the sequencer keeps from one scan to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
     /// Bit 7 was set in the last word.
     reset: bool,
 }
 
-/// The control word for what is asked and what the drive shows, and what to remember.
+/// Returns the control word for this request and this status, and the data to keep.
 ///
-/// Every step waits for the status, never for time (CI-1). A fault reset is an edge: the bit goes up for one scan
-/// and comes down again, for as long as the reset is asked for and the fault is there (CI-4). Whatever the status
-/// word holds there is an answer; for states that are none it is 0, which takes the voltage off. Mode specific
-/// bits stay 0. Pure.
+/// Every step waits for the status and never for time (CI-1). A fault reset is an edge: the bit is set
+/// for one scan and cleared in the next, as long as the reset is asked for and the fault exists (CI-4).
+/// Every status word has an answer; if its state is unknown the answer is 0, which disables the voltage.
+/// Mode specific bits stay 0. Pure.
 pub fn controlword(request: DriveRequest, status: Statusword, memory: Memory) -> (u16, Memory) {
     let state = status.state();
     if request == DriveRequest::FaultReset && state == State::Fault {

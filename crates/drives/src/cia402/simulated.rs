@@ -1,4 +1,4 @@
-//! A node that only exists in memory, with every state and transition of the profile.
+//! A node in memory only, with every state and transition of the profile.
 
 use super::adapter::Adapter;
 use super::homing::{NodeHoming, Progress, REFERENCE_LIMIT};
@@ -18,26 +18,27 @@ pub type Cia402Drive = Adapter<SimulatedNode>;
 pub enum Reaction {
     /// Torque off at once.
     Coast,
-    /// Along a ramp; then as the transition says.
+    /// Along a ramp; then as the transition requires.
     #[default]
     Ramp,
-    /// Along a ramp, and the quick stop stays active until the controller asks for something else (605Ah 5 to 8).
+    /// Along a ramp. The quick stop then stays active until the controller asks for something else (605Ah
+    /// 5 to 8).
     RampAndStay,
 }
 
-/// How a simulated node is set up.
+/// Settings of a simulated node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Position before the first scan (increments).
     pub position: i64,
-    /// Operation is enabled before the first scan.
+    /// Whether operation is enabled before the first scan.
     pub enabled: bool,
-    /// Scans from a target to the actual position that meets it, beyond the one of the bus; at most
-    /// [`DELAY_MAX`](standstill_axis::DELAY_MAX).
+    /// Scans from a target to the actual position that meets it, in addition to the one of the bus; at
+    /// most [`DELAY_MAX`](standstill_axis::DELAY_MAX).
     pub delay: usize,
     /// Scans of self-test.
     pub start_up: u32,
-    /// Scans from Switched on to Operation enabled; `None`: never.
+    /// Scans from Switched on to Operation enabled; `None` for never.
     pub power_on: Option<u32>,
     /// Ramp of reactions (increments/scan^2), above 0.
     pub deceleration: f64,
@@ -49,15 +50,15 @@ pub struct Settings {
     pub fault: Reaction,
     /// The end switches are active below and above these (increments).
     pub ends: Option<(i64, i64)>,
-    /// The home switch is active from here to there (increments).
+    /// The home switch is active between these two (increments).
     pub home: Option<(i64, i64)>,
-    /// What it does in homing mode; `None`: it does not know the mode.
+    /// Homing mode; `None` if it does not have the mode.
     pub homing: Option<NodeHoming>,
-    /// What it turns in torque mode; `None`: it does not know the mode, and measures no torque.
+    /// The load in torque mode. `None` if it does not have the mode and measures no torque.
     pub load: Option<MotorLoad>,
-    /// Scans a second, above 0: velocities on the bus are by second.
+    /// Scans per second, above 0: the bus has velocities per second.
     pub rate: f64,
-    /// Scans from a mode asked for to the mode in force, beyond the one of the bus.
+    /// Scans from the request of a mode until it is in force, in addition to the one of the bus.
     pub mode_change: u32,
 }
 
@@ -90,16 +91,16 @@ pub struct SimulatedNode {
     state: State,
     /// Scans in this state.
     waited: u32,
-    /// Where a ramp leads when the motor is at rest (transitions 5 and 8).
+    /// The state in which a ramp ends when the motor is at rest (transitions 5 and 8).
     leaving: Option<State>,
     controlword: u16,
     mode: i8,
-    /// Scans another mode has been asked for.
+    /// Scans since another mode was asked for.
     changing: u32,
     motor: Motor,
     probes: NodeProbes,
     homing: Progress,
-    /// Increments its own homing has taken off its count.
+    /// Increments that its own homing has taken off its count.
     origin: i64,
     error_code: u16,
     fault_pending: bool,
@@ -108,7 +109,7 @@ pub struct SimulatedNode {
     remote: bool,
     warning: bool,
     connected: bool,
-    /// Of the transitions taken so far, one bit a number.
+    /// The transitions taken so far, one bit for each number.
     taken: u32,
 }
 
@@ -152,7 +153,7 @@ impl SimulatedNode {
         self.motor.actual()
     }
 
-    /// Increments its own homing has taken off its count since the start.
+    /// Increments that its own homing has taken off its count since the start.
     pub fn origin(&self) -> i64 {
         self.origin
     }
@@ -162,14 +163,14 @@ impl SimulatedNode {
         self.taken
     }
 
-    /// A fault with the drive's own `code`; its cause stays until [`SimulatedNode::clear_cause`].
+    /// Raises a fault with the drive's own `code`. Its cause stays until [`SimulatedNode::clear_cause`].
     pub fn fail(&mut self, code: u16) {
         self.error_code = code;
         self.fault_pending = true;
         self.cause_present = true;
     }
 
-    /// The supply of the power stage is gone, or safe torque off is asked for: no torque at once.
+    /// The power stage loses its supply, or safe torque off is requested: the torque is 0 at once.
     pub fn cut_power(&mut self) {
         self.voltage = false;
         if matches!(
@@ -192,25 +193,25 @@ impl SimulatedNode {
         self.connected = false;
     }
 
-    /// The cause of whatever fault is gone. A fault of the drive stays until it is reset.
+    /// Removes the causes of all faults. A fault of the drive stays until it is reset.
     pub fn clear_cause(&mut self) {
         self.cause_present = false;
         self.voltage = true;
         self.connected = true;
     }
 
-    /// The input of touch probe `number`, 0 or 1, is at `level` from the part `at` (0 to 1) of the interval on that ends with
-    /// the next inputs. Up to four changes in one interval are kept.
+    /// Sets the input of touch probe `number`, 0 or 1, to `level`. The change is at the part `at` (0 to
+    /// 1) of the interval that ends with the next inputs. Up to four changes in one interval are kept.
     pub fn set_probe(&mut self, number: usize, at: f64, level: bool) {
         self.probes.set(number, at, level);
     }
 
-    /// Whether it obeys the control word.
+    /// Sets whether it obeys the control word.
     pub fn set_remote(&mut self, remote: bool) {
         self.remote = remote;
     }
 
-    /// Whether it shows a warning.
+    /// Sets whether it shows a warning.
     pub fn set_warning(&mut self, warning: bool) {
         self.warning = warning;
     }
@@ -240,7 +241,7 @@ impl SimulatedNode {
         }
     }
 
-    /// What the drive does by itself, before it looks at the control word.
+    /// Reactions of the drive itself, before it reads the control word.
     fn by_itself(&mut self) {
         let Settings {
             start_up,
@@ -299,7 +300,7 @@ impl SimulatedNode {
 
     fn permits(&self, arrow: &Transition) -> bool {
         match arrow.number {
-            // Without voltage it stays where it has none.
+            // Without voltage the motor stays where it is.
             2 | 3 => self.voltage,
             4 => self.settings.power_on.is_some_and(|scans| self.waited >= scans),
             16 => self.settings.quick_stop == Reaction::RampAndStay,
@@ -332,7 +333,7 @@ impl SimulatedNode {
                     .run(f64::from(outputs.target_velocity) / self.settings.rate),
                 MODE_CST => self.motor.turn(f64::from(outputs.target_torque)),
                 _ => {
-                    // The target comes modulo 2^32: the one nearest to the last is meant.
+                    // The target is modulo 2^32: the one nearest to the last is meant.
                     let newest = self.motor.newest();
                     let step = i64::from(outputs.target_position.wrapping_sub(newest as i32));
                     self.motor.follow(newest.saturating_add(step));
@@ -341,7 +342,7 @@ impl SimulatedNode {
         }
     }
 
-    /// A mode it does not know stays without an answer.
+    /// A request for an unknown mode gets no answer.
     fn take_mode(&mut self, mode: i8) {
         let is_known = match mode {
             MODE_CSP | MODE_CSV => true,
@@ -425,7 +426,7 @@ impl SimulatedNode {
 
 impl Node for SimulatedNode {
     fn inputs(&mut self, _now_ns: i64) -> Option<Inputs> {
-        // Edges are latched whether or not somebody is told.
+        // Edges are latched even if the bus does not carry them.
         self.probes.latch(self.position());
         let (probe_status, probe_positions) = self.probes.told();
         let bounded = |value: f64, most: i32| nearest(value).clamp(-i64::from(most), i64::from(most));

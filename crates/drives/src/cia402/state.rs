@@ -1,4 +1,4 @@
-//! The state machine's arrows, as data.
+//! The arrows of the state machine as data.
 
 use super::words::{Command, State};
 
@@ -11,7 +11,8 @@ pub struct Transition {
     pub from: State,
     /// .. to there.
     pub to: State,
-    /// The command that takes it; `None` if the drive takes it by itself, or by the edge of the fault reset.
+    /// The command that takes it; `None` if the drive takes it by itself or on the edge of the fault
+    /// reset.
     pub command: Option<Command>,
 }
 
@@ -24,8 +25,8 @@ const fn arrow(number: u8, from: State, to: State, command: Option<Command>) -> 
     }
 }
 
-/// Every arrow of the profile. Transition 13 leads from every state but the two of a fault; here it stands with
-/// [`State::OperationEnabled`].
+/// Every arrow of the profile. Transition 13 leads from every state except the two of a fault; here it is
+/// listed for [`State::OperationEnabled`].
 pub const TRANSITIONS: [Transition; 20] = {
     use Command::{DisableVoltage, EnableOperation, QuickStop, Shutdown, SwitchOn};
     use State::{
@@ -36,7 +37,7 @@ pub const TRANSITIONS: [Transition; 20] = {
         arrow(1, NotReadyToSwitchOn, SwitchOnDisabled, None),
         arrow(2, SwitchOnDisabled, ReadyToSwitchOn, Some(Shutdown)),
         arrow(3, ReadyToSwitchOn, SwitchedOn, Some(SwitchOn)),
-        // With 000Fh a drive goes on to 4.
+        // With 000Fh a drive continues with transition 4.
         arrow(3, ReadyToSwitchOn, SwitchedOn, Some(EnableOperation)),
         arrow(4, SwitchedOn, OperationEnabled, Some(EnableOperation)),
         arrow(5, OperationEnabled, SwitchedOn, Some(SwitchOn)),

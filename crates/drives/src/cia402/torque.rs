@@ -1,32 +1,34 @@
-//! Cyclic synchronous torque, mode 10: how a controller asks for it.
+//! Cyclic synchronous torque, mode 10: the controller's side.
 
 use super::node::{Inputs, MODE_CSP, MODE_CST};
 use crate::nearest;
 use standstill_axis::{TorqueOrder, TorqueReport};
 
-/// Torque in thousandths of the rated one, as the profile has it.
+/// The profile has torque in thousandths of the rated torque.
 const THOUSAND: f64 = 1000.0;
 
-/// How an axis and a node mean the same torque and the same velocity.
+/// Converts torque and velocity between an axis and a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TorqueScale {
     /// 6076h, the rated torque, in the unit of the program; above 0.
     pub rated: f64,
-    /// Increments of a unit of the axis; below 0 if the node counts the other way. Not 0.
+    /// Increments per unit of the axis; negative if the node counts the other way. Not 0.
     pub increments: f64,
-    /// What holds the velocity bounds of a torque (torque s/u, above 0): torque for each unit a second left to the bound. A
-    /// motor of inertia J in scans of T takes up to J/(2T); J/(4T) keeps it off the bound without swinging.
+    /// Keeps the velocity bounds of a torque (torque s/u, above 0): torque for each unit per second that
+    /// is left to the bound. A motor of inertia J in scans of T takes up to J/(2T); J/(4T) keeps it off
+    /// the bound without oscillation.
     pub gain: f64,
 }
 
-/// The controller's side. A torque is sent once mode 10 is acknowledged (CI-7), and the way back is done once mode 8 is.
+/// The controller's side. A torque is sent once mode 10 is acknowledged (CI-7). The way back ends once
+/// mode 8 is acknowledged.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Link {
     scale: Option<TorqueScale>,
     order: Option<TorqueOrder>,
-    /// Mode 10 has been asked for, and mode 8 is not back yet.
+    /// Mode 10 has been asked for, and mode 8 is not in force again yet.
     leads: bool,
-    /// The torque last sent is not the one ordered.
+    /// The torque last sent differs from the one ordered.
     limited: bool,
 }
 
@@ -44,7 +46,7 @@ impl Link {
         self.leads &= self.order.is_some() || inputs.mode != MODE_CSP;
     }
 
-    /// The drive may be in a mode other than 8 because it was asked to.
+    /// Whether the drive may be in a mode other than 8 because of this request.
     pub fn leads(&self) -> bool {
         self.leads
     }
@@ -59,8 +61,9 @@ impl Link {
         self.leads && self.order.is_none()
     }
 
-    /// 6071h (thousandths of the rated torque); 0 unless the node holds torques. Between its velocity bounds the torque
-    /// ordered, and less of it, or the opposite, the nearer or the further beyond a bound the velocity is.
+    /// 6071h (thousandths of the rated torque); 0 if the node holds no torque. Between the velocity
+    /// bounds it is the torque ordered. It falls as the velocity comes near a bound, and reverses beyond
+    /// it.
     pub fn give(&mut self, inputs: &Inputs, most: u16) -> i16 {
         let (Some(scale), Some(order)) = (&self.scale, &self.order) else {
             self.limited = false;
@@ -80,12 +83,12 @@ impl Link {
             .max(-bound)
             .min(bound);
         self.limited = within != order.torque;
-        // Within 6072h, a u16; beyond an i16 there is nothing to send.
+        // Within 6072h, a u16. Values beyond an i16 cannot be sent.
         let sent = nearest(scale.sign() * within * (THOUSAND / scale.rated));
         sent.clamp(-i64::from(i16::MAX), i64::from(i16::MAX)) as i16
     }
 
-    /// For the axis; `most` is 6072h, 0 for a node that holds no torque.
+    /// The report for the axis. `most` is 6072h, 0 for a node that holds no torque.
     pub fn report(&self, inputs: &Inputs, most: u16) -> Option<TorqueReport> {
         self.scale.as_ref().map(|scale| TorqueReport {
             actual: scale.sign() * f64::from(inputs.torque) * (scale.rated / THOUSAND),

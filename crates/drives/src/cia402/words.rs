@@ -20,7 +20,7 @@ pub enum State {
     FaultReactionActive,
     /// No torque until the fault is reset.
     Fault,
-    /// A combination of bits the profile does not have; treated as not enabled (CI-2).
+    /// A combination of bits that the profile does not have; treated as not enabled (CI-2).
     Unknown,
 }
 
@@ -37,7 +37,7 @@ const STATES: [(u16, u16, State); 8] = [
 ];
 
 impl State {
-    /// All states a drive can be in.
+    /// All states of the profile.
     pub const ALL: [Self; 8] = [
         Self::NotReadyToSwitchOn,
         Self::SwitchOnDisabled,
@@ -66,7 +66,7 @@ impl State {
     }
 }
 
-/// What bits 13, 12 and 10 tell in homing mode.
+/// The meaning of bits 13, 12 and 10 in homing mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum HomingStatus {
     /// 0 0 0: it moves.
@@ -77,9 +77,9 @@ pub enum HomingStatus {
     Attained,
     /// 0 1 1: done.
     Done,
-    /// 1 0 0: an error, and the drive still moves; also 1 1 0, which is none of the profile's.
+    /// 1 0 0: an error, and the drive still moves. Also 1 1 0, which the profile does not have.
     ErrorMoving,
-    /// 1 0 1: an error, and the drive stands; also 1 1 1.
+    /// 1 0 1: an error, and the drive stands. Also 1 1 1.
     ErrorStopped,
 }
 
@@ -108,7 +108,7 @@ impl HomingStatus {
 pub struct Statusword(pub u16);
 
 impl Statusword {
-    /// The state its bits 0 to 3, 5 and 6 tell.
+    /// The state in its bits 0 to 3, 5 and 6.
     pub fn state(self) -> State {
         STATES
             .iter()
@@ -155,7 +155,7 @@ impl Statusword {
     }
 }
 
-/// What a control word asks for, beside the edge of its bit 7.
+/// The command of a control word, without the edge of its bit 7.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Command {
     /// 0006h
@@ -182,7 +182,7 @@ const COMMANDS: [(u16, u16, Command); 5] = [
 ];
 
 impl Command {
-    /// Bit 4 of a control word in homing mode: home, as long as it is set.
+    /// Bit 4 of a control word in homing mode: home while it is set.
     pub const HOMING: u16 = 1 << 4;
 
     /// Bit 8 of a control word: come to rest.
@@ -222,7 +222,7 @@ mod tests {
             let word = (pattern & 0xf) | (pattern & 0x30) << 1;
             let state = Statusword(word).state();
             *counts.entry(state).or_insert(0) += 1;
-            // The bits a state does not look at change nothing.
+            // Bits that a state does not use change nothing.
             for other in [0x10, 0x80, 0xff00, 0xff90] {
                 assert_eq!(Statusword(word | other).state(), state, "{word:#x}");
             }

@@ -12,17 +12,18 @@ use standstill_axis::{
 pub struct PlantDrive {
     stage: IdealDrive,
     servo: Servo,
-    /// How units become increments; `None`: the drive speaks units.
+    /// Converts units to increments; `None` if the drive uses units.
     scaling: Option<Scaling>,
-    /// What was told last before the communication was lost.
+    /// The last position before the communication was lost.
     stale: DrivePosition,
-    /// The torque to hold, of this scan's order.
+    /// The torque to hold, from the order of this scan.
     torque: Option<TorqueOrder>,
 }
 
 impl PlantDrive {
-    /// Over `servo`; with the `scaling` of its axis it counts increments. Power is confirmed after `power_on` further
-    /// scans, or never; `enabled` from the start or not.
+    /// Creates a drive over `servo`. With the `scaling` of its axis it counts increments. Power is
+    /// confirmed after `power_on` further scans, or never; `enabled` says whether it is on from the
+    /// start.
     pub fn new(servo: Servo, scaling: Option<Scaling>, power_on: Option<u32>, enabled: bool) -> Self {
         let mut drive = Self {
             stage: IdealDrive::new(DrivePosition::Units(0.0), 0, power_on, enabled),
@@ -72,7 +73,7 @@ impl PlantDrive {
         Ok(())
     }
 
-    /// A position (u) as the drive tells it.
+    /// A position (u) in the form the drive reports it.
     fn told(&self, position: f64) -> DrivePosition {
         match &self.scaling {
             None => DrivePosition::Units(position),
@@ -80,12 +81,12 @@ impl PlantDrive {
         }
     }
 
-    /// A position as the drive is told it (u).
+    /// A commanded position, converted to u.
     fn meant(&self, position: DrivePosition) -> f64 {
         match (position, &self.scaling) {
             (DrivePosition::Units(units), _) => units,
             (DrivePosition::Increments(increments), Some(scaling)) => scaling.to_units(increments),
-            // An axis with a scaling gives its drive one, too.
+            // An axis with a scaling has a drive with one, too.
             (DrivePosition::Increments(increments), None) => increments as f64,
         }
     }
@@ -115,7 +116,7 @@ impl Drive for PlantDrive {
                 ..*command
             },
         );
-        // The first set-point in operation is the actual position, whatever was on its way.
+        // The first set-point in operation is the actual position; delayed set-points are dropped.
         let operates = followed && self.stage.is_enabled();
         if let Some(order) = self.torque.take().filter(|_| operates) {
             self.servo.hold(order.torque, order.velocity);

@@ -1,4 +1,4 @@
-//! The exponential of a small matrix, from multiplications and additions only.
+//! The exponential of a small matrix, with multiplications and additions only.
 
 /// Size of the matrices: three states, the way, and the input.
 pub(super) const SIZE: usize = 5;
@@ -15,10 +15,10 @@ const IDENTITY: Matrix = {
     matrix
 };
 
-/// Terms of the series; beyond them nothing is left of a norm of a half in 64 bits.
+/// Terms of the series. For a norm of one half, further terms do not change a 64-bit result.
 const TERMS: u32 = 20;
 
-/// Most halvings; larger matrices are refused.
+/// The largest number of halvings; larger matrices are refused.
 const HALVINGS: u32 = 30;
 
 /// exp(`matrix`), or `None` if it is not finite or its norm is above 2^29. Cost: at most 50 products.

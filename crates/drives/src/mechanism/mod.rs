@@ -1,4 +1,4 @@
-//! A motor with a mechanism behind it, and the loops that hold it: what a real axis adds to its set-points.
+//! A motor with a mechanism, and its control loops: the part of a real axis that follows the set-points.
 
 mod drive;
 mod matrix;

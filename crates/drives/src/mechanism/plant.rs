@@ -7,29 +7,29 @@ use core::fmt;
 /// A load behind an elastic coupling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
-    /// Torque for an acceleration (torque s^2/u), above 0.
+    /// Torque per acceleration (torque s^2/u), above 0.
     pub inertia: f64,
-    /// Torque for a twist (torque/u), above 0.
+    /// Torque per twist (torque/u), above 0.
     pub stiffness: f64,
-    /// Torque for a difference of velocities (torque s/u), from 0.
+    /// Torque per difference of velocities (torque s/u), from 0.
     pub damping: f64,
 }
 
-/// What a motor has to move. Torque is in a unit of the user's choice; so is u, the unit of the axis.
+/// The load of a motor. The unit of torque is chosen by the user; u is the unit of the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plant {
-    /// Torque for an acceleration of the motor alone (torque s^2/u), above 0.
+    /// Torque per acceleration of the motor alone (torque s^2/u), above 0.
     pub inertia: f64,
     /// Friction at the motor that grows with velocity (torque s/u), from 0.
     pub viscous: f64,
     /// Friction at the motor that does not (torque), from 0.
     pub coulomb: f64,
-    /// What hangs on a spring; `None`: everything is rigid.
+    /// The load on a spring; `None` if everything is rigid.
     pub load: Option<Load>,
 }
 
 impl Plant {
-    /// Torque for an acceleration of all of it.
+    /// Torque per acceleration of motor and load together.
     pub fn total_inertia(&self) -> f64 {
         self.inertia + self.load.map_or(0.0, |load| load.inertia)
     }
@@ -60,19 +60,19 @@ impl Plant {
     }
 }
 
-/// Mechanical stops at the ends of the travel, springs for the motor to push against.
+/// Mechanical stops at the ends of the travel. They act as springs on the motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stops {
-    /// The lower one begins here (u), the upper one there.
+    /// The lower stop begins at the first (u), the upper stop at the second.
     pub ends: (f64, f64),
-    /// Torque for a depth (torque/u), above 0.
+    /// Torque per depth (torque/u), above 0.
     pub stiffness: f64,
-    /// Torque for a velocity while it is touched (torque s/u), from 0.
+    /// Torque per velocity while it is touched (torque s/u), from 0.
     pub damping: f64,
 }
 
 impl Stops {
-    /// The torque against a motor at `position` (u) with `velocity` (u/s): a stop pushes, and never pulls.
+    /// The torque on a motor at `position` (u) with `velocity` (u/s): a stop pushes and never pulls.
     fn torque(&self, position: f64, velocity: f64) -> f64 {
         let (low, high) = self.ends;
         if position > high {
@@ -85,7 +85,7 @@ impl Stops {
     }
 }
 
-/// A parameter of a mechanism or its servo that cannot be used.
+/// An invalid parameter of a mechanism or its servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MechanismError {
     /// The parameter.
@@ -117,14 +117,15 @@ impl core::error::Error for MechanismError {}
 
 /// A plant in motion.
 ///
-/// Between two steps the torque is constant, so that the linear part is solved exactly, by one matrix that is
-/// computed when the mechanism is made. Friction that does not depend on velocity holds what it can hold: it
-/// takes what velocity it may in a step, and no more, so that a mechanism at rest stays there to the last bit.
+/// Between two steps the torque is constant. So the linear part is solved exactly, by one matrix that is
+/// computed when the mechanism is made. Friction that does not depend on velocity takes away as much
+/// velocity in a step as it can, and stops at 0, so that a mechanism at rest stays there to the last bit.
 #[derive(Clone, Copy, Debug)]
 pub struct Mechanism {
     plant: Plant,
     stops: Option<Stops>,
-    /// From (twist, motor velocity, load velocity) and torque to the same and the way, a step later.
+    /// Maps (twist, motor velocity, load velocity) and torque to the same values one step later, and the
+    /// way.
     step: [[f64; 4]; 4],
     /// Torque that changes the motor's velocity by 1 u/s in a step.
     stopping: f64,
@@ -142,7 +143,7 @@ impl Mechanism {
     /// At rest at `position` (u), for scans of `cycle` seconds.
     ///
     /// # Errors
-    /// [`MechanismError`] names what cannot be used.
+    /// [`MechanismError`] names the invalid parameter.
     pub fn new(plant: Plant, position: f64, cycle: f64) -> Result<Self, MechanismError> {
         plant.check()?;
         let time = cycle / f64::from(SUBSTEPS);
@@ -169,7 +170,7 @@ impl Mechanism {
     /// The same between `stops`, in scans of `cycle` seconds.
     ///
     /// # Errors
-    /// [`MechanismError`] if they lie the wrong way round, or are too hard to be followed in a step.
+    /// [`MechanismError`] if they are in the wrong order, or too hard to be followed in a step.
     pub fn between(mut self, stops: Stops, cycle: f64) -> Result<Self, MechanismError> {
         let Stops {
             ends: (low, high),
@@ -178,7 +179,7 @@ impl Mechanism {
         } = stops;
         let time = cycle / f64::from(SUBSTEPS);
         let inertia = self.plant.inertia;
-        // Both ends finite, the other comparisons say it for the rest.
+        // Both ends must be finite; the other comparisons exclude the rest.
         let ordered = low < high && (high - low).is_finite();
         let hard = !(stiffness > 0.0 && stiffness * time * time <= inertia);
         let stiff = !(damping >= 0.0 && damping * time <= inertia);
@@ -206,14 +207,14 @@ impl Mechanism {
             row[0] * self.twist + row[1] * self.velocity + row[2] * self.load_velocity + row[3] * torque
         };
         let (next_twist, next_motor, next_load, moved) = (free(twist), free(motor), free(load), free(way));
-        // The torque that would stop the motor in this step, as far as friction goes.
+        // The torque that would stop the motor in this step; friction gives at most its limit.
         let stopped = next_motor.abs() <= self.plant.coulomb * motor[3];
         let friction = if stopped {
             next_motor * self.stopping
         } else {
             self.plant.coulomb.copysign(next_motor)
         };
-        // Held by friction all the step, it moves by no rounding either.
+        // Held by friction for the whole step: it must not move by a rounding error.
         let held = stopped && self.velocity == 0.0;
         self.position += if held { 0.0 } else { moved - friction * way[3] };
         self.twist = next_twist - friction * twist[3];
@@ -245,12 +246,12 @@ impl Mechanism {
         &self.plant
     }
 
-    /// Someone moved it by so much (u).
+    /// The mechanism was moved by this distance (u).
     pub fn shift(&mut self, by: f64) {
         self.position += by;
     }
 
-    /// Everything is called `by` (u) more.
+    /// Renames positions: each is `by` (u) more.
     pub fn rename(&mut self, by: f64) {
         self.position += by;
         if let Some(Stops {
@@ -263,7 +264,7 @@ impl Mechanism {
     }
 }
 
-/// The derivative of (twist, motor velocity, load velocity, way, torque) by time.
+/// The time derivative of (twist, motor velocity, load velocity, way, torque).
 fn derivative(plant: &Plant) -> Matrix {
     let motor = 1.0 / plant.inertia;
     let [mut of_motor, mut of_load] = [[0.0; SIZE]; 2];

@@ -3,22 +3,22 @@
 use super::SUBSTEPS;
 use super::plant::{Mechanism, MechanismError, Plant};
 
-/// Bandwidth of the velocity loop where no gain is given, times a step (rad).
+/// Default bandwidth of the velocity loop times a step (rad).
 const BANDWIDTH: f64 = 0.2;
 
-/// Velocity loop to position loop, and to its integral part, where no gains are given.
+/// Default ratio of the velocity loop to the position loop, and to its integral part.
 const CASCADE: f64 = 4.0;
 
 /// The gains of a servo.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
-    /// Velocity for a position error (1/s), from 0.
+    /// Velocity per position error (1/s), from 0.
     pub position: f64,
-    /// Torque for a velocity error (torque s/u), from 0.
+    /// Torque per velocity error (torque s/u), from 0.
     pub velocity: f64,
-    /// Torque a second for a velocity error (torque/u), from 0.
+    /// Torque per second and velocity error (torque/u), from 0.
     pub integral: f64,
-    /// Part of the set velocity that is fed forward, 0 to 1 in most drives.
+    /// Part of the set velocity that is fed forward, usually 0 to 1.
     pub feed_velocity: f64,
     /// Part of the torque for the set acceleration that is fed forward.
     pub feed_acceleration: f64,
@@ -27,8 +27,8 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// Gains that hold any plant with steps of a scan of `cycle` seconds: a velocity loop as fast as the steps
-    /// allow, a position loop four times as slow, full feed-forward.
+    /// Stable gains for any plant with steps of a scan of `cycle` seconds: a velocity loop as fast as the
+    /// steps allow, a position loop four times as slow, full feed-forward.
     pub fn of(plant: &Plant, cycle: f64) -> Self {
         let bandwidth = BANDWIDTH * f64::from(SUBSTEPS) / cycle;
         let velocity = plant.inertia * bandwidth;
@@ -89,15 +89,15 @@ pub struct Servo {
     /// Torque of the integral part.
     integral: f64,
     torque: f64,
-    /// A torque that was to be held was not, at the end of the last scan.
+    /// At the end of the last scan the ordered torque was limited.
     limited: bool,
 }
 
 impl Servo {
-    /// Holds `mechanism` where it stands, in scans of `cycle` seconds.
+    /// Holds `mechanism` at its present position, in scans of `cycle` seconds.
     ///
     /// # Errors
-    /// [`MechanismError`] names the gain that cannot be used.
+    /// [`MechanismError`] names the invalid gain.
     pub fn new(mechanism: Mechanism, gains: Gains, cycle: f64) -> Result<Self, MechanismError> {
         gains.check()?;
         Ok(Self {
@@ -115,8 +115,8 @@ impl Servo {
         })
     }
 
-    /// A scan on the way to `to`: between the scans the set-point is the cubic through both ends with their
-    /// velocities. Cost: four steps.
+    /// One scan on the way to `to`. Between the scans the set-point follows the cubic through both ends
+    /// with their velocities. Cost: four steps.
     pub fn follow(&mut self, to: SetPoint) {
         let from = core::mem::replace(&mut self.from, to);
         let step = 1.0 / f64::from(SUBSTEPS);
@@ -126,7 +126,7 @@ impl Servo {
         // p = from + early s + curve s^2 + twist s^3, s from 0 to 1
         let curve = 3.0 * way - 2.0 * early - late;
         let twist = early + late - 2.0 * way;
-        // By time, as far as it is fed forward.
+        // Derivatives by time, scaled by their feed-forward.
         let per_second = self.gains.feed_velocity * self.rate;
         let inertia = self.gains.feed_acceleration * self.mechanism.plant().total_inertia();
         let per_square = inertia * (self.rate * self.rate);
@@ -134,7 +134,7 @@ impl Servo {
         for _ in 0..SUBSTEPS {
             let position = from.position + part * (early + part * (curve + part * twist));
             let velocity = per_second * (early + part * (2.0 * curve + part * (3.0 * twist)));
-            // The mean over the step, for which the torque holds.
+            // The mean over the step, because the torque is constant in it.
             let fed = per_square * (2.0 * curve + 6.0 * twist * (part + 0.5 * step));
             let wanted = velocity + self.gains.position * (position - self.mechanism.position());
             let error = wanted - self.mechanism.velocity();
@@ -143,7 +143,7 @@ impl Servo {
                 self.integral += self.gains.integral * error * time;
                 unlimited
             } else {
-                // At its limit the integral part would only wind up.
+                // At the torque limit the integral part would wind up.
                 self.gains.torque.copysign(unlimited)
             };
             self.mechanism.step(self.torque);
@@ -151,8 +151,8 @@ impl Servo {
         }
     }
 
-    /// A scan under `torque`, at a velocity from `least` to `most` (u/s). At these bounds a loop takes over that brakes what
-    /// is beyond them. Position control goes on from here without a step. Cost: four steps.
+    /// One scan under `torque`, at a velocity from `least` to `most` (u/s). Beyond these bounds a loop
+    /// brakes instead. Position control continues from here without a step. Cost: four steps.
     pub fn hold(&mut self, torque: f64, (least, most): (f64, f64)) {
         let bound = self.gains.torque;
         for _ in 0..SUBSTEPS {
@@ -219,7 +219,7 @@ impl Servo {
         self.torque
     }
 
-    /// The set-point last followed.
+    /// The last set-point.
     pub fn set_point(&self) -> SetPoint {
         self.from
     }
