@@ -527,3 +527,71 @@ fn a_slave_near_0_keeps_its_limits_behind_a_master_far_away() {
     assert!(rig.slave().deviation() < -1e4 && rig.at().abs() < 200.0);
     assert_eq!(rig.keeps_limits(), Ok(()));
 }
+
+/// A way back of many turns makes the places of a shadow no coarser than one of a few: behind a master that came to rest so many
+/// periods ahead, that went on slowly, and that was too fast to be followed.
+///
+/// Covers: G45, G48, G78
+#[test]
+fn however_far_behind_a_slave_comes_back_within_its_limits() {
+    let master = Limits {
+        velocity: 1e6,
+        acceleration: 1e7,
+        deceleration: 1e7,
+        jerk: 1e9,
+        snap: 1e11,
+    };
+    let slave = Limits {
+        velocity: 8e3,
+        acceleration: 4e3,
+        deceleration: 4e3,
+        jerk: 1e4,
+        snap: 1e5,
+    };
+    // As steep everywhere, so that its shadow takes all of a limit.
+    let rows = [row(0.0, 0.0, CamShape::Line), row(360.0, 360.0, CamShape::Line)];
+    for periods in [50.0, 510.0, 5000.0] {
+        let way = periods * 360.0;
+        let comes_to_rest = |rig: &mut Rig| {
+            let dynamics = Dynamics {
+                velocity: 1e6,
+                ..Dynamics::default()
+            };
+            let distance = way;
+            rig.command(MASTER, Command::MoveRelative { distance, dynamics });
+        };
+        let goes_on = |rig: &mut Rig| {
+            rig.run(1e6);
+            rig.steps((way / 1e3) as usize + 150);
+            rig.run(5.0);
+        };
+        let is_too_fast = |rig: &mut Rig| {
+            rig.run(2e4);
+            rig.steps((way / 1e2) as usize);
+            rig.run(5.0);
+        };
+        let masters: [&dyn Fn(&mut Rig); 3] = [&comes_to_rest, &goes_on, &is_too_fast];
+        for (number, moves) in masters.into_iter().enumerate() {
+            let turns = |limits| config(limits, 0.0, Some(360.0));
+            let mut rig = Rig::new(turns(master), turns(slave));
+            let cam = rig.select(&rows, RELATIVE);
+            let cam_in = rig.cam_in(cam);
+            rig.engage(cam_in, BufferMode::Aborting).unwrap();
+            moves(&mut rig);
+            rig.steps(300);
+            assert!(!rig.slave().is_in_gear());
+            assert!(
+                rig.slave().deviation() < -0.05 * way,
+                "{}",
+                rig.slave().deviation()
+            );
+            let mut scans = 0;
+            while !rig.slave().is_in_gear() {
+                rig.step();
+                scans += 1;
+                assert!(scans < 300_000, "{periods} periods, master {number}");
+            }
+            assert_eq!(rig.keeps_limits(), Ok(()), "{periods} periods, master {number}");
+        }
+    }
+}

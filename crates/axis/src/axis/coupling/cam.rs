@@ -11,6 +11,7 @@
 //! | [`onto`] | how it comes onto the curve |
 //! | [`start`] | a start that waits for a place of the master |
 //! | [`shadow`] | its shadow in step with the master |
+//! | [`near`] | the same on a long way |
 //! | [`corners`] | its rests where a derivative of the cam jumps |
 //! | [`ahead`] | whether it keeps its limits along what the master does next, and where that ends |
 //! | [`beside`] | what it leaves to a shift, and to its master |
@@ -28,6 +29,7 @@ mod corners;
 mod ends;
 mod follow;
 mod laid;
+mod near;
 mod onto;
 mod shadow;
 mod start;

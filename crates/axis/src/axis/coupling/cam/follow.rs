@@ -41,6 +41,8 @@ impl<P: Planner> Axis<P> {
             if !shifts {
                 self.note_source();
             }
+        } else {
+            self.go_on_from_near(view, scope);
         }
         if is_new && self.slows_master() {
             self.bound_master_on_cam(&scope.cams);

@@ -86,6 +86,7 @@ impl<P: Planner> Axis<P> {
                 return self.fail(ErrorId::CamUnknown, scope);
             };
             let Some(curve) = self.lay_cam(cam) else { return };
+            self.tell_shadow_near(&curve);
             self.drop_periods(&curve);
             let beyond = self.keeps_on_cam(&curve, view, false);
             let choice = self.choose(&curve, view, &owner, may_lock && beyond.is_ok());
@@ -224,7 +225,10 @@ impl<P: Planner> Axis<P> {
     fn move_shadow(&mut self, curve: &Curve<'_>, by: f64) {
         let Some(on_cam) = &mut self.on_cam else { return };
         let Some(shadow) = &mut on_cam.shadow else { return };
-        shadow.place.position += by;
+        shadow.place = curve.told_near(Place {
+            position: shadow.place.position + by,
+            ..shadow.place
+        });
         // So is its way, where it stays on that.
         if let Rung::BesideLine { start, .. } | Rung::Corner { start } = &mut on_cam.rung {
             start.position += by;

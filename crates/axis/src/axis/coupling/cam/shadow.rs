@@ -83,7 +83,7 @@ impl<P: Planner> Axis<P> {
         for limits in all.clone() {
             let way = self.beside_stretch_of_master(shadow, stretch, &limits, curve, 0.0);
             take(&mut best, way);
-            take(&mut best, self.beside_master(view, difference, &limits));
+            take(&mut best, self.beside_master(view, difference, &limits, curve));
             if can_wait {
                 let period = curve.period().copysign(stretch.velocity);
                 let way = self.beside_stretch_of_master(shadow, stretch, &limits, curve, period);
@@ -221,8 +221,10 @@ impl<P: Planner> Axis<P> {
         view: &View<'_, P::Plan>,
         difference: &Setpoint,
         limits: &Limits,
+        curve: &Curve<'_>,
     ) -> Option<Way<P::Plan>> {
-        if view.future.is_late() || (difference.is_at_rest() && difference.position == 0.0) {
+        let is_there = difference.is_at_rest() && difference.position == 0.0;
+        if view.future.is_late() || is_there || curve.is_long(difference.position) {
             return None;
         }
         let lead = self.lead_of_master(view)?;
@@ -274,7 +276,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// Onto the next stretch of the master, or where that comes by so many `laps` later (u of the master).
-    fn beside_stretch_of_master(
+    pub(super) fn beside_stretch_of_master(
         &self,
         shadow: &Shadow,
         stretch: &Stretch,
@@ -326,10 +328,10 @@ impl<P: Planner> Axis<P> {
             exceeds: plan.excess().is_some_and(|excess| leaves(&excess, limits)),
             motion: Motion::closing(plan),
             rung: Rung::BesideLine {
-                start: Place {
+                start: curve.told_near(Place {
                     position: shadow.place.position + laps,
                     ..shadow.place
-                },
+                }),
                 velocity: stretch.velocity,
                 begin: stretch.begin,
             },
@@ -344,7 +346,7 @@ impl<P: Planner> Axis<P> {
     }
 
     /// As fast as the shadow may go, the way its master goes.
-    fn at_shadow_pace(
+    pub(super) fn at_shadow_pace(
         &self,
         view: &View<'_, P::Plan>,
         shadow: &Shadow,

@@ -1,0 +1,86 @@
+//! A shadow on a long way behind a master that comes round: its places are told, and its way is planned on, from near where it is. A
+//! place that is told from many turns away is as coarse as those are long, and so is the motion along it.
+
+use super::super::super::{Axis, Motion};
+use super::super::view::View;
+use super::{Curve, Rung};
+use crate::Scope;
+use standstill_planner::turns::split;
+use standstill_planner::{Place, Planner};
+
+/// A way of so many turns of the master is a long one.
+const LONG: f64 = 2.0;
+
+impl Curve<'_> {
+    /// A way (u of the master) is of several turns.
+    pub(super) fn is_long(&self, way: f64) -> bool {
+        self.law.master_turn.is_some_and(|turn| way.abs() >= LONG * turn)
+    }
+
+    /// A place of the master, told in its turn if it was told from turns away.
+    pub(super) fn told_near(&self, place: Place) -> Place {
+        match self.law.master_turn {
+            Some(turn) if self.is_long(place.position) => {
+                let (turns, position) = split(place.position, turn);
+                Place {
+                    turns: place.turns.wrapping_add(turns),
+                    position,
+                    ..place
+                }
+            }
+            _ => place,
+        }
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// The place of the shadow is told from near it.
+    pub(super) fn tell_shadow_near(&mut self, curve: &Curve<'_>) {
+        if let Some(shadow) = self.on_cam.as_mut().and_then(|on_cam| on_cam.shadow.as_mut()) {
+            shadow.place = curve.told_near(shadow.place);
+        }
+    }
+
+    /// After a long part of its way the shadow goes on along it by a plan from where it is. Cost: one plan.
+    pub(super) fn go_on_from_near(&mut self, view: &View<'_, P::Plan>, scope: &Scope<'_>) {
+        let Some(on_cam) = self.on_cam else { return };
+        let cam = scope.cams.cam(on_cam.camming.cam);
+        let (Some(mut shadow), Some(curve)) = (on_cam.shadow, cam.and_then(|cam| on_cam.curve(cam))) else {
+            return;
+        };
+        let Rung::BesideLine {
+            start,
+            velocity,
+            begin,
+        } = on_cam.rung
+        else {
+            return;
+        };
+        let Motion::Closing { elapsed, .. } = &self.motion else {
+            return;
+        };
+        let line = velocity * (*elapsed as f64 * self.planner.cycle());
+        let gone = shadow.place.position - start.position;
+        if on_cam.slows || !(curve.is_long(line) || curve.is_long(gone)) {
+            return;
+        }
+        shadow.place = curve.told_near(shadow.place);
+        let stretch = self.stretch_of_master(&on_cam, view);
+        let limits = &on_cam.shadow_limits;
+        let has_goal = begin != u64::MAX;
+        let way = if has_goal {
+            self.beside_stretch_of_master(&shadow, &stretch, limits, &curve, 0.0)
+        } else {
+            self.at_shadow_pace(view, &shadow, &stretch, limits)
+        };
+        let Some(on_cam) = &mut self.on_cam else { return };
+        match way.filter(|way| !way.exceeds) {
+            Some(way) => {
+                on_cam.shadow = Some(shadow);
+                on_cam.rung = way.rung;
+                self.motion = way.motion;
+            }
+            None => on_cam.left = 0,
+        }
+    }
+}
