@@ -329,16 +329,12 @@ pub(crate) fn plus(a: Double, b: f64) -> Double {
     two_sum(sum, error + a.1)
 }
 
+/// `value` / `by`, as a rounded quotient and what rounding took away.
 pub(crate) fn divided(value: Double, by: f64) -> Double {
-    let rest = |quotient: f64, of: Double| {
-        let (product, error) = two_product(quotient, by);
-        add(of, (-product, -error))
-    };
-    let first = value.0 / by;
-    let left = rest(first, value);
-    let second = left.0 / by;
-    let left = rest(second, left);
-    add((first, second), (left.0 / by, 0.0))
+    let quotient = value.0 / by;
+    let (product, error) = two_product(quotient, by);
+    let left = add(value, (-product, -error));
+    two_sum(quotient, left.0 / by)
 }
 
 /// Whole turns, and the rest in [0, `length`).

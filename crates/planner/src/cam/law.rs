@@ -56,7 +56,11 @@ impl CamLaw {
         } else {
             divided(way, self.master_scaling)
         };
-        add(way, two_sum(self.origin, -cam.head.begin))
+        if self.origin == cam.head.begin {
+            way
+        } else {
+            add(way, two_sum(self.origin, -cam.head.begin))
+        }
     }
 
     /// The master's place on its side of the cam (u), not taken back into one period.
@@ -89,10 +93,14 @@ impl CamLaw {
         } else {
             cam.at(x, piece)
         };
-        let mut position = add(
-            two_product(self.slave_scaling, from),
-            two_product(self.slave_scaling, curve.position),
-        );
+        let mut position = if self.slave_scaling == 1.0 {
+            two_sum(from, curve.position)
+        } else {
+            add(
+                two_product(self.slave_scaling, from),
+                two_product(self.slave_scaling, curve.position),
+            )
+        };
         if head.periodic && periods != 0 && head.from != head.to {
             let rise = two_sum(head.to, -head.from);
             let (risen, error) = two_product(periods as f64, rise.0);
