@@ -124,6 +124,8 @@ pub(super) struct Camming {
     pub cam: CamId,
     /// So many of its derivatives go on without a jump.
     pub continuity: u8,
+    /// Its steepest slope, scalings included.
+    pub steepest: f64,
     /// Scalings and turns; where the cam begins is found when it is laid.
     pub law: CamLaw,
     /// The places of the table are those of the axes.

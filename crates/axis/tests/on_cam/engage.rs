@@ -3,7 +3,7 @@
 use crate::rig::{L1, MASTER, RELATIVE, Rig, SLAVE, WIDE, config, row, up_and_back};
 use standstill_axis::{
     AxisState, BufferMode, CamIn, CamRow, CamSelection, Command, Dynamics, ErrorId, Event, Fate, Limits,
-    OnLimit, Raw, Request, Scope, StartMode, ValueSource,
+    OnLimit, PhaseShift, Raw, Request, Scope, StartMode, ValueSource,
 };
 use standstill_planner::CamShape;
 
@@ -594,4 +594,43 @@ fn however_far_behind_a_slave_comes_back_within_its_limits() {
             assert_eq!(rig.keeps_limits(), Ok(()), "{periods} periods, master {number}");
         }
     }
+}
+
+/// A shift of many turns is told by a number as coarse as it is large: that is no snap of its slave, which stays in sync.
+///
+/// Covers: G60
+#[test]
+fn a_shift_of_many_turns_keeps_the_slave_in_sync() {
+    let slave = Limits {
+        velocity: 2000.0,
+        acceleration: 2000.0,
+        deceleration: 2000.0,
+        jerk: 1e4,
+        snap: 1e5,
+    };
+    let mut rig = Rig::new(config(L1, 0.0, Some(360.0)), config(slave, 0.0, Some(100.0)));
+    let rows = [row(0.0, 0.0, CamShape::Line), row(360.0, 100.0, CamShape::Line)];
+    let cam = rig.select(&rows, RELATIVE);
+    let cam_in = rig.cam_in(cam);
+    rig.engage(cam_in, BufferMode::Aborting).unwrap();
+    rig.run(5.0);
+    rig.steps(500);
+    let request = PhaseShift {
+        master: rig.axes[MASTER].id(),
+        shift: 510.0 * 360.0,
+        is_relative: false,
+        dynamics: Dynamics {
+            velocity: 5000.0,
+            ..Dynamics::default()
+        },
+        buffer_mode: BufferMode::Aborting.into(),
+    };
+    let scope = &mut Scope::new(rig.scan, &mut rig.log);
+    rig.axes[SLAVE].shift_phase(&request, scope).unwrap();
+    for scan in 0..38_000 {
+        rig.step();
+        assert!(rig.slave().is_in_gear(), "scan {scan}: {:?}", rig.events());
+    }
+    assert_eq!(rig.slave().phases()[0], request.shift);
+    assert_eq!(rig.slave().state(), AxisState::SynchronizedMotion);
 }

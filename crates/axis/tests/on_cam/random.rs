@@ -2,11 +2,12 @@
 //! is on it, in sync it is at its master's place, and what can come into step comes into step.
 //!
 //! `CAM_EPISODES=100000 cargo test -p standstill-axis --test on_cam --release random` plays as many as it says, from
-//! `CAM_FIRST` on.
+//! `CAM_FIRST` on. With `CAM_LOOK` set it prints cam, limits and events of each, and stops at the first snap over its limit.
 
 use crate::rig::{L1, MASTER, RELATIVE, Rig, WIDE, config, row};
 use standstill_axis::{AxisState, BufferMode, CamRow, CamSelection, Command, Dynamics, Limits, Raw};
 use standstill_planner::CamShape;
+use standstill_planner::turns::split;
 use standstill_testkit::Random;
 
 /// What was seen in all episodes.
@@ -108,6 +109,9 @@ struct Episode {
     /// Where the cam lies: place of the master at the cam's 0, and of the slave.
     offsets: Option<(f64, f64)>,
     scalings: (f64, f64),
+    /// Lengths of turns, where both axes come round, and the turn that the shadow is in.
+    turns: Option<(f64, f64)>,
+    turn: f64,
     seed: u64,
 }
 
@@ -117,6 +121,26 @@ impl Episode {
         let (master, slave) = self.offsets?;
         let x = (place - master) / self.scalings.0;
         Some(slave + self.scalings.1 * self.judge.at(x))
+    }
+
+    /// How far a slave that is `at` this place is off the curve for a master at `shadow`, in the turn that the shadow is in. Whole
+    /// periods may be dropped, so it may be in any turn by now.
+    fn off_curve(&mut self, at: f64, shadow: f64) -> f64 {
+        let off = |turn: f64| {
+            let master = self.turns.map_or(0.0, |(length, _)| turn * length);
+            let off = at - self.curve(shadow + master).expect("absolute");
+            match self.turns {
+                Some((_, length)) => off - (off / length).round() * length,
+                None => off,
+            }
+        };
+        let known = self.turn;
+        let near = (0..200).flat_map(|further| [known + f64::from(further), known - f64::from(further)]);
+        let found = near.into_iter().take(if self.turns.is_some() { 400 } else { 1 });
+        let found = found.into_iter().find(|turn| off(*turn).abs() < 1e-8);
+        let off = off(found.unwrap_or(known)).abs();
+        self.turn = found.unwrap_or(known);
+        off
     }
 
     fn judge(&mut self, tally: &mut Tally) {
@@ -132,21 +156,26 @@ impl Episode {
             tally.off_curve += 1;
             return;
         };
-        let expected = self.curve(shadow).expect("absolute") + coupled.superimposed;
+        let ends = slave.cam_ends();
         tally.shifted += u64::from(coupled.phase != 0.0);
         tally.moved_on += u64::from(coupled.superimposed != 0.0);
-        let is_over = !self.judge.periodic && slave.cam_ends() > 0;
+        let is_over = !self.judge.periodic && ends > 0;
+        let is_in_sync = slave.is_in_gear();
         if !is_over {
-            let off = (at - expected).abs();
+            let off = self.off_curve(at - coupled.superimposed, shadow);
             assert!(
                 off < 1e-8,
                 "seed {seed}: {off} off the curve in scan {}",
                 self.rig.scan
             );
         }
-        if slave.is_in_gear() {
+        if is_in_sync {
             tally.in_sync += 1;
             let master = self.rig.axes[MASTER].setpoint().position + coupled.phase;
+            let master = match self.turns {
+                Some((length, _)) => split(master, length).1,
+                None => master,
+            };
             assert!(
                 shadow == master,
                 "seed {seed}: in sync at {shadow}, master at {master}"
@@ -195,16 +224,34 @@ fn adds(rig: &mut Rig, random: &mut Random, velocity: f64) {
 /// An episode; with `more` something is added, the start waits or the master is slowed down. Where drives do not tell, every motion step
 /// takes the long way. Returns the digest of all that the slave showed.
 fn play(seed: u64, master_order: u64, more: bool, drives_tell: bool, tally: &mut Tally) -> u64 {
-    play_on(seed, master_order, (more, drives_tell, false), tally)
+    let kind = Kind {
+        more,
+        drives_tell,
+        ..Kind::default()
+    };
+    play_on(seed, master_order, kind, tally)
 }
 
-/// The same, with `corners` on cams that stop their slaves.
-fn play_on(
-    seed: u64,
-    master_order: u64,
-    (more, drives_tell, corners): (bool, bool, bool),
-    tally: &mut Tally,
-) -> u64 {
+#[derive(Clone, Copy, Default)]
+struct Kind {
+    more: bool,
+    drives_tell: bool,
+    /// On cams that stop their slaves.
+    corners: bool,
+    /// Both axes come round.
+    round: bool,
+}
+
+/// The same of other kinds.
+fn play_on(seed: u64, master_order: u64, kind: Kind, tally: &mut Tally) -> u64 {
+    let Kind {
+        more,
+        drives_tell,
+        corners,
+        round,
+    } = kind;
+    let of_turns = &mut Random(seed ^ 0x7043);
+    let turns = round.then(|| (of_turns.log(20.0, 500.0), of_turns.log(5.0, 200.0)));
     let random = &mut Random(seed);
     let other = &mut Random(seed ^ 0x5EED);
     let order = random.one_of(if corners { &[2, 3, 4] } else { &[3, 4, 4] });
@@ -238,14 +285,16 @@ fn play_on(
     let slave = limits(random, speed, order);
     let start = random.between(-300.0, 300.0);
     let at = random.between(-60.0, 60.0);
-    let mut slave_config = config(slave, at, None);
+    let in_turn = |place: f64, length: Option<f64>| length.map_or(place, |length| split(place, length).1);
+    let (turn, slave_turn) = (turns.map(|turns| turns.0), turns.map(|turns| turns.1));
+    let mut slave_config = config(slave, in_turn(at, slave_turn), slave_turn);
     if more && other.below(4) == 0 {
         slave_config.following.on_limit = standstill_axis::OnLimit::SlowMaster;
     }
     if corners {
         slave_config.following.cam_continuity = Some(0);
     }
-    let mut rig = Rig::new(config(master, start, None), slave_config);
+    let mut rig = Rig::new(config(master, in_turn(start, turn), turn), slave_config);
     rig.drives_tell = drives_tell;
     let cam = rig.select(
         &rows,
@@ -284,6 +333,8 @@ fn play_on(
         judge: Judge { rows, periodic },
         offsets: Some(offsets),
         scalings,
+        turns,
+        turn: 0.0,
         seed,
     };
     let moves = |episode: &mut Episode, random: &mut Random| {
@@ -400,7 +451,7 @@ fn play_on(
     }
     let rig = &episode.rig;
     let bounds = [slave.velocity, slave.acceleration, slave.jerk, slave.snap];
-    let largest = rig.largest.max(100.0);
+    let largest = rig.largest.max(turn.unwrap_or(0.0)).max(100.0);
     let mut per = 1.0;
     for (order, (peak, bound)) in rig.peaks.into_iter().zip(bounds).enumerate() {
         per *= 2e3;
@@ -477,14 +528,41 @@ fn random_episodes_keep_limits_and_curve() {
 #[test]
 fn random_cams_with_corners_keep_limits_and_curve() {
     let mut tally = Tally::default();
+    let kind = |more| Kind {
+        more,
+        drives_tell: true,
+        corners: true,
+        round: false,
+    };
     let number = |name: &str| std::env::var(name).ok().and_then(|number| number.parse().ok());
     let first = number("CAM_FIRST").unwrap_or(0);
     for seed in first..first + number("CAM_EPISODES").unwrap_or(120) {
-        play_on(seed, 4, (false, true, true), &mut tally);
-        play_on(seed, 4, (true, true, true), &mut tally);
+        play_on(seed, 4, kind(false), &mut tally);
+        play_on(seed, 4, kind(true), &mut tally);
         if seed % 4 == 0 {
-            play_on(seed, 2 + (seed / 4) % 2, (seed % 8 == 0, true, true), &mut tally);
+            play_on(seed, 2 + (seed / 4) % 2, kind(seed % 8 == 0), &mut tally);
         }
+    }
+    println!("{tally:?}");
+    assert!(tally.in_sync > 0 && tally.lagging > 0 && tally.ends > 0);
+}
+
+/// The same where both axes come round.
+///
+/// Covers: G45, G69, G78
+#[test]
+fn random_axes_that_come_round_keep_limits_and_curve() {
+    let mut tally = Tally::default();
+    let number = |name: &str| std::env::var(name).ok().and_then(|number| number.parse().ok());
+    let first = number("CAM_FIRST").unwrap_or(0);
+    for seed in first..first + number("CAM_EPISODES").unwrap_or(120) {
+        let kind = Kind {
+            more: seed % 2 == 0,
+            drives_tell: true,
+            corners: seed % 8 == 0,
+            round: true,
+        };
+        play_on(seed, 4, kind, &mut tally);
     }
     println!("{tally:?}");
     assert!(tally.in_sync > 0 && tally.lagging > 0 && tally.ends > 0);
@@ -504,5 +582,11 @@ fn episodes_that_went_wrong_once() {
         play(seed, 4, false, true, &mut tally);
     }
     // An end that is a corner: the slave was there but for rounding before it was at rest.
-    play_on(1695, 4, (true, true, true), &mut tally);
+    let corners = Kind {
+        more: true,
+        drives_tell: true,
+        corners: true,
+        round: false,
+    };
+    play_on(1695, 4, corners, &mut tally);
 }

@@ -437,6 +437,13 @@ impl<P: Planner> Axis<P> {
         self.on_cam.as_ref().map(|on_cam| &on_cam.was)
     }
 
+    /// How large (u of the slave) the places of its master are that the cam is looked up at.
+    pub(super) fn size_of_master_on_cam(&self) -> f64 {
+        self.on_cam
+            .as_ref()
+            .map_or(0.0, |on_cam| on_cam.camming.steepest * on_cam.was.size())
+    }
+
     /// Before any axis has moved in this scan: its master is there.
     pub(super) fn note_master_on_cam(&mut self, seen: Seen) {
         if let Some(on_cam) = &mut self.on_cam {
@@ -531,6 +538,10 @@ impl<P: Planner> Axis<P> {
             source,
             cam: cam.table,
             continuity: head.map_or(0, |head| head.smooth.continuity),
+            steepest: head.map_or(0.0, |head| {
+                let bounds = head.bounds.scaled(cam.master_scaling, cam.slave_scaling);
+                bounds.first
+            }),
             law: CamLaw {
                 master_scaling: cam.master_scaling,
                 slave_scaling: cam.slave_scaling,

@@ -32,10 +32,10 @@ impl Coupling {
         (slave, state)
     }
 
-    /// How large (u of the slave) the places of its masters are that the law is made of.
+    /// How large (u of the slave) the places of its masters are that the law is made of, with what shifts them.
     fn size_of_masters(&self, seen: &SeenBoth) -> f64 {
         let [first, second] = seen;
-        let part = |leg, seen: &Seen| self.gearing.factor(leg, seen.at.position).abs();
+        let part = |leg, seen: &Seen| self.gearing.factor(leg, seen.size()).abs();
         part(0, first) + part(1, second)
     }
 
@@ -569,10 +569,11 @@ impl<P: Planner> Axis<P> {
             return found;
         };
         let length = self.modulo.as_ref().map_or(0.0, |modulo| modulo.length);
-        let masters = self
-            .coupling
-            .as_ref()
-            .map_or(0.0, |coupling| coupling.size_of_masters(&coupling.was));
+        let geared = self.coupling.as_ref();
+        let masters = geared.map_or_else(
+            || self.size_of_master_on_cam(),
+            |coupling| coupling.size_of_masters(&coupling.was),
+        );
         let step = Step {
             last: &self.setpoint,
             next,

@@ -91,6 +91,11 @@ impl Seen {
         seen.at.snap += by.snap;
         seen
     }
+
+    /// How large the numbers are that tell where it is seen (u).
+    pub(super) fn size(&self) -> f64 {
+        self.at.position.abs() + self.place.phase.abs()
+    }
 }
 
 impl<P: Planner> Axis<P> {
