@@ -146,6 +146,13 @@ iec_enum! {
     }
 }
 
+impl BufferMode {
+    /// The previous end position is passed in motion.
+    pub const fn blends(self) -> bool {
+        !matches!(self, Self::Aborting | Self::Buffered)
+    }
+}
+
 iec_enum! {
     /// Direction of a motion (MC_DIRECTION, numbers: V8). 0 stands for "not set": the shortest way for
     /// positioning, positive for velocity.

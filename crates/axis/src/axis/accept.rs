@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, state diagram and sections on aborting and buffered commands; the
 //! table "state x command" with the choices V6, V6a, V7a, V11.
 
-use super::commands::{Ending, Entry, Place, Start, Work, direction_of, refusal};
+use super::commands::{Ending, Entry, Place, Run, Start, Work, direction_of, refusal};
 use super::{Axis, Motion};
 use crate::{
     AxisEvent, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Fate, Raw, Request,
@@ -403,10 +403,11 @@ impl<P: Planner> Axis<P> {
         self.kept_inside(entry, motion, &self.setpoint, &before)
     }
 
-    /// Plans a command from `start`, whose motion was within `before`.
+    /// Plans a command from `start`, whose motion was within `before`, as far as it is one motion with what waits behind it: the
+    /// entry then says what is.
     pub(super) fn plan_from(
         &self,
-        entry: &Entry,
+        entry: &mut Entry,
         start: &Setpoint,
         before: &Limits,
     ) -> Result<Motion<P::Plan>, ErrorId> {
@@ -417,19 +418,19 @@ impl<P: Planner> Axis<P> {
             Some(end) => self.allowed(end)?,
             None => start.position,
         };
-        let to_rest = || {
-            let profile = self.config.profile;
-            self.planner.move_to(profile, start, end, &entry.limits, before)
-        };
+        let profile = self.config.profile;
         let planned = match entry.work {
-            _ if entry.halted => self.planner.ramp_to(start, 0.0, &entry.limits, before),
-            Work::Position(_) | Work::Distance(_) => match self.blended(entry, start, end, before) {
+            _ if entry.halted => {
+                entry.run = Run::NONE;
+                self.planner.ramp_to(start, 0.0, &entry.limits, before)
+            }
+            Work::Position(_) | Work::Distance(_) => match self.ahead(entry, start, before) {
                 Some(plan) => Ok(plan),
-                None => to_rest(),
+                None => self.planner.move_to(profile, start, end, &entry.limits, before),
             },
             Work::Through {
                 end_velocity: 0.0, ..
-            } => to_rest(),
+            } => self.planner.move_to(profile, start, end, &entry.limits, before),
             Work::Through { end_velocity, .. } if entry.passed => {
                 self.planner.ramp_to(start, end_velocity, &entry.limits, before)
             }
@@ -459,7 +460,7 @@ impl<P: Planner> Axis<P> {
                 self.permitted(entry, &plan, before)?;
                 match entry.work {
                     Work::Torque { .. } if !entry.halted => Ok(self.under_torque(plan)),
-                    _ => Ok(Motion::along(plan)),
+                    _ => Ok(self.along(entry, plan)),
                 }
             }
             Err(error) => Err(refusal(error)),

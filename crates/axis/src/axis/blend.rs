@@ -3,7 +3,7 @@
 //! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; rules B1 to B17. What the
 //! standard leaves open is told in `docs/buffering.md`. The maths is the planner's.
 
-use super::commands::{Entry, REST, ROUNDING, Work};
+use super::commands::{Entry, REST, ROUNDING, Run, Work};
 use super::power::Reaction;
 use super::{Axis, Motion};
 use crate::{BufferMode, ErrorId, Fate, QUEUE_MAX, Scope};
@@ -26,55 +26,87 @@ impl<P: Planner> Axis<P> {
     /// A command has been queued with `mode`: if it is to blend, the owner may have to pass its end at
     /// another speed, and is planned anew from the last set-point (B15). Failing that, its plan stays.
     pub(super) fn arm(&mut self, mode: BufferMode, scope: &mut Scope<'_>) {
-        if !matches!(mode, BufferMode::Aborting | BufferMode::Buffered) {
+        if mode.blends() {
             self.arm_owner(scope);
         }
     }
 
     /// The same for whatever has changed behind the owner.
     pub(super) fn arm_owner(&mut self, scope: &mut Scope<'_>) {
-        let Some(mut owner) = self.owner else { return };
-        let passage = self.passage(&owner, self.setpoint.position, 0);
-        let Some(end) = owner.end else { return };
-        if passage == owner.passage || self.is_held_up() || !matches!(self.motion, Motion::Run { .. }) {
+        let Some(was) = self.owner else { return };
+        let mut owner = was;
+        self.look_through(&mut owner, self.setpoint.position, 0);
+        let changed = (owner.passage, owner.run) != (was.passage, was.run);
+        if !changed || owner.end.is_none() || self.is_held_up() || !matches!(self.motion, Motion::Run { .. })
+        {
             return;
         }
-        owner.passage = passage;
-        let planned = self.blended(&owner, &self.setpoint, end, &self.before);
-        // Should it have to come to rest all the same, it does so as planned.
-        let planned = planned.filter(|plan| plan.at(u64::from(plan.scans())).velocity != 0.0);
-        if let Some(plan) = planned {
-            self.adopt(owner, Motion::along(plan), scope);
+        if self.layer.is_some() {
+            // It goes on as planned below what is superimposed.
+            return self.end_run();
+        }
+        let (start, before) = (&self.setpoint, &self.before);
+        let planned = match self.ahead(&mut owner, start, before) {
+            // What was to go on as one motion with something that is another one now does not come to rest as planned.
+            None if was.run.count > 0 => self.at_rest_ahead(&owner, start, before),
+            planned => {
+                let moves = |plan: &P::Plan| plan.at(u64::from(plan.scans())).velocity != 0.0;
+                planned.filter(|plan| was.run.count > 0 || owner.run.count > 0 || moves(plan))
+            }
+        };
+        match planned {
+            Some(plan) => self.adopt(owner, self.along(&owner, plan), scope),
+            // It goes on as planned. What was one motion passes its end like that, and the next takes over there.
+            None => self.end_run(),
         }
     }
 
-    /// The plan that passes `end` as `entry` is to; `None` if it is to come to rest there from where it need not
-    /// be blended, or can't do without turning.
+    /// The plan of `entry` to rest at its end, unless it has to turn or to leave a limit of the axis for that.
+    fn at_rest_ahead(&self, entry: &Entry, start: &Setpoint, before: &Limits) -> Option<P::Plan> {
+        let (end, profile) = (entry.end?, self.config.profile);
+        let planned = self.planner.move_to(profile, start, end, &entry.limits, before);
+        planned
+            .ok()
+            .filter(|plan| self.beyond_bound(plan).is_none() && !self.turns(plan, end > start.position))
+    }
+
+    /// The plan of `entry` that leads on with what waits behind it: one motion with it, or past its end. `None` if it is to come to
+    /// rest there from where it need not be blended, or can't do without turning.
+    pub(super) fn ahead(&self, entry: &mut Entry, start: &Setpoint, before: &Limits) -> Option<P::Plan> {
+        if let Some(plan) = self.in_one_motion(entry, start, before) {
+            return Some(plan);
+        }
+        entry.run = Run::NONE;
+        self.blended(entry, start, entry.end?, &entry.passage, before)
+    }
+
+    /// The plan that passes `end`, that of `entry` or of what is one motion with it, as `passage` says.
     pub(super) fn blended(
         &self,
         entry: &Entry,
         start: &Setpoint,
         end: f64,
+        passage: &Passage,
         before: &Limits,
     ) -> Option<P::Plan> {
-        if entry.passage.wanted <= 0.0 && !self.passes_its_end() {
+        if passage.wanted <= 0.0 && !self.passes_its_end() {
             return None;
         }
-        let planned = self
-            .planner
-            .blend(start, end, &entry.passage, &entry.limits, before);
+        let planned = self.planner.blend(start, end, passage, &entry.limits, before);
         // What can't be planned blended is planned as a move to rest, whose error would be the same. So is what comes
         // out faster than it may because the limits were lowered too late: it passes its end, turns and comes back. And none
         // is worth exceeding a limit of the axis.
         let planned = planned.ok().flatten();
         planned
-            .filter(|plan| entry.passage.wanted <= 0.0 || self.beyond_bound(plan).is_none())
+            .filter(|plan| passage.wanted <= 0.0 || self.beyond_bound(plan).is_none())
             .filter(|plan| {
                 let end = plan.at(u64::from(plan.scans())).velocity.abs();
                 let most = self.slowed(&self.config.limits).velocity * (1.0 + ROUNDING);
-                end <= if entry.passage.wanted > 0.0 { most } else { 0.0 }
+                end <= if passage.wanted > 0.0 { most } else { 0.0 }
             })
-            .filter(|plan| entry.passage.wanted <= 0.0 || self.is_worth_it(entry, start, end, before, plan))
+            .filter(|plan| {
+                passage.wanted <= 0.0 || self.is_worth_it(entry, start, (end, passage), before, plan)
+            })
     }
 
     /// Whether the command after `entry` is done sooner if that passes its `end` along `passing` than if it comes to rest
@@ -85,36 +117,36 @@ impl<P: Planner> Axis<P> {
         &self,
         entry: &Entry,
         start: &Setpoint,
-        end: f64,
+        (end, passage): (f64, &Passage),
         before: &Limits,
         passing: &P::Plan,
     ) -> bool {
         let last = passing.at(u64::from(passing.scans()));
         let is_braking = start.velocity * start.acceleration < 0.0;
-        let is_wanted = last.velocity.abs() >= entry.passage.wanted * (1.0 - ROUNDING);
+        let is_wanted = last.velocity.abs() >= passage.wanted * (1.0 - ROUNDING);
         if is_wanted && !is_braking {
             return true;
         }
         let profile = self.config.profile;
         let planned = self.planner.move_to(profile, start, end, &entry.limits, before);
         // Coming to rest by way of a turn is none.
-        let turns = |plan: &P::Plan| {
-            let (up, down) = self.planner.ways((plan, 0));
-            let back = if end > start.position { down } else { up };
-            back > ROUNDING * (up + down)
-        };
-        let planned = planned.ok().filter(|plan| !turns(plan));
+        let planned = planned
+            .ok()
+            .filter(|plan| !self.turns(plan, end > start.position));
         let anew = planned.map_or(u64::MAX, |plan| u64::from(plan.scans()));
         let present = match (&self.motion, &self.owner) {
             (Motion::Run { plan, elapsed, scans }, Some(owner))
-                if owner.id == entry.id && plan.at(*scans).velocity == 0.0 =>
+                if owner.id == entry.id
+                    && owner.run.count == entry.run.count
+                    && plan.at(*scans).velocity == 0.0 =>
             {
                 scans.saturating_sub(*elapsed)
             }
             _ => u64::MAX,
         };
         let to_rest = anew.min(present);
-        let Some(next) = self.queue.iter().find(|next| next.id != entry.id) else {
+        let mut behind = self.queue.iter().filter(|next| next.id != entry.id);
+        let Some(next) = behind.nth(entry.run.count) else {
             return true;
         };
         let target = self.end_of_leg(next, end, end > start.position);
@@ -165,7 +197,11 @@ impl<P: Planner> Axis<P> {
 
     /// Whether the owner is at its end in motion, for the next to take over.
     pub(super) fn passes_its_end(&self) -> bool {
-        self.goal_reached() && !self.is_held_up() && self.passes_on() && self.setpoint.velocity != 0.0
+        self.goal_reached()
+            && !self.is_held_up()
+            && self.passes_on()
+            && !self.motion.goes_on()
+            && self.setpoint.velocity != 0.0
     }
 
     /// What becomes of the owner when another takes over in motion: what has an end has passed it.
@@ -204,14 +240,24 @@ impl<P: Planner> Axis<P> {
         }
     }
 
-    /// How `first`, which leads from `start` (u) to a known end, is to pass it, with the queue behind it, of which `skip` have had
-    /// their turn: from the last to the first, because no command may begin faster than it can end. While
-    /// something is superimposed all ends are passed at rest: where the axis is then, is not where they are.
+    /// How `entry`, which leads from `start` (u) to a known end, is to pass it, and what of the queue behind it is one motion with
+    /// it; `skip` of that have had their turn. From the last to the first, because no command may begin faster than it can end.
+    /// While something is superimposed all ends are passed at rest: where the axis is then, is not where they are.
     ///
     /// Cost: at most one ramp or root of ramps for each command that waits.
+    pub(super) fn look_through(&self, entry: &mut Entry, start: f64, skip: usize) {
+        (entry.passage, entry.run) = self.chain(entry, start, skip, 0.0);
+    }
+
+    /// How `first` is to pass its end, as [`Axis::look_through`].
     pub(super) fn passage(&self, first: &Entry, start: f64, skip: usize) -> Passage {
+        self.chain(first, start, skip, 0.0).0
+    }
+
+    /// The same, with ways of at least `shortest` (u) in one motion.
+    pub(super) fn chain(&self, first: &Entry, start: f64, skip: usize, shortest: f64) -> (Passage, Run) {
         if self.layer.is_some() {
-            return REST;
+            return (REST, Run::NONE);
         }
         const NONE: Option<Leg<'_>> = None;
         let mut legs = [NONE; QUEUE_MAX];
@@ -229,20 +275,57 @@ impl<P: Planner> Axis<P> {
             forward = end.zip(from).map_or(forward, |(end, from)| end > from);
             from = end;
         }
+        let alone = Leg {
+            entry: first,
+            end: first.end,
+            way: first.end.map(|end| end - start),
+        };
+        let (count, end) = self.joined(&alone, &legs, shortest);
+        let mut run = Run {
+            count,
+            end,
+            passage: REST,
+        };
         let mut passage = REST;
-        let mut legs = legs.iter().flatten().rev().peekable();
-        while let Some(next) = legs.next() {
-            let leg = match legs.peek() {
-                Some(leg) => **leg,
-                None => Leg {
-                    entry: first,
-                    end: first.end,
-                    way: first.end.map(|end| end - start),
-                },
-            };
-            passage = self.between(&leg, next, &passage);
+        let numbered = legs.iter().enumerate();
+        let mut legs = numbered
+            .filter_map(|(number, leg)| Some((number, leg.as_ref()?)))
+            .rev()
+            .peekable();
+        while let Some((number, next)) = legs.next() {
+            let leg = legs.peek().map_or(&alone, |(_, leg)| leg);
+            passage = self.between(leg, next, &passage);
+            if number == count {
+                run.passage = passage;
+            }
         }
-        passage
+        (passage, if count > 0 { run } else { Run::NONE })
+    }
+
+    /// How many of `legs` are one motion with `first`, and where the last of them ends (u).
+    fn joined(&self, first: &Leg<'_>, legs: &[Option<Leg<'_>>], shortest: f64) -> (usize, f64) {
+        let none = (0, 0.0);
+        let Some(way) = first.way.filter(|_| first.entry.work.manner().blends) else {
+            return none;
+        };
+        if self.way_barred(way).is_some() {
+            return none;
+        }
+        // What must not turn back has to have a plan.
+        let shortest = if self.modulo.is_some() {
+            self.longest_scan(first.entry)
+        } else {
+            shortest
+        };
+        let joins = |leg: &&Leg<'_>| {
+            let is_onward = |next: f64| next * way > 0.0 && next.abs() >= shortest;
+            leg.entry.mode.blends()
+                && leg.entry.work.manner().blends
+                && leg.entry.limits == first.entry.limits
+                && leg.way.is_some_and(is_onward)
+        };
+        let joined = legs.iter().flatten().take_while(joins);
+        joined.fold(none, |(count, end), leg| (count + 1, leg.end.unwrap_or(end)))
     }
 
     /// Whether a way is one that can be planned; a longer one is refused when its turn comes, at rest.

@@ -15,6 +15,26 @@ pub(super) const REST: Passage = Passage {
     most: 0.0,
 };
 
+/// What of the commands that wait is one motion with the one before them: they lead on the same way within the same limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Run {
+    /// So many of them.
+    pub count: usize,
+    /// Where the last one ends (u).
+    pub end: f64,
+    /// How that end is passed.
+    pub passage: Passage,
+}
+
+impl Run {
+    /// None of them.
+    pub const NONE: Self = Self {
+        count: 0,
+        end: 0.0,
+        passage: REST,
+    };
+}
+
 /// When an admitted command starts.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Start {
@@ -491,6 +511,8 @@ pub(super) struct Entry {
     pub end: Option<f64>,
     /// How it is to pass its end, for a blended successor.
     pub passage: Passage,
+    /// What is one motion with it.
+    pub run: Run,
     /// MC_Stop: Execute is still TRUE.
     pub held: bool,
     /// It brakes, or stands, because MC_Power bars a direction it needs.
@@ -532,6 +554,7 @@ impl Entry {
             mode,
             end: None,
             passage: REST,
+            run: Run::NONE,
             held: work == Work::Stop,
             paused: false,
             orphaned: false,
@@ -543,6 +566,15 @@ impl Entry {
     /// Where it leads, if anywhere.
     pub fn place(&self) -> Option<Place> {
         self.work.manner().place
+    }
+
+    /// Where its motion leads (u), if anywhere: its end, or that of the last command which is one motion with it.
+    pub fn goal(&self) -> Option<f64> {
+        if self.run.count > 0 {
+            Some(self.run.end)
+        } else {
+            self.end
+        }
     }
 
     /// Whether it goes on until another command takes over.

@@ -155,7 +155,7 @@ impl<P: Planner> Axis<P> {
         }
         self.watched = self.owner.is_some_and(|owner| self.needs_watching(&owner));
         self.tell_moved(by, scope);
-        self.pass_at_rest(scope);
+        self.arm_anew(scope);
         Ok(())
     }
 
@@ -181,11 +181,12 @@ impl<P: Planner> Axis<P> {
             if let Some(owner) = &mut self.owner {
                 owner.end = owner.end.map(|end| end + by);
                 owner.from += by;
+                owner.run.end += by;
             }
             return Ok(());
         };
         let start = self.aim(&mut owner, self.setpoint.position);
-        owner.passage = self.passage(&owner, start, 0);
+        self.look_through(&mut owner, start, 0);
         // With something superimposed it may find no room just now.
         let motion = self.plan_next(&mut owner)?.ok_or(ErrorId::InMotion)?;
         self.before = self.limits_before(&owner.limits);

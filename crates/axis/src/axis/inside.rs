@@ -67,8 +67,8 @@ impl<P: Planner> Axis<P> {
         let mut kept = motion;
         let axis = self.slowed(&self.config.limits);
         for limits in self.higher(&entry.limits, before, &axis) {
-            let raised = Entry { limits, ..*entry };
-            let motion = match self.plan_from(&raised, start, before) {
+            let mut raised = Entry { limits, ..*entry };
+            let motion = match self.plan_from(&mut raised, start, before) {
                 Ok(motion) => motion,
                 Err(
                     error @ (ErrorId::PositiveBarred
@@ -118,8 +118,8 @@ impl<P: Planner> Axis<P> {
             velocity: entry.limits.velocity,
             ..*axis
         };
-        let free = Entry { limits, ..*entry };
-        match self.plan_from(&free, start, before) {
+        let mut free = Entry { limits, ..*entry };
+        match self.plan_from(&mut free, start, before) {
             Ok(planned) if !leaves(&planned) => {
                 *entry = free;
                 planned

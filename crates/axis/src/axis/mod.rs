@@ -19,7 +19,7 @@
 //! | --- | --- |
 //! | [`accept`], [`queued`], [`update`], [`retrigger`] | commands: taken or refused, administrative ones that wait, new values, replaced ones |
 //! | [`dynamics`], [`factors`], [`parameters`] | limits from pins, the override, what can be written by number |
-//! | [`step`], [`replan`], [`blend`], [`inside`], [`guard`] | the motion step and hand-over, the owner's motion changed while it runs, how fast it passes its end, take-overs within the limits, no jump |
+//! | [`step`], [`replan`], [`blend`], [`run`], [`inside`], [`guard`] | the motion step and hand-over, the owner's motion changed while it runs, how fast it passes its end, chains as one motion, take-overs within the limits, no jump |
 //! | [`superimposed`] | a second motion on top |
 //! | [`coupling`] | behind a master |
 //! | [`profile`], [`torque`], [`jog`], [`homing`] | curves through points, torques, MC_Jog, the search for the reference |
@@ -54,6 +54,7 @@ mod queued;
 mod reading;
 mod replan;
 mod retrigger;
+mod run;
 mod software_limits;
 mod stage;
 mod step;
@@ -92,7 +93,8 @@ enum Motion<Plan> {
     Follow,
     /// It stays where it is.
     Hold,
-    /// A plan, so many scans after its start, and the scans it has: asked for several times in every scan.
+    /// A plan, so many scans after its start, and the scans to the goal, which are those it has or, where it goes on for the next
+    /// command, fewer: asked for several times in every scan.
     Run { plan: Plan, elapsed: u64, scans: u64 },
     /// The actual position under a torque: the last one ordered, and the ramp of its velocity limit, so many scans after its
     /// start.
@@ -120,6 +122,11 @@ impl<P: Plan> Motion<P> {
             elapsed: 0,
             scans: u64::from(plan.scans()),
         }
+    }
+
+    /// Its plan goes on behind the goal, for the next command.
+    fn goes_on(&self) -> bool {
+        matches!(self, Self::Run { plan, scans, .. } if *scans < u64::from(plan.scans()))
     }
 
     /// Scans from the start of its plan to the goal; 0 without one.

@@ -7,7 +7,7 @@
 //! Source: PLCopen Motion Control Part 1, MC_MoveAbsolute and MC_DIRECTION; B8; the rule for Direction is that of
 //! docs/modulo.md.
 
-use super::commands::{Entry, Place, REST, Work};
+use super::commands::{Entry, Place, REST, Run, Work};
 use super::{Axis, Motion};
 use crate::{AxisConfig, Direction, DrivePosition, ErrorId, ModuloTargets, Scaling, Turn};
 use standstill_planner::turns::{split, two_product};
@@ -243,14 +243,16 @@ impl<P: Planner> Axis<P> {
     /// The same for the command at the head of the buffer, and how it is to pass its end: what passes it in motion need not be
     /// able to stop before it.
     ///
-    /// Cost: on a modulo axis at most two ramps, and that of [`Axis::passage`].
+    /// Cost: on a modulo axis at most two ramps, and that of [`Axis::look_through`].
     pub(super) fn aim_passing(&self, entry: &mut Entry, from: f64) {
         let mut stopping = Entry {
             passage: REST,
+            run: Run::NONE,
             ..*entry
         };
         let start = self.aim(&mut stopping, from);
-        entry.passage = self.passage(&stopping, start, 1);
+        self.look_through(&mut stopping, start, 1);
+        (entry.passage, entry.run) = (stopping.passage, stopping.run);
         self.aim(entry, from);
     }
 
@@ -341,14 +343,20 @@ impl<P: Planner> Axis<P> {
             .direction
             .and_then(|direction| self.heading(direction, self.last_velocity > 0.0));
         let Some(forward) = heading else { return turns };
-        if start.is_at_rest() {
+        if start.is_at_rest() || self.goes_on_to(entry.id) {
             return turns;
         }
+        // One motion need not stop before its goal.
+        let (target, passage) = if entry.run.count > 0 {
+            (entry.run.end, entry.run.passage)
+        } else {
+            (target, entry.passage)
+        };
         // What passes its target in the same direction need not stop before it.
         let velocity = match entry.work {
             Work::Through { end_velocity, .. } if (end_velocity > 0.0) == forward => end_velocity,
-            Work::Position(_) | Work::Distance(_) if entry.passage.wanted > 0.0 => {
-                let speed = entry.passage.most.min(start.velocity.abs());
+            Work::Position(_) | Work::Distance(_) if passage.wanted > 0.0 => {
+                let speed = passage.most.min(start.velocity.abs());
                 if forward { speed } else { -speed }
             }
             _ => 0.0,

@@ -189,6 +189,7 @@ impl<P: Planner> Axis<P> {
             return;
         }
         if owner.turns == 0 {
+            self.look_through(&mut owner, self.base().position, 0);
             self.stay_in_direction(&mut owner, &self.base());
         }
         match self.plan_anew(owner, scope) {

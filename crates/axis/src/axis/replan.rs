@@ -26,7 +26,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn replan(&mut self, mut owner: Entry, scope: &mut Scope<'_>) -> Result<(), ErrorId> {
         let here = self.base();
         owner.turns = 0;
-        owner.passage = self.passage(&owner, here.position, 0);
+        self.look_through(&mut owner, here.position, 0);
         self.stay_in_direction(&mut owner, &here);
         self.replan_aimed(owner, scope)
     }
@@ -54,11 +54,11 @@ impl<P: Planner> Axis<P> {
         let start = self
             .in_frame_of(&owner, &here)
             .map_or(here.position, |framed| framed.position);
-        owner.passage = self.passage(&owner, start, 0);
+        self.look_through(&mut owner, start, 0);
         let before = self.limits_of_owner().unwrap_or(owner.limits);
         let motion = match self.layer {
             None => {
-                let motion = self.plan_from(&owner, &here, &before)?;
+                let motion = self.plan_from(&mut owner, &here, &before)?;
                 Some(self.kept_inside(&mut owner, motion, &here, &before)?)
             }
             Some(layer) => self.plan_beside(layer, &mut owner, &before)?,
@@ -228,7 +228,7 @@ impl<P: Planner> Axis<P> {
         let scope = &mut scope.with(entry.instance);
         let positioning = entry.work.manner().ending == Ending::InPosition;
         let end = plan.at(u64::from(plan.scans()));
-        let goal = match entry.end {
+        let goal = match entry.goal() {
             _ if entry.halted || entry.passed => Goal::Velocity(end.velocity),
             Some(position) if end.velocity != 0.0 || !positioning => Goal::Passing {
                 position,

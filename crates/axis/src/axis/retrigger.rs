@@ -7,7 +7,7 @@
 //! Source: PLCopen Motion Control Part 1, section on Execute/Done; R32, R38, R97, B19.
 
 use super::Axis;
-use super::commands::{Entry, REST, Work};
+use super::commands::{Entry, REST, Run, Work};
 use super::power::Reaction;
 use crate::{AxisEvent, CommandId, Event, Fate, Scope};
 use standstill_planner::Planner;
@@ -79,6 +79,7 @@ impl<P: Planner> Axis<P> {
                 work: Work::Halt,
                 end: None,
                 passage: REST,
+                run: Run::NONE,
                 paused: false,
                 halted: false,
                 ..owner

@@ -251,6 +251,9 @@ impl<P: Planner> Axis<P> {
     /// endless owner stays if there is none. Distances count from `from` (B10).
     #[inline(never)]
     pub(super) fn hand_over(&mut self, from: f64, scope: &mut Scope<'_>) {
+        if self.goes_on_along(from, scope) {
+            return;
+        }
         for _ in 0..QUEUE_MAX {
             let Some(mut next) = self.queue.first().copied() else {
                 return;

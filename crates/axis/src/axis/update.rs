@@ -145,9 +145,9 @@ impl<P: Planner> Axis<P> {
         if self.passage(&owner, self.base().position, 0) != REST {
             return false;
         }
-        if matches!(self.motion, Motion::Run { .. }) {
+        if matches!(self.motion, Motion::Run { .. }) && self.replan(owner, scope).is_err() {
             // Where it would take too long to rest from here, it goes on as it was planned.
-            let _planned = self.replan(owner, scope);
+            self.end_run();
         }
         true
     }

@@ -683,7 +683,7 @@ impl<P: Planner> Axis<P> {
             ..*owner
         };
         let before = self.limits_before(&limits);
-        let motion = self.plan_from(&entry, &self.setpoint, &before)?;
+        let motion = self.plan_from(&mut entry, &self.setpoint, &before)?;
         let motion = self.kept_inside(&mut entry, motion, &self.setpoint, &before)?;
         let limits = Self::limits_of(&entry.limits, &motion);
         Ok((motion, limits))

@@ -1,0 +1,243 @@
+//! Chains as one motion: blended commands that lead on the same way within the same limits.
+//!
+//! All blending modes ask for the same velocity between them, the one both have, so nothing has to end where the first does: one
+//! plan, whose switches lie anywhere so that it has exactly that velocity, leads to the end of the last. The owner changes in
+//! each scan in which an end is passed; the plan goes on.
+//!
+//! Source: PLCopen Motion Control Part 1, section on aborting and buffered commands; B2, B14. `docs/buffering.md` tells which
+//! commands are one motion.
+
+use super::commands::{Entry, ROUNDING, Run};
+use super::supervision::Arrival;
+use super::{Axis, Motion};
+use crate::{CommandId, Fate, Scope};
+use standstill_planner::{Limits, MoveProfile, Plan, Planner, Setpoint};
+
+/// Halvings that find any scan of a plan, whose scans are a number of 32 bits.
+const HALVINGS: u32 = 32;
+
+/// Rounding of a position, relative to it.
+const RESOLUTION: f64 = 64.0 * f64::EPSILON;
+
+impl<P: Planner> Axis<P> {
+    /// The plan to the end of the last command that is one motion with `entry`; `None` if that is on its own.
+    ///
+    /// No two ends are passed in one scan. Where they would be, ways that take less than a scan at full speed are no part of it, and the
+    /// entry then says so.
+    ///
+    /// Cost: at most two plans with a blended end, three more for one that is told late, and [`HALVINGS`] looks at the plan for
+    /// each command.
+    pub(super) fn in_one_motion(
+        &self,
+        entry: &mut Entry,
+        start: &Setpoint,
+        before: &Limits,
+    ) -> Option<P::Plan> {
+        let whole = entry.run.count;
+        if whole == 0 {
+            return None;
+        }
+        if let Some(plan) = self.through_ends(entry, start, before) {
+            return Some(plan);
+        }
+        let shortest = self.longest_scan(entry);
+        let skip = usize::from(self.queue.first().is_some_and(|first| first.id == entry.id));
+        (_, entry.run) = self.chain(entry, start.position, skip, shortest);
+        if entry.run.count == 0 || entry.run.count == whole {
+            return None;
+        }
+        self.through_ends(entry, start, before)
+    }
+
+    /// How far (u) a motion of `entry` leads in a scan at most.
+    pub(super) fn longest_scan(&self, entry: &Entry) -> f64 {
+        entry.limits.velocity * self.planner.cycle()
+    }
+
+    /// The plan through the ends of all that is one motion with `entry`, if there is one that passes them one by one.
+    fn through_ends(&self, entry: &Entry, start: &Setpoint, before: &Limits) -> Option<P::Plan> {
+        let (end, run) = (entry.end?, &entry.run);
+        let forward = run.end > end;
+        let passing = self.blended(entry, start, run.end, &run.passage, before);
+        let plan = match passing {
+            Some(plan) => plan,
+            None => {
+                let planned =
+                    self.planner
+                        .move_to(MoveProfile::Online, start, run.end, &entry.limits, before);
+                planned.ok().filter(|plan| {
+                    self.beyond_bound(plan).is_none()
+                        && (moves_away(start, forward) || !self.turns(plan, forward))
+                })?
+            }
+        };
+        let is_good = self.passes_one_by_one(entry, &plan) && self.is_no_later(entry, start, before, &plan);
+        is_good.then_some(plan)
+    }
+
+    /// Whether `plan` has each end of what is one motion with `entry` in a scan of its own.
+    fn passes_one_by_one(&self, entry: &Entry, plan: &P::Plan) -> bool {
+        let Some(end) = entry.end else { return false };
+        let forward = entry.run.end > end;
+        let mut passed = passing_scan(plan, 0, end, forward);
+        let mut from = end;
+        let behind = self.queue.iter().filter(|next| next.id != entry.id);
+        behind.take(entry.run.count).all(|next| {
+            let Some(end) = self.end_of_leg(next, from, forward) else {
+                return false;
+            };
+            let before = passed;
+            passed = passing_scan(plan, before, end, forward);
+            from = end;
+            is_past(plan, passed, end, forward) && !is_past(plan, before, end, forward)
+        })
+    }
+
+    /// Whether `plan` is done no later than the plan to rest in progress, and a move from there.
+    fn is_no_later(&self, entry: &Entry, start: &Setpoint, before: &Limits, plan: &P::Plan) -> bool {
+        let is_braking = start.velocity * start.acceleration < 0.0;
+        let (
+            Motion::Run {
+                plan: present,
+                elapsed,
+                scans,
+            },
+            Some(owner),
+            Some(end),
+            true,
+        ) = (&self.motion, &self.owner, entry.end, is_braking)
+        else {
+            return true;
+        };
+        if owner.id != entry.id || self.motion.goes_on() || present.at(*scans).velocity != 0.0 {
+            return true;
+        }
+        let rest = Setpoint::at_rest(end);
+        let profile = self.config.profile;
+        let onwards = self
+            .planner
+            .move_to(profile, &rest, entry.run.end, &entry.limits, before);
+        let left = scans.saturating_sub(*elapsed);
+        onwards.map_or(true, |onwards| {
+            u64::from(plan.scans()) <= left.saturating_add(u64::from(onwards.scans()))
+        })
+    }
+
+    /// Whether `plan` goes back on its way.
+    pub(super) fn turns(&self, plan: &P::Plan, forward: bool) -> bool {
+        let (up, down) = self.planner.ways((plan, 0));
+        let back = if forward { down } else { up };
+        back > ROUNDING * (up + down) + RESOLUTION * plan.at(0).position.abs()
+    }
+
+    /// Along `plan`, up to the end of `entry`, which the plan of one motion passes before its own.
+    pub(super) fn along(&self, entry: &Entry, plan: P::Plan) -> Motion<P::Plan> {
+        match entry.end {
+            Some(end) if entry.run.count > 0 => Motion::Run {
+                scans: passing_scan(&plan, 0, end, entry.run.end > end),
+                plan,
+                elapsed: 0,
+            },
+            _ => Motion::along(plan),
+        }
+    }
+
+    /// The owner's motion passes its end at which it is now, and command `id` is next on its way.
+    pub(super) fn goes_on_to(&self, id: CommandId) -> bool {
+        let in_run = |owner: &Entry| owner.run.count > 0;
+        self.motion.goes_on()
+            && self.goal_reached()
+            && !self.is_held_up()
+            && self.layer.is_none()
+            && self.owner.as_ref().is_some_and(in_run)
+            && self.queue.first().is_some_and(|next| next.id == id)
+    }
+
+    /// The plan in progress is no longer one motion with what waits: from the owner's end on there is another one.
+    pub(super) fn end_run(&mut self) {
+        if let Some(owner) = &mut self.owner {
+            owner.run = Run::NONE;
+        }
+    }
+
+    /// The owner has passed its end on the way of its plan, and the next command is one motion with it: that goes on along the
+    /// plan. Returns whether it does. Where a modulo axis comes into another turn it is planned anew, to meet the target to the bit.
+    pub(super) fn goes_on_along(&mut self, from: f64, scope: &mut Scope<'_>) -> bool {
+        let (Some(owner), Some(mut next)) = (self.owner, self.queue.first().copied()) else {
+            return false;
+        };
+        if !self.goes_on_to(next.id) || next.limits != owner.limits {
+            return false;
+        }
+        self.aim(&mut next, from);
+        self.look_through(&mut next, self.setpoint.position, 1);
+        // As it was planned; what is another chain now is planned anew.
+        next.run = Run {
+            count: owner.run.count.saturating_sub(1),
+            ..owner.run
+        };
+        if next.turns != 0 || self.end_of_run(&next) != Some(owner.run.end) {
+            return false;
+        }
+        let Motion::Run { plan, elapsed, scans } = &mut self.motion else {
+            return false;
+        };
+        *scans = match next.end {
+            Some(end) if next.run.count > 0 => passing_scan(plan, *elapsed, end, owner.run.end > end),
+            _ => u64::from(plan.scans()),
+        };
+        if next.run.count == 0 {
+            (next.passage, next.run) = (owner.run.passage, Run::NONE);
+        }
+        self.queue.pop();
+        self.end_owner(Fate::Done);
+        self.enter(next.work.manner().start);
+        self.record_slowed(&next, &mut scope.with(next.instance));
+        self.arrival = Arrival::default();
+        self.before = next.limits;
+        self.own(next);
+        true
+    }
+
+    /// Where the last of what is one motion with `first`, which is at the head of the buffer, ends (u).
+    fn end_of_run(&self, first: &Entry) -> Option<f64> {
+        let forward = self.setpoint.velocity > 0.0;
+        let mut behind = self.queue.iter().skip(1).take(first.run.count);
+        behind.try_fold(first.end?, |from, next| {
+            let same = next.mode.blends() && next.work.manner().blends && next.limits == first.limits;
+            same.then(|| self.end_of_leg(next, from, forward))?
+        })
+    }
+}
+
+/// Whether a motion that leads `forward`, or back, begins the other way.
+fn moves_away(start: &Setpoint, forward: bool) -> bool {
+    if forward {
+        start.velocity < 0.0
+    } else {
+        start.velocity > 0.0
+    }
+}
+
+/// Whether a plan is at or past `end` (u) in this scan.
+fn is_past<P: Plan>(plan: &P, scan: u64, end: f64, forward: bool) -> bool {
+    let position = plan.at(scan).position;
+    if forward { position >= end } else { position <= end }
+}
+
+/// The first scan after `from`, in which it is not there yet, in which `plan` is at or past `end` (u); its last if there is none.
+fn passing_scan<P: Plan>(plan: &P, from: u64, end: f64, forward: bool) -> u64 {
+    let (mut short, mut past) = (from, u64::from(plan.scans()));
+    for _ in 0..HALVINGS {
+        let middle = short + past.saturating_sub(short) / 2;
+        if middle == short {
+            break;
+        }
+        if is_past(plan, middle, end, forward) {
+            past = middle;
+        } else {
+            short = middle;
+        }
+    }
+    past
+}
