@@ -20,6 +20,11 @@ const ROUNDING: f64 = 1e-9;
 /// An endless motion this many turns away is brought back.
 const FAR: f64 = 2.0;
 
+/// A way (u) is so long, where turns have that `length` (u), that places are told, and what is left of it is planned, from nearer.
+pub(super) fn is_far(way: f64, length: f64) -> bool {
+    way.abs() >= FAR * length
+}
+
 /// What an axis with turns has beyond a linear one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Modulo {
@@ -159,7 +164,7 @@ impl<P: Planner> Axis<P> {
     /// Whether the set-point of a modulo axis is so many turns away from 0 that an endless motion is brought back.
     #[inline]
     pub(super) fn is_far_round(&self) -> bool {
-        let far = |modulo: &Modulo| self.setpoint.position.abs() >= FAR * modulo.length;
+        let far = |modulo: &Modulo| is_far(self.setpoint.position, modulo.length);
         self.modulo.as_ref().is_some_and(far)
     }
 
@@ -169,7 +174,7 @@ impl<P: Planner> Axis<P> {
     pub(super) fn bring_back(&mut self) {
         let Some(modulo) = &mut self.modulo else { return };
         // An owner that the override halts may have its end there.
-        if self.setpoint.position.abs() < FAR * modulo.length
+        if !is_far(self.setpoint.position, modulo.length)
             || self.owner.as_ref().is_some_and(|owner| owner.halted)
         {
             return;

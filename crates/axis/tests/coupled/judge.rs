@@ -74,8 +74,12 @@ impl Track {
         self.ways.rotate_right(1);
         self.ways[0] = way;
         self.known = 4.min(self.known + 1);
-        // A way onto the law is made of the place of the law, which may be many turns away.
-        self.largest = self.largest.max(setpoint.position.abs() + axis.deviation().abs());
+        // A way onto the law is made of the place of the law; where the axis comes round it is planned anew every two turns.
+        let deviation = match self.turn {
+            Some(turn) => axis.deviation().abs().min(2.0 * turn),
+            None => axis.deviation().abs(),
+        };
+        self.largest = self.largest.max(setpoint.position.abs() + deviation);
         // Rounding of a position, and of the instant it belongs to.
         let mut resolved = (self.largest.next_up() - self.largest) + TICK * self.time * self.bounds[0];
         let mut differences = self.ways;
@@ -264,5 +268,63 @@ fn the_same_gear_twice_in_one_scan_is_the_same_law() {
         };
         assert!(often.is_in_gear(), "scan {scan}");
         assert_eq!(often.setpoint(), once.setpoint(), "scan {scan}");
+    }
+}
+
+/// A way back onto the law of many turns makes the places of the slave no coarser than one of a few.
+///
+/// Covers: G45, G48
+#[test]
+fn however_far_behind_a_slave_comes_back_within_its_limits() {
+    let fast = Limits {
+        velocity: 1e5,
+        acceleration: 1e7,
+        deceleration: 1e7,
+        jerk: 1e9,
+        snap: 1e11,
+    };
+    let slow = Limits {
+        velocity: 2000.0,
+        acceleration: 4000.0,
+        deceleration: 4000.0,
+        jerk: 1e4,
+        snap: 1e5,
+    };
+    let config = |limits| AxisConfig {
+        start: StartState::Standstill,
+        modulo: Some(360.0),
+        ..AxisConfig::new(limits)
+    };
+    for turns in [50.0, 500.0, 1500.0] {
+        let mut rig = Rig::new(&[config(fast), config(slow)], 0.001);
+        let gear = rig.gear(0, (1, 1), None, Dynamics::default());
+        rig.command(1, gear).expect("taken");
+        let go = Command::MoveRelative {
+            distance: turns * 360.0,
+            dynamics: Dynamics {
+                velocity: 1e5,
+                ..Dynamics::default()
+            },
+        };
+        let mut track = Track::new(&rig.axes[1], 0.001);
+        rig.step();
+        rig.command(0, go).expect("taken");
+        let mut scans = 0;
+        loop {
+            rig.step();
+            scans += 1;
+            // However long it takes.
+            track.time = 0.0;
+            assert_eq!(
+                track.take(&rig.axes[1]).err(),
+                None,
+                "{turns} turns, scan {scans}"
+            );
+            if rig.axes[1].is_in_gear() {
+                break;
+            }
+            assert!(scans < 300_000, "{turns} turns");
+        }
+        assert_eq!(track.turns, turns as i64);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::super::commands::ROUNDING;
 use super::super::guard::LAST_SCAN;
+use super::super::modulo::is_far;
 use super::super::power::Reaction;
 use super::super::{Axis, Motion};
 use super::needs::{DERIVATIVES, Piece, RESOLVED, Step};
@@ -351,6 +352,7 @@ impl<P: Planner> Axis<P> {
                 return;
             }
         }
+        self.look_from_near(&beside, frame.position - frame_place.position);
         let arrives = arrives && self.law_fits(view, true);
         if arrives && known.is_some() && self.is_on(&end, frame_place, &law, law_place) {
             // The snap is that of the way here.
@@ -362,6 +364,18 @@ impl<P: Planner> Axis<P> {
         if arrives && known.is_none() {
             let anchor = anchor_at(&view.seen(), self.place());
             self.lock_unless_stopped(anchor, view, scope);
+        }
+    }
+
+    /// After several turns on its way back onto its law the rest is looked for from where it is then: a plan that began further away is
+    /// as coarse as that is far.
+    fn look_from_near(&mut self, beside: &Setpoint, line: f64) {
+        let (Some(modulo), Some(coupling)) = (&self.modulo, &mut self.coupling) else {
+            return;
+        };
+        let is_long = is_far(beside.position, modulo.length) || is_far(line, modulo.length);
+        if is_long && !coupling.is_syncing() && matches!(coupling.rung, Rung::BesideLine { .. }) {
+            coupling.left = 0;
         }
     }
 

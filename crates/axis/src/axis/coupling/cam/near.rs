@@ -1,6 +1,7 @@
 //! A shadow on a long way behind a master that comes round: its places are told, and its way is planned on, from near where it is. A
 //! place that is told from many turns away is as coarse as those are long, and so is the motion along it.
 
+use super::super::super::modulo::is_far;
 use super::super::super::{Axis, Motion};
 use super::super::view::View;
 use super::{Curve, Rung};
@@ -8,13 +9,10 @@ use crate::Scope;
 use standstill_planner::turns::split;
 use standstill_planner::{Place, Planner};
 
-/// A way of so many turns of the master is a long one.
-const LONG: f64 = 2.0;
-
 impl Curve<'_> {
     /// A way (u of the master) is of several turns.
     pub(super) fn is_long(&self, way: f64) -> bool {
-        self.law.master_turn.is_some_and(|turn| way.abs() >= LONG * turn)
+        self.law.master_turn.is_some_and(|turn| is_far(way, turn))
     }
 
     /// A place of the master, told in its turn if it was told from turns away.
