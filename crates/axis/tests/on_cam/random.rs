@@ -23,9 +23,6 @@ struct Tally {
     waited: u32,
     shifted: u64,
     moved_on: u64,
-    judged: u64,
-    turned: u64,
-    overtook: u64,
     /// The most of a difference over its limit, relative to it, of each order.
     over: [f64; 4],
 }
@@ -115,8 +112,8 @@ struct Episode {
     /// Lengths of turns, where both axes come round, and the turn that the shadow is in.
     turns: Option<(f64, f64)>,
     turn: f64,
-    /// Where a shadow that lags was before this scan, how far it came in that, and how far it was from its master.
-    lagged: Option<[f64; 3]>,
+    /// Where a shadow that lags was at the end of the scan before, and how far it came in that.
+    lagged: Option<(f64, f64)>,
     seed: u64,
 }
 
@@ -189,26 +186,25 @@ impl Episode {
             self.lagged = None;
         } else {
             tally.lagging += 1;
-            self.judge_shadow(shadow, coupled.phase, tally);
+            self.judge_shadow(shadow, coupled.phase);
         }
     }
 
-    /// Behind a master of constant velocity a shadow does not turn against it, and does not get ahead of it.
-    fn judge_shadow(&mut self, shadow: f64, phase: f64, tally: &mut Tally) {
+    /// Behind a master of constant velocity a shadow does not turn against it.
+    fn judge_shadow(&mut self, shadow: f64, phase: f64) {
         let master = self.rig.axes[MASTER].setpoint();
-        let [was, came, was_from] = self.lagged.unwrap_or([shadow, 0.0, f64::NAN]);
-        let (step, from) = (shadow - was, shadow - master.position);
-        self.lagged = Some([shadow, step, from]);
-        let is_even = master.velocity != 0.0 && master.acceleration == 0.0 && phase == 0.0;
+        let (was, came) = self.lagged.unwrap_or((shadow, 0.0));
+        let step = shadow - was;
+        self.lagged = Some((shadow, step));
+        let is_even = master.acceleration == 0.0 && master.jerk == 0.0 && phase == 0.0;
         // Whole periods may be dropped, or be waited for.
-        let is_step = (step - came).abs() < 1.0 && (from - was_from).abs() < 5.0;
+        let is_step = (step - came).abs() < 1.0;
         if self.turns.is_some() || !is_even || !is_step {
             return;
         }
-        let sign = 1.0_f64.copysign(master.velocity);
-        tally.turned += u64::from(came * sign >= 0.0 && step * sign < -1e-9);
-        tally.overtook += u64::from(was_from * sign < -1e-9 && from * sign > 1e-9);
-        tally.judged += 1;
+        let turns = came * master.velocity >= 0.0 && step * master.velocity < -1e-9 * master.velocity.abs();
+        let (seed, scan) = (self.seed, self.rig.scan);
+        assert!(!turns, "seed {seed}: it turns against its master in scan {scan}");
     }
 }
 
