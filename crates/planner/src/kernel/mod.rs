@@ -22,6 +22,7 @@ pub use root::{MAX_STEPS, falling_root};
 pub use scale::Scale;
 pub use second::second;
 pub use spans::{Span, Spans};
+pub(crate) use third::append_third;
 pub use third::{Bounds, Profile, THIRD_SPANS, third};
 pub use zero::{Point, zero};
 

@@ -65,47 +65,75 @@ impl State {
 /// The start `(v, a)` may be anything, also outside `bounds`; it is then brought inside first. Bounded work:
 /// closed forms, or one root of at most [`MAX_STEPS`](super::MAX_STEPS) steps (R4 to R10).
 pub fn third(x: f64, v: f64, a: f64, target: f64, bounds: &Bounds) -> Profile {
-    let mut profile = Profile::nothing();
+    let mut spans = Spans::new();
     let stop = second(v, a, 0.0, bounds.a);
-    profile.lay(&stop, (x, v, a), target, bounds);
-    profile
+    let steps = append_third(&mut spans, &stop, (x, v, a), target, bounds);
+    Profile { spans, steps }
 }
 
-impl Profile {
-    /// No profile yet.
-    pub(crate) const fn nothing() -> Self {
-        Self {
-            spans: Spans::new(),
-            steps: 0,
-        }
+/// Appends to `spans` those of [`third`], where the fastest `stop` is known, the way from `(v, a)` to `(0, 0)`; the steps
+/// of root finding taken.
+pub(crate) fn append_third<const N: usize>(
+    spans: &mut Spans<N>,
+    stop: &Spans<3>,
+    (x, v, a): (f64, f64, f64),
+    target: f64,
+    bounds: &Bounds,
+) -> u32 {
+    let distance = target - x;
+    let start = State { x: 0.0, v, a };
+    let gap = distance - start.after_all(stop).x;
+    let t = stop.duration();
+    // What the input makes of `a` is no more than twice its bound, however long the stop takes.
+    let changed = min(t, a.abs() + 2.0 * max(bounds.a.plus, bounds.a.minus));
+    let added_up = x.abs() + target.abs() + t * (v.abs() + t * (a.abs() + changed));
+    if gap.abs() <= NOISE * added_up {
+        spans.extend(stop);
+        0
+    } else if gap > 0.0 {
+        push_up(&mut Appended { spans, side: 1.0 }, distance, start, bounds)
+    } else {
+        let mirrored = State { x: 0.0, v: -v, a: -a };
+        push_up(
+            &mut Appended { spans, side: -1.0 },
+            -distance,
+            mirrored,
+            &bounds.mirrored(),
+        )
+    }
+}
+
+/// A list of spans to append to those of a problem mirrored where `side` is -1.
+struct Appended<'a, const N: usize> {
+    spans: &'a mut Spans<N>,
+    side: f64,
+}
+
+impl<const N: usize> Appended<'_, N> {
+    fn push(&mut self, duration: f64, input: f64) {
+        self.spans.push(duration, self.side * input);
     }
 
-    /// As [`third`], where the fastest `stop` is known, the way from `(v, a)` to `(0, 0)`.
-    pub(crate) fn lay(&mut self, stop: &Spans<3>, (x, v, a): (f64, f64, f64), target: f64, bounds: &Bounds) {
-        let distance = target - x;
-        let start = State { x: 0.0, v, a };
-        let gap = distance - start.after_all(stop).x;
-        let t = stop.duration();
-        // What the input makes of `a` is no more than twice its bound, however long the stop takes.
-        let changed = min(t, a.abs() + 2.0 * max(bounds.a.plus, bounds.a.minus));
-        let added_up = x.abs() + target.abs() + t * (v.abs() + t * (a.abs() + changed));
-        if gap.abs() <= NOISE * added_up {
-            self.spans.extend(stop);
-        } else if gap > 0.0 {
-            push_up(self, distance, start, bounds);
+    /// The downward stop from `a` whose squared depth without a bound is `drop` (R5).
+    fn stop(&mut self, a: f64, drop: f64, brake: f64) {
+        if drop > brake * brake {
+            self.push(a + brake, -1.0);
+            self.push((drop - brake * brake) / brake, 0.0);
+            self.push(brake, 1.0);
         } else {
-            let mirrored = State { x: 0.0, v: -v, a: -a };
-            push_up(self, -distance, mirrored, &bounds.mirrored());
-            self.spans.mirror();
+            let depth = sqrt(max(drop, 0.0));
+            self.push(a + depth, -1.0);
+            self.push(depth, 1.0);
         }
     }
 }
 
-/// The case that the fastest stop ends short of `distance`: push towards the upper bound of `v`, then stop.
+/// The case that the fastest stop ends short of `distance`: push towards the upper bound of `v`, then stop; the steps of
+/// root finding taken.
 ///
 /// The place where the stop ends grows only while the push raises `a` or holds it above zero (R6); so the
 /// root is looked for in those spans alone, and the first one whose end stops beyond the target has it.
-fn push_up(profile: &mut Profile, distance: f64, start: State, bounds: &Bounds) {
+fn push_up<const N: usize>(spans: &mut Appended<'_, N>, distance: f64, start: State, bounds: &Bounds) -> u32 {
     let brake = bounds.a.minus;
     let arrest = start.v + 0.5 * start.a * start.a.abs();
     let top = raised_to(arrest, bounds.v.plus);
@@ -117,45 +145,40 @@ fn push_up(profile: &mut Profile, distance: f64, start: State, bounds: &Bounds) 
         // A stop that starts upwards follows the push for a while: nothing grows yet (R6).
         let stops_downwards = end.v + 0.5 * end.a * end.a.abs() > 0.0;
         if grows && stops_downwards && end.x + stopping_distance(end, brake) >= distance {
-            return intercept(profile, distance - state.x, state, *span, brake);
+            return intercept(spans, distance - state.x, state, *span, brake);
         }
-        profile.spans.push(span.duration, span.input);
+        spans.push(span.duration, span.input);
         state = end;
     }
     let cruise = distance - state.x - stopping_distance(state, brake);
-    profile.spans.push(cruise / top, 0.0);
-    push_stop(&mut profile.spans, 0.0, top, brake);
+    spans.push(cruise / top, 0.0);
+    spans.stop(0.0, top, brake);
+    0
 }
 
-/// Ends the push inside a `span` that starts at `state`, where the stop ends `left` further.
-fn intercept(profile: &mut Profile, left: f64, state: State, span: Span, brake: f64) {
-    let spans = &mut profile.spans;
+/// Ends the push inside a `span` that starts at `state`, where the stop ends `left` further; the steps of root finding
+/// taken.
+fn intercept<const N: usize>(
+    spans: &mut Appended<'_, N>,
+    left: f64,
+    state: State,
+    span: Span,
+    brake: f64,
+) -> u32 {
     if span.input > 0.0 {
         let Intercept { a, drop, steps } =
             Rising::new(left, state.v, state.a, brake).solve(state.a + span.duration);
         spans.push(a - state.a, 1.0);
-        push_stop(spans, a, drop, brake);
-        profile.steps = steps;
+        spans.stop(a, drop, brake);
+        steps
     } else {
         let a = state.a;
         let highest = state.v + a * span.duration + 0.5 * a * a;
         let lowest = state.v + 0.5 * a * a;
         let drop = max(min(holding(left, state.v, a, brake), highest), lowest);
         spans.push((drop - lowest) / a, 0.0);
-        push_stop(spans, a, drop, brake);
-    }
-}
-
-/// Appends the downward stop from `a` whose squared depth without a bound is `drop` (R5).
-fn push_stop(spans: &mut Spans<THIRD_SPANS>, a: f64, drop: f64, brake: f64) {
-    if drop > brake * brake {
-        spans.push(a + brake, -1.0);
-        spans.push((drop - brake * brake) / brake, 0.0);
-        spans.push(brake, 1.0);
-    } else {
-        let depth = sqrt(max(drop, 0.0));
-        spans.push(a + depth, -1.0);
-        spans.push(depth, 1.0);
+        spans.stop(a, drop, brake);
+        0
     }
 }
 

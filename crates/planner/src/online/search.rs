@@ -5,7 +5,7 @@
 use core::cell::Cell;
 
 use crate::Setpoint;
-use crate::kernel::{MAX_STEPS, NOISE, Point, Sides, Spans, THIRD_SPANS, zero};
+use crate::kernel::{MAX_STEPS, NOISE, ON_LIMIT, Point, Sides, Spans, THIRD_SPANS, zero};
 use crate::ramp::path::Way;
 use crate::ramp::solve::{Course, RAMP_SPANS, Ramp, Ramps, heading};
 
@@ -130,9 +130,19 @@ impl<'a> Search<'a> {
         }
         let side = if stop.beyond < 0.0 { 1.0 } else { -1.0 };
         let top = self.top(side);
-        let push = self.whole_ramp(start, top).spans;
+        let Ramp {
+            spans: push, lead, ..
+        } = self.whole_ramp(start, top);
         let mut way = Way::new(self.ramps.order(), start, self.ramps.lower());
         let mut from = stop.ahead(0.0, side);
+        if lead == 0
+            && let Some(left) = self.left_to_cruise(&mut stop, start, &push, top)
+        {
+            spans.extend(&push);
+            spans.push(left / top.abs(), 0.0);
+            spans.extend(&stop.ramp.spans);
+            return spans;
+        }
         let parts = if self.end_velocity == 0.0 { 1 } else { PARTS };
         for span in push.split(parts) {
             way.begin(span.input);
@@ -161,6 +171,27 @@ impl<'a> Search<'a> {
         cruise(&mut spans, -stop.ahead(0.0, side).value, top);
         spans.extend(&stop.ramp.spans);
         spans
+    }
+
+    /// How far the whole `push` to the velocity `top` and the `stop` behind it leave a move that ends at rest short of its
+    /// target, if that is more than rounding: then no end of a span needs a look.
+    fn left_to_cruise(
+        &self,
+        stop: &mut Stop,
+        start: &Setpoint,
+        push: &Spans<RAMP_SPANS>,
+        top: f64,
+    ) -> Option<f64> {
+        let end = follow(self.ramps, start, push);
+        let side = top.signum();
+        let least = top * top / (2.0 * self.ramps.deceleration());
+        if self.end_velocity != 0.0 || side * (self.target - end.position) < least {
+            return None;
+        }
+        self.stop_from(stop, &steady(&end, top));
+        let left = -side * stop.beyond;
+        let duration = push.duration() + stop.ramp.spans.duration();
+        (left > ON_LIMIT * (top.abs() * duration)).then_some(left)
     }
 
     /// A ramp to a peak velocity and one from it, with a cruise between them if it is the bound (O6).

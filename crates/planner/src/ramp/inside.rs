@@ -93,8 +93,6 @@ pub(super) struct Lead {
     pub(super) rest: f64,
     /// Most root steps taken.
     pub(super) steps: u32,
-    /// Whether the start was inside and viable, so that the ramp exceeds nothing.
-    pub(super) viable: bool,
 }
 
 impl Lead {
@@ -106,14 +104,20 @@ impl Lead {
             rest: state.after_all(&arrest).v,
             arrest,
             steps: 0,
-            viable: false,
         }
     }
 
-    /// Appends to `spans` what brings the state inside the limits, or as near to them as can be; nothing if it is viable
-    /// and inside. The velocity has to be in `range`, and on the way of the ramp proper not below `low`.
+    /// Whether the state is inside the limits and viable: it needs nothing before the ramp proper. The velocity has to be in
+    /// `low ..= high`.
+    pub(super) fn is_viable(&self, low: f64, high: f64, bounds: &Box4) -> bool {
+        is_inside(self.state, bounds) && is_viable(self.state, self.rest, low, high, bounds)
+    }
+
+    /// Appends to `spans` what brings a state that is not viable inside the limits, or as near to them as can be. The velocity
+    /// has to be in `range`, and on the way of the ramp proper not below `low`.
     ///
     /// `own` are the bounds of the ramp proper, `bounds` those of the state.
+    #[cold]
     pub(super) fn come_inside<const N: usize>(
         &mut self,
         spans: &mut Spans<N>,
@@ -124,10 +128,6 @@ impl Lead {
     ) {
         let high = range.plus;
         let state = self.state;
-        if is_inside(state, bounds) && is_viable(state, self.rest, low, high, bounds) {
-            self.viable = true;
-            return;
-        }
         // Where it comes to may be another place once acceleration and jerk are inside.
         let entered = arrested(state.after_all(&enter(state, bounds)), bounds.jerk);
         // Bound to come out on the other side of zero: before anything else, since this grows for as long as it is put off.

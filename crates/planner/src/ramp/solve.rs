@@ -3,7 +3,7 @@
 use super::inside::{self, Box4, LEAD_SPANS, Lead, State};
 use super::slope::{Box3, Slope};
 use super::turn::TURN_SPANS;
-use crate::kernel::{Bounds, ON_LIMIT, Profile, Scale, Sides, Spans, second, third};
+use crate::kernel::{Bounds, ON_LIMIT, Profile, Scale, Sides, Spans, append_third, second, third};
 use crate::{DirectedLimits, Order, Setpoint};
 
 /// Most spans of a ramp: getting inside the limits, then a ramp that may turn.
@@ -187,7 +187,7 @@ impl Ramps {
     }
 
     /// The deceleration bound in the kernel's units.
-    pub(super) const fn deceleration(&self) -> f64 {
+    pub(crate) const fn deceleration(&self) -> f64 {
         self.deceleration
     }
 
@@ -391,7 +391,10 @@ impl Ramps {
         let low = if may_turn { -range.minus } else { 0.0 };
         let spans = &mut ramp.spans;
         let mut lead = Lead::none(start, self.jerk);
-        lead.come_inside(spans, goal, (low, range), &bounds, &own(true));
+        let viable = lead.is_viable(low, range.plus, &bounds);
+        if !viable {
+            lead.come_inside(spans, goal, (low, range), &bounds, &own(true));
+        }
         ramp.lead = spans.len();
         let dips = goal >= 0.0 && (lead.state.v < 0.0 || lead.rest < 0.0);
         let State { v, a, j } = lead.state;
@@ -400,17 +403,14 @@ impl Ramps {
             spans.extend(&turning);
             steps
         } else {
-            let mut profile = Profile::nothing();
-            profile.lay(&lead.arrest, (v, a, j), goal, &own(dips));
-            spans.extend(&profile.spans);
-            profile.steps
+            append_third(spans, &lead.arrest, (v, a, j), goal, &own(dips))
         };
         ramp.steps = lead.steps.max(steps);
         // Where the acceleration comes to while the jerk goes to zero as fast as it can.
         let settled = start.a + 0.5 * start.j * start.j.abs();
         let widened = 1.0 + ON_LIMIT;
         let held = settled <= self.acceleration * widened && settled >= -self.deceleration * widened;
-        ramp.viable = lead.viable && held && goal >= 0.0;
+        ramp.viable = viable && held && goal >= 0.0;
     }
 }
 
