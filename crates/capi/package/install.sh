@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Installs the C library below a prefix, for CMake and pkg-config to find: `bash crates/capi/package/install.sh PREFIX [PROFILE]`.
-# The folder can be moved afterwards. PROFILE is a profile of Cargo, `release` unless given.
+# The folder can be moved afterwards. PROFILE is a profile of Cargo, `dist` unless given.
 set -euo pipefail
 mkdir -p "${1:?where to}"
-prefix=$(cd "$1" && pwd) profile=${2:-release}
+prefix=$(cd "$1" && pwd) profile=${2:-dist}
 cd "$(dirname "$0")/../../.."
 version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 cargo build --locked --quiet --profile "$profile" -p standstill-capi --lib

@@ -1,5 +1,5 @@
 // How fast the playground is, in figures: node measure.mjs PLAYWRIGHT SITE NATIVE [SCRIPT], where NATIVE is the program
-// `cargo build --release -p standstill-playground --example native` builds.
+// `cargo build --profile bench -p standstill-playground --example native` builds.
 
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';

@@ -146,7 +146,8 @@ fn library(capi: &Path, folder: &Path) -> Result<PathBuf, String> {
             "rustc",
             "--offline",
             "--quiet",
-            "--release",
+            "--profile",
+            "dist",
             "--lib",
             "--crate-type",
             "staticlib",
@@ -160,5 +161,5 @@ fn library(capi: &Path, folder: &Path) -> Result<PathBuf, String> {
     if !output.status.success() {
         return Err(String::from_utf8_lossy(&output.stderr).into_owned());
     }
-    Ok(folder.join("release/libstandstill_capi.a"))
+    Ok(folder.join("dist/libstandstill_capi.a"))
 }
