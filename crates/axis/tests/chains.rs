@@ -5,7 +5,7 @@
 //! is commanded, changed or taken away when; nothing is later than with buffered moves. Set-points are judged from outside, by their
 //! backward differences. The numbers are seeded; a failing case prints its own.
 //!
-//! `cargo test -p standstill-axis --test chains -- --nocapture` prints the tables of `docs/buffering.md`.
+//! `cargo test -p standstill-axis --test all chains:: -- --nocapture` prints the tables of `docs/buffering.md`.
 
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId,

@@ -1,8 +1,7 @@
 //! Directions barred at random, under moves at random: in a barred direction an axis does nothing but brake, and
 //! what was paused comes to its end when it may.
 
-mod draw;
-
+use crate::draw;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, BufferMode, Command, CommandId, Direction, Dynamics, ErrorId, Factors, Fate,
     Limits, Log, Permission, Plan, Planner, Raw, Request, Scope, Standard, StartState, Superimpose, steps,

@@ -2,9 +2,7 @@
 //!
 //! The planner here is the product's own, but one set-point of its plans is put elsewhere.
 
-mod double;
-
-use double::{Faulty, Wrong};
+use crate::double::{Faulty, Wrong};
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Direction, Dynamics, ErrorId, Event, Limits, Log, Request,
     Scope, Setpoint, StartState, steps,

@@ -4,8 +4,7 @@
 //! The judge knows neither filter nor planner: it takes differences of published positions, and sums of its own over what was
 //! told.
 
-mod draw;
-
+use crate::draw;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, Comms, DriveFeedback, DrivePosition, DriveSignals,
     Dynamics, ErrorId, ExecutionMode, Followed, Limits, Log, Master, Request, Scaling, Scope, Standard,

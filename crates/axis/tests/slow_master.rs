@@ -9,8 +9,7 @@
 //!
 //! `SLOW_MASTER_CASES` runs more of them.
 
-mod draw;
-
+use crate::draw;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Dynamics, Event, Factors, Followed,
     Following, Limits, Log, Master, OnLimit, Permission, PhaseShift, Raw, Request, Scope, Setpoint, Standard,

@@ -4,10 +4,8 @@
 //! Every case runs two axes with the same commands; one of them is also given superimposed ones, at random
 //! times, in both directions, halted or given again on the way.
 
-mod differences;
-mod draw;
-
-use differences::Seen;
+use crate::differences::Seen;
+use crate::draw;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, Fate, Limits,
     Log, Plan, Raw, Request, Scope, Setpoint, Standard, StartState, Superimpose, steps,

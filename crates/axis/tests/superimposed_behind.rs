@@ -6,10 +6,8 @@
 //!
 //! Covers: G66.
 
-mod differences;
-mod draw;
-
-use differences::Seen;
+use crate::differences::Seen;
+use crate::draw;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, Command, CommandId, Direction, Dynamics, Fate, Followed, Limits,
     Log, Master, Raw, Request, Scope, Standard, StartState, Superimpose, ValueSource, couple, steps,

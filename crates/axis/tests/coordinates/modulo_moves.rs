@@ -2,7 +2,7 @@
 //! axis does it: what the whole way is, that nothing turns back that must not, and that the target is met to
 //! the bit.
 
-use crate::rig::{CYCLE, Random, Rig};
+use super::rig::{CYCLE, Random, Rig};
 use standstill_axis::{
     AxisConfig, BufferMode, Command, Direction, DrivePosition, Dynamics, Fate, IdealDrive, InstanceId,
     Limits, Permission, Request, Scaling, Scope, StartState,

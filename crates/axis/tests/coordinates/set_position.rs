@@ -1,6 +1,6 @@
 //! Coordinates that move under random motions: increments go on as if nothing had happened, and velocities too.
 
-use crate::rig::{CYCLE, Random, Rig};
+use super::rig::{CYCLE, Random, Rig};
 use standstill_axis::{
     AxisConfig, Command, Direction, Dynamics, ExecutionMode, Fate, InstanceId, Limits, Scaling, Scope,
     StartState,

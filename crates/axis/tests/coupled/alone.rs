@@ -1,6 +1,6 @@
 //! Axes that follow none, beside axes that do.
 
-use crate::rig::Rig;
+use super::rig::Rig;
 use standstill_axis::{AxisConfig, Command, Direction, Dynamics, Limits, Raw, StartState};
 use standstill_testkit::Random;
 

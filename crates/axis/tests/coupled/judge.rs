@@ -1,7 +1,7 @@
 //! What must hold of published positions: differences within the limits, and locked rows on the law to the bit.
 
-use crate::exact::{Law, Row};
-use crate::rig::Rig;
+use super::exact::{Law, Row};
+use super::rig::Rig;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, Command, CommandId, Direction, Dynamics, Limits, StartState,
 };

@@ -4,7 +4,7 @@
 //! the law, counted from 1 in the scan of the command, for the best sequence of snaps held for a scan each; a plan that switches
 //! between scans may need one fewer.
 
-use crate::rig::Rig;
+use super::rig::Rig;
 use serde_json::{Value, json};
 use standstill_axis::{AxisConfig, Command, Direction, Dynamics, Limits, Setpoint, StartState, SyncPoint};
 

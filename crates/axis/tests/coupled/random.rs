@@ -3,8 +3,8 @@
 //!
 //! 1000 episodes in a plain run, 10^6 with `STANDSTILL_SOAK=1000000`; `STANDSTILL_FIRST` is the number of the first.
 
-use crate::judge::{Locked, Track, places};
-use crate::rig::Rig;
+use super::judge::{Locked, Track, places};
+use super::rig::Rig;
 use standstill_axis::{
     AxisConfig, AxisState, BufferMode, Command, CommandId, Direction, Dynamics, ErrorClass, ErrorId, Event,
     Factors, Fate, Limits, PhaseShift, Raw, Scope, StartState, Superimpose, SyncPoint,

@@ -1,7 +1,5 @@
 //! Published set-points, and what the differences of their positions say, held against limits.
 
-#![allow(dead_code, reason = "each test target takes what it needs")]
-
 use standstill_axis::{Limits, Setpoint};
 
 /// The last published positions, newest first, and what they say of the derivatives.

@@ -1,7 +1,5 @@
 //! Limits of an axis and dynamics of commands, drawn at random.
 
-#![allow(dead_code, reason = "each test target takes what it needs")]
-
 use standstill_axis::{Dynamics, Limits};
 use standstill_testkit::Random;
 

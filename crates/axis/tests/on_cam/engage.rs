@@ -1,6 +1,6 @@
 //! How a slave comes onto its cam, and what it does where it can't follow.
 
-use crate::rig::{L1, MASTER, RELATIVE, Rig, SLAVE, WIDE, config, row, up_and_back};
+use super::rig::{L1, MASTER, RELATIVE, Rig, SLAVE, WIDE, config, row, up_and_back};
 use standstill_axis::{
     AxisState, BufferMode, CamIn, CamRow, CamSelection, Command, Dynamics, ErrorId, Event, Fate, Limits,
     OnLimit, PhaseShift, Raw, Request, Scope, StartMode, ValueSource,

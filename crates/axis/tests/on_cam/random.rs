@@ -1,10 +1,10 @@
 //! Random cams, masters and limits, judged by arithmetic of their own: the limits of the slave hold in every scan, a slave on the curve
 //! is on it, in sync it is at its master's place, and what can come into step comes into step.
 //!
-//! `CAM_EPISODES=100000 cargo test -p standstill-axis --test on_cam --release random` plays as many as it says, from
+//! `CAM_EPISODES=100000 cargo test -p standstill-axis --test all --release on_cam::random` plays as many as it says, from
 //! `CAM_FIRST` on. With `CAM_LOOK` set it prints cam, limits and events of each, and stops at the first snap over its limit.
 
-use crate::rig::{L1, MASTER, RELATIVE, Rig, WIDE, config, row};
+use super::rig::{L1, MASTER, RELATIVE, Rig, WIDE, config, row};
 use standstill_axis::{AxisState, BufferMode, CamRow, CamSelection, Command, Dynamics, Limits, Raw};
 use standstill_planner::CamShape;
 use standstill_planner::turns::split;
@@ -220,7 +220,7 @@ fn adds(rig: &mut Rig, random: &mut Random, velocity: f64) {
     let scope = &mut standstill_axis::Scope::new(rig.scan, &mut rig.log);
     let dynamics = dynamics(velocity * random.log(0.01, 2.0));
     let master = rig.axes[MASTER].id();
-    let slave = &mut rig.axes[crate::rig::SLAVE];
+    let slave = &mut rig.axes[super::rig::SLAVE];
     // What is refused changes nothing.
     match random.below(3) {
         0 => {

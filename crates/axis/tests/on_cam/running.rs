@@ -1,6 +1,6 @@
 //! In sync: places, periods, ends, and what follows.
 
-use crate::rig::{L1, MASTER, RELATIVE, Rig, SLAVE, WIDE, config, row, up_and_back};
+use super::rig::{L1, MASTER, RELATIVE, Rig, SLAVE, WIDE, config, row, up_and_back};
 use standstill_axis::{AxisState, BufferMode, CamRow, CamSelection, Command, Dynamics, Fate, Limits};
 use standstill_planner::CamShape;
 

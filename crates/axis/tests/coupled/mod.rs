@@ -3,8 +3,6 @@
 
 mod alone;
 mod exact;
-#[path = "../followed/mod.rs"]
-mod followed;
 mod judge;
 mod lock_times;
 mod random;

@@ -8,9 +8,7 @@
 //! Set-points are held against the limits of the axis by the rules of `standstill-soak`. A take-over that cannot stay
 //! inside a limit says so in a record; that may happen in one case of a thousand. Without a record it never happens.
 
-#[path = "../draw/mod.rs"]
-mod draw;
-
+use crate::draw;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, AxisState, BufferMode, Command, CommandId, Direction, Event, Factors, Fate,
     Log, MoveProfile, Plan, Raw, Request, Scope, Standard, StartState, Superimpose, steps,

@@ -1,0 +1,23 @@
+//! The tests of this crate, in one program: linking one costs more than running most of them.
+
+mod blending;
+mod chains;
+mod changing;
+mod coordinates;
+mod coupled;
+mod differences;
+mod directions;
+mod double;
+mod draw;
+mod followed;
+mod guard;
+mod least_scans;
+mod measured;
+mod on_cam;
+mod outlook;
+mod slow_master;
+mod superimposed;
+mod superimposed_behind;
+mod superimposed_least;
+mod take_over;
+mod values;
