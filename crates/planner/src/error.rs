@@ -42,6 +42,10 @@ pub enum Field {
     Gamma,
     /// Share of the acceleration in which a timed move's jerk acts.
     Phi,
+    /// Frequency of a mode (Hz).
+    Frequency,
+    /// Damping ratio of a mode.
+    Damping,
 }
 
 impl Field {
@@ -66,6 +70,8 @@ impl Field {
             Self::Duration => "duration",
             Self::Gamma => "gamma",
             Self::Phi => "phi",
+            Self::Frequency => "vibration.frequency",
+            Self::Damping => "vibration.damping",
         }
     }
 }

@@ -27,6 +27,7 @@ mod planner;
 pub mod profile;
 pub mod ramp;
 mod setpoint;
+pub mod shaper;
 mod sum;
 pub mod turns;
 
@@ -44,4 +45,5 @@ pub use planner::{MoveProfile, Plan, Planner, Standard, StandardPlan};
 pub use profile::{PROFILE_POINTS, ProfileCause, ProfileFault, ProfileKind, ProfilePlan, ProfilePoint};
 pub use ramp::{Excess, Peaks, RampPlan, Segment};
 pub use setpoint::Setpoint;
+pub use shaper::{Shaper, ShaperKind, Shapers, VibrationMode};
 pub use sum::{Lead, Leads};

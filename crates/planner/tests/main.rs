@@ -16,6 +16,7 @@ mod papers_plans;
 mod profile;
 mod ramp_kernel;
 mod ramp_plans;
+mod shaped_plans;
 mod unequal_exhaustive;
 mod unequal_invariants;
 mod unequal_soak;
