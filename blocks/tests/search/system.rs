@@ -312,6 +312,7 @@ impl System {
                     instance: InstanceId(place),
                     log,
                     cams: standstill_axis::Cams::default(),
+                    history: &mut [],
                 },
                 axes: &mut self.axis,
                 tables: &[],

@@ -3,7 +3,8 @@
 use crate::keys::{self, Bounds, Holds};
 use crate::{Homing, Procedure, QUEUE_MAX, Scaling};
 use core::fmt;
-use standstill_planner::{Limits, MoveProfile};
+use standstill_planner::shaper::{DAMPING_MAX, LONGEST_PERIOD, MODES, SHORTEST_PERIOD};
+use standstill_planner::{Field, Limits, MoveProfile, PlanError, Shapers, VibrationMode};
 
 /// What happens to a value above the axis limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -225,6 +226,8 @@ pub struct AxisConfig {
     pub modulo_targets: ModuloTargets,
     /// What a rising edge of Execute does while the instance is Busy.
     pub edge_while_busy: EdgeWhileBusy,
+    /// How its load swings, and what keeps it from that.
+    pub vibration: [Option<VibrationMode>; MODES],
 }
 
 impl AxisConfig {
@@ -262,6 +265,7 @@ impl AxisConfig {
             jog_at_limit: JogAtLimit::Error,
             modulo_targets: ModuloTargets::Error,
             edge_while_busy: EdgeWhileBusy::Restart,
+            vibration: [None; MODES],
         }
     }
 
@@ -327,6 +331,17 @@ impl AxisConfig {
         if self.stop.is_some() && (self.stop_deceleration.is_some() || self.stop_jerk.is_some()) {
             return Err(ConfigError::StopTwice);
         }
+        let Limits {
+            acceleration,
+            deceleration,
+            ..
+        } = self.limits;
+        if self.vibration.iter().any(Option::is_some) && acceleration != deceleration {
+            return Err(ConfigError::VibrationRates {
+                acceleration,
+                deceleration,
+            });
+        }
         if !(self.override_max >= 1.0 && self.override_max.is_finite()) {
             return Err(ConfigError::OverrideMax {
                 value: self.override_max,
@@ -382,6 +397,16 @@ impl AxisConfig {
             });
         }
         self.check_profile()
+    }
+
+    /// Checks what depends on the sample time (s).
+    ///
+    /// # Errors
+    /// [`ConfigError::Vibration`] names the first mode that is not usable.
+    pub fn check_cycle(&self, cycle: f64) -> Result<(), ConfigError> {
+        Shapers::new(&self.vibration, cycle)
+            .map(|_| ())
+            .map_err(|(place, error)| ConfigError::Vibration { place, error })
     }
 
     /// Refuses numbers that must be above 0 and are not; `homing` looks at its own, some of which mean nothing for others of
@@ -473,6 +498,20 @@ pub enum ConfigError {
         value: f64,
         /// The limit.
         limit: f64,
+    },
+    /// A mode of `vibration` that can't be shaped at the sample time.
+    Vibration {
+        /// Its place in the list.
+        place: usize,
+        /// What is wrong with it.
+        error: PlanError,
+    },
+    /// `vibration` with two rates: in a mean of both directions of motion neither would be kept.
+    VibrationRates {
+        /// The acceleration limit (u/s^2).
+        acceleration: f64,
+        /// The deceleration limit (u/s^2).
+        deceleration: f64,
     },
     /// `stop` beside `stop_deceleration` or `stop_jerk`.
     StopTwice,
@@ -580,6 +619,8 @@ impl ConfigError {
             | Self::HomingFaster { key, .. }
             | Self::HomingKey { key, .. } => key,
             Self::HomingMissing { .. } => "homing",
+            Self::Vibration { place, error } => vibration_key(*place, error),
+            Self::VibrationRates { .. } => "limits.deceleration",
             Self::StopTwice => "stop",
             Self::SoftwareLimits { .. } => "software_limits",
             Self::Modulo { .. } | Self::ModuloNotRational { .. } => "modulo",
@@ -592,6 +633,60 @@ impl ConfigError {
             Self::Profile { .. } => "profile",
             Self::Scaling { .. } => "scaling",
         }
+    }
+}
+
+/// The key of what is wrong with a mode.
+const fn vibration_key(place: usize, error: &PlanError) -> &'static str {
+    match (error, place) {
+        (
+            PlanError::InvalidInput {
+                field: Field::Damping,
+                ..
+            }
+            | PlanError::OutOfRange {
+                field: Field::Damping,
+                ..
+            },
+            0,
+        ) => "vibration.0.damping",
+        (
+            PlanError::InvalidInput {
+                field: Field::Damping,
+                ..
+            }
+            | PlanError::OutOfRange {
+                field: Field::Damping,
+                ..
+            },
+            _,
+        ) => "vibration.1.damping",
+        (_, 0) => "vibration.0.frequency",
+        (_, _) => "vibration.1.frequency",
+    }
+}
+
+fn vibration_fault(f: &mut fmt::Formatter<'_>, place: usize, error: &PlanError) -> fmt::Result {
+    let key = vibration_key(place, error);
+    match error {
+        PlanError::OutOfRange {
+            field: Field::Damping,
+            value,
+            ..
+        } => {
+            write!(
+                f,
+                "{key} is {value:?}: a damping ratio is from 0 to {DAMPING_MAX}"
+            )
+        }
+        PlanError::OutOfRange { value, nearest, .. } => write!(
+            f,
+            "{key} is {value:?}: a period takes from {SHORTEST_PERIOD} to {LONGEST_PERIOD} cycles, so the nearest frequency is {nearest:?}; a shorter or longer cycle moves the range"
+        ),
+        PlanError::InvalidInput { value, .. } => {
+            write!(f, "{key} is {value:?}: it must be a finite number above 0")
+        }
+        other => write!(f, "{key}: {other}"),
     }
 }
 
@@ -611,6 +706,14 @@ impl fmt::Display for ConfigError {
                     "{key} is {value:?}, above the axis limit {limit:?}: lower it or raise the limit"
                 )
             }
+            Self::Vibration { place, error } => vibration_fault(f, place, &error),
+            Self::VibrationRates {
+                acceleration,
+                deceleration,
+            } => write!(
+                f,
+                "limits.deceleration is {deceleration:?} and limits.acceleration {acceleration:?}: an axis with vibration has one rate, so give both the lower one; commands may have two"
+            ),
             Self::StopTwice => write!(
                 f,
                 "stop beside stop_deceleration or stop_jerk: say in stop alone how the axis stops"

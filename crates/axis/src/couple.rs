@@ -105,6 +105,7 @@ fn obstacle<P: Planner>(axes: &mut [Axis<P>], slave: AxisId, (master, source): V
     let Some(axis) = axes.get(master.index()) else {
         return Some(ErrorId::AxisUnknown);
     };
+    let is_led = source == ValueSource::Actual || !axis.is_shaped();
     let (is_there, is_operating) = match source {
         ValueSource::Actual => (axis.is_measured(), axis.fresh_position().is_ok()),
         ValueSource::Set | ValueSource::Commanded => (true, axis.is_operating()),
@@ -114,6 +115,9 @@ fn obstacle<P: Planner>(axes: &mut [Axis<P>], slave: AxisId, (master, source): V
     }
     if !is_there {
         return Some(ErrorId::MasterSourceInvalid);
+    }
+    if !is_led {
+        return Some(ErrorId::Shaped);
     }
     (!is_operating).then_some(ErrorId::MasterLost)
 }

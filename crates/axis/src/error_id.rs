@@ -131,8 +131,8 @@ error_ids! {
         "Use MC_ReadBoolParameter and MC_WriteBoolParameter for the numbers 4 to 6, MC_ReadParameter and MC_WriteParameter for all others.";
     ParameterReadOnly = 142, "The parameter can only be read.",
         "Write the limit of the application (9, 13, 15, 17) instead of that of the system; the others say what the axis does.";
-    ParameterValueInvalid = 143, "Value is NaN, or infinite, zero or negative where the parameter cannot be.",
-        "Give a finite position, or a limit above 0.";
+    ParameterValueInvalid = 143, "Value is NaN, or infinite, zero or negative where the parameter cannot be, or no number of a shaper, or a frequency or damping that can't be shaped.",
+        "Give a finite position, or a limit above 0; a frequency of at least half that of the set-up with a period from 4 to 4096 cycles, a damping from 0 to 0.9, a shaper from 1 to 4.";
     ParameterAboveSystem = 144, "Value is above the limit of the axis.",
         "Give at most what MC_ReadParameter shows for MaxVelocitySystem (8), MaxAccelerationSystem (12), MaxDecelerationSystem (14) or MaxJerkSystem (16).";
     ParameterMissing = 145, "A software limit or the supervision of the following error is switched on before it has a value.",
@@ -141,6 +141,8 @@ error_ids! {
         "Move the other limit first, or switch one of them off.";
     ParameterOnModulo = 147, "Software limits do not exist on a modulo axis: its positions come round.",
         "Leave the parameters 2 to 5 alone on this axis.";
+    VibrationMissing = 148, "The axis was set up without this mode of vibration, so it has no memory for a shaper.",
+        "Give the axis the mode in its set-up (its key vibration); then it can be changed while the axis rests.";
     RatioInvalid = 150, "RatioDenominator is 0.",
         "Give a denominator from 1; a RatioNumerator of 0 brings the slave to rest.";
     CouplingRing = 151, "Master is the slave itself, or an axis that follows it.",
@@ -212,6 +214,9 @@ error_ids! {
         "Lower the velocity limit of the master to MaxMasterVelocity, raise the limits of the slave, or make the cam wider.";
     BufferModeNotHere = 221, "MC_GearInPos or MC_CamIn with a MasterStartDistance has a BufferMode other than mcAborting: where its start point is when the motion before it ends is not known. Or MC_CamIn with SwitchAt has mcAborting.",
         "Use mcAborting, or a MasterStartDistance of 0; with SwitchAt use mcBuffered.";
+
+    Shaped = 222, "The axis has a shaper (its key vibration), between its motion and its drive: it can't follow a master, lead slaves by its set values, or be under a torque.",
+        "Set it up without vibration, or let slaves follow its actual values (mcActualValue).";
 
     BufferFull = 301, "All places of the command buffer are taken.",
         "Wait for a buffered command to become active, or enlarge the queue of the axis.";

@@ -63,6 +63,6 @@ pub use standstill_planner::turns::split;
 pub use standstill_planner::{
     Anchor, Cam, CamBounds, CamCause, CamFault, CamHead, CamLaw, CamPiece, CamRow, Excess, Gear, Limits,
     MoveProfile, Order, PROFILE_POINTS, Passage, Place, Plan, PlanError, Planner, ProfileFault, ProfileKind,
-    ProfilePoint, Setpoint, Standard, StandardPlan,
+    ProfilePoint, Setpoint, ShaperKind, Standard, StandardPlan, VibrationMode,
 };
 pub use state::{ARROWS, Arrow, AxisEvent, AxisState, Refused, next};

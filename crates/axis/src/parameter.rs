@@ -43,6 +43,18 @@ pub enum Parameter {
     DriveErrorCode = 1000,
     /// 1001: the set position published in the scan before less the actual position (u).
     PositionLag,
+    /// 1002: frequency of the first mode of `vibration` (Hz); 0 without one.
+    Vibration1Frequency,
+    /// 1003: its damping ratio.
+    Vibration1Damping,
+    /// 1004: its shaper: 1 `period`, 2 `zv`, 3 `zvd`, 4 `ei`.
+    Vibration1Shaper,
+    /// 1005: the same three of the second mode.
+    Vibration2Frequency,
+    /// 1006: its damping ratio.
+    Vibration2Damping,
+    /// 1007: its shaper.
+    Vibration2Shaper,
 }
 
 impl Parameter {
@@ -68,7 +80,16 @@ impl Parameter {
     ];
 
     /// Ours, in the order of the numbers from 1000 on.
-    pub const OURS: [Self; 2] = [Self::DriveErrorCode, Self::PositionLag];
+    pub const OURS: [Self; 8] = [
+        Self::DriveErrorCode,
+        Self::PositionLag,
+        Self::Vibration1Frequency,
+        Self::Vibration1Damping,
+        Self::Vibration1Shaper,
+        Self::Vibration2Frequency,
+        Self::Vibration2Damping,
+        Self::Vibration2Shaper,
+    ];
 
     pub(crate) fn of(number: i16) -> Result<Self, ErrorId> {
         let place = |first: i16| usize::try_from(number.checked_sub(first)?).ok();

@@ -1,8 +1,9 @@
-//! What every call of an axis is made in: the scan, who speaks, the ring that records go to, and the cams.
+//! What every call of an axis is made in: the scan, who speaks, the ring that records go to, and memory that is lent.
 
 use crate::{AxisId, Cams, ErrorId, Event, InstanceId, Log, Record};
+use standstill_planner::Setpoint;
 
-/// The scan a call belongs to, the block instance that makes it, the ring its records go to, and the store of cams.
+/// The scan a call belongs to, the block instance that makes it, the ring its records go to, and memory that the host lends.
 #[derive(Debug)]
 pub struct Scope<'a> {
     /// The scan.
@@ -13,6 +14,8 @@ pub struct Scope<'a> {
     pub log: &'a mut Log,
     /// The cams; a store without memory (its default) where there are none.
     pub cams: Cams<'a>,
+    /// Past set-points of axes with `vibration` ([`Axis::history_needed`](crate::Axis::history_needed)); empty where there are none.
+    pub history: &'a mut [Setpoint],
 }
 
 impl<'a> Scope<'a> {
@@ -23,6 +26,7 @@ impl<'a> Scope<'a> {
             instance: InstanceId::default(),
             log,
             cams: Cams::default(),
+            history: &mut [],
         }
     }
 
@@ -34,6 +38,7 @@ impl<'a> Scope<'a> {
             instance,
             log: self.log,
             cams: self.cams.lend(),
+            history: self.history,
         }
     }
 

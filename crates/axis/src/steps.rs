@@ -31,10 +31,12 @@ pub fn follow<P: Planner, D: Drive>(
 #[inline]
 pub fn advance<P: Planner>(axes: &mut [Axis<P>], scope: &mut Scope<'_>) {
     if axes.iter().any(|axis| axis.links().is_bound()) {
-        return couple::advance(axes, scope);
+        couple::advance(axes, scope);
+        return axes.iter_mut().for_each(|axis| axis.shape(scope));
     }
     for axis in axes {
         axis.advance(scope);
+        axis.shape(scope);
     }
 }
 

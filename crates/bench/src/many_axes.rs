@@ -286,6 +286,7 @@ impl ManyAxes {
             now_ns: self.scan as i64 * 1_000_000,
             scope: Scope {
                 cams: Cams::new(slots, pieces),
+                history: &mut [],
                 ..Scope::new(self.scan, log)
             },
             axes,

@@ -4,12 +4,31 @@ use crate::{AxisSetup, DriveSetup};
 use standstill_axis::{
     AboveLimit, AxisConfig, BlockDetection, ConfigError, Defaults, EdgeWhileBusy, Following, HomeDirection,
     Homing, InPosition, JogAtLimit, Limits, ModuloTargets, MoveProfile, OnLimit, OnMasterLost, PowerOff,
-    Procedure, Scaling, StartState, StopLimits, SwitchEdge,
+    Procedure, Scaling, ShaperKind, StartState, StopLimits, SwitchEdge, VibrationMode,
 };
 use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
 use standstill_drives::simulated::{self, Cia402Setup, IdealDriveSetup, MotorSetup, PlantSetup};
 use standstill_drives::switches::{Marker, Switches};
+
+/// A mode in which the load swings; none without a frequency.
+fn mode(
+    key: &'static str,
+    (frequency, damping, shaper): (f64, f64, i32),
+) -> Result<Option<VibrationMode>, SetupFault> {
+    let shapers = [
+        ShaperKind::Ei,
+        ShaperKind::Period,
+        ShaperKind::Zv,
+        ShaperKind::Zvd,
+    ];
+    let shaper = choice(key, shaper, &shapers)?;
+    Ok(given(frequency).map(|frequency| VibrationMode {
+        frequency,
+        damping,
+        shaper,
+    }))
+}
 
 /// What cannot be used.
 pub(crate) struct SetupFault {
@@ -80,6 +99,12 @@ impl AxisSetup {
             modulo_targets: 0,
             edge_while_busy: 0,
             cam_continuity: 0,
+            vibration_frequency: 0.0,
+            vibration_damping: 0.0,
+            vibration2_frequency: 0.0,
+            vibration2_damping: 0.0,
+            vibration_shaper: 0,
+            vibration2_shaper: 0,
         }
     }
 
@@ -182,6 +207,24 @@ impl AxisSetup {
                 self.edge_while_busy,
                 &[EdgeWhileBusy::Restart, EdgeWhileBusy::Ignore],
             )?,
+            vibration: [
+                mode(
+                    "vibration_shaper",
+                    (
+                        self.vibration_frequency,
+                        self.vibration_damping,
+                        self.vibration_shaper,
+                    ),
+                )?,
+                mode(
+                    "vibration2_shaper",
+                    (
+                        self.vibration2_frequency,
+                        self.vibration2_damping,
+                        self.vibration2_shaper,
+                    ),
+                )?,
+            ],
         })
     }
 
@@ -593,6 +636,20 @@ mod tests {
         ("coupling.actual_filter", |axis| axis.actual_filter = -1),
         ("coupling.actual_lead", |axis| axis.actual_lead = 1),
         ("coupling.cam_continuity", |axis| axis.cam_continuity = -1),
+        ("vibration.0.frequency", |axis| axis.vibration_frequency = 12.0),
+        ("vibration.0.damping", |axis| {
+            (axis.vibration_frequency, axis.vibration_damping) = (12.0, 0.02);
+        }),
+        ("vibration.0.shaper", |axis| {
+            (axis.vibration_frequency, axis.vibration_shaper) = (12.0, 2);
+        }),
+        ("vibration.1.frequency", |axis| axis.vibration2_frequency = 12.0),
+        ("vibration.1.damping", |axis| {
+            (axis.vibration2_frequency, axis.vibration2_damping) = (12.0, 0.02);
+        }),
+        ("vibration.1.shaper", |axis| {
+            (axis.vibration2_frequency, axis.vibration2_shaper) = (12.0, 2);
+        }),
     ];
 
     /// A C host can set up everything that a script can.

@@ -179,7 +179,7 @@ mod tests {
             size: size_of::<RuntimeConfig>() as u32,
             axes: 1,
             instances: 1,
-            reserved: 0,
+            history: 0,
             cycle_ns: 1_000_000,
         };
         let bytes = storage::size(&config).unwrap();

@@ -8,7 +8,8 @@ use crate::{AxisSetup, AxisStatus, Code, ConfigFault, DriveSetup, Mishap, Record
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicU32, AtomicUsize};
 use standstill_axis::{
-    Axis, AxisId, AxisState, Cams, Drive, DriveFeedback, ErrorId, InstanceId, Log, Scope, Standard, steps,
+    Axis, AxisId, AxisState, Cams, Drive, DriveFeedback, ErrorId, InstanceId, Log, Scope, Setpoint, Standard,
+    steps,
 };
 use standstill_blocks::{BlockInstance, REGISTRY};
 use standstill_drives::simulated::{DriveChange, SimulatedDrive};
@@ -23,6 +24,9 @@ pub(crate) const AXES: u32 = 1024;
 /// The largest number of instances of a runtime: their numbers in records have 16 bits, and one number
 /// means nobody.
 pub(crate) const INSTANCES: u32 = 65_534;
+
+/// The largest number of set-points kept.
+pub(crate) const HISTORY: u32 = 1 << 24;
 
 /// The largest number of slots of a store of cams: their numbers have 16 bits.
 pub(crate) const CAM_SLOTS: u32 = 0xFFFF;
@@ -75,6 +79,7 @@ fn nobody(scan: u64, log: &mut Log) -> Scope<'_> {
         instance: NOBODY,
         log,
         cams: Cams::default(),
+        history: &mut [],
     }
 }
 
@@ -121,6 +126,10 @@ pub(crate) struct Inner {
     pub recorder: List<Recorder>,
     /// The store of cams, if there is one.
     pub cams: CamStore,
+    /// Past set-points of axes with vibration.
+    pub history: List<Setpoint>,
+    /// Those that axes have taken.
+    history_taken: usize,
 }
 
 impl Inner {
@@ -129,6 +138,7 @@ impl Inner {
         drives: List<AnyDrive>,
         feedback: List<DriveFeedback>,
         slots: List<Slot>,
+        history: List<Setpoint>,
         cycle_ns: i64,
     ) -> Self {
         Self {
@@ -153,6 +163,8 @@ impl Inner {
             },
             recorder: List::none(),
             cams: CamStore::none(),
+            history,
+            history_taken: 0,
         }
     }
 
@@ -206,12 +218,19 @@ impl Inner {
         let config = setup
             .config()
             .map_err(|fault| self.refuse(fault.key, fault.value))?;
-        let axis = Axis::new(id, config, Standard::new(self.cycle_ns as f64 / 1e9)).map_err(|error| {
+        let mut axis = Axis::new(id, config, Standard::new(self.cycle_ns as f64 / 1e9)).map_err(|error| {
             let fault = refused(&error);
             self.refuse(fault.key, fault.value)
         })?;
         let drive = AnyDrive::new(drive, axis.config(), self.cycle_ns)
             .map_err(|fault| self.refuse(fault.key, fault.value))?;
+        let needed = axis.history_needed();
+        if needed > self.history.len() - self.history_taken {
+            // The value is what the axis needs.
+            return Err(self.refuse("vibration", needed as f64));
+        }
+        axis.set_history(self.history_taken);
+        self.history_taken += needed;
         // An initial value only: the first tick reads the drive before any use.
         let feedback = DriveFeedback {
             enabled: false,
@@ -322,6 +341,7 @@ impl Inner {
         }
         let mut scope = nobody(self.scan, &mut self.log);
         scope.cams = self.cams.lend();
+        scope.history = self.history.slice_mut();
         steps::advance(self.axes.slice_mut(), &mut scope);
         steps::publish(self.axes.slice_mut(), self.drives.slice_mut(), self.now_ns);
         if let Some(recorder) = self.recorder.slice_mut().first_mut() {
@@ -436,6 +456,7 @@ impl Inner {
                 instance: InstanceId(key as u16),
                 log: &mut self.log,
                 cams: self.cams.lend(),
+                history: self.history.slice_mut(),
             },
             axes: self.axes.slice_mut(),
             tables: &self.cells,

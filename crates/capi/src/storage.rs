@@ -1,13 +1,13 @@
-//! The memory of a runtime: one block from the host, divided into a head and four lists.
+//! The memory of a runtime: one block from the host, divided into a head and five lists.
 
 use crate::drive::AnyDrive;
-use crate::runtime::{AXES, CAM_PIECES, CAM_SLOTS, INSTANCES, Inner, MAGIC, Runtime, Slot};
+use crate::runtime::{AXES, CAM_PIECES, CAM_SLOTS, HISTORY, INSTANCES, Inner, MAGIC, Runtime, Slot};
 use crate::{Code, RuntimeConfig};
 use core::alloc::Layout;
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicU32, AtomicUsize};
 use core::{ptr, slice};
-use standstill_axis::{Axis, CamPiece, CamSlot, Cams, DriveFeedback};
+use standstill_axis::{Axis, CamPiece, CamSlot, Cams, DriveFeedback, Setpoint};
 
 /// The alignment that storage must have.
 pub(crate) const ALIGN: usize = 16;
@@ -148,6 +148,7 @@ struct Plan {
     drives: usize,
     feedback: usize,
     slots: usize,
+    history: usize,
 }
 
 impl Plan {
@@ -155,7 +156,7 @@ impl Plan {
         let fits = (1..=AXES).contains(&config.axes)
             && config.instances <= INSTANCES
             && config.cycle_ns > 0
-            && config.reserved == 0;
+            && config.history <= HISTORY;
         if !fits {
             return Err(Code::BadValue);
         }
@@ -163,12 +164,14 @@ impl Plan {
         let (whole, drives) = behind::<AnyDrive>(whole, config.axes)?;
         let (whole, feedback) = behind::<DriveFeedback>(whole, config.axes)?;
         let (whole, slots) = behind::<Slot>(whole, config.instances)?;
+        let (whole, history) = behind::<Setpoint>(whole, config.history)?;
         Ok(Self {
             whole: whole.pad_to_align(),
             axes,
             drives,
             feedback,
             slots,
+            history,
         })
     }
 }
@@ -200,14 +203,18 @@ pub(crate) unsafe fn init(
     let (axes, instances) = (config.axes as usize, config.instances as usize);
     // SAFETY: the plan's places lie inside the storage, disjoint, each aligned for its type relative to a start that is
     // aligned to at least the largest alignment; nothing else uses the storage.
-    let (axes, drives, feedback, mut slots) = unsafe {
+    let (axes, drives, feedback, mut slots, mut history) = unsafe {
         (
             List::new(storage.add(plan.axes).cast(), axes),
             List::new(storage.add(plan.drives).cast(), axes),
             List::new(storage.add(plan.feedback).cast(), axes),
             List::new(storage.add(plan.slots).cast(), instances),
+            List::new(storage.add(plan.history).cast(), config.history as usize),
         )
     };
+    for _ in 0..config.history {
+        history.push(Setpoint::default());
+    }
     for _ in 0..instances {
         slots.push(Slot {
             generation: 1,
@@ -224,7 +231,14 @@ pub(crate) unsafe fn init(
                 owner: AtomicUsize::new(0),
                 #[cfg(not(feature = "std"))]
                 busy: core::sync::atomic::AtomicBool::new(false),
-                inner: UnsafeCell::new(Inner::new(axes, drives, feedback, slots, config.cycle_ns)),
+                inner: UnsafeCell::new(Inner::new(
+                    axes,
+                    drives,
+                    feedback,
+                    slots,
+                    history,
+                    config.cycle_ns,
+                )),
             },
         );
     }

@@ -65,8 +65,9 @@ pub struct RuntimeConfig {
     pub axes: u32,
     /// Most block instances, up to 65534.
     pub instances: u32,
-    /// 0.
-    pub reserved: u32,
+    /// Set-points kept for axes with vibration, in all, up to 2^24: for each mode of an axis twice its period in ticks, but at
+    /// most 4096, and 4. 40 bytes of storage for each.
+    pub history: u32,
     /// Nominal time between ticks (ns), above 0. Every tick_end advances motion by this, however late it comes.
     pub cycle_ns: i64,
 }
@@ -200,6 +201,18 @@ pub struct AxisSetup {
     /// How many derivatives of a cam must go on without a jump for a slave, 1 to 3; below 0: none; 0: 3 with a snap limit, 2 with
     /// a jerk limit, 1 without. Where its limits ask for more, it stops at the rows at which one jumps.
     pub cam_continuity: i32,
+    /// Frequency without damping (Hz) in which its load swings; 0: none, and nothing is shaped. RuntimeConfig.history is the memory.
+    pub vibration_frequency: f64,
+    /// Damping ratio of that, 0 to 0.9.
+    pub vibration_damping: f64,
+    /// Frequency of a second mode (Hz); 0: none.
+    pub vibration2_frequency: f64,
+    /// Its damping ratio.
+    pub vibration2_damping: f64,
+    /// The shaper of the first mode: 0 ei, 1 period, 2 zv, 3 zvd.
+    pub vibration_shaper: i32,
+    /// That of the second one.
+    pub vibration2_shaper: i32,
 }
 
 /// The drive under an axis. drive_defaults gives an ideal one.
@@ -591,7 +604,7 @@ pub struct Dump {
 
 // There is no padding that a compiler might fill: every byte belongs to a field.
 const _: () = assert!(size_of::<RuntimeConfig>() == 24);
-const _: () = assert!(size_of::<AxisSetup>() == 376);
+const _: () = assert!(size_of::<AxisSetup>() == 416);
 const _: () = assert!(size_of::<DriveSetup>() == 248);
 const _: () = assert!(size_of::<Feedback>() == 136);
 const _: () = assert!(size_of::<Command>() == 80);

@@ -26,7 +26,7 @@ fn dumps(is_pushed: bool) -> [Vec<u8>; 3] {
         size: size_of::<RuntimeConfig>() as u32,
         axes: 1,
         instances: 1,
-        reserved: 0,
+        history: 0,
         cycle_ns: TICK,
     };
     let keep = RecorderConfig {

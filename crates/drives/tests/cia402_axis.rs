@@ -61,6 +61,7 @@ impl Rig {
             instance: InstanceId(1),
             log: &mut self.log,
             cams: standstill_axis::Cams::default(),
+            history: &mut [],
         };
         self.axis.follow_feedback(&feedback, scope);
         during(&mut self.axis, scope);

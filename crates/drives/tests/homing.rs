@@ -56,6 +56,7 @@ fn place_of_zero(homing: Homing, start: f64, delay: usize) -> f64 {
                     instance: InstanceId(1),
                     log: &mut log,
                     cams: standstill_axis::Cams::default(),
+                    history: &mut [],
                 },
             )
             .unwrap_or_else(|error| panic!("{homing:?} from {start}: {error:?}"))

@@ -149,12 +149,11 @@ impl Shaper {
         parts.chain(each)
     }
 
-    /// The mean of `now` and of what the motion was so many scans ago.
+    /// What the mean of `now` and of the `past`, what the motion was so many scans ago, is more than `now`.
     ///
-    /// Where the motion rests, or has a constant velocity, for as long as [`Shaper::delay`], its velocity and what is above it
-    /// come out with the same bits, and a position at rest does. Cost: one set-point for each of [`Shaper::taps`].
-    pub fn mean(&self, now: &Setpoint, past: impl Fn(u32) -> Setpoint) -> Setpoint {
-        // Distances from the present: they are exactly 0 where nothing changes.
+    /// Where the motion rests, or has a constant velocity, for as long as [`Shaper::delay`], that of its velocity and what is
+    /// above it is exactly 0, and that of a position at rest is. Cost: one set-point for each of [`Shaper::taps`].
+    pub fn lag(&self, now: &Setpoint, past: impl Fn(u32) -> Setpoint) -> Setpoint {
         let mut late = Setpoint::default();
         for tap in self.taps() {
             let then = past(tap.delay);
@@ -164,7 +163,7 @@ impl Shaper {
             late.jerk += tap.weight * (then.jerk - now.jerk);
             late.snap += tap.weight * (then.snap - now.snap);
         }
-        now.plus(&late)
+        late
     }
 }
 
@@ -340,14 +339,14 @@ impl Shapers {
     pub fn at(&self, scan: u64, plan: impl Fn(u64) -> Setpoint) -> Setpoint {
         let since = |scan: u64, delay: u32| scan.saturating_sub(delay.into());
         let [first, second] = &self.0;
-        let once = |scan: u64| match first {
-            Some(shaper) => shaper.mean(&plan(scan), |delay| plan(since(scan, delay))),
-            None => plan(scan),
+        let lag = |scan: u64| {
+            let lag = |shaper: &Shaper| shaper.lag(&plan(scan), |delay| plan(since(scan, delay)));
+            first.as_ref().map_or(Setpoint::default(), lag)
         };
-        match second {
-            Some(shaper) => shaper.mean(&once(scan), |delay| once(since(scan, delay))),
-            None => once(scan),
-        }
+        let once = |scan: u64| plan(scan).plus(&lag(scan));
+        let lag_of_second = |shaper: &Shaper| shaper.lag(&once(scan), |delay| once(since(scan, delay)));
+        let second = second.as_ref().map_or(Setpoint::default(), lag_of_second);
+        plan(scan).plus(&lag(scan).plus(&second))
     }
 }
 

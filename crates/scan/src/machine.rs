@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use core::fmt;
 use standstill_axis::{
     Axis, AxisConfig, AxisId, CAM_PIECES, CAM_SLOTS, CamPiece, CamSlot, Cams, ConfigError, Drive,
-    DriveFeedback, InstanceId, Log, Planner, Scope, Standard, steps,
+    DriveFeedback, InstanceId, Log, Planner, Scope, Setpoint, Standard, steps,
 };
 use standstill_fb::{Context, Record, TableRef, Value};
 
@@ -24,6 +24,8 @@ pub struct Machine<P: Planner = Standard, D: Drive = standstill_axis::IdealDrive
     tables: Vec<f64>,
     /// The slots of the store of cams, and their pieces.
     cams: (Vec<CamSlot>, Vec<CamPiece>),
+    /// Past set-points of the axes with `vibration`, one axis after the other.
+    history: Vec<Setpoint>,
 }
 
 impl<P: Planner, D: Drive> Default for Machine<P, D> {
@@ -35,6 +37,7 @@ impl<P: Planner, D: Drive> Default for Machine<P, D> {
             log: Log::default(),
             tables: Vec::new(),
             cams: (Vec::new(), Vec::new()),
+            history: Vec::new(),
         }
     }
 }
@@ -55,7 +58,10 @@ impl<P: Planner, D: Drive> Machine<P, D> {
             .ok()
             .filter(|id| *id != AxisId::NONE)
             .ok_or(MachineError::TooManyAxes)?;
-        let axis = Axis::new(id, config, planner).map_err(MachineError::Axis)?;
+        let mut axis = Axis::new(id, config, planner).map_err(MachineError::Axis)?;
+        axis.set_history(self.history.len());
+        let places = self.history.len() + axis.history_needed();
+        self.history.resize(places, Setpoint::default());
         self.axes.push(axis);
         self.drives.push(drive);
         // Room for a whole scan, so that reading feedback never allocates.
@@ -142,6 +148,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
                 instance,
                 log: &mut self.log,
                 cams: Cams::new(&mut self.cams.0, &mut self.cams.1),
+                history: &mut self.history,
             },
             axes: &mut self.axes,
             tables: &self.tables,
@@ -165,6 +172,7 @@ impl<P: Planner, D: Drive> Machine<P, D> {
     pub(crate) fn advance(&mut self, time: ScanTime) {
         let mut scope = runtime_scope(time.scan, &mut self.log);
         scope.cams = Cams::new(&mut self.cams.0, &mut self.cams.1);
+        scope.history = &mut self.history;
         steps::advance(&mut self.axes, &mut scope);
     }
 
@@ -195,6 +203,7 @@ fn runtime_scope(scan: u64, log: &mut Log) -> Scope<'_> {
         instance: RUNTIME,
         log,
         cams: Cams::default(),
+        history: &mut [],
     }
 }
 

@@ -50,13 +50,15 @@ fn rows<T>(object: &Object<T>, left_out: &[&str]) -> String {
     keys.map(|key| {
         let inner = match &key.holds {
             Holds::Object(inner) => rows(inner, &[]),
+            Holds::List(places) => places.first().map_or_else(String::new, |inner| rows(inner, &[])),
             Holds::Bool { .. }
             | Holds::Word { .. }
             | Holds::Number { .. }
             | Holds::Whole { .. }
             | Holds::Scans { .. } => String::new(),
         };
-        row(key.path, key.doc, key.absent) + &inner
+        // In a list all places have the same keys.
+        row(&key.path.replace(".0.", "[]."), key.doc, key.absent) + &inner
     })
     .collect()
 }

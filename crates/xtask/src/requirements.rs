@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// File names below `crates/xtask/requirements` and `docs/requirements`, without extension.
-const AREAS: [&str; 8] = [
+const AREAS: [&str; 9] = [
     "rules",
     "states",
     "buffer-modes",
@@ -20,6 +20,7 @@ const AREAS: [&str; 8] = [
     "tables",
     "vendor-choices",
     "executor",
+    "vibration",
 ];
 
 /// Lines between a comment and the `fn` it belongs to, at most.

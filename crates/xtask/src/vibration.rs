@@ -3,7 +3,7 @@
 use crate::{Generated, NOTICE};
 use standstill_axis::Limits;
 use standstill_drives::mechanism::{Gains, Load, Mechanism, Plant, Servo, SetPoint};
-use standstill_planner::{GridPlan, Method};
+use standstill_planner::{GridPlan, Method, ShaperKind, Shapers, VibrationMode};
 use standstill_trace::svg;
 use std::fmt::Write;
 
@@ -54,6 +54,56 @@ const MOVES: [(&str, Limits); 3] = {
     ]
 };
 
+/// A move of the second part, whose load swings with [`SLOW`], alone or shaped: its name, how, and its acceleration.
+struct Slow {
+    name: &'static str,
+    shaper: Option<ShaperKind>,
+    acceleration: f64,
+}
+
+/// The frequency of the load of the second part (Hz), which the shapers are made for.
+const SLOW: f64 = 12.0;
+
+/// Length of the moves of the second part (rad), and their scans.
+const SLOW_WAY: f64 = 2.0;
+const SLOW_SCANS: u32 = 1000;
+
+/// What else limits them: velocity, and the time in which the acceleration is reached.
+const SLOW_VELOCITY: f64 = 4.0;
+const SLOW_RISE: f64 = 0.1;
+
+/// Accelerations with which all of them take [`SLOW_SCANS`]: way/v + v/a + rise + shaper = 1 s.
+const SLOW_MOVES: [Slow; 5] = [
+    Slow {
+        name: "jerk-limited",
+        shaper: None,
+        acceleration: 4.0 / 0.4,
+    },
+    Slow {
+        name: "`zv`",
+        shaper: Some(ShaperKind::Zv),
+        acceleration: 4.0 / 0.358,
+    },
+    Slow {
+        name: "`zvd`",
+        shaper: Some(ShaperKind::Zvd),
+        acceleration: 4.0 / 0.316,
+    },
+    Slow {
+        name: "`ei`",
+        shaper: Some(ShaperKind::Ei),
+        acceleration: 4.0 / 0.316,
+    },
+    Slow {
+        name: "`period`",
+        shaper: Some(ShaperKind::Period),
+        acceleration: 4.0 / 0.317,
+    },
+];
+
+/// By how much the frequency of the load is off the one the shapers are made for (%).
+const OFF: [i32; 7] = [-20, -10, -5, 0, 5, 10, 20];
+
 /// What a move did to the mechanism.
 struct Run {
     scans: u32,
@@ -68,7 +118,29 @@ struct Run {
 }
 
 fn run(limits: &Limits, frequency: f64) -> Run {
-    let plan = GridPlan::new(Method::Overlapped, 0.0, WAY, limits, CYCLE).expect("a move");
+    run_shaped(WAY, limits, &Shapers::default(), frequency)
+}
+
+fn slow_run(of: &Slow, frequency: f64) -> Run {
+    let mode = of.shaper.map(|shaper| VibrationMode {
+        frequency: SLOW,
+        damping: 0.01,
+        shaper,
+    });
+    let shapers = Shapers::new(&[mode, None], CYCLE).expect("a mode");
+    let limits = Limits {
+        velocity: SLOW_VELOCITY,
+        acceleration: of.acceleration,
+        deceleration: of.acceleration,
+        jerk: of.acceleration / SLOW_RISE,
+        snap: f64::INFINITY,
+    };
+    run_shaped(SLOW_WAY, &limits, &shapers, frequency)
+}
+
+fn run_shaped(way: f64, limits: &Limits, shapers: &Shapers, frequency: f64) -> Run {
+    let plan = GridPlan::new(Method::Overlapped, 0.0, way, limits, CYCLE).expect("a move");
+    let scans = shapers.scans(plan.scans());
     let rate = TWO_PI * frequency;
     let plant = Plant {
         load: Some(Load {
@@ -82,14 +154,14 @@ fn run(limits: &Limits, frequency: f64) -> Run {
     let mechanism = Mechanism::new(plant, 0.0, CYCLE).expect("a mechanism");
     let mut servo = Servo::new(mechanism, Gains::of(&plant, CYCLE), CYCLE).expect("gains");
     let mut run = Run {
-        scans: plan.scans(),
+        scans,
         torque: 0.0,
         lag: 0.0,
         swing: 0.0,
         deviation: Vec::new(),
     };
-    for scan in 1..=plan.scans() + AFTER {
-        let set = plan.at(u64::from(scan));
+    for scan in 1..=scans + AFTER {
+        let set = shapers.at(u64::from(scan), |scan| plan.at(scan));
         servo.follow(SetPoint {
             position: set.position,
             velocity: set.velocity,
@@ -97,8 +169,8 @@ fn run(limits: &Limits, frequency: f64) -> Run {
         let load = servo.mechanism().load_position();
         run.torque = run.torque.max(servo.torque().abs());
         run.lag = run.lag.max((set.position - servo.mechanism().position()).abs());
-        if scan > plan.scans() {
-            run.swing = run.swing.max((load - WAY).abs());
+        if scan > scans {
+            run.swing = run.swing.max((load - way).abs());
         }
         run.deviation.push(1e3 * (load - set.position));
     }
@@ -180,7 +252,16 @@ pub fn pages() -> Vec<Generated> {
          - So limits that are good for a machine follow from its lowest frequency: [choosing limits](choosing-limits.md).\n",
         SHOWN
     );
+    text.push_str(&shaped());
+    let slow_curves: Vec<_> = SLOW_MOVES
+        .iter()
+        .map(|of| (format!("{} (mrad)", of.name.replace('`', "")), slow_run(of, SLOW).deviation))
+        .collect();
     vec![
+        Generated {
+            path: "docs/pictures/vibration-shaped.svg".into(),
+            text: svg::chart("Load minus set-point, shaped", 1_000_000, &slow_curves),
+        },
         Generated {
             path: "docs/vibration.md".into(),
             text,
@@ -191,3 +272,86 @@ pub fn pages() -> Vec<Generated> {
         },
     ]
 }
+
+/// The second part: the same load, and moves that are shaped for it.
+fn shaped() -> String {
+    let mut text = String::from(SHAPED);
+    let _ = write!(text, "| shaper | a | torque |");
+    for off in OFF {
+        let _ = write!(text, " {off} % |");
+    }
+    text.push_str("\n| --- | ---: | ---: |");
+    text.push_str(&" ---: |".repeat(OFF.len()));
+    text.push('\n');
+    for of in &SLOW_MOVES {
+        let name = if of.shaper.is_some() { of.name } else { "none, jerk-limited" };
+        let _ = write!(text, "| {name} | {:.1} | {:.2} |", of.acceleration, slow_run(of, SLOW).torque);
+        for off in OFF {
+            let run = slow_run(of, SLOW * (1.0 + f64::from(off) / 100.0));
+            assert_eq!(run.scans, SLOW_SCANS, "{}: moves of one duration", of.name);
+            let _ = write!(text, " {:.3} |", 1e3 * run.swing);
+        }
+        text.push('\n');
+    }
+    text.push_str(AFTER_SHAPED);
+    text
+}
+
+const SHAPED: &str = "
+## Moves without swing
+
+An axis with the key `vibration` publishes a mean of its motion and of what that was some scans before, chosen so that what one part of the
+mean lets swing the others take away. It keeps every limit and ends exactly on the target, by a half or a whole period later.
+Frequency and damping are found by `standstill identify` in a recording of how the machine swings
+([command-line.md](command-line.md#identify-trace---signal-name---from-time---to-time---time-name---unit-unit---json)).
+
+```text
+\"axes\": {\"X\": {\"limits\": {..}, \"vibration\": [{\"frequency\": 12, \"damping\": 0.02, \"shaper\": \"ei\"}]}}
+```
+
+| shaper | takes | for |
+| --- | --- | --- |
+| `zv` | half a period | a frequency that is known: the least time |
+| `zvd` | a period | one that is known to some 10 % |
+| `ei`, the default | a period | one that is known to some 15 %, for 3 % of the swing where it is right |
+| `period` | a period | a frequency without damping and its multiples; nothing is left where the period is a whole number of scans |
+
+Two modes may stand in the list; their delays add up. Damping is 0 if it is left out. What follows is the mechanism above with a load that swings with
+12 Hz, damped by 1 %, and moves of 2 rad in 1000 scans: one with limited jerk, the others shaped, with an acceleration *a* such that all take the
+same time. The columns say by how much the load's frequency is off the one that the shapers were made for, and what swing is left (mrad).
+
+";
+
+const AFTER_SHAPED: &str = "
+![Load minus set-point of the five moves at 12 Hz: after scan 1000 the jerk-limited one swings on, the shaped ones rest](pictures/vibration-shaped.svg)
+
+What is published, by lines of `standstill plan`: the move before it is shaped, and through three shapers of 12 Hz.
+
+```jsonl
+{\"id\": \"plain\", \"Ts\": 0.001, \"target\": 2, \"limits\": {\"velocity\": 4, \"acceleration\": 20, \"jerk\": 400}}
+{\"id\": \"zv\", \"Ts\": 0.001, \"target\": 2, \"limits\": {\"velocity\": 4, \"acceleration\": 20, \"jerk\": 400}, \"vibration\": [{\"frequency\": 12, \"shaper\": \"zv\"}]}
+{\"id\": \"ei\", \"Ts\": 0.001, \"target\": 2, \"limits\": {\"velocity\": 4, \"acceleration\": 20, \"jerk\": 400}, \"vibration\": [{\"frequency\": 12}]}
+{\"id\": \"period\", \"Ts\": 0.001, \"target\": 2, \"limits\": {\"velocity\": 4, \"acceleration\": 20, \"jerk\": 400}, \"vibration\": [{\"frequency\": 12, \"shaper\": \"period\"}]}
+```
+
+![Position to jerk of the four plans over time: the shaped ones end later, and their acceleration goes up in steps or in a long ramp](pictures/plan-shaped.svg)
+
+## What a shaped axis does
+
+- **Done is exact.** A command is Done when nothing of it is left in the shaper: position on the target, velocity 0. InVelocity comes when the
+  velocity is published. A buffered command starts then; a blended one where the motion passes the end, which is before it shows.
+- **Whatever takes over**, a stop and a fault too, acts on the motion at once and shows at once, but what was in the shaper comes out first: the axis
+  stands later than without, by the delay of the shapers, and goes that much further. Think of it where a switch has to be met.
+- **Override, blending, superimposed moves, MC_Jog, homing, MC_SetPosition, profiles, modulo axes** work as on any axis. Distances count
+  from where the motion is, which is ahead of what is published.
+- **Switched off** with `on_power_off` `ramp` the power stays on until what is published stands. With `coast` and `drive`, and after faults of
+  power or drive, the set-point follows the axis at once and the shaper is empty.
+- **Refused** with ErrorID 222: MC_GearIn, MC_GearInPos, MC_CamIn and MC_CombineAxes of a shaped slave, or of a shaped master's set
+  values (its actual values may be followed), and MC_TorqueControl.
+- **One rate.** `limits.deceleration` must be `limits.acceleration`: in a mean of two directions neither of two rates would be kept. Commands may have
+  two. A `stop.deceleration` above it may show while the speed still grows, if the stop comes within a delay after a reversal.
+- **By number** ([parameters.md](parameters.md)) modes are read, and written while the axis rests: a frequency down to half of that of the
+  set-up, as its memory is made for that.
+- A period has from 4 to 4096 cycles. A shaped axis costs each scan one set-point for each part of its shapers: 2 or 4, of `period` as
+  many as it has scans ([how it works](planner.md#15-moves-without-swing), [why so](decisions/0018-a-filter-behind-the-motion.md)).
+";

@@ -113,6 +113,15 @@ impl<P: Planner> Axis<P> {
             let start = self.is_on_cam().then_some(Start::Now);
             return start.ok_or(("Slave", ErrorId::NotCoupled));
         }
+        if self.is_shaped() {
+            match request.command {
+                Command::Torque { .. } => return Err(("Axis", ErrorId::Shaped)),
+                Command::GearIn { .. } | Command::CamIn(_) | Command::CombineAxes { .. } => {
+                    return Err(("Slave", ErrorId::Shaped));
+                }
+                _ => {}
+            }
+        }
         if self.power.is_going_off() {
             return Err(("", ErrorId::PoweringOff));
         }

@@ -213,6 +213,11 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// Whether the owner is to pass its end, and does.
+    pub(super) fn passes_in_motion(&self) -> bool {
+        self.passes_on() && self.base().velocity != 0.0
+    }
+
     fn passes_on(&self) -> bool {
         self.owner
             .as_ref()

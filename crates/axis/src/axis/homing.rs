@@ -336,11 +336,11 @@ impl<P: Planner> Axis<P> {
             return;
         };
         let slow = block.velocity * self.planner.cycle();
-        let stands = step.abs() < slow && self.setpoint.velocity.abs() >= block.velocity;
+        let stands = step.abs() < slow && self.commanded().velocity.abs() >= block.velocity;
         search.still = if stands { search.still.saturating_add(1) } else { 0 };
         self.homing = search;
         if search.still >= block.scans {
-            let back = self.setpoint.position - self.following_error();
+            let back = self.commanded().position - self.following_error();
             self.found(self.feedback.position(), Some(back), scope);
         }
     }

@@ -21,6 +21,7 @@
 //! | [`dynamics`], [`factors`], [`parameters`] | limits from pins, the override, what can be written by number |
 //! | [`step`], [`replan`], [`blend`], [`run`], [`inside`], [`guard`] | the motion step and hand-over, the owner's motion changed while it runs, how fast it passes its end, chains as one motion, take-overs within the limits, no jump |
 //! | [`superimposed`] | a second motion on top |
+//! | [`shaping`] | what is published of a motion so that nothing swings |
 //! | [`coupling`] | behind a master |
 //! | [`profile`], [`torque`], [`jog`], [`homing`] | curves through points, torques, MC_Jog, the search for the reference |
 //! | [`power`], [`permission`], [`limit_switches`], [`software_limits`], [`supervision`] | feedback, power, faults and resets; directions, switches, limits, following error |
@@ -55,6 +56,7 @@ mod reading;
 mod replan;
 mod retrigger;
 mod run;
+mod shaping;
 mod software_limits;
 mod stage;
 mod step;
@@ -227,7 +229,7 @@ pub struct Outlook {
     /// The override, as bits.
     pub factors: [u64; 3],
     /// What the application can write by number, as bits.
-    pub parameters: [u64; 10],
+    pub parameters: [u64; 16],
     /// Scans in a row the axis has been inside the in-position window, at the end of a move.
     pub inside_for: u32,
     /// The owner's motion is not the one to its goal: the override halts it, MC_Power bars it, or it has yet to be planned anew.
@@ -279,8 +281,10 @@ pub struct Axis<P: Planner = Standard> {
     config: AxisConfig,
     planner: P,
     state: AxisState,
-    /// On a modulo axis its position may be some turns away from the one shown.
+    /// Of the motion; on a modulo axis its position may be some turns away from the one shown.
     setpoint: Setpoint,
+    /// What is between the motion and what is published.
+    shaping: Option<shaping::Shaping>,
     modulo: Option<Modulo>,
     /// Actual positions.
     feedback: Feedback,
@@ -352,6 +356,7 @@ impl<P: Planner> Axis<P> {
     /// [`ConfigError`] names the key that is not usable.
     pub fn new(id: AxisId, config: AxisConfig, planner: P) -> Result<Self, ConfigError> {
         config.check()?;
+        let shaping = shaping::Shaping::new(&config.vibration, planner.cycle(), config.position)?;
         let powered = config.start == StartState::Standstill;
         Ok(Self {
             id,
@@ -363,6 +368,7 @@ impl<P: Planner> Axis<P> {
                 AxisState::Disabled
             },
             setpoint: Setpoint::at_rest(config.position),
+            shaping,
             modulo: Modulo::new(&config),
             feedback: Feedback::new(config.position),
             beside: BesideMotion::default(),
@@ -420,8 +426,8 @@ impl<P: Planner> Axis<P> {
     #[inline]
     pub fn setpoint(&self) -> Setpoint {
         match &self.modulo {
-            None => self.setpoint,
-            Some(modulo) => modulo.shown(&self.setpoint),
+            None => self.commanded(),
+            Some(modulo) => modulo.shown(&self.commanded()),
         }
     }
 
@@ -613,7 +619,7 @@ impl<P: Planner> Axis<P> {
         DriveCommand {
             request: self.drive_request(),
             position: self.position_at_drive(),
-            velocity: self.setpoint.velocity,
+            velocity: self.commanded().velocity,
             rename,
         }
     }
@@ -622,7 +628,7 @@ impl<P: Planner> Axis<P> {
     // the rest of the scan's drive command.
     #[inline]
     fn position_at_drive(&self) -> DrivePosition {
-        let position = self.setpoint.position - self.frame.shift();
+        let position = self.commanded().position - self.frame.shift();
         match (&self.config.scaling, &self.modulo) {
             (None, None) => DrivePosition::Units(position),
             (Some(scaling), None) => DrivePosition::Increments(scaling.to_increments(position)),
@@ -635,8 +641,11 @@ impl<P: Planner> Axis<P> {
     #[inline]
     fn goal_reached(&self) -> bool {
         match &self.motion {
-            Motion::Run { elapsed, scans, .. } => elapsed >= scans,
-            Motion::Hold | Motion::Geared => true,
+            Motion::Run { elapsed, scans, .. } => {
+                // What passes its end hands over there.
+                elapsed >= scans && (self.is_through() || self.passes_in_motion())
+            }
+            Motion::Hold | Motion::Geared => self.is_through(),
             Motion::Follow | Motion::Closing { .. } => false,
             Motion::Torque { torque, .. } => self.torque_is_held(*torque),
         }

@@ -11,7 +11,8 @@ use super::Axis;
 use super::commands::{Work, Write};
 use super::supervision::Lag;
 use crate::{AxisConfig, CommandId, ErrorId, ExecutionMode, Fate, Parameter, ParameterValue, Raw, Scope};
-use standstill_planner::{Limits, Planner};
+use standstill_planner::shaper::MODES;
+use standstill_planner::{Limits, PlanError, Planner, ShaperKind, Shapers, VibrationMode};
 
 /// Why a parameter was not written: the pin, and the limit the value breaks.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +58,8 @@ pub(super) struct Parameters {
     pub software_limits: Option<(f64, f64)>,
     /// Supervision of the following error.
     pub lag: Lag,
+    /// How the load swings.
+    pub modes: [Option<VibrationMode>; MODES],
     /// Lower and upper software limit (u), infinite if never given, and whether it is on.
     lower: (f64, bool),
     upper: (f64, bool),
@@ -71,13 +74,14 @@ impl Parameters {
             limits: config.application_limits.unwrap_or(config.limits),
             software_limits: config.software_limits,
             lag: Lag::new(config.max_following_error),
+            modes: config.vibration,
             lower: (min, min.is_finite()),
             upper: (max, max.is_finite()),
         }
     }
 
     /// As bits, for comparing.
-    pub fn bits(&self) -> [u64; 10] {
+    pub fn bits(&self) -> [u64; 16] {
         let Limits {
             velocity,
             acceleration,
@@ -89,6 +93,7 @@ impl Parameters {
         let lag = self.lag.most;
         let (lower, upper) = (self.lower, self.upper);
         let flags = (flag(lower.1), flag(upper.1), flag(self.lag.on));
+        let [first, second] = self.modes.map(numbers);
         [
             velocity,
             acceleration,
@@ -100,6 +105,12 @@ impl Parameters {
             flags.0,
             flags.1,
             flags.2,
+            first[0],
+            first[1],
+            first[2],
+            second[0],
+            second[1],
+            second[2],
         ]
         .map(f64::to_bits)
     }
@@ -121,6 +132,23 @@ impl Parameters {
         self.software_limits = (self.lower.1 || self.upper.1).then_some((min, max));
         Ok(self)
     }
+}
+
+/// A mode as its parameters show it; zeros where there is none.
+fn numbers(mode: Option<VibrationMode>) -> [f64; 3] {
+    let number = |mode: &VibrationMode| match mode.shaper {
+        ShaperKind::Period => 1.0,
+        ShaperKind::Zv => 2.0,
+        ShaperKind::Zvd => 3.0,
+        ShaperKind::Ei => 4.0,
+    };
+    mode.map_or([0.0; 3], |mode| [mode.frequency, mode.damping, number(&mode)])
+}
+
+/// The mode a parameter is of, and which of its numbers it is.
+fn place_of(parameter: Parameter) -> (usize, usize) {
+    let place = (parameter as usize).saturating_sub(Parameter::Vibration1Frequency as usize);
+    (place / 3, place % 3)
 }
 
 /// A position that is finite.
@@ -184,7 +212,7 @@ impl<P: Planner> Axis<P> {
             Parameter::MaxVelocitySystem => ParameterValue::Real(system.velocity),
             Parameter::MaxVelocityAppl => ParameterValue::Real(own.limits.velocity),
             Parameter::ActualVelocity => ParameterValue::Real(self.actual_velocity()?),
-            Parameter::CommandedVelocity => ParameterValue::Real(self.setpoint.velocity),
+            Parameter::CommandedVelocity => ParameterValue::Real(self.commanded().velocity),
             Parameter::MaxAccelerationSystem => ParameterValue::Real(system.acceleration),
             Parameter::MaxAccelerationAppl => ParameterValue::Real(own.limits.acceleration),
             Parameter::MaxDecelerationSystem => ParameterValue::Real(system.deceleration),
@@ -196,6 +224,12 @@ impl<P: Planner> Axis<P> {
                 self.fresh_position()?;
                 ParameterValue::Real(self.following_error())
             }
+            Parameter::Vibration1Frequency
+            | Parameter::Vibration1Damping
+            | Parameter::Vibration1Shaper
+            | Parameter::Vibration2Frequency
+            | Parameter::Vibration2Damping
+            | Parameter::Vibration2Shaper => ParameterValue::Real(self.number_of_mode(parameter)),
         })
     }
 
@@ -320,6 +354,15 @@ impl<P: Planner> Axis<P> {
                 new.limits.jerk = limit(value.real()?, least, system.jerk)?;
                 Ok(new)
             }
+            Parameter::Vibration1Frequency
+            | Parameter::Vibration1Damping
+            | Parameter::Vibration1Shaper
+            | Parameter::Vibration2Frequency
+            | Parameter::Vibration2Damping
+            | Parameter::Vibration2Shaper => {
+                new.modes = self.modes_with(parameter, value.real()?)?;
+                Ok(new)
+            }
             Parameter::CommandedPosition
             | Parameter::MaxVelocitySystem
             | Parameter::ActualVelocity
@@ -335,7 +378,64 @@ impl<P: Planner> Axis<P> {
         }
     }
 
+    /// A number of a mode; 0 where there is none.
+    fn number_of_mode(&self, parameter: Parameter) -> f64 {
+        let (mode, part) = place_of(parameter);
+        let mode = self.parameters.modes.get(mode).copied().flatten();
+        numbers(mode).get(part).copied().unwrap_or_default()
+    }
+
+    /// The modes with one of their numbers changed: at rest, of a mode that the axis was set up with, and as far as its memory
+    /// reaches.
+    fn modes_with(
+        &self,
+        parameter: Parameter,
+        value: f64,
+    ) -> Result<[Option<VibrationMode>; MODES], Unwritten> {
+        let (place, part) = place_of(parameter);
+        let mut modes = self.parameters.modes;
+        let Some(Some(mode)) = modes.get_mut(place) else {
+            return Err(Unwritten::number(ErrorId::VibrationMissing));
+        };
+        match part {
+            0 => mode.frequency = value,
+            1 => mode.damping = value,
+            _ => {
+                // 1 to 4; whatever is no such number is none of the list.
+                let place = ShaperKind::ALL
+                    .iter()
+                    .zip(1_u8..)
+                    .find(|(_, number)| f64::from(*number) == value);
+                let Some((shaper, _)) = place else {
+                    return Err(Unwritten::value(f64::NAN, ErrorId::ParameterValueInvalid));
+                };
+                mode.shaper = *shaper;
+            }
+        }
+        let shapers = Shapers::new(&modes, self.planner.cycle()).map_err(|(_, error)| {
+            let limit = match error {
+                PlanError::OutOfRange { nearest, .. } => nearest,
+                _ => f64::NAN,
+            };
+            Unwritten::value(limit, ErrorId::ParameterValueInvalid)
+        })?;
+        if !self.has_history_for(&shapers) {
+            let set_up = self.config.vibration.get(place).copied().flatten();
+            let least = set_up.map_or(f64::NAN, |mode| 0.5 * mode.frequency);
+            return Err(Unwritten::value(least, ErrorId::ParameterValueInvalid));
+        }
+        if !(self.setpoint.is_at_rest() && self.is_through()) {
+            return Err(Unwritten::value(f64::NAN, ErrorId::InMotion));
+        }
+        Ok(modes)
+    }
+
     fn set_parameters(&mut self, parameters: Parameters, scope: &mut Scope<'_>) {
+        if self.parameters.modes != parameters.modes
+            && let Ok(shapers) = Shapers::new(&parameters.modes, self.planner.cycle())
+        {
+            self.set_shapers(shapers);
+        }
         let limits_moved = self.parameters.software_limits != parameters.software_limits;
         self.parameters = parameters;
         self.stir();

@@ -394,6 +394,7 @@ impl<P: Planner> Axis<P> {
     #[cold]
     fn try_reset(&mut self, id: CommandId) {
         let (reached, moves_itself) = (self.goal_reached(), self.moves_itself());
+        let through = self.is_through();
         if self.state == AxisState::ErrorStop {
             let given_up = self.failure.waits_too_long() && self.power.fault().is_some();
             if given_up || self.cause_known() {
@@ -401,7 +402,7 @@ impl<P: Planner> Axis<P> {
                 self.decide(id, Fate::Failed(ErrorId::CauseStillPresent));
                 return;
             }
-            let moving = moves_itself || (matches!(self.motion, Motion::Run { .. }) && !reached);
+            let moving = moves_itself || !through || (matches!(self.motion, Motion::Run { .. }) && !reached);
             let unwanted = self.power.is_on() && !self.power.is_wanted();
             if moving || unwanted || self.power.fault().is_some() {
                 return;
@@ -436,7 +437,7 @@ impl<P: Planner> Axis<P> {
         if self.calm.is_any() {
             return DriveRequest::Enable;
         }
-        let ramping = matches!(self.motion, Motion::Run { .. });
+        let ramping = matches!(self.motion, Motion::Run { .. }) || !self.is_through();
         if self.failure.reset().is_some() && self.is_resetting_drive() {
             DriveRequest::FaultReset
         } else if ramping && self.power.is_on() {

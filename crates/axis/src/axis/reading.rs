@@ -139,7 +139,7 @@ impl<P: Planner> Axis<P> {
                 pace: Pace::Constant,
                 way: self.commanded_way(),
             }),
-            ValueSource::Set => Ok(planned_state(&self.setpoint)),
+            ValueSource::Set => Ok(planned_state(&self.commanded())),
             ValueSource::Actual => {
                 let actual = self.fresh_position()?;
                 Ok(self.measured_state(actual))

@@ -153,6 +153,9 @@ impl<P: Planner> Axis<P> {
     // takes longer than computing it.
     #[inline(always)]
     pub(super) fn publish(&mut self, next: Setpoint) {
+        if self.is_shaped() {
+            self.pass_to_shaper(&next);
+        }
         self.setpoint = next;
         if next.velocity != 0.0 {
             self.last_velocity = next.velocity;

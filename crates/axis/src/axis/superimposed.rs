@@ -505,9 +505,10 @@ impl<P: Planner> Axis<P> {
 
     /// Completion of what is superimposed, and a new attempt of a command that waits or was lowered.
     fn settle_superimposed(&mut self, scope: &mut Scope<'_>) {
+        let delay = self.shaping_delay();
         let Some(layer) = &mut self.layer else { return };
         let reached = match &layer.motion {
-            Motion::Run { elapsed, scans, .. } => elapsed >= scans,
+            Motion::Run { elapsed, scans, .. } => *elapsed >= scans.saturating_add(delay),
             _ => true,
         };
         if reached {

@@ -57,7 +57,7 @@ impl Arrival {
 impl<P: Planner> Axis<P> {
     /// The set position last published less the actual position (u), on a modulo axis the shorter way round.
     pub(super) fn following_error(&self) -> f64 {
-        let error = self.setpoint.position - self.feedback.position();
+        let error = self.commanded().position - self.feedback.position();
         match &self.modulo {
             None => error,
             Some(modulo) => nearest(error, 0.0, modulo.length),

@@ -6,7 +6,8 @@ use crate::{
     HomeDirection, InPosition, JogAtLimit, MODULO_MAX, ModuloTargets, OnLimit, OnMasterLost, PowerOff,
     Procedure, QUEUE_MAX, Scaling, StartState, SwitchEdge,
 };
-use standstill_planner::{Limits, MoveProfile};
+use standstill_planner::shaper::DAMPING_MAX;
+use standstill_planner::{Limits, MoveProfile, ShaperKind, VibrationMode};
 
 /// The place of a value in a list of all.
 macro_rules! place {
@@ -320,8 +321,98 @@ pub static AXIS: Object<AxisConfig> = Object::new(
             Some("`restart`"),
             "a rising edge of Execute while the instance is Busy: starts the command anew, `restart`; does nothing, `ignore`, as blocks of Tc2 do. An edge of MC_Stop is never ignored: Execute is its lock"
         ),
+        Key {
+            path: "vibration",
+            doc: "the one or two modes in which its load swings, a list of objects: what is published is shaped so that moves end without swing, see vibration.md",
+            absent: Some("none, nothing is shaped"),
+            null: None,
+            holds: Holds::List(&[
+                Object::new("a mode of `vibration`", MODE_0),
+                Object::new("a mode of `vibration`", MODE_1),
+            ]),
+        },
     ],
 );
+
+/// The keys of the mode at a place of the list.
+macro_rules! mode {
+    ($place:literal, $frequency:literal, $damping:literal, $shaper:literal) => {
+        &[
+            Key {
+                path: $frequency,
+                doc: "frequency without damping (Hz): a period takes from 4 to 4096 cycles",
+                absent: None,
+                null: None,
+                holds: Holds::Number {
+                    bounds: Bounds::POSITIVE,
+                    get: |config| config.vibration[$place].map(|mode| mode.frequency),
+                    set: |config, value| {
+                        config.vibration[$place].get_or_insert(VibrationMode::new(value)).frequency = value;
+                    },
+                },
+            },
+            Key {
+                path: $damping,
+                doc: "damping ratio, from 0 to 0.9",
+                absent: Some("0"),
+                null: None,
+                holds: Holds::Number {
+                    bounds: Bounds {
+                        most: DAMPING_MAX,
+                        ..Bounds::from(0.0)
+                    },
+                    get: |config| config.vibration[$place].map(|mode| mode.damping),
+                    set: |config, value| {
+                        if let Some(mode) = &mut config.vibration[$place] {
+                            mode.damping = value;
+                        }
+                    },
+                },
+            },
+            Key {
+                path: $shaper,
+                doc: "`zv`, the shortest, for a frequency that is known; `zvd` and `ei`, twice as long, for one that is not; `period`, the mean over a period",
+                absent: Some("`ei`"),
+                null: None,
+                holds: Holds::Word {
+                    words: &SHAPERS,
+                    get: |config| {
+                        let mode = config.vibration[$place]?;
+                        place!(ShaperKind::ALL, mode.shaper)
+                    },
+                    set: |config, place| {
+                        if let (Some(mode), Some(shaper)) = (&mut config.vibration[$place], ShaperKind::ALL.get(place)) {
+                            mode.shaper = *shaper;
+                        }
+                    },
+                },
+            },
+        ]
+    };
+}
+
+const MODE_0: &[Key<AxisConfig>] = mode!(
+    0,
+    "vibration.0.frequency",
+    "vibration.0.damping",
+    "vibration.0.shaper"
+);
+const MODE_1: &[Key<AxisConfig>] = mode!(
+    1,
+    "vibration.1.frequency",
+    "vibration.1.damping",
+    "vibration.1.shaper"
+);
+
+const SHAPERS: [&str; ShaperKind::ALL.len()] = {
+    let mut words = [""; ShaperKind::ALL.len()];
+    let mut index = 0;
+    while index < words.len() {
+        words[index] = ShaperKind::ALL[index].name();
+        index += 1;
+    }
+    words
+};
 
 const PROFILES: [&str; MoveProfile::ALL.len()] = {
     let mut words = [""; MoveProfile::ALL.len()];

@@ -102,6 +102,8 @@ pub enum Holds<T: 'static> {
     },
     /// Keys of its own.
     Object(Object<T>),
+    /// A list of at most so many objects: each place has keys of its own.
+    List(&'static [Object<T>]),
 }
 
 /// What null at a key stands for.
@@ -146,7 +148,8 @@ impl<T> Key<T> {
             Holds::Word { get, .. } => get(one) == get(other),
             Holds::Number { get, .. } => get(one) == get(other),
             Holds::Whole { get, .. } | Holds::Scans { get, .. } => get(one) == get(other),
-            Holds::Object(object) => object.keys.iter().all(|key| key.is_same(one, other)),
+            Holds::Object(object) => object.is_same(one, other),
+            Holds::List(objects) => objects.iter().all(|object| object.is_same(one, other)),
         }
     }
 
@@ -157,7 +160,8 @@ impl<T> Key<T> {
             Holds::Word { get, set, .. } => give(to, get(from), *set),
             Holds::Number { get, set, .. } => give(to, get(from), *set),
             Holds::Whole { get, set, .. } | Holds::Scans { get, set, .. } => give(to, get(from), *set),
-            Holds::Object(object) => object.keys.iter().for_each(|key| key.take(from, to)),
+            Holds::Object(object) => object.take(from, to),
+            Holds::List(objects) => objects.iter().for_each(|object| object.take(from, to)),
         }
     }
 }
@@ -189,11 +193,20 @@ impl<T> Object<T> {
         }
     }
 
+    fn is_same(&self, one: &T, other: &T) -> bool {
+        self.keys.iter().all(|key| key.is_same(one, other))
+    }
+
+    fn take(&self, from: &T, to: &mut T) {
+        self.keys.iter().for_each(|key| key.take(from, to));
+    }
+
     /// The key with a path that begins here.
     pub fn find(&self, path: &str) -> Option<&'static Key<T>> {
         self.keys.iter().find_map(|key| match &key.holds {
             _ if key.path == path => Some(key),
             Holds::Object(object) if path.starts_with(key.path) => object.find(path),
+            Holds::List(objects) => objects.iter().find_map(|object| object.find(path)),
             Holds::Object(_)
             | Holds::Bool { .. }
             | Holds::Word { .. }
@@ -208,6 +221,7 @@ impl<T> Object<T> {
         for key in self.keys {
             match &key.holds {
                 Holds::Object(object) => object.each(look),
+                Holds::List(objects) => objects.iter().for_each(|object| object.each(look)),
                 Holds::Bool { .. }
                 | Holds::Word { .. }
                 | Holds::Number { .. }

@@ -327,6 +327,7 @@ fn an_axis_a_thousand_million_turns_out_moves_as_one_at_home() {
                     instance: InstanceId(1),
                     log: &mut rig.log,
                     cams: standstill_axis::Cams::default(),
+                    history: &mut [],
                 },
             );
             if scan == 10 {
@@ -405,6 +406,7 @@ fn buffered_moves_find_their_way_from_where_they_start() {
                 instance: InstanceId(1),
                 log: &mut rig.log,
                 cams: standstill_axis::Cams::default(),
+                history: &mut [],
             },
         )
         .unwrap();

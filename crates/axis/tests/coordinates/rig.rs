@@ -51,6 +51,7 @@ impl Rig {
                     instance: InstanceId(1),
                     log: &mut self.log,
                     cams: standstill_axis::Cams::default(),
+                    history: &mut [],
                 },
             )
             .unwrap()

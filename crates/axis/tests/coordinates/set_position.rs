@@ -71,6 +71,7 @@ fn increments_and_velocity_have_no_step() {
                             instance: InstanceId(1),
                             log: &mut rig.log,
                             cams: standstill_axis::Cams::default(),
+                            history: &mut [],
                         },
                     )
                     .unwrap();

@@ -165,6 +165,7 @@ impl Rig {
         let slave = self.axes[SLAVE].id();
         let scope = &mut Scope {
             cams: Cams::new(&mut self.slots, &mut self.pieces),
+            history: &mut [],
             ..Scope::new(self.scan, &mut self.log)
         };
         couple(&mut self.axes, slave, &request, scope)
@@ -199,6 +200,7 @@ impl Rig {
     pub fn step(&mut self) {
         let scope = &mut Scope {
             cams: Cams::new(&mut self.slots, &mut self.pieces),
+            history: &mut [],
             ..Scope::new(self.scan, &mut self.log)
         };
         steps::advance(&mut self.axes, scope);

@@ -57,6 +57,7 @@ impl RustHost {
                 instance: InstanceId(1),
                 log: &mut self.log,
                 cams: standstill_axis::Cams::default(),
+                history: &mut [],
             },
             axes: &mut self.axes,
             tables: &[],

@@ -91,6 +91,7 @@ impl Image {
                 instance: InstanceId(any(0)),
                 log,
                 cams: standstill_axis::Cams::default(),
+                history: &mut [],
             },
             axes,
             tables: &any([0.0; 64]),
@@ -137,6 +138,7 @@ fn command(axis: &mut Axis, log: &mut Log) {
         instance: InstanceId(any(0)),
         log,
         cams: standstill_axis::Cams::default(),
+        history: &mut [],
     };
     let request = Request {
         command: any(Command::Home { position: any(0.0) }),

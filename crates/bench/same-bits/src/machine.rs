@@ -87,6 +87,7 @@ impl Machine {
                     instance: InstanceId(instance),
                     log: &mut self.log,
                     cams: standstill_axis::Cams::default(),
+                    history: &mut [],
                 },
                 axes: &mut self.axes,
                 tables: &self.tables,

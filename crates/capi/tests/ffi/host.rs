@@ -15,7 +15,7 @@ pub fn config(axes: u32, instances: u32) -> RuntimeConfig {
         size: size_of::<RuntimeConfig>() as u32,
         axes,
         instances,
-        reserved: 0,
+        history: 0,
         cycle_ns: 1_000_000,
     }
 }

@@ -148,7 +148,7 @@ fn storage_must_be_long_enough_and_aligned() {
             ..config
         },
         RuntimeConfig {
-            reserved: 1,
+            history: (1 << 24) + 1,
             ..config
         },
     ] {

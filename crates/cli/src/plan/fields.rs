@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::fmt;
 
 /// The fields every method takes. What only some take stands in the table of methods.
-const COMMON: [&str; 11] = [
+const COMMON: [&str; 12] = [
     "id",
     "Ts",
     "target",
@@ -23,6 +23,7 @@ const COMMON: [&str; 11] = [
     "end_acceleration",
     "limits",
     "method",
+    "vibration",
 ];
 
 /// The fields of `limits`.
@@ -147,6 +148,28 @@ impl<'a> Fields<'a> {
             Some(Given::Object(members)) => Ok(Members(members.to_vec())),
             Some(Given::Number(_)) => Err(wrong()),
         }
+    }
+
+    /// The fields of each object of a list, each of them `known`; none if the list is null or not there.
+    pub fn list(
+        &self,
+        field: &str,
+        known: impl Iterator<Item = &'static str> + Clone,
+    ) -> Result<Vec<Self>, Refusal> {
+        let wrong = || self.invalid(field, format!("`{field}` must be a list of objects"));
+        let texts: Vec<&RawValue> = match self.members.get(field) {
+            None | Some(Given::Json("null")) => Vec::new(),
+            Some(Given::Json(text)) => serde_json::from_str(text).map_err(|_| wrong())?,
+            Some(Given::Number(_) | Given::Object(_)) => return Err(wrong()),
+        };
+        let opened = |(place, text): (usize, &'a RawValue)| {
+            let Members(members) = serde_json::from_str(text.get()).map_err(|_| wrong())?;
+            let fields = Self::of_members(members);
+            let checked = fields.check_keys(&fields.members, "", known.clone());
+            checked.map_err(|refusal| refusal.inside(field, place))?;
+            Ok(fields)
+        };
+        texts.into_iter().enumerate().map(opened).collect()
     }
 
     fn check_keys(

@@ -5,7 +5,7 @@ use crate::plan::fields::{Fields, Problem};
 use crate::plan::grid::grid;
 use crate::plan::refusal::Refusal;
 use crate::plan::samples::Setpoints;
-use crate::plan::{online, papers, ramp};
+use crate::plan::{online, papers, ramp, shaped};
 use standstill_planner::grid::{Counts, Method, Peaks};
 use standstill_planner::{Excess, Segment, Setpoint};
 
@@ -177,7 +177,7 @@ pub fn plan_with(fields: &Fields<'_>, problem: &Problem, method: &MethodInfo) ->
     for name in fields.names() {
         check_extra_field(fields, name, method)?;
     }
-    (method.plan)(fields, problem)
+    shaped::shaped(fields, (method.plan)(fields, problem)?)
 }
 
 /// Refuses a field that only other methods take.

@@ -11,6 +11,7 @@ mod ramp;
 mod refusal;
 mod reply;
 mod samples;
+mod shaped;
 mod shared;
 
 use crate::exit::{Exit, Failure};

@@ -60,6 +60,12 @@ impl Refusal {
         }
     }
 
+    /// The same, of an object of a list: its field is one of that object.
+    pub fn inside(mut self, list: &str, place: usize) -> Self {
+        self.field = self.field.map(|field| format!("{list}[{place}].{field}"));
+        self
+    }
+
     /// With the value, as JSON, that was refused.
     pub fn value(mut self, json: &str) -> Self {
         self.value = Some(json.to_owned());

@@ -4,7 +4,7 @@ use crate::exit::Failure;
 use crate::json::number;
 use crate::plan::methods::Planned;
 use crate::table;
-use standstill_planner::{GridPlan, OnlinePlan, RampPlan, SampledPlan, Setpoint, UnequalPlan};
+use standstill_planner::{GridPlan, OnlinePlan, RampPlan, SampledPlan, Setpoint, Shapers, UnequalPlan};
 use standstill_script::suite::shown;
 use standstill_trace::file::Draft;
 use std::io::{self, BufWriter, Write};
@@ -29,6 +29,8 @@ pub enum Setpoints {
     Online(Vec<(u32, OnlinePlan)>),
     /// A profile of a paper.
     Sampled(Box<SampledPlan>),
+    /// Any of these through shapers.
+    Shaped(Box<Setpoints>, Shapers),
 }
 
 impl Setpoints {
@@ -45,6 +47,11 @@ impl Setpoints {
                     .map_or_else(Setpoint::default, |(begin, plan)| plan.at((scan - begin).into()))
             }
             Self::Sampled(plan) => plan.at(scan.into()),
+            Self::Shaped(plain, shapers) => {
+                // At its end a plan stays.
+                let plain = |scan: u64| plain.at(u32::try_from(scan).unwrap_or(u32::MAX));
+                shapers.at(scan.into(), plain)
+            }
         }
     }
 }

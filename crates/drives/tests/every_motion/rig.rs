@@ -272,6 +272,7 @@ impl Rig {
             instance: InstanceId(1),
             log: &mut self.log,
             cams: standstill_axis::Cams::default(),
+            history: &mut [],
         };
         self.axis.set_power(power, permitted, scope);
         during(&mut self.axis, scope);

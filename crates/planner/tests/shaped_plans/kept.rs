@@ -45,6 +45,7 @@ fn largest(scans: u32, cycle: f64, at: impl Fn(u64) -> Setpoint) -> ([f64; 4], [
     (peaks, steps)
 }
 
+/// Covers: VB1, VB4
 #[test]
 fn limits_hold_the_target_is_exact_and_a_way_out_is_the_way_back_mirrored() {
     let mut random = Random(2404);
@@ -139,7 +140,7 @@ fn a_constant_velocity_comes_out_with_the_same_bits() {
         velocity: 0.1,
         ..Setpoint::at_rest(0.1 * scan * 1e-3)
     };
-    let mean = shaper.mean(&at(1000.0), |delay| at(1000.0 - f64::from(delay)));
+    let mean = at(1000.0).plus(&shaper.lag(&at(1000.0), |delay| at(1000.0 - f64::from(delay))));
     assert_eq!(
         Setpoint {
             position: 0.0,
@@ -181,7 +182,7 @@ fn the_weights_are_those_of_a_mean() {
     }
 }
 
-/// Covers: every way in which a mode can't be used.
+/// Covers: VB12
 #[test]
 fn a_mode_that_cannot_be_used_is_refused_with_the_nearest_that_can() {
     let refused = |frequency: f64, damping: f64, cycle: f64| {

@@ -92,6 +92,8 @@ fn swing(plan: &Shaped, frequency: f64, damping: f64) -> f64 {
 }
 
 /// In as many scans, with 1 to 1.3 times the acceleration, at orders 2 to 4, for loads up to 10 % off.
+///
+/// Covers: VB3
 #[test]
 fn a_shaped_move_leaves_its_part_of_the_swing_of_a_jerk_limited_one() {
     for (frequency, damping) in [(20.0, 0.0), (20.0, 0.01), (12.0, 0.01)] {
@@ -121,6 +123,8 @@ fn a_shaped_move_leaves_its_part_of_the_swing_of_a_jerk_limited_one() {
 
 /// Against the same move unshaped, at the frequency that the shaper was made for, whatever part of a scan its period has:
 /// nothing, but for `ei`, which tolerates 3 %, and for the share of a scan that `period` can't place.
+///
+/// Covers: VB2
 #[test]
 fn at_the_frequency_itself_nothing_is_left_but_what_the_shaper_tolerates() {
     for frequency in [50.0, 20.0, 17.3, 12.5, 6.1] {
@@ -157,6 +161,8 @@ fn at_the_frequency_itself_nothing_is_left_but_what_the_shaper_tolerates() {
 }
 
 /// Two modes, each with a shaper of its own: loads of both frequencies, also 10 % off.
+///
+/// Covers: VB13
 #[test]
 fn two_modes_come_to_rest_together() {
     let loads = [(7.0, 0.01), (19.0, 0.02)];

@@ -38,7 +38,11 @@ impl Reader {
         self.drives
             .push(drive.map(|drive| (drive, config.scaling.is_some())));
         good?;
-        if let Err(error) = config.check() {
+        let cycle = self.cycle_ns.map(|cycle_ns| cycle_ns as f64 / 1e9);
+        let checked = config
+            .check()
+            .and_then(|()| cycle.map_or(Ok(()), |cycle| config.check_cycle(cycle)));
+        if let Err(error) = checked {
             self.report(Diagnostic::new(
                 Code::BadValue,
                 place_of(key, node, error.key()),
@@ -103,12 +107,16 @@ impl Reader {
 fn place_of(axis: &Key, node: &Node, path: &str) -> Span {
     let mut place = node;
     for part in path.split('.') {
-        let member = match &place.json {
-            Json::Map(members) => members.iter().find(|(key, _)| key.text == part),
+        let inner = match &place.json {
+            Json::Map(members) => members
+                .iter()
+                .find(|(key, _)| key.text == part)
+                .map(|(_, value)| value),
+            Json::List(items) => part.parse::<usize>().ok().and_then(|index| items.get(index)),
             _ => None,
         };
-        match member {
-            Some((_, value)) => place = value,
+        match inner {
+            Some(inner) => place = inner,
             None => return axis.span,
         }
     }

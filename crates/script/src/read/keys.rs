@@ -74,6 +74,23 @@ impl Reader {
             Holds::Object(object) => {
                 self.keys(node, object, &[], to)?;
             }
+            Holds::List(places) => {
+                let items = self.list(node, &what)?;
+                if items.len() > places.len() {
+                    let message = format!(
+                        "{what} has {} entries: at most {} are taken",
+                        items.len(),
+                        places.len()
+                    );
+                    self.report(Diagnostic::new(Code::BadValue, node.span, message));
+                    return None;
+                }
+                let mut good = true;
+                for (item, object) in items.iter().zip(*places) {
+                    good &= self.keys(item, object, &[], to).is_some();
+                }
+                return good.then_some(());
+            }
         }
         Some(())
     }
@@ -108,7 +125,7 @@ impl Reader {
                     }
                     None
                 }
-                Holds::Bool { .. } | Holds::Word { .. } | Holds::Whole { .. } => None,
+                Holds::Bool { .. } | Holds::Word { .. } | Holds::Whole { .. } | Holds::List(_) => None,
             };
             if let Some(why) = refused {
                 let message = format!("{} {why}", called(key));

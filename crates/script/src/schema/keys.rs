@@ -51,6 +51,11 @@ fn holds<T>(key: &Key<T>) -> Value {
             range: (least, most), ..
         } => scans_in(*least, *most),
         Holds::Object(inner) => object(inner),
+        Holds::List(places) => {
+            // What stands at a place is the same at all of them.
+            let item = places.first().map_or(Value::Null, object);
+            json!({"type": "array", "items": item, "maxItems": places.len()})
+        }
     };
     match key.null {
         Some(_) => any_of_these(&[schema, json!({"type": "null"})]),

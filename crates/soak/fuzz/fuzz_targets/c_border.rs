@@ -59,7 +59,7 @@ fn play(bytes: &mut Bytes<'_>) {
         size: size_of::<RuntimeConfig>() as u32,
         axes: 2,
         instances: 4,
-        reserved: 0,
+        history: 0,
         cycle_ns: 1_000_000,
     };
     let mut needed = 0;

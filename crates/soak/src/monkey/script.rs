@@ -243,6 +243,14 @@ fn held<T>(key: &Key<T>, of: &T, plain: &T) -> Option<String> {
         Holds::Number { get, .. } => get(of).map(number),
         Holds::Whole { get, .. } | Holds::Scans { get, .. } => Some(get(of)?.to_string()),
         Holds::Object(object) => Some(format!("{{{}}}", keys(object, of, plain).join(", "))),
+        Holds::List(places) => {
+            let members = places.iter().map(|object| keys(object, of, plain));
+            let given = members.filter(|members| !members.is_empty());
+            let objects: Vec<_> = given
+                .map(|members| format!("{{{}}}", members.join(", ")))
+                .collect();
+            Some(format!("[{}]", objects.join(", ")))
+        }
     }
 }
 

@@ -1,0 +1,262 @@
+//! Moves without swing: what is published is a mean of the set-points of the motion, present and past.
+//!
+//! The motion is planned, held within limits and changed as on any axis; all of that is [`Axis::setpoint`] before it is shaped, the field
+//! `setpoint`. Published is that and its lag. So whatever takes over, what is still in the shaper comes out first, and everything
+//! that is within a limit stays within it. A command has come to its end when nothing is left in the shaper.
+//!
+//! The past is kept in memory that the host lends with every [`Scope`]: [`Axis::history_needed`] places of it for this axis alone.
+//!
+//! Derivation: docs/planner.md, section 15.
+
+use super::{Axis, Motion};
+use crate::{ConfigError, Scope};
+use standstill_planner::shaper::{LONGEST_PERIOD, MODES};
+use standstill_planner::{Planner, Setpoint, Shaper, Shapers, VibrationMode};
+
+/// The shaper of an axis and its state.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shaping {
+    shapers: Shapers,
+    /// Past set-points for each shaper: of the motion, and of what the shaper before made of it.
+    rings: [Ring; MODES],
+    /// Where all that is kept is lent.
+    first: usize,
+    /// By how much the published set-point differs from that of the motion.
+    lag: Setpoint,
+    /// The position (u) of the motion as last seen, in the coordinates of then.
+    seen: f64,
+    /// By how much coordinates have moved since the last set-point was kept (u).
+    moved: f64,
+    /// Scans in a row in which the motion had the velocity of the scan before, and nothing above it.
+    even: u32,
+    /// Where the axis stood before the first set-point that is kept (u).
+    origin: f64,
+    /// Set-points that were kept since.
+    kept: u32,
+}
+
+/// A stretch of the memory, filled round and round.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ring {
+    /// Its first place, counted from that of the axis.
+    first: usize,
+    places: usize,
+    newest: usize,
+}
+
+impl Ring {
+    fn part<'a>(&self, history: &'a mut [Setpoint]) -> &'a mut [Setpoint] {
+        let end = self.first.saturating_add(self.places);
+        history.get_mut(self.first..end).unwrap_or_default()
+    }
+
+    fn push(&mut self, history: &mut [Setpoint], setpoint: Setpoint) {
+        let next = self.newest.wrapping_add(1);
+        self.newest = if next < self.places { next } else { 0 };
+        if let Some(place) = self.part(history).get_mut(self.newest) {
+            *place = setpoint;
+        }
+    }
+
+    /// What was pushed so many scans ago.
+    fn past(&self, history: &[Setpoint], scans: u32) -> Option<Setpoint> {
+        let scans = scans as usize;
+        let back = self.newest.checked_sub(scans);
+        let place = back.or_else(|| (self.newest + self.places).checked_sub(scans))?;
+        history.get(self.first.checked_add(place)?).copied()
+    }
+}
+
+/// Set-points to keep for a mode, for any shaper and down to half of its frequency.
+fn places(mode: &VibrationMode, cycle: f64) -> usize {
+    let slower = 1.0 - mode.damping * mode.damping;
+    let period = 1.0 / (mode.frequency * cycle * slower);
+    (2.0 * period).min(LONGEST_PERIOD) as usize + 4
+}
+
+impl Shaping {
+    /// For these modes at rest at `position` (u); none if there are none.
+    ///
+    /// # Errors
+    /// [`ConfigError::Vibration`] names the mode.
+    pub fn new(
+        modes: &[Option<VibrationMode>; MODES],
+        cycle: f64,
+        position: f64,
+    ) -> Result<Option<Self>, ConfigError> {
+        let shapers =
+            Shapers::new(modes, cycle).map_err(|(place, error)| ConfigError::Vibration { place, error })?;
+        if shapers.delay() == 0 {
+            return Ok(None);
+        }
+        let mut rings = [Ring::default(); MODES];
+        let mut first = 0;
+        for (ring, mode) in rings.iter_mut().zip(modes.iter().flatten()) {
+            let places = places(mode, cycle);
+            *ring = Ring {
+                first,
+                places,
+                newest: 0,
+            };
+            first += places;
+        }
+        Ok(Some(Self {
+            shapers,
+            rings,
+            first: 0,
+            lag: Setpoint::default(),
+            seen: position,
+            moved: 0.0,
+            even: u32::MAX,
+            origin: position,
+            kept: 0,
+        }))
+    }
+
+    fn places(&self) -> usize {
+        self.rings.iter().map(|ring| ring.places).sum()
+    }
+
+    /// What is published was published `delay` scans after the motion had it, all of it.
+    fn is_through(&self) -> bool {
+        self.even >= self.shapers.delay()
+    }
+
+    /// The motion goes from `here` to `next`. A `here` that was not seen before is another name of that place.
+    fn step(&mut self, here: &Setpoint, next: &Setpoint) {
+        self.moved += here.position - self.seen;
+        self.seen = next.position;
+        let has_more = next.acceleration != 0.0 || next.jerk != 0.0 || next.snap != 0.0;
+        self.even = if next.velocity != here.velocity || has_more {
+            0
+        } else {
+            self.even.saturating_add(1)
+        };
+    }
+
+    /// At rest at `position` (u), with nothing left of what was.
+    fn rest(&mut self, position: f64) {
+        self.lag = Setpoint::default();
+        self.seen = position;
+        self.moved = 0.0;
+        self.even = u32::MAX;
+        self.origin = position;
+        self.kept = 0;
+    }
+
+    /// The lag of the set-point `now`, which the motion has come to.
+    ///
+    /// Cost: one set-point for each part of the shapers; where coordinates moved in motion, one for each that is kept.
+    fn shape(&mut self, history: &mut [Setpoint], now: Setpoint) {
+        let by = self.moved + (now.position - self.seen);
+        self.moved = 0.0;
+        self.seen = now.position;
+        let end = self.first.saturating_add(self.places());
+        let history = history.get_mut(self.first..end).unwrap_or_default();
+        if by != 0.0 {
+            self.origin += by;
+            for setpoint in history.iter_mut() {
+                setpoint.position += by;
+            }
+        }
+        self.kept = self.kept.saturating_add(1);
+        let (kept, before) = (self.kept, Setpoint::at_rest(self.origin));
+        self.lag = Setpoint::default();
+        for (ring, shaper) in self.rings.iter_mut().zip(self.shapers.iter()) {
+            let now = now.plus(&self.lag);
+            ring.push(history, now);
+            let past = |delay: u32| {
+                let kept = ring.past(history, delay).filter(|_| delay < kept);
+                kept.unwrap_or(before)
+            };
+            self.lag = self.lag.plus(&shaper.lag(&now, past));
+        }
+    }
+}
+
+impl<P: Planner> Axis<P> {
+    /// Set-points of the past that its shaper needs; 0 without one. The host lends so many places of [`Scope::history`], the first
+    /// of which [`Axis::set_history`] tells.
+    pub fn history_needed(&self) -> usize {
+        self.shaping.as_ref().map_or(0, Shaping::places)
+    }
+
+    /// Its part of [`Scope::history`] begins at this place. Before that, and where less is lent than it needs, the axis is not shaped.
+    pub fn set_history(&mut self, first: usize) {
+        if let Some(shaping) = &mut self.shaping {
+            shaping.first = first;
+        }
+    }
+
+    /// A shaper stands between its motion and its drive.
+    pub(crate) fn is_shaped(&self) -> bool {
+        self.shaping.is_some()
+    }
+
+    /// Nothing of the motion is left in the shaper: it rests, or has a constant velocity.
+    #[inline]
+    pub(super) fn is_through(&self) -> bool {
+        self.shaping.as_ref().is_none_or(Shaping::is_through)
+    }
+
+    /// Scans after which a set-point of the motion has come out whole.
+    #[inline]
+    pub(super) fn shaping_delay(&self) -> u64 {
+        self.shaping
+            .as_ref()
+            .map_or(0, |shaping| shaping.shapers.delay().into())
+    }
+
+    /// The set-point for the drive, in the frame of the motion.
+    #[inline]
+    pub(super) fn commanded(&self) -> Setpoint {
+        match &self.shaping {
+            None => self.setpoint,
+            Some(shaping) => self.setpoint.plus(&shaping.lag),
+        }
+    }
+
+    /// The next set-point of the motion is about to be published.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn pass_to_shaper(&mut self, next: &Setpoint) {
+        if let Some(shaping) = &mut self.shaping {
+            shaping.step(&self.setpoint, next);
+        }
+    }
+
+    /// The end of a motion step: what is published follows the motion.
+    #[inline(always)]
+    pub(crate) fn shape(&mut self, scope: &mut Scope<'_>) {
+        if self.shaping.is_some() {
+            self.shape_setpoint(scope);
+        }
+    }
+
+    #[inline(never)]
+    fn shape_setpoint(&mut self, scope: &mut Scope<'_>) {
+        let now = self.setpoint;
+        let is_led = !matches!(self.motion, Motion::Follow);
+        let Some(shaping) = &mut self.shaping else { return };
+        let rests = now.is_at_rest() && shaping.even > shaping.shapers.delay();
+        if is_led && !rests {
+            shaping.shape(scope.history, now);
+        } else {
+            shaping.rest(now.position);
+        }
+    }
+
+    /// The shaper for other modes, of an axis that rests. Past set-points are kept where they were.
+    pub(super) fn set_shapers(&mut self, shapers: Shapers) {
+        if let Some(shaping) = &mut self.shaping {
+            shaping.shapers = shapers;
+        }
+    }
+
+    /// Whether the memory for the past suffices for these shapers.
+    pub(super) fn has_history_for(&self, shapers: &Shapers) -> bool {
+        let rings = self.shaping.iter().flat_map(|shaping| &shaping.rings);
+        let fits = |(ring, shaper): (&Ring, &Shaper)| (shaper.delay() as usize) < ring.places;
+        rings.zip(shapers.iter()).all(fits)
+    }
+}
