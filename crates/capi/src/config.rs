@@ -3,8 +3,8 @@
 use crate::{AxisSetup, DriveSetup};
 use standstill_axis::{
     AboveLimit, AxisConfig, BlockDetection, ConfigError, Defaults, EdgeWhileBusy, Following, HomeDirection,
-    Homing, InPosition, JogAtLimit, Limits, ModuloTargets, MoveProfile, OnLimit, OnMasterLost, PowerOff,
-    Procedure, Scaling, ShaperKind, StartState, StopLimits, SwitchEdge, VibrationMode,
+    Homing, InPosition, JogAtLimit, Limits, ModuloTargets, MoveProfile, OnLimit, OnMasterLost, PlanError,
+    PowerOff, Procedure, Scaling, ShaperKind, StartState, StopLimits, SwitchEdge, VibrationMode,
 };
 use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
@@ -529,6 +529,13 @@ pub(crate) fn refused(error: &ConfigError) -> SetupFault {
     let value = match *error {
         ConfigError::NotPositive { value, .. }
         | ConfigError::NotFinite { value, .. }
+        | ConfigError::Vibration {
+            error: PlanError::InvalidInput { value, .. } | PlanError::OutOfRange { value, .. },
+            ..
+        }
+        | ConfigError::VibrationRates {
+            deceleration: value, ..
+        }
         | ConfigError::AboveLimit { value, .. }
         | ConfigError::Modulo { value }
         | ConfigError::PositionOutsideModulo { value, .. }

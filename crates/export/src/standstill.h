@@ -213,9 +213,10 @@ typedef struct standstill_runtime_config {
    */
   uint32_t instances;
   /**
-   * 0.
+   * Set-points kept for axes with vibration, in all, up to 2^24: for each mode of an axis twice its period in ticks, but at
+   * most 4096, and 4. 40 bytes of storage for each.
    */
-  uint32_t reserved;
+  uint32_t history;
   /**
    * Nominal time between ticks (ns), above 0. Every tick_end advances motion by this, however late it comes.
    */
@@ -469,6 +470,30 @@ typedef struct standstill_axis_setup {
    * a jerk limit, 1 without. Where its limits ask for more, it stops at the rows at which one jumps.
    */
   int32_t cam_continuity;
+  /**
+   * Frequency without damping (Hz) in which its load swings; 0: none, and nothing is shaped. RuntimeConfig.history is the memory.
+   */
+  double vibration_frequency;
+  /**
+   * Damping ratio of that, 0 to 0.9.
+   */
+  double vibration_damping;
+  /**
+   * Frequency of a second mode (Hz); 0: none.
+   */
+  double vibration2_frequency;
+  /**
+   * Its damping ratio.
+   */
+  double vibration2_damping;
+  /**
+   * The shaper of the first mode: 0 ei, 1 period, 2 zv, 3 zvd.
+   */
+  int32_t vibration_shaper;
+  /**
+   * That of the second one.
+   */
+  int32_t vibration2_shaper;
 } standstill_axis_setup;
 
 /**

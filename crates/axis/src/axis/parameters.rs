@@ -419,10 +419,13 @@ impl<P: Planner> Axis<P> {
             };
             Unwritten::value(limit, ErrorId::ParameterValueInvalid)
         })?;
-        if !self.has_history_for(&shapers) {
-            let set_up = self.config.vibration.get(place).copied().flatten();
-            let least = set_up.map_or(f64::NAN, |mode| 0.5 * mode.frequency);
+        let set_up = self.config.vibration.get(place).copied().flatten();
+        let least = set_up.map_or(f64::NAN, |mode| 0.5 * mode.frequency);
+        if part == 0 && value < least {
             return Err(Unwritten::value(least, ErrorId::ParameterValueInvalid));
+        }
+        if !self.has_history_for(&shapers) {
+            return Err(Unwritten::value(f64::NAN, ErrorId::ParameterValueInvalid));
         }
         if !(self.setpoint.is_at_rest() && self.is_through()) {
             return Err(Unwritten::value(f64::NAN, ErrorId::InMotion));

@@ -29,13 +29,16 @@ pub fn size_of_runtime(config: &RuntimeConfig) -> usize {
 
 impl Host {
     pub fn new(axes: u32, instances: u32) -> Self {
-        let config = config(axes, instances);
-        let bytes = size_of_runtime(&config);
+        Self::made(&config(axes, instances))
+    }
+
+    pub fn made(config: &RuntimeConfig) -> Self {
+        let bytes = size_of_runtime(config);
         let mut storage = vec![0_u128; bytes.div_ceil(16)];
         let mut runtime = null_mut();
         // SAFETY: the storage is as long and as aligned as asked for, and lives as long as the handle.
         let code =
-            unsafe { standstill_runtime_init(1, storage.as_mut_ptr().cast(), bytes, &config, &mut runtime) };
+            unsafe { standstill_runtime_init(1, storage.as_mut_ptr().cast(), bytes, config, &mut runtime) };
         assert_eq!(code, 0);
         Self {
             runtime,

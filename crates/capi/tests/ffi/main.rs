@@ -430,7 +430,11 @@ fn an_axis_of_no_number_is_the_blocks_own_error() {
 fn a_configuration_that_cannot_be_used_is_named() {
     let host = Host::new(1, 1);
     let (axis, drive) = Host::setup();
-    let rows: [(AxisSetup, DriveSetup, &str, f64); 6] = [
+    let shaped = AxisSetup {
+        vibration_frequency: 12.0,
+        ..axis
+    };
+    let rows: [(AxisSetup, DriveSetup, &str, f64); 9] = [
         (
             AxisSetup {
                 velocity: 0.0,
@@ -441,6 +445,26 @@ fn a_configuration_that_cannot_be_used_is_named() {
             0.0,
         ),
         (AxisSetup { jerk: -5.0, ..axis }, drive, "limits.jerk", -5.0),
+        // Nothing is lent for its past: this is what it needs.
+        (shaped, drive, "vibration", 170.0),
+        (
+            AxisSetup {
+                vibration2_frequency: 300.0,
+                ..shaped
+            },
+            drive,
+            "vibration.1.frequency",
+            300.0,
+        ),
+        (
+            AxisSetup {
+                vibration_shaper: 4,
+                ..shaped
+            },
+            drive,
+            "vibration_shaper",
+            4.0,
+        ),
         (AxisSetup { profile: 8, ..axis }, drive, "profile", 8.0),
         (axis, DriveSetup { kind: 9, ..drive }, "drive.kind", 9.0),
         (axis, DriveSetup { kind: 2, ..drive }, "scaling_increments", 0.0),
@@ -461,6 +485,33 @@ fn a_configuration_that_cannot_be_used_is_named() {
     assert_eq!(host.add(&axis, &drive), Ok(1));
     assert_eq!(host.close(), 0);
     assert_eq!(host.close(), Code::NoRuntime as i32);
+}
+
+/// A period of 84 scans later than without.
+#[test]
+fn a_shaped_axis_has_its_velocity_when_all_of_it_has_come_out() {
+    let host = Host::made(&RuntimeConfig {
+        history: 170,
+        ..host::config(1, 4)
+    });
+    let (axis, drive) = Host::setup();
+    let axis = AxisSetup {
+        start_powered: 1,
+        vibration_frequency: 12.0,
+        ..axis
+    };
+    assert_eq!(host.add(&axis, &drive), Ok(1));
+    let (mut key, mut out) = (0, outputs());
+    for scan in 0..300 {
+        assert_eq!(host.begin(scan * 1_000_000), 0);
+        assert_eq!(velocity(host.runtime, &mut key, &inputs(), &mut out), 0);
+        assert_eq!(host.end(), 0);
+        // The motion has 10 u/s after 100 scans.
+        assert_eq!(out.in_velocity, u8::from(scan >= 184), "{scan}");
+        assert_eq!(host.status().velocity == 10.0, scan >= 183, "{scan}");
+    }
+    assert_eq!(host.stop(), 0);
+    assert!(host.run_down(300) <= 0.01 + 1e-12);
 }
 
 #[test]
