@@ -318,7 +318,8 @@ Frequency and damping are found by `standstill identify` in a recording of how t
 
 Two modes may stand in the list; their delays add up. Damping is 0 if it is left out. What follows is the mechanism above with a load that swings with
 12 Hz, damped by 1 %, and moves of 2 rad in 1000 scans: one with limited jerk, the others shaped, with an acceleration *a* such that all take the
-same time. The columns say by how much the load's frequency is off the one that the shapers were made for, and what swing is left (mrad).
+same time. The columns say by how much the load's frequency is off the one that the shapers were made for, and what swing is left (mrad): at 0 % what
+comes of a motor that gives way a little.
 
 ";
 
