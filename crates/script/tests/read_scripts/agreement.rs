@@ -16,6 +16,7 @@ const TEXTS: [&str; 3] = [
 /// What only the reader can know, by a piece of its message: names, the types of signals, and what is compared with something
 /// elsewhere in the script or with the cycle.
 const ONLY_THE_READER: &[&str] = &[
+    "a period takes from 4 to 4096 cycles",
     "there is no input variable or instance",
     "there is no axis, input variable or instance",
     "there is no axis state",

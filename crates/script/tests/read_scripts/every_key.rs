@@ -3,7 +3,7 @@
 use standstill_axis::{
     AboveLimit, AxisId, BlockDetection, DrivePosition, EdgeWhileBusy, Following, HomeDirection, Homing,
     JogAtLimit, Limits, ModuloTargets, MoveProfile, OnLimit, OnMasterLost, PowerOff, Procedure, Scaling,
-    StopLimits, SwitchEdge,
+    ShaperKind, StopLimits, SwitchEdge, VibrationMode,
 };
 use standstill_drives::cia402::Reaction;
 use standstill_drives::mechanism::{Gains, Load, Plant, Stops};
@@ -116,6 +116,12 @@ fn axes_take_their_configuration() {
     assert_eq!(own.jog_at_limit, JogAtLimit::Stop);
     assert_eq!(own.modulo_targets, ModuloTargets::Wrap);
     assert_eq!(own.edge_while_busy, EdgeWhileBusy::Ignore);
+    let first = VibrationMode {
+        frequency: 50.0,
+        damping: 0.02,
+        shaper: ShaperKind::Zvd,
+    };
+    assert_eq!(own.vibration, [Some(first), Some(VibrationMode::new(12.0))]);
 
     assert_eq!(
         script.axes[2].drive,
