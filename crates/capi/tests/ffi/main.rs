@@ -492,7 +492,7 @@ fn a_configuration_that_cannot_be_used_is_named() {
 fn a_shaped_axis_has_its_velocity_when_all_of_it_has_come_out() {
     let host = Host::made(&RuntimeConfig {
         history: 170,
-        ..host::config(1, 4)
+        ..config(1, 4)
     });
     let (axis, drive) = Host::setup();
     let axis = AxisSetup {
